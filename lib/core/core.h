@@ -1,0 +1,60 @@
+/* What every room of the library stands on: errors, checked allocation, reference counts. Private. */
+#ifndef SKG_CORE_H
+#define SKG_CORE_H
+
+#include <skiagraph/error.h>
+
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Sets the thread's last error to the formatted sentence and returns status, so that a failure is one line:
+ *     return skg_fail(SKG_ERR_MESH, "%s: no triangles", name); */
+skg_status skg_fail(skg_status status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Returns from the calling function when the call failed or is stale. */
+#define SKG_TRY(call)                                                                                        \
+    do {                                                                                                     \
+        skg_status skg_try_status = (call);                                                                  \
+        if (skg_try_status != SKG_OK) return skg_try_status;                                                 \
+    } while (0)
+
+/* Same, but leaves by the label `cleanup` with the local `status` set. */
+#define SKG_TRY_CLEANUP(call)                                                                                \
+    do {                                                                                                     \
+        status = (call);                                                                                     \
+        if (status != SKG_OK) goto cleanup;                                                                  \
+    } while (0)
+
+/* count * size bytes, zeroed; the product is checked. A zero count gives a valid pointer. what: for the
+ * message. */
+skg_status skg_alloc(int64_t count, size_t size, const char *what, void *pointer_address);
+
+/* Grows or shrinks *pointer_address to count * size bytes; on failure the old block stays. New bytes are not
+ * zeroed. */
+skg_status skg_realloc(int64_t count, size_t size, const char *what, void *pointer_address);
+
+/* Frees *pointer_address and sets it to NULL; NULL is fine. */
+void skg_free(void *pointer_address);
+
+/* A copy of text in memory of its own (NULL stays NULL). */
+skg_status skg_copy_text(const char *text, char **copy);
+
+/* Reference counts of handles: starts at 1; skg_unref returns 1 when the last owner is gone. */
+typedef struct {
+    atomic_int owners;
+} skg_refs;
+
+void skg_refs_init(skg_refs *refs);
+void skg_ref(skg_refs *refs);
+int skg_unref(skg_refs *refs);
+
+/* Structs that callers fill start with int32_t size. Copies the caller's struct over our defaults: a smaller
+ * size leaves our newer fields as they are; a larger one is refused unless its unknown tail is zero. name:
+ * for the message. */
+skg_status skg_struct_read(const void *theirs, const char *name, void *ours, size_t our_size);
+
+/* The other way, for structs that the library fills: at most theirs->size bytes, the size field kept. */
+skg_status skg_struct_write(const void *ours, size_t our_size, const char *name, void *theirs);
+
+#endif

@@ -1,0 +1,46 @@
+#include "core.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+/* Long enough for an OpenCL build log of ordinary length; longer ones are cut at the end. */
+static _Thread_local char last_error[16384];
+
+const char *skg_status_name(skg_status status) {
+    switch (status) {
+#define SKG_STATUS_NAME(name, value, text)                                                                   \
+    case value:                                                                                              \
+        return #name;
+        SKG_STATUS_LIST(SKG_STATUS_NAME)
+#undef SKG_STATUS_NAME
+    default:
+        return "SKG_UNKNOWN";
+    }
+}
+
+const char *skg_status_text(skg_status status) {
+    switch (status) {
+#define SKG_STATUS_TEXT(name, value, text)                                                                   \
+    case value:                                                                                              \
+        return text;
+        SKG_STATUS_LIST(SKG_STATUS_TEXT)
+#undef SKG_STATUS_TEXT
+    default:
+        return "no status of this library";
+    }
+}
+
+const char *skg_last_error(void) {
+    return last_error;
+}
+
+skg_status skg_fail(skg_status status, const char *format, ...) {
+    /* The arguments may quote the last error itself: format beside it first. */
+    static _Thread_local char sentence[sizeof last_error];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence, sizeof sentence, format, arguments);
+    va_end(arguments);
+    snprintf(last_error, sizeof last_error, "%s", sentence);
+    return status;
+}

@@ -1,0 +1,90 @@
+#include "core.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+skg_status skg_alloc(int64_t count, size_t size, const char *what, void *pointer_address) {
+    void **pointer = pointer_address;
+    *pointer = NULL;
+    if (count < 0 || (count > 0 && (uint64_t)count > (uint64_t)PTRDIFF_MAX / size))
+        return skg_fail(SKG_ERR_MEMORY, "%s: %" PRId64 " items of %zu bytes are more than memory can hold",
+                        what, count, size);
+    *pointer = calloc(count > 0 ? (size_t)count : 1, size);
+    if (!*pointer)
+        return skg_fail(SKG_ERR_MEMORY, "%s: no memory for %" PRId64 " items of %zu bytes", what, count,
+                        size);
+    return SKG_OK;
+}
+
+skg_status skg_realloc(int64_t count, size_t size, const char *what, void *pointer_address) {
+    void **pointer = pointer_address;
+    if (count < 0 || (count > 0 && (uint64_t)count > (uint64_t)PTRDIFF_MAX / size))
+        return skg_fail(SKG_ERR_MEMORY, "%s: %" PRId64 " items of %zu bytes are more than memory can hold",
+                        what, count, size);
+    void *grown = realloc(*pointer, count > 0 ? (size_t)count * size : 1);
+    if (!grown)
+        return skg_fail(SKG_ERR_MEMORY, "%s: no memory for %" PRId64 " items of %zu bytes", what, count,
+                        size);
+    *pointer = grown;
+    return SKG_OK;
+}
+
+void skg_free(void *pointer_address) {
+    void **pointer = pointer_address;
+    free(*pointer);
+    *pointer = NULL;
+}
+
+skg_status skg_copy_text(const char *text, char **copy) {
+    *copy = NULL;
+    if (!text) return SKG_OK;
+    SKG_TRY(skg_alloc((int64_t)strlen(text) + 1, 1, "text", copy));
+    strcpy(*copy, text);
+    return SKG_OK;
+}
+
+void skg_refs_init(skg_refs *refs) {
+    atomic_init(&refs->owners, 1);
+}
+
+void skg_ref(skg_refs *refs) {
+    atomic_fetch_add_explicit(&refs->owners, 1, memory_order_relaxed);
+}
+
+int skg_unref(skg_refs *refs) {
+    return atomic_fetch_sub_explicit(&refs->owners, 1, memory_order_acq_rel) == 1;
+}
+
+skg_status skg_struct_read(const void *theirs, const char *name, void *ours, size_t our_size) {
+    int32_t their_size = 0;
+    if (!theirs) return skg_fail(SKG_ERR_ARGUMENT, "%s is NULL; pass one prepared by %s_init", name, name);
+    memcpy(&their_size, theirs, sizeof their_size);
+    if (their_size < (int32_t)sizeof their_size)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s has size %" PRId32 "; prepare it with %s_init", name,
+                        their_size, name);
+    for (size_t i = our_size; i < (size_t)their_size; i++)
+        if (((const unsigned char *)theirs)[i] != 0)
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "%s has size %" PRId32 " with fields that this version (size %zu) does not know; "
+                            "leave them zero or use the newer library",
+                            name, their_size, our_size);
+    size_t shared = (size_t)their_size < our_size ? (size_t)their_size : our_size;
+    memcpy(ours, theirs, shared);
+    int32_t size = (int32_t)our_size;
+    memcpy(ours, &size, sizeof size);
+    return SKG_OK;
+}
+
+skg_status skg_struct_write(const void *ours, size_t our_size, const char *name, void *theirs) {
+    int32_t their_size = 0;
+    if (!theirs) return skg_fail(SKG_ERR_ARGUMENT, "%s is NULL; pass one prepared by %s_init", name, name);
+    memcpy(&their_size, theirs, sizeof their_size);
+    if (their_size < (int32_t)sizeof their_size)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s has size %" PRId32 "; prepare it with %s_init", name,
+                        their_size, name);
+    size_t shared = (size_t)their_size < our_size ? (size_t)their_size : our_size;
+    memcpy(theirs, ours, shared);
+    memcpy(theirs, &their_size, sizeof their_size);
+    return SKG_OK;
+}

@@ -1,0 +1,5 @@
+#include <skiagraph/version.h>
+
+const char *skg_version(void) {
+    return SKG_VERSION;
+}

@@ -1,0 +1,113 @@
+/* Triangle meshes.
+ *
+ * A mesh keeps the caller's numbering: vertex i and triangle i are those given, always. Positions are in mm,
+ * in the caller's frame; inside they are doubles, and float offsets from an origin of the mesh's own, which
+ * is what a plan of single precision uploads. Every mesh carries its health (closed? outward?) and a version
+ * number that grows whenever its vertices move. Meshes that nobody writes may be shared by threads.
+ *
+ * Calls that take a context take it for its warnings only; it may be NULL. */
+#ifndef SKIAGRAPH_MESH_H
+#define SKIAGRAPH_MESH_H
+
+#include <skiagraph/context.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct skg_mesh skg_mesh;
+
+/* A mesh from arrays, which are copied. name: for messages; "" or NULL for "mesh".
+ * positions: vertices rows of x, y, z, `position_stride` elements from row to row (>= 3, or 0 for 3), in
+ * units of unit_mm mm (finite, > 0: 1 for mm, 10 for cm, 1000 for m). triangles: rows of three vertex numbers
+ * from 0, `triangle_stride` elements from row to row (>= 3, or 0 for 3). A closed mesh that is inverted as a
+ * whole is turned outward, with a warning (health.flipped); the caller's numbering stays. Errors:
+ * SKG_ERR_ARGUMENT, SKG_ERR_MESH (no triangles, index out of range, NaN or infinite vertex: the first one is
+ * named), SKG_ERR_MEMORY. The caller releases the mesh. */
+SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices,
+                                   const double *positions, int64_t position_stride, int64_t triangles,
+                                   const int32_t *corners, int64_t triangle_stride, double unit_mm,
+                                   skg_mesh **mesh);
+SKG_API skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t vertices,
+                                         const float *positions, int64_t position_stride, int64_t triangles,
+                                         const int32_t *corners, int64_t triangle_stride, double unit_mm,
+                                         skg_mesh **mesh);
+
+/* A mesh from a file: STL (ascii, binary), PLY, OBJ, and what else Assimp reads; several objects in a file
+ * become one mesh. Faces of more than three corners are cut into triangles; points and lines are left out,
+ * with a warning. The file's own vertex order is kept. unit_mm as above. Errors: SKG_ERR_FILE (cannot be
+ * read), SKG_ERR_FORMAT (truncated, not a mesh), SKG_ERR_MESH. */
+SKG_API skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh);
+
+/* Writes a mesh as binary PLY, or as binary STL where path ends in .stl; positions in mm. Whole or not at
+ * all. */
+SKG_API skg_status skg_mesh_save(const skg_mesh *mesh, const char *path);
+
+/* Makers: closed, outward, centred at the origin; lengths in mm, > 0.
+ * sphere: segments >= 3 around and segments/2 (at least 2) from pole to pole, poles on z; vertices on the
+ * sphere. cylinder: axis z, segments >= 3 around; vertices on the circle. step_wedge: `steps` >= 1 steps
+ * along x, each length_x/steps long; step k is (k+1)/steps of height_z high, y across. */
+SKG_API skg_status skg_mesh_cube(double edge, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_sphere(double radius, int64_t segments, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
+                                       skg_mesh **mesh);
+
+SKG_API skg_status skg_mesh_retain(skg_mesh *mesh);
+SKG_API void skg_mesh_release(skg_mesh **mesh);
+
+/* Numbers of vertices and triangles, as given. */
+SKG_API skg_status skg_mesh_size(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles);
+
+/* Copies positions (mm) or corners out; strides as in skg_mesh_create. */
+SKG_API skg_status skg_mesh_read_positions(const skg_mesh *mesh, double *positions, int64_t position_stride);
+SKG_API skg_status skg_mesh_read_triangles(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride);
+
+/* Gives every vertex a new position (mm); same count and strides as in skg_mesh_create. The next frame
+ * uploads them. The health keeps what topology says (closed, winding); volume, area and bounds follow. Not
+ * finite: SKG_ERR_MESH. */
+SKG_API skg_status skg_mesh_write_positions(skg_mesh *mesh, const double *positions, int64_t position_stride);
+
+/* The way without a copy: the float offsets (rows of x, y, z, in mm, from *origin) that the upload reads.
+ * Write there, then call skg_mesh_moved. The pointers are valid as long as the mesh. */
+SKG_API skg_status skg_mesh_positions(skg_mesh *mesh, float **offsets, const double **origin);
+SKG_API skg_status skg_mesh_moved(skg_mesh *mesh);
+
+/* Grows by one with each write or skg_mesh_moved; starts at 1. */
+SKG_API skg_status skg_mesh_version(const skg_mesh *mesh, int64_t *version);
+
+/* Health. Vertices whose positions are equal bit for bit are one vertex here (welded).
+ * closed: for every pair of vertices as many edges (a,b) as (b,a); then every ray's signed hits cancel
+ * exactly. */
+typedef struct {
+    int32_t size;
+    int32_t closed;                /* 1 or 0 */
+    int32_t consistent;            /* 1: no two triangles run along a shared edge in the same direction */
+    int32_t outward;               /* 1: the volume enclosed was positive as given, or the mesh was flipped */
+    int32_t flipped;               /* 1: inverted as a whole, turned outward */
+    int32_t reserved;              /* 0 */
+    int64_t vertices, triangles;   /* as given */
+    int64_t welded_vertices;       /* after welding */
+    int64_t open_edges;            /* directed edges without their opposite */
+    int64_t first_open_vertex;     /* caller's number of a vertex on the first one; -1 when closed */
+    double first_open_position[3]; /* mm */
+    int64_t duplicate_triangles;   /* repeat an earlier triangle, whatever its first corner or winding */
+    int64_t degenerate_triangles;  /* two corners are the same vertex, or no area */
+    int64_t nonmanifold_edges;     /* edges of more than two triangles */
+    int64_t components;            /* connected through shared vertices */
+    double volume;                 /* mm3, signed as seen after flipping; meaningful when closed */
+    double area;                   /* mm2 */
+    double bounds[6];              /* mm: min x, y, z, max x, y, z */
+} skg_mesh_health;
+
+SKG_API void skg_mesh_health_init(skg_mesh_health *health);
+SKG_API skg_status skg_mesh_get_health(const skg_mesh *mesh, skg_mesh_health *health);
+
+/* The name given, or the file's name without its folder. Valid as long as the mesh. */
+SKG_API skg_status skg_mesh_name(const skg_mesh *mesh, const char **name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,154 @@
+/* Plans and frames: what a scene calls for, decided once; then images, as many as wanted.
+ *
+ * A plan looks at scene, view, spectrum and options, decides how the image is made, compiles it and
+ * allocates. A frame is one view of the scene as it stands when it is submitted: skg_plan_submit copies
+ * vertices and poses, so the caller may write the next frame at once; the work runs while the caller goes on;
+ * skg_job_wait waits for it. */
+#ifndef SKIAGRAPH_PLAN_H
+#define SKIAGRAPH_PLAN_H
+
+#include <skiagraph/scene.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct skg_plan skg_plan;
+typedef struct skg_job skg_job;
+
+enum { SKG_SINGLE = 0, SKG_DOUBLE = 1 };
+enum { SKG_STRATEGY_AUTO = 0, SKG_STRATEGY_COPIES = 1, SKG_STRATEGY_TILES = 2, SKG_STRATEGY_ATOMICS = 3 };
+
+/* What a pixel holds. I0 is the same chain without parts. */
+enum {
+    SKG_ENERGY = 0,       /* keV per pixel: the paper's "energy fluence" */
+    SKG_FLUENCE = 1,      /* energy fluence proper, keV/mm2 (ICRU 85) */
+    SKG_PHOTONS = 2,      /* photons per pixel */
+    SKG_TRANSMISSION = 3, /* I/I0 */
+    SKG_ATTENUATION = 4   /* -ln(I/I0) */
+};
+
+typedef struct {
+    int32_t size;
+    int32_t
+        precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent */
+    int32_t strategy; /* SKG_STRATEGY_...; every one gives the same bits */
+    int32_t quantity; /* SKG_ENERGY, ... */
+    int32_t tile;     /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
+    int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
+                         looked for */
+    int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
+    int32_t reserved; /* 0 */
+} skg_plan_options;
+
+SKG_API void skg_plan_options_init(skg_plan_options *options);
+
+/* Makes a plan. The scene and spectrum are retained. options may be NULL. The size of the detector (rows,
+ * columns) is fixed by view; poses of source, detector and parts are free in every frame. Errors:
+ * SKG_ERR_SCENE (no parts, bad view), SKG_ERR_UNSUPPORTED (double without fp64), SKG_ERR_DEVICE_MEMORY,
+ * SKG_ERR_BUILD and others, with the reason. */
+SKG_API skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
+                                   skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan);
+SKG_API skg_status skg_plan_retain(skg_plan *plan);
+SKG_API void skg_plan_release(skg_plan **plan);
+
+/* From now on frames without a view of their own use this one. Same rows and columns, else SKG_STALE. */
+SKG_API skg_status skg_plan_move(skg_plan *plan, const skg_view *view);
+
+/* One frame. Prepare with skg_frame_init; all zero means: the plan's view, the scene's poses. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;          /* 0 */
+    const skg_view *view;      /* NULL: the plan's */
+    int64_t posed;             /* how many parts have a pose of their own in this frame */
+    const int64_t *posed_ids;  /* [posed] numbers of parts */
+    const double *posed_poses; /* [posed][16] */
+    int64_t noise_seed;        /* with index: the key of the noise, where there is noise */
+    int64_t index;
+} skg_frame;
+
+SKG_API void skg_frame_init(skg_frame *frame);
+
+enum { SKG_FLOAT32 = 0, SKG_FLOAT64 = 1 };
+
+/* Where images go, as [frame][channel][row][column]. Prepare with skg_output_init: float, dense strides.
+ * Strides are in elements; 0 means dense. The memory is the caller's and must stay until the job is waited
+ * for. */
+typedef struct {
+    int32_t size;
+    int32_t type; /* SKG_FLOAT32 or SKG_FLOAT64 */
+    void *data;
+    int64_t row_stride, channel_stride, frame_stride;
+} skg_output;
+
+SKG_API void skg_output_init(skg_output *output);
+
+/* Starts `count` >= 1 frames; everything they need from meshes, poses and views is copied before the call
+ * returns. The plan splits batches to fit the device's memory. *job is waited for, and released, by
+ * skg_job_wait. SKG_STALE: the scene has changed in a way that the plan cannot absorb (parts added,
+ * triangles); nothing was started. SKG_ERR_MESH: a vertex is not finite; part and vertex are named. */
+SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                   const skg_output *output, skg_job **job);
+
+/* Waits until the job's images are in their place, releases the job and sets *job to NULL. */
+SKG_API skg_status skg_job_wait(skg_job **job);
+
+/* Submit and wait of one frame as the scene stands. */
+SKG_API skg_status skg_plan_image(skg_plan *plan, const skg_output *output);
+
+enum { SKG_NET = 0, SKG_SURFACE = 1 };
+
+/* The path lengths of one part in mm (the L-buffer), `count` frames as in skg_plan_submit. SKG_NET: minus its
+ * children (the paper's Eq. 9); SKG_SURFACE: the mesh's own. */
+SKG_API skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                    const skg_frame *frames, const skg_output *output, skg_job **job);
+
+/* How many channels an image of this plan has. */
+SKG_API skg_status skg_plan_channels(const skg_plan *plan, int64_t *channels);
+
+/* What was decided. */
+typedef struct {
+    int32_t size;
+    int32_t precision, strategy, quantity;
+    int64_t parts, triangles, vertices; /* vertices: those of meshes, each mesh once */
+    int64_t open_parts;                 /* with planes of their own */
+    int64_t planes, plane_bits;         /* accumulator planes that parts share, and their width: 32 or 64 */
+    int64_t tile_columns,
+        tile_rows; /* shape of a tile in pixels; the whole detector for copies and atomics */
+    int64_t tiles;
+    double triangles_per_tile; /* mean, of the last frame; 0 before the first */
+    int64_t device_bytes;      /* allocated on the device by this plan */
+    int64_t bad_pixels;        /* of the last frame: signed hits of an open mesh do not cancel there */
+    int64_t negative_pixels;   /* of the last frame: negative exponent */
+} skg_plan_report;
+
+SKG_API void skg_plan_report_init(skg_plan_report *report);
+SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report);
+
+/* Each effect that a plan knows: on or off, and why. Text valid as long as the plan. */
+typedef struct {
+    int32_t size;
+    int32_t on; /* 1 or 0 */
+    const char *name, *reason;
+} skg_effect;
+
+SKG_API void skg_effect_init(skg_effect *effect);
+SKG_API skg_status skg_plan_effects(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect);
+
+/* Time per stage of the last job that was waited for, where the plan was made with profile = 1. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;
+    const char *name;
+    double ns; /* device time, summed over the job's frames */
+} skg_stage;
+
+SKG_API void skg_stage_init(skg_stage *stage);
+SKG_API skg_status skg_plan_stages(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_stage(const skg_plan *plan, int64_t index, skg_stage *stage);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

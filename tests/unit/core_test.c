@@ -1,0 +1,99 @@
+#include "core/core.h"
+#include "core/names.h"
+#include "core/output.h"
+#include "suite.h"
+
+#include <string.h>
+#include <unistd.h>
+
+START_TEST(every_status_has_name_and_text) {
+#define SKG_CHECK_STATUS(name, value, text)                                                                  \
+    ck_assert_str_eq(skg_status_name(value), #name);                                                         \
+    ck_assert_str_eq(skg_status_text(value), text);
+    SKG_STATUS_LIST(SKG_CHECK_STATUS)
+    ck_assert_str_eq(skg_status_name(-12345), "SKG_UNKNOWN");
+}
+END_TEST
+
+START_TEST(last_error_may_quote_itself) {
+    skg_fail(SKG_ERR_FILE, "%s: not there", "a.stl");
+    skg_fail(SKG_ERR_SCENE, "scene.json: %s", skg_last_error());
+    ck_assert_str_eq(skg_last_error(), "scene.json: a.stl: not there");
+}
+END_TEST
+
+START_TEST(allocation_checks_its_product) {
+    double *p = NULL;
+    ck_skg_fails(skg_alloc(INT64_MAX / 4, sizeof *p, "lengths", &p), SKG_ERR_MEMORY, "lengths");
+    ck_assert_ptr_null(p);
+    ck_skg(skg_alloc(0, sizeof *p, "nothing", &p));
+    ck_assert_ptr_nonnull(p);
+    skg_free(&p);
+    ck_assert_ptr_null(p);
+}
+END_TEST
+
+typedef struct {
+    int32_t size, a, b;
+} old_struct;
+typedef struct {
+    int32_t size, a, b, c;
+} new_struct;
+
+START_TEST(structs_grow) {
+    old_struct theirs = {sizeof theirs, 1, 2};
+    new_struct ours = {sizeof ours, 0, 0, 7};
+    ck_skg(skg_struct_read(&theirs, "skg_thing", &ours, sizeof ours));
+    ck_assert_int_eq(ours.b, 2);
+    ck_assert_int_eq(ours.c, 7);
+    ck_assert_int_eq(ours.size, (int)sizeof ours);
+
+    new_struct newer = {sizeof newer, 1, 2, 0};
+    old_struct older = {sizeof older, 0, 0};
+    ck_skg(skg_struct_read(&newer, "skg_thing", &older, sizeof older));
+    newer.c = 3;
+    ck_skg_fails(skg_struct_read(&newer, "skg_thing", &older, sizeof older), SKG_ERR_ARGUMENT,
+                 "newer library");
+    newer.size = 0;
+    ck_skg_fails(skg_struct_read(&newer, "skg_thing", &older, sizeof older), SKG_ERR_ARGUMENT,
+                 "skg_thing_init");
+}
+END_TEST
+
+START_TEST(nearest_name_is_a_slip_of_the_finger) {
+    const char *known[] = {"Source", "Detector", "Samples"};
+    ck_assert_str_eq(skg_nearest_name("detectro", known, 3), "Detector");
+    ck_assert_str_eq(skg_nearest_name("SAMPLE", known, 3), "Samples");
+    ck_assert_ptr_null(skg_nearest_name("Zebra", known, 3));
+}
+END_TEST
+
+START_TEST(output_appears_whole_or_not_at_all) {
+    char folder[] = "/tmp/skg-core-XXXXXX", path[64];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.txt", folder);
+    skg_output_file file;
+    ck_skg(skg_output_open(path, &file));
+    fputs("half", file.stream);
+    skg_output_discard(&file);
+    ck_assert_int_ne(access(path, F_OK), 0);
+    ck_skg(skg_output_open(path, &file));
+    fputs("whole", file.stream);
+    ck_skg(skg_output_commit(&file));
+    ck_assert_int_eq(access(path, F_OK), 0);
+    ck_assert_int_eq(unlink(path), 0);
+    ck_assert_int_eq(rmdir(folder), 0); /* nothing else was left there */
+    ck_skg_fails(skg_output_open(path, &file), SKG_ERR_OUTPUT, path);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, every_status_has_name_and_text);
+    tcase_add_test(tests, last_error_may_quote_itself);
+    tcase_add_test(tests, allocation_checks_its_product);
+    tcase_add_test(tests, structs_grow);
+    tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
+    tcase_add_test(tests, output_appears_whole_or_not_at_all);
+}
+
+SKG_SUITE_MAIN("core", add_tests)
