@@ -59,7 +59,8 @@ static int64_t environment_hash(void) {
     return hash;
 }
 
-/* PoCL sets HWLOC_PLUGINS_PATH while it is loaded; that is the driver's doing, so the driver is loaded first. */
+/* PoCL sets HWLOC_PLUGINS_PATH while it is loaded; that is the driver's doing, so the driver is loaded first.
+ */
 START_TEST(environment_is_left_alone) {
     cl_platform_id platform = NULL;
     cl_device_id any = NULL;
