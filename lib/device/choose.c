@@ -1,0 +1,151 @@
+#include "core/names.h"
+#include "device/device.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PLATFORMS = 32, MOST_DEVICES = 64 };
+
+typedef struct {
+    cl_platform_id platform;
+    cl_device_id device;
+    int32_t platform_number, device_number;
+} found_device;
+
+/* Every device of every platform; a machine without a platform has none, which is no failure. */
+static skg_status find_devices(found_device *found, int32_t *count) {
+    cl_platform_id platforms[MOST_PLATFORMS];
+    cl_uint platform_count = 0;
+    *count = 0;
+    cl_int code = clGetPlatformIDs(MOST_PLATFORMS, platforms, &platform_count);
+    if (code == -1001 /* CL_PLATFORM_NOT_FOUND_KHR */) return SKG_OK;
+    SKG_CL_TRY(code);
+    if (platform_count > MOST_PLATFORMS) platform_count = MOST_PLATFORMS;
+    for (cl_uint p = 0; p < platform_count; p++) {
+        cl_device_id devices[MOST_DEVICES];
+        cl_uint device_count = 0;
+        code = clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, MOST_DEVICES, devices, &device_count);
+        if (code != CL_SUCCESS) continue; /* a platform without devices says so by an error */
+        for (cl_uint d = 0; d < device_count && d < MOST_DEVICES && *count < MOST_DEVICES; d++)
+            found[(*count)++] = (found_device){platforms[p], devices[d], (int32_t)p, (int32_t)d};
+    }
+    return SKG_OK;
+}
+
+static void device_text(cl_device_id device, cl_device_info what, char *text, size_t size) {
+    text[0] = '\0';
+    if (clGetDeviceInfo(device, what, size, text, NULL) != CL_SUCCESS) snprintf(text, size, "?");
+    text[size - 1] = '\0';
+}
+
+skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_platform_id platform,
+                             cl_device_id device, skg_device_info *info) {
+    cl_device_type type = 0;
+    cl_uint units = 0, width = 0;
+    cl_ulong memory = 0, allocation = 0, local = 0;
+    cl_device_fp_config single = 0, twice = 0;
+    skg_device_info_init(info);
+    info->platform = platform_number;
+    info->device = device_number;
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof allocation, &allocation, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_LOCAL_MEM_SIZE, sizeof local, &local, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof single, &single, NULL));
+    if (clGetDeviceInfo(device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof twice, &twice, NULL) != CL_SUCCESS)
+        twice = 0;
+    info->is_gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
+    info->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+    info->compute_units = (int32_t)units;
+    info->float_width = (int32_t)width;
+    info->has_double = twice != 0;
+    info->correct_division = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    info->memory = (int64_t)memory;
+    info->max_allocation = (int64_t)allocation;
+    info->local_memory = (int64_t)local;
+    device_text(device, CL_DEVICE_NAME, info->name, sizeof info->name);
+    device_text(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
+    device_text(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform_name, info->platform_name,
+                          NULL) != CL_SUCCESS)
+        snprintf(info->platform_name, sizeof info->platform_name, "?");
+    return SKG_OK;
+}
+
+void skg_device_info_init(skg_device_info *info) {
+    if (info) *info = (skg_device_info){.size = (int32_t)sizeof *info};
+}
+
+skg_status skg_device_count(int64_t *count) {
+    if (!count) return skg_fail(SKG_ERR_ARGUMENT, "skg_device_count: no result");
+    found_device found[MOST_DEVICES];
+    int32_t all = 0;
+    SKG_TRY(find_devices(found, &all));
+    *count = all;
+    return SKG_OK;
+}
+
+skg_status skg_device_describe(int64_t index, skg_device_info *info) {
+    found_device found[MOST_DEVICES];
+    int32_t all = 0;
+    SKG_TRY(find_devices(found, &all));
+    if (index < 0 || index >= all)
+        return skg_fail(SKG_ERR_ARGUMENT, "device %" PRId64 " of %" PRId32 " (counted from 0)", index, all);
+    skg_device_info ours;
+    SKG_TRY(skg_device_inform(found[index].platform_number, found[index].device_number, found[index].platform,
+                              found[index].device, &ours));
+    return skg_struct_write(&ours, sizeof ours, "skg_device_info", info);
+}
+
+/* Whether `wanted` (NULL: anything) names this device: cpu, gpu, PLATFORM:DEVICE, or part of its name. */
+static int fits(const char *wanted, const skg_device_info *info) {
+    if (!wanted || skg_same_name(wanted, "auto")) return 1;
+    if (skg_same_name(wanted, "gpu")) return info->is_gpu;
+    if (skg_same_name(wanted, "cpu")) return info->is_cpu;
+    int platform = 0, device = 0, end = 0;
+    if (sscanf(wanted, "%d:%d%n", &platform, &device, &end) == 2 && wanted[end] == '\0')
+        return platform == info->platform && device == info->device;
+    for (const char *at = info->name; *at; at++) {
+        size_t i = 0;
+        while (wanted[i] && at[i] && (wanted[i] | 32) == (at[i] | 32)) i++;
+        if (!wanted[i]) return 1;
+    }
+    return 0;
+}
+
+/* GPUs before others, then more compute units. */
+static int better(const skg_device_info *a, const skg_device_info *b) {
+    if (a->is_gpu != b->is_gpu) return a->is_gpu > b->is_gpu;
+    return a->compute_units > b->compute_units;
+}
+
+skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_device_id *device,
+                             skg_device_info *info) {
+    found_device found[MOST_DEVICES];
+    int32_t all = 0, chosen = -1;
+    SKG_TRY(find_devices(found, &all));
+    if (all == 0)
+        return skg_fail(SKG_ERR_NO_DEVICE,
+                        "no OpenCL device on this machine; install a driver, for instance PoCL "
+                        "(apt-get install pocl-opencl-icd)");
+    for (int32_t i = 0; i < all; i++) {
+        skg_device_info one;
+        SKG_TRY(skg_device_inform(found[i].platform_number, found[i].device_number, found[i].platform,
+                                  found[i].device, &one));
+        if (!fits(wanted, &one) || (chosen >= 0 && !better(&one, info))) continue;
+        chosen = i;
+        *info = one;
+    }
+    if (chosen < 0)
+        return skg_fail(SKG_ERR_NO_DEVICE,
+                        "no OpenCL device fits device=%s; `skiagraph devices` lists the %" PRId32
+                        " there are",
+                        wanted, all);
+    *platform = found[chosen].platform;
+    *device = found[chosen].device;
+    return SKG_OK;
+}

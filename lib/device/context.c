@@ -1,0 +1,187 @@
+#include "core/names.h"
+#include "device/device.h"
+#include "device/program.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* What the driver has to say outside any call goes to the log as a warning. */
+static void CL_CALLBACK driver_says(const char *sentence, const void *data, size_t size, void *user) {
+    (void)data;
+    (void)size;
+    skg_log(user, SKG_LOG_WARNING, "OpenCL driver: %s", sentence);
+}
+
+typedef struct {
+    char device[128]; /* "": not asked for */
+    char kernels[1024];
+    int32_t threads; /* 0: all */
+} wanted_device;
+
+static skg_status copy_word(const char *value, size_t length, char *place, size_t size) {
+    if (length == 0 || length >= size)
+        return skg_fail(SKG_ERR_ARGUMENT, "device words: \"%.*s\" is empty or too long", (int)length, value);
+    memcpy(place, value, length);
+    place[length] = '\0';
+    return SKG_OK;
+}
+
+/* device= takes the rest up to the next known word, so that names with spaces work. */
+static skg_status read_words(const char *words, wanted_device *wanted) {
+    static const char *const keys[] = {"device", "threads", "kernels"};
+    const char *at = words;
+    while (*at == ' ') at++;
+    while (*at) {
+        size_t length = strcspn(at, " ");
+        const char *equals = memchr(at, '=', length);
+        char key[32] = "device"; /* the bare value of device= */
+        if (equals) SKG_TRY(copy_word(at, (size_t)(equals - at), key, sizeof key));
+        const char *value = equals ? equals + 1 : at;
+        length -= (size_t)(value - at);
+        if (skg_same_name(key, "device")) {
+            SKG_TRY(copy_word(value, length, wanted->device, sizeof wanted->device));
+        } else if (skg_same_name(key, "kernels")) {
+            SKG_TRY(copy_word(value, length, wanted->kernels, sizeof wanted->kernels));
+        } else if (skg_same_name(key, "threads")) {
+            char *end = NULL;
+            long threads = strtol(value, &end, 10);
+            if (end != value + length || threads < 1 || threads > 4096)
+                return skg_fail(SKG_ERR_ARGUMENT, "threads=%.*s is not a number from 1 to 4096", (int)length,
+                                value);
+            wanted->threads = (int32_t)threads;
+        } else {
+            const char *near = skg_nearest_name(key, keys, 3);
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "\"%s\" says nothing about a device%s%s; known: device=, threads=, kernels=", key,
+                            near ? "; did you mean " : "", near ? near : "");
+        }
+        at = value + length;
+        while (*at == ' ') at++;
+    }
+    return SKG_OK;
+}
+
+static skg_status read_config(const char *config, wanted_device *wanted) {
+    *wanted = (wanted_device){0};
+    const char *device = getenv("SKG_DEVICE"), *kernels = getenv("SKG_KERNEL_DIR");
+    if (device && read_words(device, wanted) != SKG_OK)
+        return skg_fail(SKG_ERR_ARGUMENT, "environment variable SKG_DEVICE=%s: %s", device, skg_last_error());
+    if (kernels && !wanted->kernels[0])
+        SKG_TRY(copy_word(kernels, strlen(kernels), wanted->kernels, sizeof wanted->kernels));
+    return config ? read_words(config, wanted) : SKG_OK;
+}
+
+/* A sub-device of so many compute units, where that is fewer than there are. */
+static skg_status limit_threads(skg_context *context, int32_t threads) {
+    skg_device *device = context->device;
+    if (threads == 0 || threads >= device->info.compute_units) return SKG_OK;
+    cl_device_partition_property how[] = {CL_DEVICE_PARTITION_BY_COUNTS, threads,
+                                          CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    cl_device_id part = NULL;
+    cl_uint parts = 0;
+    cl_int code = clCreateSubDevices(device->id, how, 1, &part, &parts);
+    if (code != CL_SUCCESS)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s cannot be limited to threads=%" PRId32 ": %s from clCreateSubDevices",
+                        device->info.name, threads, skg_cl_name(code));
+    device->id = part;
+    device->info.compute_units = threads;
+    return SKG_OK;
+}
+
+static skg_status new_context(skg_context **context) {
+    skg_context *made = NULL;
+    SKG_TRY(skg_alloc(1, sizeof *made, "context", &made));
+    skg_refs_init(&made->refs);
+    made->process = (int64_t)getpid();
+    skg_status status = skg_alloc(1, sizeof *made->device, "device", &made->device);
+    if (status != SKG_OK) skg_free(&made);
+    *context = made;
+    return status;
+}
+
+skg_status skg_context_create(const char *config, skg_context **context) {
+    if (!context) return skg_fail(SKG_ERR_ARGUMENT, "skg_context_create: no place for the context");
+    *context = NULL;
+    skg_context *made = NULL;
+    skg_status status = SKG_OK;
+    wanted_device wanted;
+    SKG_TRY(read_config(config, &wanted));
+    SKG_TRY(new_context(&made));
+    skg_device *device = made->device;
+    cl_int code = CL_SUCCESS;
+    SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, &device->platform, &device->id,
+                                      &device->info));
+    SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
+    if (wanted.kernels[0]) SKG_TRY_CLEANUP(skg_copy_text(wanted.kernels, &device->kernel_dir));
+    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
+    device->cl = clCreateContext(properties, 1, &device->id, driver_says, made, &code);
+    SKG_CL_CLEANUP(code);
+    device->profiling = 1;
+    device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &code);
+    SKG_CL_CLEANUP(code);
+    *context = made;
+    return SKG_OK;
+cleanup:
+    skg_context_release(&made);
+    return status;
+}
+
+skg_status skg_context_create_cl(cl_context cl, cl_device_id id, cl_command_queue queue,
+                                 skg_context **context) {
+    if (!context || !cl || !id || !queue)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_context_create_cl: context, device, queue or result is missing");
+    *context = NULL;
+    cl_context queue_context = NULL;
+    cl_device_id queue_device = NULL;
+    cl_command_queue_properties properties = 0;
+    cl_platform_id platform = NULL;
+    SKG_CL_TRY(clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof queue_context, &queue_context, NULL));
+    SKG_CL_TRY(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof queue_device, &queue_device, NULL));
+    SKG_CL_TRY(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, NULL));
+    SKG_CL_TRY(clGetDeviceInfo(id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL));
+    if (queue_context != cl || queue_device != id)
+        return skg_fail(SKG_ERR_ARGUMENT, "the queue was not made on this context and device");
+    if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
+        return skg_fail(SKG_ERR_ARGUMENT, "the queue runs out of order; give an in-order queue");
+    skg_context *made = NULL;
+    SKG_TRY(new_context(&made));
+    skg_device *device = made->device;
+    skg_status status = skg_device_inform(-1, -1, platform, id, &device->info);
+    if (status != SKG_OK) {
+        skg_context_release(&made);
+        return status;
+    }
+    device->platform = platform;
+    device->profiling = (properties & CL_QUEUE_PROFILING_ENABLE) != 0;
+    clRetainDevice(id), device->id = id;
+    clRetainContext(cl), device->cl = cl;
+    clRetainCommandQueue(queue), device->queue = queue;
+    *context = made;
+    return SKG_OK;
+}
+
+void skg_context_release(skg_context **context) {
+    if (!context || !*context) return;
+    skg_context *last = *context;
+    *context = NULL;
+    if (!skg_unref(&last->refs)) return;
+    skg_device *device = last->device;
+    int ours = last->process == (int64_t)getpid(); /* after a fork OpenCL must not be touched */
+    skg_programs_release(device, ours);
+    if (ours && device->queue) clReleaseCommandQueue(device->queue);
+    if (ours && device->cl) clReleaseContext(device->cl);
+    if (ours && device->id) clReleaseDevice(device->id); /* no-op for a root device */
+    skg_free(&device->kernel_dir);
+    skg_free(&last->device);
+    skg_free(&last);
+}
+
+skg_status skg_context_device(skg_context *context, skg_device_info *info) {
+    SKG_TRY(skg_context_enter(context));
+    return skg_struct_write(&context->device->info, sizeof context->device->info, "skg_device_info", info);
+}

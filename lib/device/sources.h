@@ -1,0 +1,13 @@
+/* The kernels' sources as built in: kernels/CMakeLists.txt writes the table. Private. */
+#ifndef SKG_SOURCES_H
+#define SKG_SOURCES_H
+
+typedef struct {
+    const char *name; /* "raster.cl" */
+    const char *text;
+} skg_kernel_source;
+
+extern const skg_kernel_source skg_kernel_sources[];
+extern const int skg_kernel_source_count;
+
+#endif

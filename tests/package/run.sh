@@ -1,0 +1,52 @@
+#!/bin/sh
+# Installs the build tree into a folder of its own and uses it from there as a stranger would: pkg-config, CMake,
+# Fortran, Python, and the command. usage: run.sh SOURCE BUILD
+set -eu
+source=$1
+build=$2
+stage=$build/package-test
+rm -rf "$stage"
+mkdir -p "$stage/work"
+cmake --install "$build" --prefix "$stage/usr" >"$stage/install.log"
+lib=$(dirname "$(find "$stage/usr" -name 'libskiagraph.so')")
+export PKG_CONFIG_PATH="$lib/pkgconfig" LD_LIBRARY_PATH="$lib"
+cd "$stage/work"
+
+echo "pkg-config:"
+pkg-config --validate skiagraph
+for name in first_image hundred_poses; do
+    # shellcheck disable=SC2046
+    cc -std=c11 -Wall -Wextra -Werror "$source/examples/$name.c" $(pkg-config --cflags --libs skiagraph) -lm -o $name
+    ./$name
+done
+
+echo "CMake:"
+cmake -S "$source/examples" -B cmake -DCMAKE_PREFIX_PATH="$stage/usr" >cmake.log
+cmake --build cmake >>cmake.log
+cmake/first_image
+
+echo "every public header compiles alone, in C and as it stands:"
+for header in "$stage"/usr/include/skiagraph/*.h; do
+    # shellcheck disable=SC2046
+    echo "#include <skiagraph/$(basename "$header")>" | cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
+        $(pkg-config --cflags skiagraph) -xc -
+done
+
+echo "only skg_ names are exported:"
+if nm -D --defined-only "$lib/libskiagraph.so" | grep -v ' [A-Z] skg_'; then exit 1; fi
+
+if command -v gfortran >/dev/null 2>&1; then
+    echo "Fortran:"
+    # shellcheck disable=SC2046
+    gfortran -std=f2003 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
+    ./first_image_f
+else
+    echo "Fortran: skipped, no gfortran"
+fi
+if command -v python3 >/dev/null 2>&1; then
+    echo "Python:"
+    python3 "$source/examples/first_image.py" "$(ls "$lib"/libskiagraph.so.?)"
+else
+    echo "Python: skipped, no python3"
+fi
+if [ -x "$stage/usr/bin/skiagraph" ]; then "$stage/usr/bin/skiagraph" --version; fi

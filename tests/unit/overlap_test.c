@@ -1,0 +1,95 @@
+#include "plan/overlap.h"
+#include "suite.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Axis-aligned boxes as solids. */
+typedef struct {
+    double at[24];
+} box;
+
+static const int32_t box_corners[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                        2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+
+static skg_solid make_box(box *store, double x0, double x1, double y0, double y1, double z0, double z1,
+                          int64_t inside) {
+    for (int v = 0; v < 8; v++) {
+        store->at[3 * v] = v & 1 ? x1 : x0;
+        store->at[3 * v + 1] = v & 2 ? y1 : y0;
+        store->at[3 * v + 2] = v & 4 ? z1 : z0;
+    }
+    return (skg_solid){8, 12, store->at, box_corners, inside};
+}
+
+START_TEST(overlapping_boxes_are_measured) {
+    box store[3];
+    skg_solid solids[3];
+    solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 100, -1);
+    solids[1] = make_box(&store[1], 60, 140, 0, 100, 30, 70, -1);
+    solids[2] = make_box(&store[2], -50, -10, 0, 100, 0, 100, -1);
+    int64_t count = 0;
+    skg_overlap_pair *pairs = NULL;
+    ck_skg(skg_overlaps_find(3, solids, &count, &pairs));
+    ck_assert_int_eq(count, 1);
+    ck_assert_int_eq(pairs[0].kind, SKG_OVERLAP_SIBLINGS);
+    ck_assert_int_eq(pairs[0].part, 0);
+    ck_assert_int_eq(pairs[0].other, 1);
+    /* 40 x 100 x 40 mm; one row of columns at each of four sides: 2 * (1/40 + 1/100) of the grid's 0.75 mm
+     * cells */
+    ck_assert_double_eq_tol(pairs[0].volume, 160000, 160000 * 0.06);
+    ck_assert_double_eq_tol(pairs[0].longest, 40, 1e-12);
+    ck_assert_double_eq_tol(pairs[0].place[2], 50, 1e-12);
+    skg_free(&pairs);
+}
+END_TEST
+
+START_TEST(a_child_that_leaves_its_parent_is_told) {
+    box store[3];
+    skg_solid solids[3];
+    solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 100, -1);
+    solids[1] = make_box(&store[1], 20, 80, 20, 80, 50, 130, 0);
+    solids[2] = make_box(&store[2], 25, 75, 25, 75, 60, 90, 1); /* well inside its parent: silent */
+    int64_t count = 0;
+    skg_overlap_pair *pairs = NULL;
+    ck_skg(skg_overlaps_find(3, solids, &count, &pairs));
+    ck_assert_int_eq(count, 1);
+    ck_assert_int_eq(pairs[0].kind, SKG_OVERLAP_PROTRUDES);
+    ck_assert_int_eq(pairs[0].part, 1);
+    ck_assert_int_eq(pairs[0].other, 0);
+    ck_assert_double_eq_tol(pairs[0].longest, 30, 1e-12);
+    skg_free(&pairs);
+}
+END_TEST
+
+START_TEST(touching_boxes_do_not_overlap) {
+    box store[2];
+    skg_solid solids[2];
+    solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 50, -1);
+    solids[1] = make_box(&store[1], 0, 100, 0, 100, 50, 100, -1);
+    int64_t count = 7;
+    skg_overlap_pair *pairs = NULL;
+    ck_skg(skg_overlaps_find(2, solids, &count, &pairs));
+    ck_assert_int_eq(count, 0);
+    skg_free(&pairs);
+}
+END_TEST
+
+START_TEST(nothing_is_no_failure) {
+    int64_t count = 7;
+    skg_overlap_pair *pairs = NULL;
+    skg_solid none = {0, 0, NULL, NULL, -1};
+    ck_skg(skg_overlaps_find(1, &none, &count, &pairs));
+    ck_assert_int_eq(count, 0);
+    skg_free(&pairs);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, overlapping_boxes_are_measured);
+    tcase_add_test(tests, a_child_that_leaves_its_parent_is_told);
+    tcase_add_test(tests, touching_boxes_do_not_overlap);
+    tcase_add_test(tests, nothing_is_no_failure);
+}
+
+SKG_SUITE_MAIN("overlap", add_tests)
