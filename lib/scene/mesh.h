@@ -13,17 +13,17 @@ struct skg_mesh {
     skg_refs refs;
     char *name;
     int64_t vertices, triangles;
-    double *positions;      /* 3 * vertices, mm; valid unless positions_stale */
-    float *offsets;         /* 3 * vertices, mm from origin: what single precision uploads */
-    double origin[3];       /* mm */
-    int32_t *corners;       /* 3 * triangles, as given */
-    int32_t *weld;          /* per vertex the first one at the same place; NULL: each is its own */
-    int32_t orientation;    /* 1; -1: corners run the wrong way round, the plan turns the sign */
-    int32_t closed;         /* as health.closed */
-    int positions_stale;    /* the offsets were written in place: a position is origin + offset */
-    int64_t version;        /* of the positions, from 1 */
-    float lowest[3];        /* bounds of the finite offsets, mm */
-    float highest[3];       /* */
+    double *positions;   /* 3 * vertices, mm; valid unless positions_stale */
+    float *offsets;      /* 3 * vertices, mm from origin: what single precision uploads */
+    double origin[3];    /* mm */
+    int32_t *corners;    /* 3 * triangles, as given */
+    int32_t *weld;       /* per vertex the first one at the same place; NULL: each is its own */
+    int32_t orientation; /* 1; -1: corners run the wrong way round, the plan turns the sign */
+    int32_t closed;      /* as health.closed */
+    int positions_stale; /* the offsets were written in place: a position is origin + offset */
+    int64_t version;     /* of the positions, from 1 */
+    float lowest[3];     /* bounds of the finite offsets, mm from origin */
+    float highest[3];
     int64_t first_bad;      /* first vertex that is not finite; -1: none */
     skg_mesh_health health; /* volume, area, bounds and degenerate_triangles of version 1 */
 };

@@ -1,7 +1,7 @@
-/* Mesh files. Assimp reads STL and its many other formats. OBJ and PLY are read here: Assimp makes a vertex
- * of every corner of an OBJ file and groups its faces, which loses the file's numbering, keeps only floats of
- * PLY, and fills what a truncated PLY lacks with anything. Where Assimp is lax about STL, it is checked
- * before. */
+/* Mesh files. STL, OBJ and PLY are read here, all else by Assimp, which would lose too much of these three:
+ * it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's numbering is
+ * gone; it keeps only floats; it takes truncated ascii STL and PLY files for whole, and leaks where it
+ * refuses one. */
 #include "scene/mesh_read.h"
 
 #include "core/context.h"
@@ -85,47 +85,6 @@ static skg_status read_here(FILE *stream, const char *path, int64_t size, reader
     return status;
 }
 
-/* An ascii STL begins with "solid"; so do binary ones of careless programs, but those hold zero bytes. */
-static int is_text(const unsigned char *head, size_t count) {
-    return count > 5 && memcmp(head, "solid", 5) == 0 && memchr(head, 0, count) == NULL;
-}
-
-static skg_status check_stl_text_end(FILE *stream, const char *path, int64_t size) {
-    char tail[4097];
-    int64_t from = size > 4096 ? size - 4096 : 0;
-    if (fseek(stream, (long)from, SEEK_SET) != 0)
-        return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
-    size_t count = fread(tail, 1, sizeof tail - 1, stream);
-    while (count > 0 && strchr(" \t\r\n", tail[count - 1])) count--;
-    tail[count] = '\0';
-    char *line = strrchr(tail, '\n');
-    line = line ? line + 1 : tail;
-    line += strspn(line, " \t");
-    if (strncmp(line, "endsolid", 8) == 0) return SKG_OK;
-    return skg_fail(SKG_ERR_FORMAT, "%s: truncated: an ascii STL ends with the line \"endsolid\"", path);
-}
-
-/* A binary STL is 80 bytes, the number of triangles in 4, and 50 bytes for each. */
-static skg_status check_stl(FILE *stream, const char *path, int64_t size) {
-    unsigned char head[512];
-    size_t count = fread(head, 1, sizeof head, stream);
-    int64_t said = count < 84 ? -1
-                              : (int64_t)head[80] | (int64_t)head[81] << 8 | (int64_t)head[82] << 16 |
-                                    (int64_t)head[83] << 24;
-    if (said >= 0 && size == 84 + 50 * said) {
-        if (said == 0) return skg_fail(SKG_ERR_MESH, "%s: no triangles", path);
-        return SKG_OK;
-    }
-    if (is_text(head, count)) return check_stl_text_end(stream, path, size);
-    if (said < 0)
-        return skg_fail(SKG_ERR_FORMAT, "%s: truncated: %" PRId64 " bytes are no STL (84 at least)", path,
-                        size);
-    return skg_fail(
-        SKG_ERR_FORMAT,
-        "%s: %s: its header counts %" PRId64 " triangles, its %" PRId64 " bytes are enough for %" PRId64,
-        path, size < 84 + 50 * said ? "truncated" : "not a binary STL", said, size, (size - 84) / 50);
-}
-
 /* One object of a file, placed by its node; its vertices and faces in their order. */
 static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4x4 *m,
                              skg_mesh_arrays *arrays) {
@@ -180,16 +139,11 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     int64_t size = 0;
     SKG_TRY(open_file(path, &stream, &size));
     const char *dot = strrchr(path, '.');
-    if (!dot || strchr(dot, '/')) dot = "";
-    skg_status status = SKG_OK;
-    if (skg_same_name(dot, ".obj"))
-        status = read_here(stream, path, size, skg_mesh_read_obj, arrays);
-    else if (skg_same_name(dot, ".ply"))
-        status = read_here(stream, path, size, skg_mesh_read_ply, arrays);
-    else {
-        if (skg_same_name(dot, ".stl")) status = check_stl(stream, path, size);
-        if (status == SKG_OK) status = read_by_assimp(path, arrays);
-    }
+    reader read = NULL;
+    if (dot && skg_same_name(dot, ".stl")) read = skg_mesh_read_stl;
+    if (dot && skg_same_name(dot, ".obj")) read = skg_mesh_read_obj;
+    if (dot && skg_same_name(dot, ".ply")) read = skg_mesh_read_ply;
+    skg_status status = read ? read_here(stream, path, size, read, arrays) : read_by_assimp(path, arrays);
     fclose(stream);
     return status;
 }

@@ -23,6 +23,7 @@ typedef struct {
 skg_status skg_mesh_add_corner(skg_mesh_arrays *arrays, skg_polygon *polygon, int64_t vertex);
 
 /* Readers; numbers in the text are read in the locale of the calling thread, which must be "C". */
+skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_ply(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 

@@ -34,13 +34,17 @@ SKG_API skg_status skg_mesh_create_float(skg_context *context, const char *name,
                                          skg_mesh **mesh);
 
 /* A mesh from a file: STL (ascii, binary), PLY, OBJ, and what else Assimp reads; several objects in a file
- * become one mesh. Faces of more than three corners are cut into triangles; points and lines are left out,
- * with a warning. The file's own vertex order is kept. unit_mm as above. Errors: SKG_ERR_FILE (cannot be
- * read), SKG_ERR_FORMAT (truncated, not a mesh), SKG_ERR_MESH. */
+ * become one mesh. Faces of more than three corners are cut into a fan from the first, which leaves the path
+ * lengths of any plane face what they are; points and lines are left out, with a warning. The file's own
+ * order is kept: vertex i is the i-th "v" line of an OBJ file, the i-th vertex of a PLY file (doubles stay
+ * doubles), corner i of an STL file. In other formats it is Assimp's, in floats. Numbers in text are read
+ * alike in every locale. unit_mm as above. The mesh is named by the file, without its folder. Errors:
+ * SKG_ERR_FILE (cannot be read), SKG_ERR_FORMAT (truncated, not a mesh), SKG_ERR_MESH. */
 SKG_API skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh);
 
-/* Writes a mesh as binary PLY, or as binary STL where path ends in .stl; positions in mm. Whole or not at
- * all. */
+/* Writes a mesh as binary PLY (floats where they hold every position exactly, else doubles: skg_mesh_load
+ * gives back the same bits), or as binary STL (floats) where path ends in .stl; positions in mm, corners as
+ * given. Whole or not at all. Errors: SKG_ERR_OUTPUT; SKG_ERR_MESH (a vertex is not finite). */
 SKG_API skg_status skg_mesh_save(const skg_mesh *mesh, const char *path);
 
 /* Makers: closed, outward, centred at the origin; lengths in mm, > 0.
@@ -65,12 +69,16 @@ SKG_API skg_status skg_mesh_read_positions(const skg_mesh *mesh, double *positio
 SKG_API skg_status skg_mesh_read_triangles(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride);
 
 /* Gives every vertex a new position (mm); same count and strides as in skg_mesh_create. The next frame
- * uploads them. The health keeps what topology says (closed, winding); volume, area and bounds follow. Not
- * finite: SKG_ERR_MESH. */
+ * uploads them. The health keeps what topology says (closed, winding); volume, area, bounds and degenerate
+ * triangles follow. SKG_ERR_MESH, and the mesh stays as it was: a position is not finite, or vertices of a
+ * closed mesh that were welded by their equal positions would part, which would open it. */
 SKG_API skg_status skg_mesh_write_positions(skg_mesh *mesh, const double *positions, int64_t position_stride);
 
 /* The way without a copy: the float offsets (rows of x, y, z, in mm, from *origin) that the upload reads.
- * Write there, then call skg_mesh_moved. The pointers are valid as long as the mesh. */
+ * Write there, then call skg_mesh_moved. The pointers are valid as long as the mesh; *origin may change with
+ * skg_mesh_write_positions. skg_mesh_moved fails with SKG_ERR_MESH when welded vertices of a closed mesh have
+ * parted (the version grows all the same); a vertex that is not finite is found by the frame that meets it.
+ */
 SKG_API skg_status skg_mesh_positions(skg_mesh *mesh, float **offsets, const double **origin);
 SKG_API skg_status skg_mesh_moved(skg_mesh *mesh);
 
@@ -82,23 +90,23 @@ SKG_API skg_status skg_mesh_version(const skg_mesh *mesh, int64_t *version);
  * exactly. */
 typedef struct {
     int32_t size;
-    int32_t closed;                /* 1 or 0 */
-    int32_t consistent;            /* 1: no two triangles run along a shared edge in the same direction */
-    int32_t outward;               /* 1: the volume enclosed was positive as given, or the mesh was flipped */
-    int32_t flipped;               /* 1: inverted as a whole, turned outward */
-    int32_t reserved;              /* 0 */
-    int64_t vertices, triangles;   /* as given */
-    int64_t welded_vertices;       /* after welding */
-    int64_t open_edges;            /* directed edges without their opposite */
-    int64_t first_open_vertex;     /* caller's number of a vertex on the first one; -1 when closed */
+    int32_t closed;              /* 1 or 0 */
+    int32_t consistent;          /* 1: no two triangles run along a shared edge in the same direction */
+    int32_t outward;             /* 1: closed, and its volume was positive as given or the mesh was flipped */
+    int32_t flipped;             /* 1: inverted as a whole, turned outward */
+    int32_t reserved;            /* 0 */
+    int64_t vertices, triangles; /* as given */
+    int64_t welded_vertices;     /* after welding */
+    int64_t open_edges;          /* directed edges without their opposite */
+    int64_t first_open_vertex;   /* caller's number of a vertex on the first one; -1 when closed */
     double first_open_position[3]; /* mm */
-    int64_t duplicate_triangles;   /* repeat an earlier triangle, whatever its first corner or winding */
     int64_t degenerate_triangles;  /* two corners are the same vertex, or no area */
-    int64_t nonmanifold_edges;     /* edges of more than two triangles */
-    int64_t components;            /* connected through shared vertices */
-    double volume;                 /* mm3, signed as seen after flipping; meaningful when closed */
-    double area;                   /* mm2 */
-    double bounds[6];              /* mm: min x, y, z, max x, y, z */
+    int64_t duplicate_triangles; /* of those with three vertices: repeat an earlier one, turned or inverted */
+    int64_t nonmanifold_edges;   /* edges of more than two triangles */
+    int64_t components;          /* connected through shared vertices */
+    double volume;               /* mm3, signed as seen after flipping; meaningful when closed */
+    double area;                 /* mm2 */
+    double bounds[6];            /* mm: min x, y, z, max x, y, z */
 } skg_mesh_health;
 
 SKG_API void skg_mesh_health_init(skg_mesh_health *health);
