@@ -12,8 +12,21 @@ enum { LARGEST_SIDE = 32768 };
  * long before. */
 static const double DEGENERATE = 1e-9;
 
+/* mm: 1000 km, far beyond any set-up and far below what squares and products of lengths can hold. */
+static const double LARGEST_LENGTH = 1e9;
+
 void skg_view_init(skg_view *view) {
     if (view) *view = (skg_view){.size = sizeof *view};
+}
+
+static skg_status check_vector(const char *what, const double *v) {
+    if (!skg_all_finite(v, 3)) return skg_fail(SKG_ERR_SCENE, "the %s is not finite", what);
+    for (int k = 0; k < 3; k++)
+        if (fabs(v[k]) > LARGEST_LENGTH)
+            return skg_fail(SKG_ERR_SCENE,
+                            "the %s has an entry of %g mm, which is too large; %g is the limit", what, v[k],
+                            LARGEST_LENGTH);
+    return SKG_OK;
 }
 
 static skg_status check_numbers(const skg_view *view) {
@@ -26,12 +39,13 @@ static skg_status check_numbers(const skg_view *view) {
                         "the detector has %" PRId64 " columns and %" PRId64
                         " rows; 1 to %d of each can be imaged",
                         view->columns, view->rows, LARGEST_SIDE);
-    if (!skg_all_finite(view->source, 3))
-        return skg_fail(SKG_ERR_SCENE, "the source's position is not finite");
-    if (!skg_all_finite(view->centre, 3))
-        return skg_fail(SKG_ERR_SCENE, "the detector's position is not finite");
-    if (!skg_all_finite(view->column_step, 3) || !skg_all_finite(view->row_step, 3))
-        return skg_fail(SKG_ERR_SCENE, "the detector's steps are not finite");
+    if (view->projection != SKG_PARALLEL_FROM_INFINITY)
+        SKG_TRY(check_vector("source's position", view->source));
+    else if (!skg_all_finite(view->source, 3))
+        return skg_fail(SKG_ERR_SCENE, "the beam's direction is not finite");
+    SKG_TRY(check_vector("detector's position", view->centre));
+    SKG_TRY(check_vector("detector's column step", view->column_step));
+    SKG_TRY(check_vector("detector's row step", view->row_step));
     return SKG_OK;
 }
 
@@ -91,6 +105,9 @@ static skg_status prepare_parallel(const skg_view *view, skg_view_frame *frame) 
         memcpy(direction, view->source, sizeof direction);
     else
         skg_add_scaled(view->centre, -1, view->source, direction);
+    /* Scaled first: a direction may be of any length, and its square need not be a number. */
+    double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
+    if (largest > 0) skg_scale(1 / largest, direction, direction);
     double length = skg_length(direction);
     if (!(length > 0))
         return skg_fail(SKG_ERR_SCENE,
@@ -124,10 +141,8 @@ static skg_status invert(skg_view_frame *frame) {
     skg_cross(frame->du, frame->dv, frame->m + 6);
     double determinant = skg_dot(frame->m + 6, frame->d0);
     for (int k = 0; k < 9; k++) frame->m[k] /= determinant;
-    if (!skg_all_finite(frame->m, 9) || !skg_all_finite(frame->origin, 3) ||
-        !skg_all_finite(frame->pixel0, 3) || !skg_all_finite(frame->d0, 3))
-        return skg_fail(SKG_ERR_SCENE, "the view's lengths are too large or too small to compute with; give "
-                                       "them in mm");
+    if (!skg_all_finite(frame->m, 9))
+        return skg_fail(SKG_ERR_SCENE, "the detector's pixels are too small to compute with; give mm");
     return SKG_OK;
 }
 

@@ -155,6 +155,9 @@ static void nan_step(skg_view *v) {
 static void huge(skg_view *v) {
     v->column_step[0] = 1e200, v->row_step[2] = 1e200;
 }
+static void tiny(skg_view *v) {
+    v->column_step[0] = 1e-200;
+}
 static void no_direction(skg_view *v) {
     memset(v->source, 0, sizeof v->source);
 }
@@ -178,8 +181,9 @@ static const bad_view bad_views[] = {
     {"edge on from infinity", "edge-on", SKG_PARALLEL_FROM_INFINITY, edge_on},
     {"nan", "source's position is not finite", SKG_POINT, nan_source},
     {"infinite", "detector's position is not finite", SKG_POINT, infinite_centre},
-    {"nan step", "steps are not finite", SKG_POINT, nan_step},
+    {"nan step", "column step is not finite", SKG_POINT, nan_step},
     {"huge", "too large", SKG_POINT, huge},
+    {"tiny", "no size", SKG_POINT, tiny},
     {"no direction", "direction is (0, 0, 0)", SKG_PARALLEL_FROM_INFINITY, no_direction},
     {"projection", "projection is 7", SKG_POINT, bad_projection},
 };
@@ -190,6 +194,19 @@ START_TEST(bad_views_are_refused) {
     ck_skg(skg_view_check(&view));
     bad->spoil(&view);
     ck_skg_fails(skg_view_check(&view), SKG_ERR_SCENE, bad->sentence);
+}
+END_TEST
+
+START_TEST(directions_of_any_length) {
+    static const double lengths[] = {1e-300, 1e-3, 1e12, 1e300};
+    for (int k = 0; k < 4; k++) {
+        skg_view view = good_view(SKG_PARALLEL_FROM_INFINITY);
+        skg_view_frame frame;
+        view.source[0] = view.source[1] = lengths[k];
+        ck_skg(skg_view_prepare(&view, &frame));
+        ck_assert_double_eq_tol(frame.d0[0], sqrt(0.5), 1e-15);
+        ck_assert_double_eq_tol(frame.d0[1], sqrt(0.5), 1e-15);
+    }
 }
 END_TEST
 
@@ -204,6 +221,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, points_project_to_their_pixel);
     tcase_add_test(tests, parallel_direction_and_start);
     tcase_add_loop_test(tests, bad_views_are_refused, 0, (int)(sizeof bad_views / sizeof *bad_views));
+    tcase_add_test(tests, directions_of_any_length);
     tcase_add_test(tests, unprepared_views_are_refused);
 }
 
