@@ -1,0 +1,216 @@
+#include "scene/scene.h"
+
+#include "core/context.h"
+#include "core/names.h"
+#include "scene/pose.h"
+#include "scene/vector.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+void skg_part_init(skg_part *part) {
+    if (!part) return;
+    *part = (skg_part){.size = sizeof *part, .inside = -1};
+    skg_pose_identity(part->pose);
+}
+
+skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
+    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_create: no place for the scene");
+    *scene = NULL;
+    skg_scene *made = NULL;
+    SKG_TRY(skg_alloc(1, sizeof *made, "scene", &made));
+    skg_refs_init(&made->refs);
+    made->structure = made->poses = 1;
+    if (context) {
+        skg_status status = skg_context_retain(context);
+        if (status != SKG_OK) {
+            skg_free(&made);
+            return status;
+        }
+        made->context = context;
+    }
+    *scene = made;
+    return SKG_OK;
+}
+
+skg_status skg_scene_retain(skg_scene *scene) {
+    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_retain: no scene");
+    skg_ref(&scene->refs);
+    return SKG_OK;
+}
+
+static void release_part(skg_scene_part_data *part) {
+    skg_mesh_release(&part->mesh);
+    skg_material_release(&part->material);
+    skg_free(&part->label);
+}
+
+void skg_scene_release(skg_scene **scene) {
+    if (!scene || !*scene) return;
+    if (skg_unref(&(*scene)->refs)) {
+        for (int64_t i = 0; i < (*scene)->count; i++) release_part(&(*scene)->parts[i]);
+        skg_free(&(*scene)->parts);
+        skg_context_release(&(*scene)->context);
+        skg_free(scene);
+    }
+    *scene = NULL;
+}
+
+/* Affine, finite, and not flat: |det| is compared with the product of the columns' lengths, so that the scale
+ * of a pose does not matter. */
+static skg_status check_pose(const char *label, const double *pose) {
+    if (!skg_all_finite(pose, 16))
+        return skg_fail(SKG_ERR_SCENE, "part %s: its pose has an entry that is not finite", label);
+    if (fabs(pose[12]) + fabs(pose[13]) + fabs(pose[14]) + fabs(pose[15] - 1) > 0)
+        return skg_fail(SKG_ERR_SCENE,
+                        "part %s: the last row of its pose is (%g, %g, %g, %g); an affine pose has (0, 0, 0, "
+                        "1) there, row by row",
+                        label, pose[12], pose[13], pose[14], pose[15]);
+    double volume = 1;
+    for (int c = 0; c < 3; c++) volume *= skg_length((const double[3]){pose[c], pose[4 + c], pose[8 + c]});
+    /* 16 epsilon: the rounding of a determinant of three products of three. */
+    if (!(fabs(skg_pose_determinant(pose)) > 16 * DBL_EPSILON * volume) || !isfinite(volume))
+        return skg_fail(SKG_ERR_SCENE,
+                        "part %s: its pose is singular (it flattens the part); give one that can be undone",
+                        label);
+    return SKG_OK;
+}
+
+static int64_t label_index(const skg_scene *scene, const char *label) {
+    for (int64_t i = 0; i < scene->count; i++)
+        if (strcmp(scene->parts[i].label, label) == 0) return i;
+    return -1;
+}
+
+static void warn_of_twin(const skg_scene *scene, const skg_scene_part_data *part) {
+    for (int64_t i = 0; i < scene->count; i++) {
+        const skg_scene_part_data *other = &scene->parts[i];
+        if (other->mesh == part->mesh && memcmp(other->pose, part->pose, sizeof part->pose) == 0)
+            skg_log(scene->context, SKG_LOG_WARNING,
+                    "parts %s and %s are the same mesh in the same place; their lengths add", other->label,
+                    part->label);
+    }
+}
+
+static skg_status check_part(const skg_scene *scene, const skg_part *part, const char *label) {
+    if (!*label) return skg_fail(SKG_ERR_SCENE, "part %" PRId64 " has an empty label", scene->count);
+    if (!part->material) return skg_fail(SKG_ERR_ARGUMENT, "part %s has no material; give it one", label);
+    if (label_index(scene, label) >= 0)
+        return skg_fail(SKG_ERR_SCENE, "two parts have the label %s; give each part its own", label);
+    if (part->inside == scene->count)
+        return skg_fail(SKG_ERR_SCENE, "part %s lies inside itself; its parent has to be another part",
+                        label);
+    if (part->inside < -1 || part->inside > scene->count)
+        return skg_fail(SKG_ERR_SCENE,
+                        "part %s lies inside part %" PRId64 ", which is not there (%" PRId64
+                        " parts so far); add the parent first",
+                        label, part->inside, scene->count);
+    return check_pose(label, part->pose);
+}
+
+skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
+    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_add: no scene");
+    skg_part ours;
+    skg_part_init(&ours);
+    SKG_TRY(skg_struct_read(part, "skg_part", &ours, sizeof ours));
+    if (!ours.mesh)
+        return skg_fail(SKG_ERR_ARGUMENT, "part %s has no mesh; give it one",
+                        ours.label ? ours.label : "without label");
+    const char *label = ours.label;
+    if (!label) SKG_TRY(skg_mesh_name(ours.mesh, &label));
+    SKG_TRY(check_part(scene, &ours, label));
+    if (scene->count == scene->capacity) {
+        int64_t capacity = 2 * scene->capacity + 8;
+        SKG_TRY(skg_realloc(capacity, sizeof *scene->parts, "parts", &scene->parts));
+        scene->capacity = capacity;
+    }
+    skg_scene_part_data made = {.inside = ours.inside};
+    memcpy(made.pose, ours.pose, sizeof made.pose);
+    SKG_TRY(skg_copy_text(label, &made.label));
+    skg_mesh_retain(ours.mesh);
+    made.mesh = ours.mesh;
+    skg_material_retain(ours.material);
+    made.material = ours.material;
+    warn_of_twin(scene, &made);
+    scene->parts[scene->count] = made;
+    if (id) *id = scene->count;
+    scene->count++;
+    scene->structure++;
+    return SKG_OK;
+}
+
+static skg_status check_id(const skg_scene *scene, int64_t id, const char *call) {
+    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "%s: no scene", call);
+    if (id < 0 || id >= scene->count)
+        return skg_fail(SKG_ERR_SCENE, "%s: part %" PRId64 " of %" PRId64 " is not there", call, id,
+                        scene->count);
+    return SKG_OK;
+}
+
+skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
+    SKG_TRY(check_id(scene, id, "skg_scene_set_inside"));
+    if (inside != -1) SKG_TRY(check_id(scene, inside, "skg_scene_set_inside"));
+    if (inside == id)
+        return skg_fail(SKG_ERR_SCENE, "part %s lies inside itself; its parent has to be another part",
+                        scene->parts[id].label);
+    for (int64_t up = inside; up != -1; up = scene->parts[up].inside)
+        if (up == id)
+            return skg_fail(
+                SKG_ERR_SCENE,
+                "part %s lies inside itself, by way of its parent %s; parents must not go in a circle",
+                scene->parts[id].label, scene->parts[inside].label);
+    scene->parts[id].inside = inside;
+    scene->structure++;
+    return SKG_OK;
+}
+
+skg_status skg_scene_size(const skg_scene *scene, int64_t *parts) {
+    if (!scene || !parts) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_size: no scene or no result");
+    *parts = scene->count;
+    return SKG_OK;
+}
+
+skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part) {
+    SKG_TRY(check_id(scene, id, "skg_scene_part"));
+    const skg_scene_part_data *data = &scene->parts[id];
+    skg_part ours = {.size = sizeof ours,
+                     .inside = data->inside,
+                     .mesh = data->mesh,
+                     .material = data->material,
+                     .label = data->label};
+    memcpy(ours.pose, data->pose, sizeof ours.pose);
+    return skg_struct_write(&ours, sizeof ours, "skg_part", part);
+}
+
+skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id) {
+    if (!scene || !label || !id)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_find: no scene, no label or no result");
+    int64_t found = label_index(scene, label), alike = 0;
+    for (int64_t i = 0; found < 0 && i < scene->count; i++)
+        if (skg_same_name(scene->parts[i].label, label)) alike++;
+    for (int64_t i = 0; found < 0 && alike == 1 && i < scene->count; i++)
+        if (skg_same_name(scene->parts[i].label, label)) found = i;
+    if (found >= 0) {
+        *id = found;
+        return SKG_OK;
+    }
+    const char **labels = NULL;
+    SKG_TRY(skg_alloc(scene->count, sizeof *labels, "labels", &labels));
+    for (int64_t i = 0; i < scene->count; i++) labels[i] = scene->parts[i].label;
+    const char *near = skg_nearest_name(label, labels, scene->count);
+    skg_fail(SKG_ERR_SCENE, "no part has the label %s%s%s", label, near ? "; did you mean " : "",
+             near ? near : "");
+    skg_free(&labels);
+    return SKG_ERR_SCENE;
+}
+
+skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose) {
+    SKG_TRY(check_id(scene, id, "skg_scene_set_pose"));
+    if (!pose) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_set_pose: no pose");
+    SKG_TRY(check_pose(scene->parts[id].label, pose));
+    memcpy(scene->parts[id].pose, pose, sizeof scene->parts[id].pose);
+    scene->poses++;
+    return SKG_OK;
+}

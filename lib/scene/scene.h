@@ -1,0 +1,30 @@
+/* The inside of a scene. Private. */
+#ifndef SKG_SCENE_PRIVATE_H
+#define SKG_SCENE_PRIVATE_H
+
+#include "core/core.h"
+
+#include <skiagraph/scene.h>
+
+typedef struct {
+    skg_mesh *mesh;         /* retained */
+    skg_material *material; /* retained */
+    char *label;
+    int64_t inside; /* -1: in the world. From a scene file it may be a later part, never in a circle. */
+    double pose[16];
+} skg_scene_part_data;
+
+struct skg_scene {
+    skg_refs refs;
+    skg_context *context; /* retained; NULL: warnings are dropped */
+    skg_scene_part_data *parts;
+    int64_t count, capacity;
+    int64_t structure; /* grows with every part added or put inside another: a plan of an older one is stale
+                        */
+    int64_t poses;     /* grows with every pose that changes */
+};
+
+/* Puts part `id` inside another, or into the world (-1). A circle is refused: SKG_ERR_SCENE. */
+skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside);
+
+#endif

@@ -1,0 +1,138 @@
+#include "scene/setup.h"
+
+#include <math.h>
+#include <string.h>
+
+static const skg_json_key top_keys[] = {
+    {"File format version", NULL, SKG_KEY_READ},
+    {"WindowSize", NULL, SKG_KEY_IGNORED},
+    {"Source", NULL, SKG_KEY_READ},
+    {"Detector", NULL, SKG_KEY_READ},
+    {"Samples", NULL, SKG_KEY_READ},
+    {"Scan", NULL, SKG_KEY_READ},
+    {"Precision", NULL, SKG_KEY_READ},
+    {"Tolerance", NULL, SKG_KEY_READ},
+    {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
+    {"Breathing", "breathing", SKG_KEY_NOT_YET},
+    {"Noise", "noise", SKG_KEY_NOT_YET},
+    {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
+    {"World", "a material around the samples", SKG_KEY_NOT_YET},
+};
+
+skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
+    const char *folder = *path == '/' ? "" : reader->folder;
+    SKG_TRY(skg_alloc((int64_t)(strlen(folder) + strlen(path)) + 1, 1, "path", resolved));
+    strcpy(*resolved, folder);
+    strcat(*resolved, path);
+    return SKG_OK;
+}
+
+/* [1, 0, 0]: anything of version 1 is read. */
+static skg_status read_version(const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "File format version");
+    double version[3] = {1, 0, 0};
+    if (node.value) SKG_TRY(skg_json_numbers(&node, "[1, 0, 0]", 3, version));
+    if (version[0] != 1)
+        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "version %g is not known; version 1 is", version[0]);
+    return SKG_OK;
+}
+
+static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {"single", "double", "half"};
+    skg_json_node node = skg_json_member(top, "Precision");
+    if (!node.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
+    if (choice == 2)
+        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "half is not simulated yet; use single or double");
+    setup->has_precision = 1;
+    setup->precision = choice == 0 ? SKG_SINGLE : SKG_DOUBLE;
+    return SKG_OK;
+}
+
+static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "Tolerance");
+    setup->tolerance = -1;
+    if (!node.value) return SKG_OK;
+    double tolerance = 0;
+    SKG_TRY(skg_json_number(&node, &tolerance));
+    if (tolerance < 0 || tolerance >= 1)
+        return skg_json_fail(&node, SKG_ERR_FORMAT, "is %g; give a relative error from 0 to below 1",
+                             tolerance);
+    setup->tolerance = tolerance;
+    return SKG_OK;
+}
+
+static skg_status read_all(skg_setup_reader *reader) {
+    skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
+    skg_json_object top;
+    SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
+    SKG_TRY(skg_json_need(&top, "Source", "{ ... }", &source));
+    SKG_TRY(skg_json_need(&top, "Detector", "{ ... }", &detector));
+    SKG_TRY(skg_json_need(&top, "Samples", "[ ... ]", &samples));
+    SKG_TRY(read_version(&top));
+    SKG_TRY(read_precision(reader->setup, &top));
+    SKG_TRY(read_tolerance(reader->setup, &top));
+    SKG_TRY(skg_setup_read_source(reader, &source));
+    SKG_TRY(skg_setup_read_detector(reader, &detector));
+    skg_json_node scan = skg_json_member(&top, "Scan");
+    if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
+    return skg_setup_read_samples(reader, &samples);
+}
+
+skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
+                          skg_setup **setup) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: no place for the set-up");
+    *setup = NULL;
+    if (!path || count < 0 || (count > 0 && !settings))
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: no path, or no settings where there should be");
+    skg_setup_reader reader = {.context = context};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader.setup, "set-up", &reader.setup));
+    SKG_TRY_CLEANUP(skg_copy_text(path, &reader.folder));
+    char *slash = strrchr(reader.folder, '/');
+    *(slash ? slash + 1 : reader.folder) = '\0';
+    SKG_TRY_CLEANUP(skg_json_open(path, &reader.file));
+    for (int64_t i = 0; i < count; i++) SKG_TRY_CLEANUP(skg_json_set(&reader.file, settings[i]));
+    SKG_TRY_CLEANUP(read_all(&reader));
+    *setup = reader.setup;
+    reader.setup = NULL;
+cleanup:
+    skg_setup_release(&reader.setup);
+    skg_json_close(&reader.file);
+    skg_free(&reader.folder);
+    return status;
+}
+
+void skg_setup_release(skg_setup **setup) {
+    if (!setup || !*setup) return;
+    skg_scene_release(&(*setup)->scene);
+    skg_spectrum_release(&(*setup)->spectrum);
+    skg_free(&(*setup)->scan.folder);
+    skg_free(setup);
+}
+
+skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene) {
+    if (!setup || !scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_scene: no set-up or no result");
+    *scene = setup->scene;
+    return SKG_OK;
+}
+
+skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum) {
+    if (!setup || !spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_spectrum: no set-up or no result");
+    *spectrum = setup->spectrum;
+    return SKG_OK;
+}
+
+skg_status skg_setup_view(const skg_setup *setup, skg_view *view) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_view: no set-up");
+    return skg_struct_write(&setup->view, sizeof setup->view, "skg_view", view);
+}
+
+skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_options: no set-up");
+    skg_plan_options ours = {.size = sizeof ours};
+    SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
+    if (setup->has_precision) ours.precision = setup->precision;
+    return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
+}

@@ -1,0 +1,79 @@
+/* The inside of a set-up, and the readers of a scene file's sections. Private.
+ *
+ * The schema is that of gVXR's scene files; docs/scene-files.md lists every key. What its files leave open is
+ * settled here as its reader does it:
+ *   - makers take their arguments in the order of its calls: Cube [edge, unit], Cuboid [x, y, z, unit],
+ *     Cylinder [sectors, height, radius, unit] with the axis along y, StepWedge an object. Its reader has no
+ *     Sphere; ours is Sphere [sectors, radius, unit].
+ *   - without RightVector, columns grow along UpVector x (source - detector).
+ *   - MoveToCentre of a sample comes before its Transform; the bare string moves all samples together, last.
+ *   - the first projection of a Scan turns the samples by StartAngle about RotationAxis. */
+#ifndef SKG_SETUP_PRIVATE_H
+#define SKG_SETUP_PRIVATE_H
+
+#include "scene/json.h"
+#include "scene/scene.h"
+
+#include <skiagraph/setup.h>
+
+/* The section Scan, as given; angles in degrees. */
+typedef struct {
+    int32_t present; /* 1 or 0; all else is 0 where 0 */
+    double start, step, final;
+    int32_t has_step, has_final, include_last, flat_field;
+    int64_t projections; /* 0: not given */
+    int64_t white_images;
+    double centre[3]; /* mm, of the rotation */
+    double axis[3];   /* of the rotation, length 1 */
+    char *folder;     /* OutFolder relative to the scene file's own, or NULL */
+} skg_scan_section;
+
+struct skg_setup {
+    skg_scene *scene;
+    skg_spectrum *spectrum;
+    skg_view view; /* of the first projection */
+    skg_scan_section scan;
+    int32_t precision, has_precision;
+    double tolerance; /* negative: not given */
+};
+
+/* What the readers share. */
+typedef struct {
+    skg_context *context;
+    skg_json_file file;
+    char *folder; /* of the scene file, with its last slash; "" */
+    skg_setup *setup;
+} skg_setup_reader;
+
+/* Each reads one section into reader->setup. Source before Detector (which needs to know where the beam comes
+ * from), both before Scan. */
+skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
+
+/* Meshes that were loaded, so that a file used by several samples is loaded once. */
+typedef struct {
+    struct skg_loaded_mesh {
+        char *path;
+        double unit_mm;
+        int32_t flip;
+        skg_mesh *mesh;
+    } * loaded;
+    int64_t count;
+} skg_mesh_cache;
+
+void skg_mesh_cache_clear(skg_mesh_cache *cache);
+
+/* The mesh of a sample: its Path, or one of the makers. flip: turn an open mesh inside out (a closed one is
+ * outward anyway). The caller releases the mesh. own: pose of the maker's axes in those of the schema. */
+skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
+                                skg_mesh_cache *cache, skg_mesh **mesh, double *own);
+
+/* M <- M T for each entry of a Transform: the last entry acts on the vertices first. */
+skg_status skg_setup_read_transform(const skg_json_node *node, double *pose);
+
+/* Path relative to the scene file's folder; the caller frees it. */
+skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved);
+
+#endif
