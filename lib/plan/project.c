@@ -1,0 +1,258 @@
+#include "plan/project.h"
+
+#include <skiagraph/plan.h>
+
+#include <inttypes.h>
+#include <string.h>
+
+static int is_double(const skg_geometry *geometry) {
+    return geometry->precision == SKG_DOUBLE;
+}
+
+static size_t real_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(double) : sizeof(float);
+}
+
+static size_t entry_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
+}
+
+static size_t write_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(skg_write_double) : sizeof(skg_write_float);
+}
+
+/* For each block of items the part that its first item belongs to. first: [parts + 1]. */
+static skg_status upload_blocks(skg_context *context, int64_t parts, const int64_t *first, const char *what,
+                                skg_buffer *buffer) {
+    const int64_t blocks = first[parts] / SKG_BLOCK + 1;
+    int32_t *table = NULL;
+    SKG_TRY(skg_alloc(blocks, sizeof *table, what, &table));
+    int64_t part = 0;
+    for (int64_t b = 0; b < blocks; b++) {
+        while (part + 1 < parts && first[part + 1] <= b * SKG_BLOCK) part++;
+        table[b] = (int32_t)part;
+    }
+    skg_status status = skg_buffer_write(context, buffer, blocks * (int64_t)sizeof *table, table, what);
+    skg_free(&table);
+    return status;
+}
+
+static skg_status upload_corners(skg_context *context, skg_geometry *geometry, const skg_geometry_mesh *mesh,
+                                 const int64_t *mesh_triangle) {
+    const int64_t total = mesh_triangle[geometry->meshes];
+    SKG_TRY(skg_buffer_reserve(context, &geometry->corners, total * 3 * (int64_t)sizeof(int32_t),
+                               CL_MEM_READ_ONLY, "corners of the triangles"));
+    for (int64_t m = 0; m < geometry->meshes; m++) {
+        const size_t size = (size_t)mesh[m].triangles * 3 * sizeof(int32_t);
+        if (size == 0) continue;
+        SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->corners.memory, CL_TRUE,
+                                        (size_t)mesh_triangle[m] * 3 * sizeof(int32_t), size, mesh[m].corners,
+                                        0, NULL, NULL));
+    }
+    return SKG_OK;
+}
+
+/* Numbers meshes and parts; fails where 32-bit numbers do not reach. */
+static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, const int64_t *mesh_of_part,
+                         int64_t *mesh_triangle, int64_t *first_triangle) {
+    for (int64_t m = 0; m < geometry->meshes; m++) {
+        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + mesh[m].vertices;
+        mesh_triangle[m + 1] = mesh_triangle[m] + mesh[m].triangles;
+    }
+    for (int64_t p = 0; p < geometry->parts; p++) {
+        const skg_geometry_mesh *of = &mesh[mesh_of_part[p]];
+        geometry->mesh_of_part[p] = (int32_t)mesh_of_part[p];
+        geometry->first_vertex[p + 1] = geometry->first_vertex[p] + of->vertices;
+        first_triangle[p + 1] = first_triangle[p] + of->triangles;
+    }
+    geometry->mesh_vertices = geometry->mesh_vertex[geometry->meshes];
+    geometry->vertices = geometry->first_vertex[geometry->parts];
+    geometry->triangles = first_triangle[geometry->parts];
+    const int64_t most = INT32_MAX / 4;
+    if (geometry->vertices > most || geometry->triangles > most || geometry->mesh_vertices > most)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%" PRId64 " triangles with %" PRId64
+                        " vertices over all parts are more than the tables number (%" PRId64 ")",
+                        geometry->triangles, geometry->vertices, most);
+    return SKG_OK;
+}
+
+/* The fields that a part's place in the tables gives. */
+#define SKG_PLACE(entry, p)                                                                                  \
+    do {                                                                                                     \
+        (entry).mesh_vertex = (SKG_INT)geometry->mesh_vertex[mesh_of_part[p]];                               \
+        (entry).first_vertex = (SKG_INT)geometry->first_vertex[p];                                           \
+        (entry).vertices = (SKG_INT)(geometry->first_vertex[(p) + 1] - geometry->first_vertex[p]);           \
+        (entry).mesh_triangle = (SKG_INT)mesh_triangle[mesh_of_part[p]];                                     \
+        (entry).first_triangle = (SKG_INT)first_triangle[p];                                                 \
+        (entry).triangles = (SKG_INT)(first_triangle[(p) + 1] - first_triangle[p]);                          \
+    } while (0)
+
+static void place_parts(skg_geometry *geometry, const int64_t *mesh_of_part, const int64_t *mesh_triangle,
+                        const int64_t *first_triangle) {
+    for (int64_t p = 0; p < geometry->parts; p++) {
+        if (is_double(geometry))
+            SKG_PLACE(((skg_part_double *)geometry->entries)[p], p);
+        else
+            SKG_PLACE(((skg_part_float *)geometry->entries)[p], p);
+    }
+}
+
+skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t meshes,
+                               const skg_geometry_mesh *mesh, int64_t parts, const int64_t *mesh_of_part,
+                               skg_geometry *geometry) {
+    int64_t *mesh_triangle = NULL, *first_triangle = NULL;
+    skg_status status = SKG_OK;
+    *geometry = (skg_geometry){.meshes = meshes, .parts = parts, .precision = precision};
+    SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof *mesh_triangle, "mesh table", &mesh_triangle));
+    SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first_triangle, "part table", &first_triangle));
+    SKG_TRY_CLEANUP(
+        skg_alloc(meshes + 1, sizeof *geometry->mesh_vertex, "mesh table", &geometry->mesh_vertex));
+    SKG_TRY_CLEANUP(
+        skg_alloc(parts + 1, sizeof *geometry->first_vertex, "part table", &geometry->first_vertex));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *geometry->mesh_of_part, "part table", &geometry->mesh_of_part));
+    SKG_TRY_CLEANUP(skg_alloc(parts, entry_size(geometry), "part table", &geometry->entries));
+    SKG_TRY_CLEANUP(number(geometry, mesh, mesh_of_part, mesh_triangle, first_triangle));
+    place_parts(geometry, mesh_of_part, mesh_triangle, first_triangle);
+    SKG_TRY_CLEANUP(upload_corners(context, geometry, mesh, mesh_triangle));
+    SKG_TRY_CLEANUP(
+        upload_blocks(context, parts, geometry->first_vertex, "vertex blocks", &geometry->vertex_blocks));
+    SKG_TRY_CLEANUP(
+        upload_blocks(context, parts, first_triangle, "triangle blocks", &geometry->triangle_blocks));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->offsets,
+                                       geometry->mesh_vertices * 3 * (int64_t)real_size(geometry),
+                                       CL_MEM_READ_ONLY, "vertices"));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->projected,
+                                       geometry->vertices * 4 * (int64_t)real_size(geometry),
+                                       CL_MEM_READ_WRITE, "projected vertices"));
+    SKG_TRY_CLEANUP(
+        skg_buffer_reserve(context, &geometry->bad, sizeof(cl_int), CL_MEM_READ_WRITE, "vertex check"));
+cleanup:
+    skg_free(&mesh_triangle);
+    skg_free(&first_triangle);
+    if (status != SKG_OK) skg_geometry_release(geometry);
+    return status;
+}
+
+void skg_geometry_release(skg_geometry *geometry) {
+    skg_buffer *const buffers[] = {
+        &geometry->offsets,       &geometry->corners,         &geometry->part_table, &geometry->write_table,
+        &geometry->vertex_blocks, &geometry->triangle_blocks, &geometry->projected,  &geometry->bad};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
+    skg_free(&geometry->mesh_vertex);
+    skg_free(&geometry->first_vertex);
+    skg_free(&geometry->mesh_of_part);
+    skg_free(&geometry->entries);
+    skg_free(&geometry->writes);
+}
+
+skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
+                               const void *offsets) {
+    const size_t row = 3 * real_size(geometry);
+    const int64_t first = geometry->mesh_vertex[mesh], count = geometry->mesh_vertex[mesh + 1] - first;
+    if (count == 0) return SKG_OK;
+    SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->offsets.memory, CL_TRUE,
+                                    (size_t)first * row, (size_t)count * row, offsets, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+/* What changes from frame to frame in single precision is double's, rounded once. */
+static void round_entry(const skg_part_double *from, skg_part_float *to) {
+    for (int k = 0; k < 3; k++) {
+        to->row0[k] = (float)from->row0[k];
+        to->row1[k] = (float)from->row1[k];
+        to->row2[k] = (float)from->row2[k];
+        to->start[k] = (float)from->start[k];
+    }
+    to->offset_x = (float)from->offset_x;
+    to->offset_y = (float)from->offset_y;
+    to->offset_r = (float)from->offset_r;
+    to->anchor_x = (float)from->anchor_x;
+    to->anchor_y = (float)from->anchor_y;
+    to->reference = (float)from->reference;
+    to->highest = (float)from->highest;
+    to->pixel_i = from->pixel_i;
+    to->pixel_j = from->pixel_j;
+    to->turned = from->turned;
+    to->first_write = from->first_write;
+    to->writes = from->writes;
+}
+
+static void set_write(skg_geometry *geometry, int64_t index, const skg_plane_weight *weight, double factor) {
+    if (is_double(geometry))
+        ((skg_write_double *)geometry->writes)[index] = (skg_write_double){
+            .weight = weight->weight * factor, .bias = weight->bias, .plane = (SKG_INT)weight->plane};
+    else
+        ((skg_write_float *)geometry->writes)[index] =
+            (skg_write_float){.weight = (float)(weight->weight * factor),
+                              .bias = (float)weight->bias,
+                              .plane = (SKG_INT)weight->plane};
+}
+
+static skg_status fill_tables(skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part,
+                              double scale, int64_t *writes) {
+    int64_t total = 0;
+    for (int64_t p = 0; p < geometry->parts; p++) total += part[p].weights;
+    if (total > geometry->writes_room) {
+        SKG_TRY(skg_realloc(total, write_size(geometry), "write table", &geometry->writes));
+        geometry->writes_room = total;
+    }
+    *writes = 0;
+    for (int64_t p = 0; p < geometry->parts; p++) {
+        skg_part_double local,
+            *entry = is_double(geometry) ? &((skg_part_double *)geometry->entries)[p] : &local;
+        skg_camera_part(camera, part[p].pose, part[p].origin, part[p].flipped, entry);
+        entry->first_write = (SKG_INT)*writes;
+        entry->writes = (SKG_INT)part[p].weights;
+        if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)geometry->entries)[p]);
+        /* Kernels weigh q = r / reference; a parallel beam's q is r itself. */
+        const double factor = camera->parallel ? scale : scale * entry->reference;
+        for (int32_t w = 0; w < part[p].weights; w++)
+            set_write(geometry, (*writes)++, &part[p].weight[w], factor);
+    }
+    return SKG_OK;
+}
+
+skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
+                                const skg_kernel_options *options, const skg_camera *camera,
+                                const skg_geometry_part *part, double scale, skg_stage_log *log) {
+    static const char *const files[] = {"project.cl"};
+    const cl_int none = INT32_MAX;
+    cl_program program = NULL;
+    cl_kernel kernel = NULL;
+    int64_t writes = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY(fill_tables(geometry, camera, part, scale, &writes));
+    SKG_TRY(skg_buffer_write(context, &geometry->part_table, geometry->parts * (int64_t)entry_size(geometry),
+                             geometry->entries, "part table"));
+    SKG_TRY(skg_buffer_write(context, &geometry->write_table, writes * (int64_t)write_size(geometry),
+                             geometry->writes, "write table"));
+    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none, 0,
+                                   sizeof none, 0, NULL, NULL));
+    SKG_TRY(skg_kernels_get(context, options, 1, files, NULL, &program));
+    SKG_TRY(skg_kernel_create(program, "skg_project", &kernel));
+    const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
+    const cl_mem memory[] = {geometry->part_table.memory, geometry->vertex_blocks.memory,
+                             geometry->offsets.memory, geometry->projected.memory, geometry->bad.memory};
+    const size_t local = 64, global = ((size_t)geometry->vertices + local - 1) / local * local;
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 0, sizeof frame, &frame));
+    for (cl_uint i = 0; i < 5; i++)
+        SKG_TRY_CLEANUP(skg_kernel_set(kernel, i + 1, sizeof(cl_mem), &memory[i]));
+    SKG_TRY_CLEANUP(skg_kernel_run(context, kernel, "project", 1, &global, &local, log));
+cleanup:
+    clReleaseKernel(kernel);
+    return status;
+}
+
+void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex) {
+    int64_t low = 0, high = geometry->parts; /* first_vertex[low] <= vertex < first_vertex[high] */
+    while (high - low > 1) {
+        const int64_t middle = (low + high) / 2;
+        if (geometry->first_vertex[middle] <= vertex)
+            low = middle;
+        else
+            high = middle;
+    }
+    *part = low;
+    *mesh_vertex = vertex - geometry->first_vertex[low];
+}

@@ -1,0 +1,45 @@
+/* Stage `raster`: exact integer sums of signed path parameters, per plane and pixel, by one of three
+ * strategies that give the same bits. The plan decides, this obeys. Private. */
+#ifndef SKG_RASTER_H
+#define SKG_RASTER_H
+
+#include "plan/project.h"
+
+typedef struct {
+    skg_kernel_options kernels;
+    int32_t strategy; /* SKG_STRATEGY_COPIES, _TILES or _ATOMICS */
+    int32_t tile;     /* tiles: rows of a band (CPU) or side of a square (GPU) in pixels; 0: chosen here */
+    int64_t columns, rows; /* of the detector */
+    int64_t planes;        /* accumulator planes, >= 1 */
+    int64_t triangles;     /* most triangles of a frame */
+} skg_raster_options;
+
+typedef struct skg_raster skg_raster;
+
+/* Compiles and allocates. The options are kept. */
+skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster);
+void skg_raster_release(skg_raster **raster);
+
+/* Enqueues a frame: what skg_geometry_project has projected is added up. Nothing is waited for. */
+skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
+
+/* Where the sums of the last frame are, for kernels that read them with sums.clh: arguments (frame, sums,
+ * used). */
+typedef struct {
+    skg_frame_args frame;
+    cl_mem sums; /* [copies][planes][rows + spare][stride] of bits / 8 bytes */
+    cl_mem used; /* int[copies] at an offset of 0: copies that count */
+} skg_raster_sums;
+void skg_raster_get_sums(const skg_raster *raster, skg_raster_sums *sums);
+
+/* Enqueues path lengths of a plane: sum / scale * |ray|, mm, into output (float, or double where
+ * output_double), from element `offset` on, rows row_stride elements apart. */
+skg_status skg_raster_lengths(skg_raster *raster, const skg_camera *camera, int64_t plane, double scale,
+                              int32_t output_double, cl_mem output, int64_t offset, int64_t row_stride,
+                              skg_stage_log *log);
+
+/* Shape of the tiles (whole detector where there are none), their number, and bytes allocated. */
+void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);
+int64_t skg_raster_bytes(const skg_raster *raster);
+
+#endif
