@@ -160,9 +160,9 @@ skg_status skg_raster_lengths(skg_raster *raster, const skg_camera *camera, int6
     SKG_TRY(skg_kernel_set(kernel, 6, sizeof first, &first));
     SKG_TRY(skg_kernel_set(kernel, 7, sizeof stride, &stride));
     const int32_t lanes = skg_kernel_lanes(raster->context, raster->options.kernels.precision);
-    const size_t local[2] = {8, 1};
+    const size_t local[2] = {8, 16}; /* as large as PoCL deals out cheaply */
     const size_t global[2] = {(size_t)round_up((raster->frame.columns + lanes - 1) / lanes, 8),
-                              (size_t)raster->frame.rows};
+                              (size_t)round_up(raster->frame.rows, 16)};
     return skg_kernel_run(raster->context, kernel, "resolve", 2, global, local, log);
 }
 
