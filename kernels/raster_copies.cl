@@ -1,11 +1,11 @@
 /* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and
- * claims runs of triangles until none are left. next: the triangle that the next claim begins with; used[copy]: the
- * copy has been zeroed and counts. */
+ * claims runs of triangles until none are left. used[copy]: the copy has been zeroed and counts; used[copies]: the
+ * triangle that the next claim begins with. */
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_copies(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                   __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
-                  __global skg_sum *copies, __global int *used, __global int *next) {
+                  __global skg_sum *copies, __global int *used) {
     const int copy = (int)get_group_id(0), size = frame.planes * frame.plane;
     skg_target target;
     target.image = copies + (size_t)copy * (size_t)size;
@@ -21,7 +21,7 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
     skg_batches batches;
     skg_batches_clear(&batches);
     for (;;) {
-        int triangle = atomic_add(next, frame.claim);
+        int triangle = atomic_add(&used[frame.copies], frame.claim);
         if (triangle >= frame.triangles) break;
         const int end = min(triangle + frame.claim, frame.triangles);
         if (!used[copy]) {

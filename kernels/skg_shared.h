@@ -22,6 +22,12 @@
 /* Most tiles that a triangle may meet and still be listed in each; wider ones are in one list for all tiles. */
 #define SKG_MOST_TILES 8
 
+/* Rows that a work-item of the source plane's kernel draws. */
+#define SKG_SOURCE_ROWS 32
+
+/* How many bad pixels of an open mesh are listed. */
+#define SKG_FIRST_BAD 8
+
 /* One part in one frame. Pixels are relative to the part's own pixel (pixel_i, pixel_j), depths to `reference`, so
  * that neither loses digits to its distance. With V a vertex of the mesh, r = offset_r + row2.V is the path parameter
  * (0 at the source, 1 at the pixel) less `reference`, t = reference + r, and the vertex is seen at

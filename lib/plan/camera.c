@@ -107,8 +107,20 @@ static void parallel_axis(double h, const double linear[3], int64_t count, doubl
     for (int k = 0; k < 3; k++) row[k] = linear[k];
 }
 
-void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, int32_t flipped,
-                     skg_part_double *part) {
+/* What depths of a part are measured from: its origin's own, so that r is exact relative to the part. It must
+ * be positive, and where a part reaches the source, of the part's own size: terms are bounded by its extent,
+ * and 1 - z = reference / t keeps its digits. */
+static double reference_of(double depth, double reach) {
+    if (reach > 0) {
+        const double half = 0.5 * (depth + reach);
+        if (half > depth) return half;
+        return depth;
+    }
+    return depth > (double)SKG_NEAR ? depth : 1;
+}
+
+void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double radius,
+                     int32_t flipped, skg_part_double *part) {
     double pose_linear[3][3], linear[3][3], world[3], h[3];
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) pose_linear[r][c] = pose[4 * r + c];
@@ -132,7 +144,8 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
                    &part->anchor_y, &part->pixel_j);
     }
     for (int k = 0; k < 3; k++) part->row2[k] = linear[2][k];
-    part->reference = camera->parallel || depth > (double)SKG_NEAR ? depth : 1;
+    part->reference =
+        camera->parallel ? depth : reference_of(depth, radius * sqrt(dot(linear[2], linear[2])));
     part->offset_r = depth - part->reference;
     part->highest = 1 - part->reference;
     part->start[0] = camera->start[0] + camera->start[1] * part->pixel_i + camera->start[2] * part->pixel_j -

@@ -32,10 +32,11 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
 void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]);
 
 /* Fills what a part's entry knows of the picture (not its place in the tables, not its writes). pose: 4x4,
- * row by row; origin: of the mesh's offsets, mm; flipped: the mesh is drawn with its triangles turned round.
+ * row by row; origin: of the mesh's offsets, mm; radius: of a sphere about it that holds the mesh, 0:
+ * unknown; flipped: the mesh is drawn with its triangles turned round.
  */
-void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, int32_t flipped,
-                     skg_part_double *part);
+void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double radius,
+                     int32_t flipped, skg_part_double *part);
 
 /* What resolve multiplies by: lengths of the rays, and 1 / scale. */
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);

@@ -30,6 +30,12 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
     return skg_program_get(context, HEADERS + files, all, text, program);
 }
 
+skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count, const cl_mem *memory) {
+    for (int32_t i = 0; i < count; i++)
+        SKG_TRY(skg_kernel_set(kernel, first + (cl_uint)i, sizeof *memory, &memory[i]));
+    return SKG_OK;
+}
+
 void skg_stage_log_clear(skg_stage_log *log) {
     for (int32_t i = 0; i < log->count; i++) clReleaseEvent(log->events[i]);
     log->count = 0;

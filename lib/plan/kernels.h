@@ -10,7 +10,7 @@ typedef struct {
     int32_t bits;          /* of the accumulators: 32 or 64 */
     int32_t parallel;      /* parallel beam */
     int32_t source_plane;  /* some part may reach the source, or the plane where parallel paths start */
-    int32_t listed_writes; /* 0: every part adds to exactly one plane, with bias 0; 1: as its list says */
+    int32_t listed_writes; /* 0: every part adds to plane 0, without bias; 1: as its list says */
 } skg_kernel_options;
 
 /* Lanes that kernels with wide vectors use on this device. */
@@ -19,6 +19,9 @@ int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 /* The program of these kernel files (after the headers that all need), from the context's cache or built. */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const char *more_options, cl_program *program);
+
+/* Sets arguments `first`, first + 1, ... to these buffers. */
+skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count, const cl_mem *memory);
 
 /* Enqueues a kernel and logs its event; log may be NULL. */
 enum { SKG_MOST_STAGES = 16 };

@@ -24,9 +24,21 @@ typedef struct {
     const double *pose;   /* 4x4, row by row */
     const double *origin; /* of its mesh's offsets, mm */
     int32_t flipped;      /* its mesh is drawn with triangles turned round */
-    int32_t weights;      /* how many planes; 0: the part is not drawn, but keeps its place */
+    double radius;   /* of a sphere about that origin that holds the mesh as it is, mm; 0: unknown (worse when
+                        the part reaches the source) */
+    int32_t weights; /* how many planes; 0: the part is not drawn, but keeps its place */
     const skg_plane_weight *weight;
 } skg_geometry_part;
+
+/* Host copies of the part and write tables, kept until the device has read them: writes do not wait for
+ * frames in flight. */
+enum { SKG_TABLE_SLOTS = 4 };
+typedef struct {
+    void *entries; /* skg_part_float or _double [parts] */
+    void *writes;  /* skg_write_float or _double [write_count] */
+    int64_t write_count, write_room;
+    cl_event read; /* of the last write from here; NULL: none */
+} skg_table_slot;
 
 typedef struct {
     int64_t meshes, parts;
@@ -36,13 +48,15 @@ typedef struct {
     int32_t reserved;
     int64_t *mesh_vertex;  /* [meshes + 1] first vertex of each mesh in the vertex buffer */
     int64_t *first_vertex; /* [parts + 1] in the numbering over all parts */
-    void *entries;         /* host copy of the part table: skg_part_float or _double [parts] */
-    void *writes;          /* host copy of the write table */
-    int64_t writes_room;
-    int32_t *mesh_of_part;
+    int32_t slot;          /* of the tables that the device has */
+    int32_t uploaded;      /* it has any */
+    skg_table_slot slots[SKG_TABLE_SLOTS];
+    cl_kernel kernel;
+    skg_kernel_options kernel_options;
     skg_buffer offsets, corners, part_table, write_table, vertex_blocks, triangle_blocks;
     skg_buffer projected; /* x, y, z, t of each vertex over all parts */
-    skg_buffer bad;       /* int: the lowest vertex over all parts that was not finite, INT32_MAX: none */
+    skg_buffer bad;       /* int: the lowest vertex over all parts that was not finite since the last upload;
+                          INT32_MAX: none */
 } skg_geometry;
 
 /* Allocates everything and uploads what does not move. mesh_of_part: [parts]. */

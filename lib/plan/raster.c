@@ -1,61 +1,157 @@
-#include "plan/raster.h"
+#include "plan/raster_private.h"
 
 #include <skiagraph/plan.h>
 
-#include <string.h>
-
-struct skg_raster {
-    skg_context *context;
-    skg_raster_options options;
-    skg_frame_args frame;
-    skg_buffer sums, used, state;
-    cl_kernel kernel;
-    cl_kernel lengths[2]; /* to float, to double; made on demand */
+enum {
+    CACHE_BYTES = 256 * 1024, /* of a band: half of the level 2 cache of common CPUs */
+    MOST_BAND_ROWS = 256,
+    SQUARE = 32,             /* side of a tile on a GPU */
+    QUEUE_ENTRIES = 1 << 20, /* strips of large triangles; more are drawn without it */
+    QUEUE_GROUPS_PER_UNIT = 8,
+    GROUP = 64 /* local size of one item per triangle */
 };
 
 static int64_t round_up(int64_t value, int64_t to) {
     return (value + to - 1) / to * to;
 }
 
-/* Two work-groups for one thread are dealt out unevenly by PoCL; one more than there are threads is not. */
-static int32_t worker_count(const skg_context *context) {
-    return context->device->info.compute_units + 1;
+static int64_t sum_bytes(const skg_raster *raster) {
+    return raster->options.kernels.bits / 8;
 }
 
-static void lay_out(skg_raster *raster) {
+static int is_gpu(const skg_raster *raster) {
+    return raster->context->device->info.is_gpu;
+}
+
+static SKG_INT band_rows(const skg_raster *raster) {
+    const int64_t row = raster->frame.stride * raster->frame.planes * sum_bytes(raster);
+    const int64_t fit = CACHE_BYTES / row, even = raster->frame.rows / (4 * (int64_t)raster->workers);
+    int64_t rows = fit < even ? fit : even; /* some bands for each worker */
+    rows = rows < MOST_BAND_ROWS ? rows : MOST_BAND_ROWS;
+    return (SKG_INT)(rows < 8 ? 8 : rows);
+}
+
+static skg_status square_side(const skg_raster *raster, SKG_INT *side) {
+    const int64_t room = raster->context->device->info.local_memory,
+                  pixel = raster->frame.planes * sum_bytes(raster);
+    if (!raster->options.tile)
+        while (*side > 8 && *side * *side * pixel > room / 2) *side /= 2;
+    if (*side * *side * pixel > room)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "tiles of %d x %d pixels with %d planes do not fit the local memory of %s; choose smaller "
+            "tiles or strategy atomics",
+            (int)*side, (int)*side, (int)raster->frame.planes, raster->context->device->info.name);
+    return SKG_OK;
+}
+
+static skg_status lay_out(skg_raster *raster) {
     const skg_raster_options *o = &raster->options;
     skg_frame_args *frame = &raster->frame;
+    /* Two work-groups on two threads are dealt out unevenly by PoCL; one more than there are threads is not.
+     */
+    raster->workers = raster->context->device->info.compute_units + 1;
     frame->columns = (SKG_INT)o->columns;
     frame->rows = (SKG_INT)o->rows;
     frame->stride = (SKG_INT)round_up(o->columns + SKG_SPARE_COLUMNS, 16);
-    frame->plane = (SKG_INT)(frame->stride * (o->rows + SKG_SPARE_ROWS));
+    const int64_t plane = frame->stride * (o->rows + SKG_SPARE_ROWS);
+    if (plane * o->planes > INT32_MAX)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%d planes of this detector are more than 2^31 accumulators",
+                        (int)o->planes);
+    frame->plane = (SKG_INT)plane;
     frame->planes = (SKG_INT)o->planes;
-    frame->copies = o->strategy == SKG_STRATEGY_COPIES ? worker_count(raster->context) : 1;
+    frame->copies = o->strategy == SKG_STRATEGY_COPIES ? raster->workers : 1;
+    frame->tile_columns = frame->columns;
+    frame->tile_rows = frame->rows;
+    if (o->strategy == SKG_STRATEGY_TILES) {
+        SKG_INT side = o->tile ? o->tile : is_gpu(raster) ? SQUARE : band_rows(raster);
+        if (is_gpu(raster)) {
+            SKG_TRY(square_side(raster, &side));
+            frame->tile_columns = side;
+        }
+        frame->tile_rows = side;
+    }
+    frame->tiles_across = (frame->columns + frame->tile_columns - 1) / frame->tile_columns;
+    frame->tiles_down = (frame->rows + frame->tile_rows - 1) / frame->tile_rows;
+    frame->queue = o->strategy == SKG_STRATEGY_ATOMICS ? QUEUE_ENTRIES : 0;
+    return SKG_OK;
+}
+
+static skg_status reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes, const char *what) {
+    return skg_buffer_reserve(raster->context, buffer, bytes, CL_MEM_READ_WRITE, what);
 }
 
 static skg_status allocate(skg_raster *raster) {
     const skg_frame_args *frame = &raster->frame;
-    const int64_t size =
-        (int64_t)frame->copies * frame->planes * frame->plane * (raster->options.kernels.bits / 8);
-    SKG_TRY(skg_buffer_reserve(raster->context, &raster->sums, size, CL_MEM_READ_WRITE, "accumulators"));
-    SKG_TRY(skg_buffer_reserve(raster->context, &raster->used, frame->copies * (int64_t)sizeof(cl_int),
-                               CL_MEM_READ_WRITE, "accumulators in use"));
-    return skg_buffer_reserve(raster->context, &raster->state, 64, CL_MEM_READ_WRITE, "counters");
+    const int64_t of_int = sizeof(cl_int), tiles = (int64_t)frame->tiles_across * frame->tiles_down;
+    SKG_TRY(reserve(raster, &raster->sums,
+                    (int64_t)frame->copies * frame->planes * frame->plane * sum_bytes(raster),
+                    "accumulators"));
+    SKG_TRY(reserve(raster, &raster->used, (frame->copies + 1) * of_int, "accumulators in use"));
+    if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
+        SKG_TRY(reserve(raster, &raster->queue, (2 * (int64_t)frame->queue + 2) * of_int,
+                        "queue of large triangles"));
+    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
+    SKG_TRY(reserve(raster, &raster->counts, (tiles + 1) * of_int, "tiles"));
+    SKG_TRY(reserve(raster, &raster->starts, (tiles + 2) * of_int, "tiles"));
+    SKG_TRY(reserve(raster, &raster->list, raster->options.triangles * SKG_MOST_TILES * of_int,
+                    "lists of the tiles"));
+    SKG_TRY(reserve(raster, &raster->for_all, raster->options.triangles * of_int, "list for all tiles"));
+    if (is_gpu(raster)) return SKG_OK;
+    return reserve(raster, &raster->scratch,
+                   (int64_t)raster->workers * frame->planes * frame->stride *
+                       (frame->tile_rows + (int64_t)SKG_SPARE_ROWS) * sum_bytes(raster),
+                   "bands");
+}
+
+static skg_status compile(skg_raster *raster) {
+    static const char *const copies[] = {"batch.clh", "raster_copies.cl"};
+    static const char *const atomics[] = {"pixel.clh", "raster_atomics.cl"};
+    static const char *const bands[] = {"pixel.clh", "tiles.cl", "batch.clh", "raster_bands.cl"};
+    static const char *const squares[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
+    static const char *const source[] = {"pixel.clh", "source_plane.cl"};
+    const skg_kernel_options *options = &raster->options.kernels;
+    skg_context *context = raster->context;
+    cl_program program = NULL;
+    if (raster->options.strategy == SKG_STRATEGY_COPIES) {
+        SKG_TRY(skg_kernels_get(context, options, 2, copies, NULL, &program));
+        SKG_TRY(skg_kernel_create(program, "skg_raster_copies", &raster->kernels[SKG_RASTER_DRAW]));
+    } else if (raster->options.strategy == SKG_STRATEGY_ATOMICS) {
+        SKG_TRY(skg_kernels_get(context, options, 2, atomics, NULL, &program));
+        SKG_TRY(skg_kernel_create(program, "skg_raster_atomics", &raster->kernels[SKG_RASTER_DRAW]));
+        SKG_TRY(skg_kernel_create(program, "skg_raster_queue", &raster->kernels[SKG_RASTER_QUEUE]));
+    } else {
+        SKG_TRY(skg_kernels_get(context, options, is_gpu(raster) ? 3 : 4, is_gpu(raster) ? squares : bands,
+                                NULL, &program));
+        SKG_TRY(skg_kernel_create(program, "skg_tiles_count", &raster->kernels[SKG_RASTER_COUNT]));
+        SKG_TRY(skg_kernel_create(program, "skg_tiles_scan", &raster->kernels[SKG_RASTER_SCAN]));
+        SKG_TRY(skg_kernel_create(program, "skg_tiles_fill", &raster->kernels[SKG_RASTER_FILL]));
+        SKG_TRY(skg_kernel_create(program, is_gpu(raster) ? "skg_raster_squares" : "skg_raster_bands",
+                                  &raster->kernels[SKG_RASTER_DRAW]));
+    }
+    if (!options->source_plane || options->parallel) return SKG_OK;
+    SKG_TRY(skg_kernels_get(context, options, 2, source, NULL, &program));
+    return skg_kernel_create(program, "skg_source_plane", &raster->kernels[SKG_RASTER_SOURCE]);
+}
+
+static skg_status fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,
+                       int64_t bytes) {
+    SKG_CL_TRY(clEnqueueFillBuffer(raster->context->device->queue, buffer->memory, &value, sizeof value,
+                                   (size_t)from, (size_t)bytes, 0, NULL, NULL));
+    return SKG_OK;
 }
 
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster) {
-    static const char *const files[] = {"batch.clh", "raster_copies.cl"};
     skg_raster *made = NULL;
-    cl_program program = NULL;
     skg_status status = SKG_OK;
     *raster = NULL;
     SKG_TRY(skg_alloc(1, sizeof *made, "raster", &made));
     made->context = context;
     made->options = *options;
-    lay_out(made);
+    SKG_TRY_CLEANUP(lay_out(made));
     SKG_TRY_CLEANUP(allocate(made));
-    SKG_TRY_CLEANUP(skg_kernels_get(context, &options->kernels, 2, files, NULL, &program));
-    SKG_TRY_CLEANUP(skg_kernel_create(program, "skg_raster_copies", &made->kernel));
+    SKG_TRY_CLEANUP(compile(made));
+    SKG_TRY_CLEANUP(fill(made, &made->used, 1, 0, made->used.bytes));
     *raster = made;
     return SKG_OK;
 cleanup:
@@ -63,115 +159,150 @@ cleanup:
     return status;
 }
 
+static void release_kernel(cl_kernel kernel) {
+    if (kernel) clReleaseKernel(kernel);
+}
+
 void skg_raster_release(skg_raster **raster) {
     if (!raster || !*raster) return;
     skg_raster *r = *raster;
-    skg_buffer_release(&r->sums);
-    skg_buffer_release(&r->used);
-    skg_buffer_release(&r->state);
-    if (r->kernel) clReleaseKernel(r->kernel);
-    for (int i = 0; i < 2; i++)
-        if (r->lengths[i]) clReleaseKernel(r->lengths[i]);
+    skg_buffer *const buffers[] = {&r->sums, &r->used,    &r->scratch, &r->counts,  &r->starts,
+                                   &r->list, &r->for_all, &r->queue,   &r->rows_bad};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
+    for (int i = 0; i < SKG_RASTER_KERNELS; i++) release_kernel(r->kernels[i]);
+    release_kernel(r->lengths[0]);
+    release_kernel(r->lengths[1]);
+    release_kernel(r->bad_rows);
+    release_kernel(r->bad);
     skg_free(raster);
 }
 
-static skg_status fill(const skg_raster *raster, const skg_buffer *buffer, size_t bytes) {
-    const cl_int zero = 0;
-    SKG_CL_TRY(clEnqueueFillBuffer(raster->context->device->queue, buffer->memory, &zero, sizeof zero, 0,
-                                   bytes, 0, NULL, NULL));
-    return SKG_OK;
-}
+/* --- a frame
+ * ------------------------------------------------------------------------------------------------------ */
 
-/* So many triangles at once that the last claims even out; few enough scenes of a thousand still use every
- * worker. */
+/* So many triangles at once that the last claims even out; few enough that a thousand still use every worker.
+ */
 static SKG_INT claim_size(int64_t triangles, int32_t workers) {
     const int64_t claim = triangles / (16 * (int64_t)workers);
     return (SKG_INT)(claim < 32 ? 32 : claim > 1024 ? 1024 : claim);
 }
 
+/* A kernel's frame and buffers, then one work-item a triangle, or `groups` work-groups. */
+static skg_status run(skg_raster *raster, int which, const char *stage, int32_t count, const cl_mem *memory,
+                      size_t groups, size_t local, skg_stage_log *log) {
+    cl_kernel kernel = raster->kernels[which];
+    const size_t global = groups * local;
+    SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
+    SKG_TRY(skg_kernel_set_memory(kernel, 1, count, memory));
+    return skg_kernel_run(raster->context, kernel, stage, 1, &global, &local, log);
+}
+
+static size_t triangle_groups(const skg_raster *raster) {
+    return ((size_t)raster->frame.triangles + GROUP - 1) / GROUP;
+}
+
+static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
+                             g->write_table.memory, g->triangle_blocks.memory, raster->sums.memory,
+                             raster->used.memory};
+    const int64_t of_int = sizeof(cl_int);
+    SKG_TRY(fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
+    if (raster->kernels[SKG_RASTER_SOURCE]) { /* adds to the first copy, whoever else does */
+        SKG_TRY(fill(raster, &raster->sums, 0, 0, (int64_t)frame->planes * frame->plane * sum_bytes(raster)));
+        SKG_TRY(fill(raster, &raster->used, 1, 0, of_int));
+    }
+    return run(raster, SKG_RASTER_DRAW, "raster", 7, memory, (size_t)raster->workers, 1, log);
+}
+
+static skg_status run_atomics(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
+                             g->write_table.memory, g->triangle_blocks.memory, raster->sums.memory,
+                             raster->queue.memory};
+    const size_t groups = (size_t)(QUEUE_GROUPS_PER_UNIT * raster->context->device->info.compute_units);
+    SKG_TRY(fill(raster, &raster->sums, 0, 0,
+                 (int64_t)raster->frame.planes * raster->frame.plane * sum_bytes(raster)));
+    SKG_TRY(fill(raster, &raster->queue, 0, 0, 2 * (int64_t)sizeof(cl_int)));
+    SKG_TRY(run(raster, SKG_RASTER_DRAW, "raster", 7, memory, triangle_groups(raster), GROUP, log));
+    return run(raster, SKG_RASTER_QUEUE, "large triangles", 7, memory, groups, GROUP, log);
+}
+
+static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const cl_mem memory[] = {g->corners.memory,         g->projected.memory,   g->part_table.memory,
+                             g->triangle_blocks.memory, raster->counts.memory, raster->starts.memory,
+                             raster->list.memory,       raster->for_all.memory};
+    const cl_mem scan[] = {raster->counts.memory, raster->starts.memory};
+    SKG_TRY(fill(raster, &raster->counts, 0, 0,
+                 ((int64_t)frame->tiles_across * frame->tiles_down + 1) * (int64_t)sizeof(cl_int)));
+    SKG_TRY(run(raster, SKG_RASTER_COUNT, "tiles: count", 5, memory, triangle_groups(raster), GROUP, log));
+    SKG_TRY(run(raster, SKG_RASTER_SCAN, "tiles: scan", 2, scan, 1, GROUP, log));
+    return run(raster, SKG_RASTER_FILL, "tiles: fill", 8, memory, triangle_groups(raster), GROUP, log);
+}
+
+static skg_status run_tiles(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const cl_mem memory[] = {g->corners.memory,      g->projected.memory,       g->part_table.memory,
+                             g->write_table.memory,  g->triangle_blocks.memory, raster->starts.memory,
+                             raster->list.memory,    raster->for_all.memory,    raster->sums.memory,
+                             raster->scratch.memory, raster->used.memory};
+    SKG_TRY(run_binning(raster, g, log));
+    if (!is_gpu(raster)) {
+        SKG_TRY(fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
+        return run(raster, SKG_RASTER_DRAW, "raster", 11, memory, (size_t)raster->workers, 1, log);
+    }
+    const size_t local = (size_t)(frame->tile_columns * frame->tile_rows * frame->planes * sum_bytes(raster));
+    SKG_TRY(skg_kernel_set(raster->kernels[SKG_RASTER_DRAW], 10, local, NULL));
+    return run(raster, SKG_RASTER_DRAW, "raster", 9, memory,
+               (size_t)(frame->tiles_across * frame->tiles_down), GROUP, log);
+}
+
+static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
+                             g->write_table.memory, g->triangle_blocks.memory, g->offsets.memory,
+                             raster->sums.memory};
+    cl_kernel kernel = raster->kernels[SKG_RASTER_SOURCE];
+    const size_t local[2] = {GROUP, 1};
+    const size_t global[2] = {triangle_groups(raster) * GROUP,
+                              ((size_t)raster->frame.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS};
+    SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
+    SKG_TRY(skg_kernel_set_memory(kernel, 1, 7, memory));
+    return skg_kernel_run(raster->context, kernel, "source plane", 2, global, local, log);
+}
+
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log) {
     skg_frame_args *frame = &raster->frame;
-    const size_t one = 1, groups = (size_t)frame->copies;
     frame->parts = (SKG_INT)geometry->parts;
     frame->vertices = (SKG_INT)geometry->vertices;
     frame->triangles = (SKG_INT)geometry->triangles;
-    frame->claim = claim_size(geometry->triangles, frame->copies - 1);
-    SKG_TRY(fill(raster, &raster->state, sizeof(cl_int)));
-    SKG_TRY(fill(raster, &raster->used, (size_t)frame->copies * sizeof(cl_int)));
-    const cl_mem memory[] = {geometry->corners.memory,
-                             geometry->projected.memory,
-                             geometry->part_table.memory,
-                             geometry->write_table.memory,
-                             geometry->triangle_blocks.memory,
-                             raster->sums.memory,
-                             raster->used.memory,
-                             raster->state.memory};
-    SKG_TRY(skg_kernel_set(raster->kernel, 0, sizeof *frame, frame));
-    for (cl_uint i = 0; i < 8; i++)
-        SKG_TRY(skg_kernel_set(raster->kernel, i + 1, sizeof(cl_mem), &memory[i]));
-    return skg_kernel_run(raster->context, raster->kernel, "raster", 1, &groups, &one, log);
+    frame->claim = claim_size(geometry->triangles, raster->workers - 1);
+    if (geometry->triangles > raster->options.triangles)
+        return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
+    if (raster->options.strategy == SKG_STRATEGY_COPIES)
+        SKG_TRY(run_copies(raster, geometry, log));
+    else if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
+        SKG_TRY(run_atomics(raster, geometry, log));
+    else
+        SKG_TRY(run_tiles(raster, geometry, log));
+    return raster->kernels[SKG_RASTER_SOURCE] ? run_source(raster, geometry, log) : SKG_OK;
 }
+
+/* --- what was decided and made
+ * ------------------------------------------------------------------------------------ */
 
 void skg_raster_get_sums(const skg_raster *raster, skg_raster_sums *sums) {
     *sums =
         (skg_raster_sums){.frame = raster->frame, .sums = raster->sums.memory, .used = raster->used.memory};
 }
 
-static void round_rays(const skg_ray_double *from, skg_ray_float *to) {
-    for (int k = 0; k < 3; k++) {
-        to->centre[k] = (float)from->centre[k];
-        to->column[k] = (float)from->column[k];
-        to->row[k] = (float)from->row[k];
-    }
-    to->middle_i = (float)from->middle_i;
-    to->middle_j = (float)from->middle_j;
-    to->unit = (float)from->unit;
-}
-
-static skg_status get_lengths_kernel(skg_raster *raster, int32_t output_double) {
-    static const char *const files[] = {"resolve.cl"};
-    cl_program program = NULL;
-    if (raster->lengths[output_double]) return SKG_OK;
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, 1, files,
-                            output_double ? "-D SKG_OUTPUT_DOUBLE=1" : NULL, &program));
-    return skg_kernel_create(program, "skg_resolve_lengths", &raster->lengths[output_double]);
-}
-
-skg_status skg_raster_lengths(skg_raster *raster, const skg_camera *camera, int64_t plane, double scale,
-                              int32_t output_double, cl_mem output, int64_t offset, int64_t row_stride,
-                              skg_stage_log *log) {
-    output_double = output_double != 0;
-    SKG_TRY(get_lengths_kernel(raster, output_double));
-    cl_kernel kernel = raster->lengths[output_double];
-    skg_ray_double ray;
-    skg_ray_float ray_single;
-    skg_camera_rays(camera, scale, &ray);
-    round_rays(&ray, &ray_single);
-    const int single = raster->options.kernels.precision == SKG_SINGLE;
-    const cl_int plane_number = (cl_int)plane, stride = (cl_int)row_stride;
-    const cl_long first = (cl_long)offset;
-    SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
-    SKG_TRY(skg_kernel_set(kernel, 1, single ? sizeof ray_single : sizeof ray,
-                           single ? (const void *)&ray_single : (const void *)&ray));
-    SKG_TRY(skg_kernel_set(kernel, 2, sizeof(cl_mem), &raster->sums.memory));
-    SKG_TRY(skg_kernel_set(kernel, 3, sizeof(cl_mem), &raster->used.memory));
-    SKG_TRY(skg_kernel_set(kernel, 4, sizeof plane_number, &plane_number));
-    SKG_TRY(skg_kernel_set(kernel, 5, sizeof(cl_mem), &output));
-    SKG_TRY(skg_kernel_set(kernel, 6, sizeof first, &first));
-    SKG_TRY(skg_kernel_set(kernel, 7, sizeof stride, &stride));
-    const int32_t lanes = skg_kernel_lanes(raster->context, raster->options.kernels.precision);
-    const size_t local[2] = {8, 16}; /* as large as PoCL deals out cheaply */
-    const size_t global[2] = {(size_t)round_up((raster->frame.columns + lanes - 1) / lanes, 8),
-                              (size_t)round_up(raster->frame.rows, 16)};
-    return skg_kernel_run(raster->context, kernel, "resolve", 2, global, local, log);
-}
-
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles) {
-    *columns = raster->frame.columns;
-    *rows = raster->frame.rows;
-    *tiles = 1;
+    *columns = raster->frame.tile_columns;
+    *rows = raster->frame.tile_rows;
+    *tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
 }
 
 int64_t skg_raster_bytes(const skg_raster *raster) {
-    return raster->sums.bytes + raster->used.bytes + raster->state.bytes;
+    return raster->sums.bytes + raster->used.bytes + raster->scratch.bytes + raster->counts.bytes +
+           raster->starts.bytes + raster->list.bytes + raster->for_all.bytes + raster->queue.bytes +
+           raster->rows_bad.bytes;
 }

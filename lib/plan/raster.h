@@ -28,7 +28,7 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
 typedef struct {
     skg_frame_args frame;
     cl_mem sums; /* [copies][planes][rows + spare][stride] of bits / 8 bytes */
-    cl_mem used; /* int[copies] at an offset of 0: copies that count */
+    cl_mem used; /* int[copies]: copies that count */
 } skg_raster_sums;
 void skg_raster_get_sums(const skg_raster *raster, skg_raster_sums *sums);
 
@@ -38,8 +38,24 @@ skg_status skg_raster_lengths(skg_raster *raster, const skg_camera *camera, int6
                               int32_t output_double, cl_mem output, int64_t offset, int64_t row_stride,
                               skg_stage_log *log);
 
-/* Shape of the tiles (whole detector where there are none), their number, and bytes allocated. */
+/* Enqueues the verdict on a count plane into int result[1 + SKG_FIRST_BAD]: how many pixels do not cancel,
+ * then the first ones, row * columns + column, ascending. */
+skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t plane, cl_mem result, skg_stage_log *log);
+
+/* Shape of the tiles (the whole detector where there are none) and their number; bytes allocated. */
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);
 int64_t skg_raster_bytes(const skg_raster *raster);
+
+/* What a strategy is chosen by. */
+typedef struct {
+    int32_t is_gpu;
+    int32_t workers;        /* compute units */
+    int64_t image_bytes;    /* of all accumulator planes */
+    int64_t triangles;      /* of a frame */
+    double triangle_pixels; /* mean pixels of a triangle's box */
+} skg_raster_facts;
+
+/* The strategy for these facts, and why in a few words (static storage). */
+int32_t skg_raster_choose(const skg_raster_facts *facts, const char **why);
 
 #endif

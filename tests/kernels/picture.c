@@ -171,6 +171,15 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
     return status;
 }
 
+static double radius_of(const shape *s) {
+    double square = 0;
+    for (int64_t k = 0; k < s->vertices; k++) {
+        const double *v = s->positions + 3 * k;
+        square = fmax(square, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    }
+    return sqrt(square);
+}
+
 static skg_status project(skg_context *context, skg_geometry *geometry, const skg_raster_options *options,
                           const skg_camera *camera, int bodies, const body *body, double scale) {
     static const double origin[3] = {0, 0, 0};
@@ -178,7 +187,7 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
     skg_plane_weight *weights = calloc((size_t)bodies, sizeof *weights);
     for (int b = 0; b < bodies; b++) {
         weights[b] = (skg_plane_weight){body[b].plane, body[b].weight, body[b].bias};
-        parts[b] = (skg_geometry_part){body[b].pose, origin, 0, 1, &weights[b]};
+        parts[b] = (skg_geometry_part){body[b].pose, origin, 0, radius_of(body[b].shape), 1, &weights[b]};
     }
     skg_status status =
         skg_geometry_project(context, geometry, &options->kernels, camera, parts, scale, NULL);
