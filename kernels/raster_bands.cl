@@ -16,8 +16,9 @@ static void skg_draw_list(const skg_target *target, skg_batches *batches, __glob
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_bands(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                  __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
-                 __global const int *starts, __global const int *list, __global const int *for_all,
-                 __global skg_sum *sums, __global skg_sum *scratch, __global int *used) {
+                 __global const int *counters, __global const int2 *pieces, __global const int *pool,
+                 __global const int *for_all, __global skg_sum *sums, __global skg_sum *scratch,
+                 __global int *used) {
     skg_target target;
     target.stride = frame.stride;
     target.plane = frame.stride * (frame.tile_rows + SKG_SPARE_ROWS);
@@ -36,8 +37,11 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
         target.first_row = band * frame.tile_rows;
         target.last_row = min(target.first_row + frame.tile_rows, frame.rows);
         skg_zero(target.image, frame.planes * target.plane);
-        skg_draw_list(&target, &batches, blocks, list + starts[band], starts[band + 1] - starts[band], &range);
-        skg_draw_list(&target, &batches, blocks, for_all, starts[frame.tiles_down + 1], &range);
+        for (int chunk = 0; chunk * SKG_CHUNK < frame.triangles; chunk++) {
+            const int2 piece = pieces[chunk * frame.tiles_down + band];
+            skg_draw_list(&target, &batches, blocks, pool + piece.x, piece.y, &range);
+        }
+        skg_draw_list(&target, &batches, blocks, for_all, counters[2], &range);
         skg_flush(&target, &batches);
         const int size = (target.last_row - target.first_row) * frame.stride;
         for (int p = 0; p < frame.planes; p++) {

@@ -22,6 +22,10 @@
 /* Most tiles that a triangle may meet and still be listed in each; wider ones are in one list for all tiles. */
 #define SKG_MOST_TILES 8
 
+/* Bands of a CPU: most of them, and triangles that are sorted at once. */
+#define SKG_MOST_BANDS 512
+#define SKG_CHUNK 1024
+
 /* Rows that a work-item of the source plane's kernel draws. */
 #define SKG_SOURCE_ROWS 32
 

@@ -1,4 +1,4 @@
-/* Strategy `tiles`, first half: which triangles meet which tile. Count, scan, fill; the order within a tile's list
+/* Strategy `tiles` on a GPU, first half: which triangles meet which square. Count, scan, fill; the order within a tile's list
  * is any, since sums do not depend on it. Triangles that meet more than SKG_MOST_TILES are in one list for all. */
 
 /* Tiles that a triangle's box meets: x, y from; z, w to (exclusive). */

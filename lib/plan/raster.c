@@ -19,8 +19,9 @@ static int64_t sum_bytes(const skg_raster *raster) {
     return raster->options.kernels.bits / 8;
 }
 
-static int is_gpu(const skg_raster *raster) {
-    return raster->context->device->info.is_gpu;
+static int squares(const skg_raster *raster) {
+    const int32_t shape = raster->options.shape;
+    return shape == SKG_TILE_SQUARES || (shape == SKG_TILE_AUTO && raster->context->device->info.is_gpu);
 }
 
 static SKG_INT band_rows(const skg_raster *raster) {
@@ -28,7 +29,9 @@ static SKG_INT band_rows(const skg_raster *raster) {
     const int64_t fit = CACHE_BYTES / row, even = raster->frame.rows / (4 * (int64_t)raster->workers);
     int64_t rows = fit < even ? fit : even; /* some bands for each worker */
     rows = rows < MOST_BAND_ROWS ? rows : MOST_BAND_ROWS;
-    return (SKG_INT)(rows < 8 ? 8 : rows);
+    const int64_t least = (raster->frame.rows + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
+    rows = rows > 8 ? rows : 8;
+    return (SKG_INT)(rows > least ? rows : least);
 }
 
 static skg_status square_side(const skg_raster *raster, SKG_INT *side) {
@@ -64,12 +67,15 @@ static skg_status lay_out(skg_raster *raster) {
     frame->tile_columns = frame->columns;
     frame->tile_rows = frame->rows;
     if (o->strategy == SKG_STRATEGY_TILES) {
-        SKG_INT side = o->tile ? o->tile : is_gpu(raster) ? SQUARE : band_rows(raster);
-        if (is_gpu(raster)) {
+        SKG_INT side = o->tile ? o->tile : squares(raster) ? SQUARE : band_rows(raster);
+        if (squares(raster)) {
             SKG_TRY(square_side(raster, &side));
             frame->tile_columns = side;
         }
         frame->tile_rows = side;
+        if (!squares(raster) && (frame->rows + side - 1) / side > SKG_MOST_BANDS)
+            return skg_fail(SKG_ERR_ARGUMENT, "bands of %d rows are more than %d; make them higher",
+                            (int)side, SKG_MOST_BANDS);
     }
     frame->tiles_across = (frame->columns + frame->tile_columns - 1) / frame->tile_columns;
     frame->tiles_down = (frame->rows + frame->tile_rows - 1) / frame->tile_rows;
@@ -92,12 +98,14 @@ static skg_status allocate(skg_raster *raster) {
         SKG_TRY(reserve(raster, &raster->queue, (2 * (int64_t)frame->queue + 2) * of_int,
                         "queue of large triangles"));
     if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
-    SKG_TRY(reserve(raster, &raster->counts, (tiles + 1) * of_int, "tiles"));
-    SKG_TRY(reserve(raster, &raster->starts, (tiles + 2) * of_int, "tiles"));
+    const int64_t chunks = (raster->options.triangles + SKG_CHUNK - 1) / SKG_CHUNK;
+    SKG_TRY(reserve(raster, &raster->counts, (squares(raster) ? tiles + 1 : 3) * of_int, "tiles"));
+    SKG_TRY(reserve(raster, &raster->starts, (squares(raster) ? tiles + 2 : 2 * chunks * tiles) * of_int,
+                    "tiles"));
     SKG_TRY(reserve(raster, &raster->list, raster->options.triangles * SKG_MOST_TILES * of_int,
                     "lists of the tiles"));
     SKG_TRY(reserve(raster, &raster->for_all, raster->options.triangles * of_int, "list for all tiles"));
-    if (is_gpu(raster)) return SKG_OK;
+    if (squares(raster)) return SKG_OK;
     return reserve(raster, &raster->scratch,
                    (int64_t)raster->workers * frame->planes * frame->stride *
                        (frame->tile_rows + (int64_t)SKG_SPARE_ROWS) * sum_bytes(raster),
@@ -107,8 +115,8 @@ static skg_status allocate(skg_raster *raster) {
 static skg_status compile(skg_raster *raster) {
     static const char *const copies[] = {"batch.clh", "raster_copies.cl"};
     static const char *const atomics[] = {"pixel.clh", "raster_atomics.cl"};
-    static const char *const bands[] = {"pixel.clh", "tiles.cl", "batch.clh", "raster_bands.cl"};
-    static const char *const squares[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
+    static const char *const bands[] = {"bands.cl", "batch.clh", "raster_bands.cl"};
+    static const char *const square_files[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
     static const char *const source[] = {"pixel.clh", "source_plane.cl"};
     const skg_kernel_options *options = &raster->options.kernels;
     skg_context *context = raster->context;
@@ -121,12 +129,14 @@ static skg_status compile(skg_raster *raster) {
         SKG_TRY(skg_kernel_create(program, "skg_raster_atomics", &raster->kernels[SKG_RASTER_DRAW]));
         SKG_TRY(skg_kernel_create(program, "skg_raster_queue", &raster->kernels[SKG_RASTER_QUEUE]));
     } else {
-        SKG_TRY(skg_kernels_get(context, options, is_gpu(raster) ? 3 : 4, is_gpu(raster) ? squares : bands,
-                                NULL, &program));
-        SKG_TRY(skg_kernel_create(program, "skg_tiles_count", &raster->kernels[SKG_RASTER_COUNT]));
-        SKG_TRY(skg_kernel_create(program, "skg_tiles_scan", &raster->kernels[SKG_RASTER_SCAN]));
-        SKG_TRY(skg_kernel_create(program, "skg_tiles_fill", &raster->kernels[SKG_RASTER_FILL]));
-        SKG_TRY(skg_kernel_create(program, is_gpu(raster) ? "skg_raster_squares" : "skg_raster_bands",
+        SKG_TRY(skg_kernels_get(context, options, 3, squares(raster) ? square_files : bands, NULL, &program));
+        if (squares(raster)) {
+            SKG_TRY(skg_kernel_create(program, "skg_tiles_count", &raster->kernels[SKG_RASTER_COUNT]));
+            SKG_TRY(skg_kernel_create(program, "skg_tiles_scan", &raster->kernels[SKG_RASTER_SCAN]));
+        }
+        SKG_TRY(skg_kernel_create(program, squares(raster) ? "skg_tiles_fill" : "skg_bands_sort",
+                                  &raster->kernels[SKG_RASTER_FILL]));
+        SKG_TRY(skg_kernel_create(program, squares(raster) ? "skg_raster_squares" : "skg_raster_bands",
                                   &raster->kernels[SKG_RASTER_DRAW]));
     }
     if (!options->source_plane || options->parallel) return SKG_OK;
@@ -240,21 +250,30 @@ static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_sta
     return run(raster, SKG_RASTER_FILL, "tiles: fill", 8, memory, triangle_groups(raster), GROUP, log);
 }
 
-static skg_status run_tiles(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+static skg_status run_squares(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const skg_frame_args *frame = &raster->frame;
-    const cl_mem memory[] = {g->corners.memory,      g->projected.memory,       g->part_table.memory,
-                             g->write_table.memory,  g->triangle_blocks.memory, raster->starts.memory,
-                             raster->list.memory,    raster->for_all.memory,    raster->sums.memory,
-                             raster->scratch.memory, raster->used.memory};
-    SKG_TRY(run_binning(raster, g, log));
-    if (!is_gpu(raster)) {
-        SKG_TRY(fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
-        return run(raster, SKG_RASTER_DRAW, "raster", 11, memory, (size_t)raster->workers, 1, log);
-    }
+    const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
+                             g->write_table.memory, g->triangle_blocks.memory, raster->starts.memory,
+                             raster->list.memory,   raster->for_all.memory,    raster->sums.memory};
     const size_t local = (size_t)(frame->tile_columns * frame->tile_rows * frame->planes * sum_bytes(raster));
+    SKG_TRY(run_binning(raster, g, log));
     SKG_TRY(skg_kernel_set(raster->kernels[SKG_RASTER_DRAW], 10, local, NULL));
     return run(raster, SKG_RASTER_DRAW, "raster", 9, memory,
                (size_t)(frame->tiles_across * frame->tiles_down), GROUP, log);
+}
+
+static skg_status run_bands(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const cl_mem sort[] = {g->corners.memory,         g->projected.memory,   g->part_table.memory,
+                           g->triangle_blocks.memory, raster->counts.memory, raster->starts.memory,
+                           raster->list.memory,       raster->for_all.memory};
+    const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
+                             g->write_table.memory, g->triangle_blocks.memory, raster->counts.memory,
+                             raster->starts.memory, raster->list.memory,       raster->for_all.memory,
+                             raster->sums.memory,   raster->scratch.memory,    raster->used.memory};
+    SKG_TRY(fill(raster, &raster->counts, 0, 0, 3 * (int64_t)sizeof(cl_int)));
+    SKG_TRY(fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
+    SKG_TRY(run(raster, SKG_RASTER_FILL, "tiles", 8, sort, (size_t)raster->workers, 1, log));
+    return run(raster, SKG_RASTER_DRAW, "raster", 12, memory, (size_t)raster->workers, 1, log);
 }
 
 static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
@@ -282,8 +301,10 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
         SKG_TRY(run_copies(raster, geometry, log));
     else if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
         SKG_TRY(run_atomics(raster, geometry, log));
+    else if (squares(raster))
+        SKG_TRY(run_squares(raster, geometry, log));
     else
-        SKG_TRY(run_tiles(raster, geometry, log));
+        SKG_TRY(run_bands(raster, geometry, log));
     return raster->kernels[SKG_RASTER_SOURCE] ? run_source(raster, geometry, log) : SKG_OK;
 }
 

@@ -5,10 +5,14 @@
 
 #include "plan/project.h"
 
+/* What a tile is; AUTO: squares on a GPU, bands elsewhere. */
+enum { SKG_TILE_AUTO = 0, SKG_TILE_BANDS = 1, SKG_TILE_SQUARES = 2 };
+
 typedef struct {
     skg_kernel_options kernels;
-    int32_t strategy; /* SKG_STRATEGY_COPIES, _TILES or _ATOMICS */
-    int32_t tile;     /* tiles: rows of a band (CPU) or side of a square (GPU) in pixels; 0: chosen here */
+    int32_t strategy;      /* SKG_STRATEGY_COPIES, _TILES or _ATOMICS */
+    int32_t shape;         /* tiles: SKG_TILE_... */
+    int32_t tile;          /* tiles: rows of a band or side of a square, in pixels; 0: chosen here */
     int64_t columns, rows; /* of the detector */
     int64_t planes;        /* accumulator planes, >= 1 */
     int64_t triangles;     /* most triangles of a frame */

@@ -22,7 +22,7 @@ struct skg_raster {
     skg_buffer sums;
     skg_buffer used;                          /* copies that count; then the counter of claims */
     skg_buffer scratch;                       /* bands: an image for each worker */
-    skg_buffer counts, starts, list, for_all; /* tiles */
+    skg_buffer counts, starts, list, for_all; /* tiles; of bands: counters, pieces, pool and list for all */
     skg_buffer queue;                         /* atomics: strips of large triangles */
     skg_buffer rows_bad;
     cl_kernel kernels[SKG_RASTER_KERNELS]; /* NULL: not used by the strategy */
