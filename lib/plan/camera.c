@@ -111,7 +111,7 @@ static void parallel_axis(double h, const double linear[3], int64_t count, doubl
  * be positive, and where a part reaches the source, of the part's own size: terms are bounded by its extent,
  * and 1 - z = reference / t keeps its digits. */
 static double reference_of(double depth, double reach) {
-    if (reach > 0) {
+    if (reach > 0 && isfinite(reach)) {
         const double half = 0.5 * (depth + reach);
         if (half > depth) return half;
         return depth;

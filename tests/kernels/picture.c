@@ -143,31 +143,31 @@ void picture_free(picture *p) {
     free(p->sums);
 }
 
-static skg_status make_geometry(skg_context *context, int32_t precision, int bodies, const body *body,
+static skg_status make_geometry(skg_context *context, int32_t precision, int bodies, const body *of,
                                 skg_geometry *geometry) {
     skg_geometry_mesh *meshes = calloc((size_t)bodies, sizeof *meshes);
-    int64_t *of = calloc((size_t)bodies, sizeof *of);
+    int64_t *mesh_of = calloc((size_t)bodies, sizeof *mesh_of);
     int64_t count = 0;
     for (int b = 0; b < bodies; b++) {
         int same = 0;
-        while (same < b && body[same].shape != body[b].shape) same++;
-        of[b] = same < b ? of[same] : count;
+        while (same < b && of[same].shape != of[b].shape) same++;
+        mesh_of[b] = same < b ? mesh_of[same] : count;
         if (same == b)
-            meshes[count++] = (skg_geometry_mesh){body[b].shape->vertices, body[b].shape->triangles,
-                                                  body[b].shape->corners};
+            meshes[count++] =
+                (skg_geometry_mesh){of[b].shape->vertices, of[b].shape->triangles, of[b].shape->corners};
     }
-    skg_status status = skg_geometry_create(context, precision, count, meshes, bodies, of, geometry);
+    skg_status status = skg_geometry_create(context, precision, count, meshes, bodies, mesh_of, geometry);
     for (int b = 0; b < bodies && status == SKG_OK; b++) {
-        const shape *s = body[b].shape;
+        const shape *s = of[b].shape;
         float *offsets = calloc((size_t)s->vertices * 3, sizeof *offsets);
         for (int64_t k = 0; k < s->vertices * 3; k++) offsets[k] = (float)s->positions[k];
         status =
-            skg_geometry_upload(context, geometry, of[b],
+            skg_geometry_upload(context, geometry, mesh_of[b],
                                 precision == SKG_DOUBLE ? (const void *)s->positions : (const void *)offsets);
         free(offsets);
     }
     free(meshes);
-    free(of);
+    free(mesh_of);
     return status;
 }
 
@@ -181,13 +181,13 @@ static double radius_of(const shape *s) {
 }
 
 static skg_status project(skg_context *context, skg_geometry *geometry, const skg_raster_options *options,
-                          const skg_camera *camera, int bodies, const body *body, double scale) {
+                          const skg_camera *camera, int bodies, const body *of, double scale) {
     static const double origin[3] = {0, 0, 0};
     skg_geometry_part *parts = calloc((size_t)bodies, sizeof *parts);
     skg_plane_weight *weights = calloc((size_t)bodies, sizeof *weights);
     for (int b = 0; b < bodies; b++) {
-        weights[b] = (skg_plane_weight){body[b].plane, body[b].weight, body[b].bias};
-        parts[b] = (skg_geometry_part){body[b].pose, origin, 0, radius_of(body[b].shape), 1, &weights[b]};
+        weights[b] = (skg_plane_weight){of[b].plane, of[b].weight, of[b].bias};
+        parts[b] = (skg_geometry_part){of[b].pose, origin, 0, radius_of(of[b].shape), 1, &weights[b]};
     }
     skg_status status =
         skg_geometry_project(context, geometry, &options->kernels, camera, parts, scale, NULL);
@@ -249,8 +249,21 @@ cleanup:
     return status;
 }
 
+static skg_status read_bad_pixels(skg_context *context, skg_raster *raster, picture *result) {
+    skg_buffer buffer = {0};
+    skg_status status =
+        skg_buffer_reserve(context, &buffer, sizeof result->bad_pixels, CL_MEM_READ_WRITE, "verdict");
+    if (status == SKG_OK) status = skg_raster_bad_pixels(raster, 0, buffer.memory, NULL);
+    if (status == SKG_OK)
+        SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, buffer.memory, CL_TRUE, 0,
+                                           sizeof result->bad_pixels, result->bad_pixels, 0, NULL, NULL));
+cleanup:
+    skg_buffer_release(&buffer);
+    return status;
+}
+
 skg_status picture_take(skg_context *context, const skg_raster_options *options, const skg_view *view,
-                        int bodies, const body *body, double scale, picture *result) {
+                        int bodies, const body *of, double scale, picture *result) {
     skg_geometry geometry = {0};
     skg_raster *raster = NULL;
     skg_camera camera;
@@ -262,13 +275,14 @@ skg_status picture_take(skg_context *context, const skg_raster_options *options,
     result->sums = calloc(count, sizeof *result->sums);
     with_size.columns = view->columns;
     with_size.rows = view->rows;
-    SKG_TRY_CLEANUP(make_geometry(context, options->kernels.precision, bodies, body, &geometry));
+    SKG_TRY_CLEANUP(make_geometry(context, options->kernels.precision, bodies, of, &geometry));
     with_size.triangles = geometry.triangles;
     SKG_TRY_CLEANUP(skg_camera_make(view, NULL, 0, 0, &camera));
     SKG_TRY_CLEANUP(skg_raster_create(context, &with_size, &raster));
-    SKG_TRY_CLEANUP(project(context, &geometry, &with_size, &camera, bodies, body, scale));
+    SKG_TRY_CLEANUP(project(context, &geometry, &with_size, &camera, bodies, of, scale));
     SKG_TRY_CLEANUP(skg_raster_run(raster, &geometry, NULL));
     SKG_TRY_CLEANUP(read_lengths(context, raster, &camera, scale, result));
+    SKG_TRY_CLEANUP(read_bad_pixels(context, raster, result));
     SKG_TRY_CLEANUP(read_sums(context, raster, options->kernels.bits, result));
     SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, geometry.bad.memory, CL_TRUE, 0,
                                        sizeof result->bad, &result->bad, 0, NULL, NULL));

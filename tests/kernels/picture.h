@@ -36,19 +36,20 @@ body body_make(const shape *s, int plane); /* identity pose, weight 1 */
 
 typedef struct {
     int64_t columns, rows, planes;
-    double *values; /* [planes][rows][columns] lengths, mm */
-    uint64_t *sums; /* the same, exact sums, sign-extended */
-    uint64_t hash;  /* of the sums */
-    int32_t bad;    /* lowest vertex that is not finite, or INT32_MAX */
+    double *values;                        /* [planes][rows][columns] lengths, mm */
+    uint64_t *sums;                        /* the same, exact sums, sign-extended */
+    uint64_t hash;                         /* of the sums */
+    int32_t bad;                           /* lowest vertex that is not finite, or INT32_MAX */
+    int32_t bad_pixels[1 + SKG_FIRST_BAD]; /* of plane 0, taken as a count plane */
 } picture;
 void picture_free(picture *p);
 
 /* One frame. scale: of the accumulators. */
 skg_status picture_take(skg_context *context, const skg_raster_options *options, const skg_view *view,
-                        int bodies, const body *body, double scale, picture *result);
+                        int bodies, const body *of, double scale, picture *result);
 
 /* Signed lengths in long double, each pixel against each triangle; [rows][columns], to be freed. Rays that
  * pass within 1e-9 of an edge may go either way there. */
-double *referee(const skg_view *view, int bodies, const body *body);
+double *referee(const skg_view *view, int bodies, const body *of);
 
 #endif
