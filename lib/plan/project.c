@@ -3,7 +3,11 @@
 #include <skiagraph/plan.h>
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
+
+/* Vertices that a work-item projects on a CPU. */
+enum { RUN = 256 };
 
 static int is_double(const skg_geometry *geometry) {
     return geometry->precision == SKG_DOUBLE;
@@ -270,10 +274,12 @@ static skg_status get_kernel(skg_context *context, skg_geometry *geometry,
                              const skg_kernel_options *options) {
     static const char *const files[] = {"project.cl"};
     cl_program program = NULL;
+    char run[32] = "";
+    if (!context->device->info.is_gpu) snprintf(run, sizeof run, "-D SKG_RUN=%d", RUN);
     if (geometry->kernel && memcmp(&geometry->kernel_options, options, sizeof *options) == 0) return SKG_OK;
     if (geometry->kernel) clReleaseKernel(geometry->kernel);
     geometry->kernel = NULL;
-    SKG_TRY(skg_kernels_get(context, options, 1, files, NULL, &program));
+    SKG_TRY(skg_kernels_get(context, options, 1, files, run, &program));
     SKG_TRY(skg_kernel_create(program, "skg_project", &geometry->kernel));
     geometry->kernel_options = *options;
     return SKG_OK;
@@ -287,7 +293,9 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
     const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
     const cl_mem memory[] = {geometry->part_table.memory, geometry->vertex_blocks.memory,
                              geometry->offsets.memory, geometry->projected.memory, geometry->bad.memory};
-    const size_t local = 64, global = ((size_t)geometry->vertices + local - 1) / local * local;
+    const int on_gpu = context->device->info.is_gpu;
+    const size_t local = on_gpu ? 64 : 1, run = on_gpu ? 1 : RUN;
+    const size_t global = ((size_t)geometry->vertices + local * run - 1) / (local * run) * local;
     SKG_TRY(skg_kernel_set(geometry->kernel, 0, sizeof frame, &frame));
     SKG_TRY(skg_kernel_set_memory(geometry->kernel, 1, 5, memory));
     return skg_kernel_run(context, geometry->kernel, "project", 1, &global, &local, log);
