@@ -1,13 +1,13 @@
 /* Strategy `tiles` on a CPU: tiles are bands of rows. Each work-group (one work-item, wide vectors) claims bands,
  * accumulates them in a small image of its own that stays in its cache, and writes them out. */
 
-static void skg_draw_list(const skg_target *target, skg_batches *batches, __global const int *blocks,
+static void skg_draw_list(const skg_target *target, skg_batch *batch, __global const int *blocks,
                           __global const int *list, int count, skg_range *range) {
     for (int k = 0; k < count; k++) {
         const int triangle = list[k];
         if (triangle >= range->end || triangle < range->first)
             *range = skg_range_of(target->parts, skg_part_of_triangle(target->parts, blocks, triangle));
-        skg_submit(target, batches, range, triangle);
+        skg_submit(target, batch, range, triangle);
     }
 }
 
@@ -28,8 +28,8 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
     target.projected = projected;
     target.parts = parts;
     target.writes = writes;
-    skg_batches batches;
-    skg_batches_clear(&batches);
+    skg_batch batch;
+    skg_begin(&batch);
     skg_range range = skg_range_of(parts, 0);
     for (;;) {
         const int band = atomic_inc(&used[frame.copies]);
@@ -39,10 +39,10 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
         skg_zero(target.image, frame.planes * target.plane);
         for (int chunk = 0; chunk * SKG_CHUNK < frame.triangles; chunk++) {
             const int2 piece = pieces[chunk * frame.tiles_down + band];
-            skg_draw_list(&target, &batches, blocks, pool + piece.x, piece.y, &range);
+            skg_draw_list(&target, &batch, blocks, pool + piece.x, piece.y, &range);
         }
-        skg_draw_list(&target, &batches, blocks, for_all, counters[2], &range);
-        skg_flush(&target, &batches);
+        skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range);
+        skg_flush(&target, &batch);
         const int size = (target.last_row - target.first_row) * frame.stride;
         for (int p = 0; p < frame.planes; p++) {
             __global skg_sum *out =

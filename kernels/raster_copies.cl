@@ -18,8 +18,8 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
     target.projected = projected;
     target.parts = parts;
     target.writes = writes;
-    skg_batches batches;
-    skg_batches_clear(&batches);
+    skg_batch batch;
+    skg_begin(&batch);
     for (;;) {
         int triangle = atomic_add(&used[frame.copies], frame.claim);
         if (triangle >= frame.triangles) break;
@@ -33,8 +33,8 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
             const skg_range range = skg_range_of(parts, part++);
             const int last = min(end, range.end);
             if (range.writes == 0) triangle = max(triangle, last);
-            for (; triangle < last; triangle++) skg_submit(&target, &batches, &range, triangle);
+            for (; triangle < last; triangle++) skg_submit(&target, &batch, &range, triangle);
         }
     }
-    skg_flush(&target, &batches);
+    skg_flush(&target, &batch);
 }
