@@ -20,7 +20,8 @@ skg_bands_sort(skg_frame_args frame, __global const int *corners, __global const
         for (int k = 0; k < bands; k++) count[k] = 0;
         int part = skg_part_of_triangle(parts, blocks, triangle);
         while (triangle < end) {
-            const skg_range range = skg_range_of(parts, part++);
+            skg_range range;
+            skg_range_of(parts, part++, &range);
             const int4 window = skg_window(&range, 0, 0, frame.columns, frame.rows);
             for (const int last = min(end, range.end); triangle < last; triangle++) {
                 skg_real4 a, b, c;

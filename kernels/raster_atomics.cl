@@ -15,7 +15,8 @@ __kernel void skg_raster_atomics(skg_frame_args frame, __global const int *corne
                                  __global skg_sum *sums, __global int *queue) {
     const int triangle = (int)get_global_id(0);
     if (triangle >= frame.triangles) return;
-    const skg_range range = skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle));
+    skg_range range;
+    skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
@@ -29,7 +30,8 @@ __kernel void skg_raster_atomics(skg_frame_args frame, __global const int *corne
         }
         box.j0 += kept * rows;
     }
-    const skg_face f = skg_face_of(&range, a, b, c);
+    skg_face f;
+    skg_face_of(&range, a, b, c, &f);
     skg_draw_global(sums, frame.stride, frame.plane, range.pixel_j * frame.stride + range.pixel_i, writes, &range, &f,
                     &box);
 }
@@ -41,7 +43,8 @@ skg_raster_queue(skg_frame_args frame, __global const int *corners, __global con
     const int entries = min(queue[0], frame.queue);
     for (int e = (int)get_group_id(0); e < entries; e += (int)get_num_groups(0)) {
         const int triangle = queue[2 * e + 2], strip = queue[2 * e + 3];
-        const skg_range range = skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle));
+        skg_range range;
+        skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
         skg_real4 a, b, c;
         skg_box box;
         skg_corners(corners, projected, &range, triangle, &a, &b, &c);
@@ -49,11 +52,13 @@ skg_raster_queue(skg_frame_args frame, __global const int *corners, __global con
         const int rows = skg_strip_rows(&box), columns = box.i1 - box.i0;
         box.j0 += strip * rows;
         box.j1 = min(box.j1, box.j0 + rows);
-        const skg_face f = skg_face_of(&range, a, b, c);
+        skg_face f;
+        skg_face_of(&range, a, b, c, &f);
         const int pixels = columns * (box.j1 - box.j0);
         for (int p = (int)get_local_id(0); p < pixels; p += 64) {
             const int row = box.j0 + p / columns, column = box.i0 + p % columns;
-            const skg_line line = skg_row(&f, (skg_real)row);
+            skg_line line;
+            skg_row(&f, (skg_real)row, &line);
             if (skg_hit(&line, (skg_real)column))
                 skg_deposit_global(sums + ((range.pixel_j + row) * frame.stride + range.pixel_i + column),
                                    frame.plane, writes, &range, skg_depth(&f, &line, (skg_real)column),

@@ -6,7 +6,7 @@ static void skg_draw_list(const skg_target *target, skg_batch *batch, __global c
     for (int k = 0; k < count; k++) {
         const int triangle = list[k];
         if (triangle >= range->end || triangle < range->first)
-            *range = skg_range_of(target->parts, skg_part_of_triangle(target->parts, blocks, triangle));
+            skg_range_of(target->parts, skg_part_of_triangle(target->parts, blocks, triangle), range);
         skg_submit(target, batch, range, triangle);
     }
 }
@@ -30,7 +30,8 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
     target.writes = writes;
     skg_batch batch;
     skg_begin(&batch);
-    skg_range range = skg_range_of(parts, 0);
+    skg_range range;
+    skg_range_of(parts, 0, &range);
     for (;;) {
         const int band = atomic_inc(&used[frame.copies]);
         if (band >= frame.tiles_down) break;

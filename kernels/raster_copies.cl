@@ -30,7 +30,8 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
         }
         int part = skg_part_of_triangle(parts, blocks, triangle);
         while (triangle < end) {
-            const skg_range range = skg_range_of(parts, part++);
+            skg_range range;
+            skg_range_of(parts, part++, &range);
             const int last = min(end, range.end);
             if (range.writes == 0) triangle = max(triangle, last);
             for (; triangle < last; triangle++) skg_submit(&target, &batch, &range, triangle);

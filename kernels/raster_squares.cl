@@ -17,12 +17,14 @@ skg_raster_squares(skg_frame_args frame, __global const int *corners, __global c
     const int all = starts[frame.tiles_across * frame.tiles_down + 1];
     for (int k = item; k < own + all; k += 64) {
         const int triangle = k < own ? list[starts[tile] + k] : for_all[k - own];
-        const skg_range range = skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle));
+        skg_range range;
+        skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
         skg_real4 a, b, c;
         skg_box box;
         skg_corners(corners, projected, &range, triangle, &a, &b, &c);
         if (skg_bounds(a, b, c, skg_window(&range, left, top, right, bottom), &box)) {
-            const skg_face f = skg_face_of(&range, a, b, c);
+            skg_face f;
+            skg_face_of(&range, a, b, c, &f);
             skg_draw_local(local_sums, frame.tile_columns, plane,
                            (range.pixel_j - top) * frame.tile_columns + range.pixel_i - left, writes, &range, &f,
                            &box);

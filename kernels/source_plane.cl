@@ -11,8 +11,8 @@ typedef struct {
     int front;
 } skg_corner;
 
-static skg_corner skg_corner_of(__global const skg_part_entry *p, __global const skg_real *vertices, int corner,
-                                skg_real4 projected) {
+static void skg_corner_of(__global const skg_part_entry *p, __global const skg_real *vertices, int corner,
+                                skg_real4 projected, skg_corner *out) {
     __global const skg_real *v = vertices + 3 * (p->mesh_vertex + corner);
     skg_corner k;
     k.x = projected.x;
@@ -22,7 +22,7 @@ static skg_corner skg_corner_of(__global const skg_part_entry *p, __global const
     k.r = p->offset_r + fma(p->row2[0], v[0], fma(p->row2[1], v[1], p->row2[2] * v[2]));
     k.hx = fma(p->anchor_x, k.t, p->offset_x + fma(p->row0[0], v[0], fma(p->row0[1], v[1], p->row0[2] * v[2])));
     k.hy = fma(p->anchor_y, k.t, p->offset_y + fma(p->row1[0], v[0], fma(p->row1[1], v[1], p->row1[2] * v[2])));
-    return k;
+    *out = k;
 }
 
 static int skg_below(const skg_corner *k, skg_real j) {
@@ -36,7 +36,7 @@ typedef struct {
     int front;
 } skg_cut;
 
-static skg_cut skg_cut_of(const skg_corner *low, const skg_corner *high, skg_real j) {
+static void skg_cut_of(const skg_corner *low, const skg_corner *high, skg_real j, skg_cut *out) {
     skg_cut cut;
     const skg_real s = fma(-j, low->t, low->hy), e = fma(-j, high->t, high->hy);
     skg_real part = s / (s - e);
@@ -47,7 +47,7 @@ static skg_cut skg_cut_of(const skg_corner *low, const skg_corner *high, skg_rea
     cut.pr = fma(part, high->r - low->r, low->r);
     cut.front = low->front && high->front;
     cut.x = fma(j - low->y, (high->x - low->x) / (high->y - low->y), low->x);
-    return cut;
+    *out = cut;
 }
 
 static skg_real skg_beside(const skg_cut *cut, skg_real i) {
@@ -92,7 +92,8 @@ __kernel void skg_source_plane(skg_frame_args frame, __global const int *corners
                                __global const skg_real *vertices, __global skg_sum *sums) {
     const int triangle = (int)get_global_id(0), first = SKG_SOURCE_ROWS * (int)get_global_id(1);
     if (triangle >= frame.triangles) return;
-    const skg_range range = skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle));
+    skg_range range;
+    skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
     __global const skg_part_entry *p = &parts[range.number];
     __global const int *corner = corners + 3 * (triangle + range.corner_shift);
     skg_real4 a, b, c;
@@ -100,9 +101,9 @@ __kernel void skg_source_plane(skg_frame_args frame, __global const int *corners
     if (range.writes == 0 || (a.w > (skg_real)SKG_NEAR && b.w > (skg_real)SKG_NEAR && c.w > (skg_real)SKG_NEAR))
         return;
     skg_corner k[3];
-    k[0] = skg_corner_of(p, vertices, corner[0], a);
-    k[1] = skg_corner_of(p, vertices, corner[1], b);
-    k[2] = skg_corner_of(p, vertices, corner[2], c);
+    skg_corner_of(p, vertices, corner[0], a, &k[0]);
+    skg_corner_of(p, vertices, corner[1], b, &k[1]);
+    skg_corner_of(p, vertices, corner[2], c, &k[2]);
     const int end = min(first + SKG_SOURCE_ROWS, frame.rows);
     for (int row = first; row < end; row++) {
         const skg_real j = (skg_real)(row - range.pixel_j);
@@ -111,8 +112,8 @@ __kernel void skg_source_plane(skg_frame_args frame, __global const int *corners
         skg_cut up, down; /* edges that go from below to above, and back, in the triangle's own direction */
         for (int e = 0; e < 3; e++) {
             const int next = e == 2 ? 0 : e + 1;
-            if (below[e] && !below[next]) up = skg_cut_of(&k[e], &k[next], j);
-            if (!below[e] && below[next]) down = skg_cut_of(&k[next], &k[e], j);
+            if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, &up);
+            if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, &down);
         }
         const int2 columns = skg_columns_between(&up, &down, -range.pixel_i, frame.columns - range.pixel_i);
         __global skg_sum *line = sums + (row * frame.stride + range.pixel_i);

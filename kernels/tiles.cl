@@ -5,7 +5,8 @@
 static int skg_tiles_of(const skg_frame_args *frame, __global const int *corners,
                         __global const skg_real4 *projected, __global const skg_part_entry *parts,
                         __global const int *blocks, int triangle, int4 *tiles) {
-    const skg_range range = skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle));
+    skg_range range;
+    skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
