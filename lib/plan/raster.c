@@ -113,23 +113,24 @@ static skg_status allocate(skg_raster *raster) {
 }
 
 static skg_status compile(skg_raster *raster) {
-    static const char *const copies[] = {"batch.clh", "raster_copies.cl"};
+    static const char *const copies[] = {"batch.clh", "draw.clh", "raster_copies.cl"};
     static const char *const atomics[] = {"pixel.clh", "raster_atomics.cl"};
-    static const char *const bands[] = {"bands.cl", "batch.clh", "raster_bands.cl"};
+    static const char *const bands[] = {"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"};
     static const char *const square_files[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
     static const char *const source[] = {"pixel.clh", "source_plane.cl"};
     const skg_kernel_options *options = &raster->options.kernels;
     skg_context *context = raster->context;
     cl_program program = NULL;
     if (raster->options.strategy == SKG_STRATEGY_COPIES) {
-        SKG_TRY(skg_kernels_get(context, options, 2, copies, NULL, &program));
+        SKG_TRY(skg_kernels_get(context, options, 3, copies, NULL, &program));
         SKG_TRY(skg_kernel_create(program, "skg_raster_copies", &raster->kernels[SKG_RASTER_DRAW]));
     } else if (raster->options.strategy == SKG_STRATEGY_ATOMICS) {
         SKG_TRY(skg_kernels_get(context, options, 2, atomics, NULL, &program));
         SKG_TRY(skg_kernel_create(program, "skg_raster_atomics", &raster->kernels[SKG_RASTER_DRAW]));
         SKG_TRY(skg_kernel_create(program, "skg_raster_queue", &raster->kernels[SKG_RASTER_QUEUE]));
     } else {
-        SKG_TRY(skg_kernels_get(context, options, 3, squares(raster) ? square_files : bands, NULL, &program));
+        SKG_TRY(skg_kernels_get(context, options, squares(raster) ? 3 : 4,
+                                squares(raster) ? square_files : bands, NULL, &program));
         if (squares(raster)) {
             SKG_TRY(skg_kernel_create(program, "skg_tiles_count", &raster->kernels[SKG_RASTER_COUNT]));
             SKG_TRY(skg_kernel_create(program, "skg_tiles_scan", &raster->kernels[SKG_RASTER_SCAN]));

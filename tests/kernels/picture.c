@@ -322,46 +322,54 @@ static real crossing(const real *source, const real *direction, real corner[3][3
 }
 
 static void place(const body *b, int64_t vertex, real *world) {
-    const double *v = b->shape->positions + 3 * vertex;
-    for (int r = 0; r < 3; r++)
-        world[r] = (real)b->pose[4 * r] * v[0] + (real)b->pose[4 * r + 1] * v[1] +
-                   (real)b->pose[4 * r + 2] * v[2] + b->pose[4 * r + 3];
+    for (int r = 0; r < 3; r++) {
+        world[r] = (real)b->pose[4 * r + 3];
+        for (int c = 0; c < 3; c++)
+            world[r] += (real)b->pose[4 * r + c] * (real)b->shape->positions[3 * vertex + c];
+    }
 }
 
-double *referee(const skg_view *view, int bodies, const body *bodies_of) {
+/* A pixel's ray: where the path parameter is 0 and where it goes to 1; the least parameter that counts. */
+typedef struct {
+    real source[3], direction[3], length, least;
+} ray;
+
+static ray ray_of(const skg_view *view, int64_t p) {
+    const real column = (real)(p % view->columns) - (real)(view->columns - 1) / 2;
+    const real row = (real)(p / view->columns) - (real)(view->rows - 1) / 2;
+    ray r = {.length = 0};
+    real behind = 0;
+    for (int k = 0; k < 3; k++) {
+        const real source = (real)view->source[k], centre = (real)view->centre[k];
+        const real pixel = centre + column * (real)view->column_step[k] + row * (real)view->row_step[k];
+        r.direction[k] = view->projection == SKG_POINT      ? pixel - source
+                         : view->projection == SKG_PARALLEL ? centre - source
+                                                            : source;
+        r.source[k] = pixel - r.direction[k];
+        r.length += r.direction[k] * r.direction[k];
+        behind += (r.source[k] - source) * r.direction[k];
+    }
+    r.least = view->projection == SKG_PARALLEL_FROM_INFINITY ? -1e9L
+              : view->projection == SKG_PARALLEL             ? -behind / r.length
+                                                             : 0;
+    r.length = sqrtl(r.length);
+    return r;
+}
+
+double *referee(const skg_view *view, int bodies, const body *of) {
     double *image = calloc((size_t)(view->rows * view->columns), sizeof *image);
     for (int n = 0; n < bodies; n++) {
-        const body *b = &bodies_of[n];
+        const body *b = &of[n];
         const double *m = b->pose;
-        const int mirrored = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-                                 m[2] * (m[4] * m[9] - m[5] * m[8]) <
-                             0;
+        const double volume = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+                              m[2] * (m[4] * m[9] - m[5] * m[8]);
+        const real weight = (real)(volume < 0 ? -b->weight : b->weight);
         for (int64_t t = 0; t < b->shape->triangles; t++) {
             real corner[3][3];
             for (int k = 0; k < 3; k++) place(b, b->shape->corners[3 * t + k], corner[k]);
             for (int64_t p = 0; p < view->rows * view->columns; p++) {
-                real source[3], direction[3], length = 0, least = 0;
-                for (int k = 0; k < 3; k++) {
-                    const real pixel =
-                        view->centre[k] +
-                        ((real)(p % view->columns) - (real)0.5 * (real)(view->columns - 1)) *
-                            view->column_step[k] +
-                        ((real)(p / view->columns) - (real)0.5 * (real)(view->rows - 1)) * view->row_step[k];
-                    direction[k] = view->projection == SKG_POINT ? pixel - view->source[k]
-                                   : view->projection == SKG_PARALLEL
-                                       ? (real)view->centre[k] - view->source[k]
-                                       : view->source[k];
-                    source[k] = pixel - direction[k];
-                    length += direction[k] * direction[k];
-                }
-                if (view->projection == SKG_PARALLEL_FROM_INFINITY) least = -1e9L;
-                if (view->projection == SKG_PARALLEL) {
-                    for (int k = 0; k < 3; k++) least -= (source[k] - view->source[k]) * direction[k];
-                    least /= length;
-                }
-                const real sign = mirrored ? -1 : 1;
-                image[p] +=
-                    (double)(sign * b->weight * sqrtl(length) * crossing(source, direction, corner, least));
+                const ray r = ray_of(view, p);
+                image[p] += (double)(weight * r.length * crossing(r.source, r.direction, corner, r.least));
             }
         }
     }
