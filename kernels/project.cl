@@ -1,0 +1,51 @@
+/* Projects every vertex of every part: x, y in pixels relative to the part's pixel, z = r / t, t. A work-item takes
+ * SKG_RUN vertices: one on a GPU; on a CPU a run, whose loop over the vertices of a part compilers turn into vectors. */
+
+/* Rows of this little height are none: then no slope of an edge overflows. */
+#define SKG_FLAT 0x1p-40f
+
+/* One vertex; *finite is cleared where it is not. */
+static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_part_entry *p, int *finite) {
+    const skg_real r = p->offset_r + fma(p->row2[0], x, fma(p->row2[1], y, p->row2[2] * z));
+    const skg_real across = p->offset_x + fma(p->row0[0], x, fma(p->row0[1], y, p->row0[2] * z));
+    const skg_real down = p->offset_y + fma(p->row1[0], x, fma(p->row1[1], y, p->row1[2] * z));
+    const skg_real t = p->reference + r;
+#if SKG_PARALLEL
+    const skg_real4 seen = (skg_real4)(p->anchor_x + across, p->anchor_y + down, r, t);
+#else
+    const skg_real4 seen = (skg_real4)(p->anchor_x + across / t, p->anchor_y + down / t, r / t, t);
+#endif
+    /* 0 * x is 0 for finite x only. A vertex that is not gets out of the way. */
+    const skg_real zero = 0 * (across + down + r) + 0 * (x + y + z);
+    *finite = zero == 0;
+    const skg_real high = fabs(seen.y) < (skg_real)SKG_FLAT ? 0 : seen.y;
+    return *finite ? (skg_real4)(seen.x, high, seen.z, seen.w) : (skg_real4)(0, 0, 0, 1);
+}
+
+__kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *parts, __global const int *blocks,
+                          __global const skg_real *vertices, __global skg_real4 *projected,
+                          __global int *bad_vertex) {
+    int number = SKG_RUN * (int)get_global_id(0);
+    const int end = min(number + SKG_RUN, frame.vertices);
+    if (number >= end) return;
+    int part = skg_part_of_vertex(parts, blocks, number);
+    while (number < end) {
+        const skg_part_entry p = parts[part++];
+        const int last = min(end, p.first_vertex + p.vertices);
+        __global const skg_real *restrict v = vertices + 3 * (p.mesh_vertex + number - p.first_vertex);
+        __global skg_real4 *restrict out = projected + number;
+        const int count = last - number;
+        int all = 1;
+        for (int k = 0; k < count; k++) {
+            int finite;
+            out[k] = skg_project_one(v[3 * k], v[3 * k + 1], v[3 * k + 2], &p, &finite);
+            all &= finite;
+        }
+        for (int k = 0; k < count && !all; k++) { /* rare: which one */
+            int finite;
+            skg_project_one(v[3 * k], v[3 * k + 1], v[3 * k + 2], &p, &finite);
+            if (!finite) atomic_min(bad_vertex, number + k);
+        }
+        number = max(number, last);
+    }
+}

@@ -1,0 +1,54 @@
+/* Strategy `tiles` on a CPU: tiles are bands of rows. Each work-group (one work-item, wide vectors) claims bands,
+ * accumulates them in a small image of its own that stays in its cache, and writes them out. */
+
+static void skg_draw_list(const skg_target *target, skg_batch *batch, __global const int *blocks,
+                          __global const int *list, int count, skg_range *range) {
+    for (int k = 0; k < count; k++) {
+        const int triangle = list[k];
+        if (triangle >= range->end || triangle < range->first)
+            skg_range_of(target->parts, skg_part_of_triangle(target->parts, blocks, triangle), range);
+        skg_submit(target, batch, range, triangle);
+    }
+}
+
+/* scratch: an image of tile_rows + SKG_SPARE_ROWS rows for each plane of each work-group. used[copies]: the band that
+ * is claimed next. */
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
+skg_raster_bands(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
+                 __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
+                 __global const int *counters, __global const int2 *pieces, __global const int *pool,
+                 __global const int *for_all, __global skg_sum *sums, __global skg_sum *scratch,
+                 __global int *used) {
+    skg_target target;
+    target.stride = frame.stride;
+    target.plane = frame.stride * (frame.tile_rows + SKG_SPARE_ROWS);
+    target.image = scratch + get_group_id(0) * (size_t)(frame.planes * target.plane);
+    target.columns = frame.columns;
+    target.corners = corners;
+    target.projected = projected;
+    target.parts = parts;
+    target.writes = writes;
+    skg_batch batch;
+    skg_begin(&batch);
+    skg_range range;
+    skg_range_of(parts, 0, &range);
+    for (;;) {
+        const int band = atomic_inc(&used[frame.copies]);
+        if (band >= frame.tiles_down) break;
+        target.first_row = band * frame.tile_rows;
+        target.last_row = min(target.first_row + frame.tile_rows, frame.rows);
+        skg_zero(target.image, frame.planes * target.plane);
+        for (int chunk = 0; chunk * SKG_CHUNK < frame.triangles; chunk++) {
+            const int2 piece = pieces[chunk * frame.tiles_down + band];
+            skg_draw_list(&target, &batch, blocks, pool + piece.x, piece.y, &range);
+        }
+        skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range);
+        skg_flush(&target, &batch);
+        const int size = (target.last_row - target.first_row) * frame.stride;
+        for (int p = 0; p < frame.planes; p++) {
+            __global skg_sum *out =
+                sums + (size_t)p * (size_t)frame.plane + (size_t)target.first_row * (size_t)frame.stride;
+            for (int k = 0; k < size; k++) out[k] = target.image[p * target.plane + k];
+        }
+    }
+}

@@ -1,0 +1,41 @@
+/* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and
+ * claims runs of triangles until none are left. used[copy]: the copy has been zeroed and counts; used[copies]: the
+ * triangle that the next claim begins with. */
+
+__kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
+skg_raster_copies(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
+                  __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
+                  __global skg_sum *copies, __global int *used) {
+    const int copy = (int)get_group_id(0), size = frame.planes * frame.plane;
+    skg_target target;
+    target.image = copies + (size_t)copy * (size_t)size;
+    target.stride = frame.stride;
+    target.plane = frame.plane;
+    target.columns = frame.columns;
+    target.first_row = 0;
+    target.last_row = frame.rows;
+    target.corners = corners;
+    target.projected = projected;
+    target.parts = parts;
+    target.writes = writes;
+    skg_batch batch;
+    skg_begin(&batch);
+    for (;;) {
+        int triangle = atomic_add(&used[frame.copies], frame.claim);
+        if (triangle >= frame.triangles) break;
+        const int end = min(triangle + frame.claim, frame.triangles);
+        if (!used[copy]) {
+            skg_zero(target.image, size);
+            used[copy] = 1;
+        }
+        int part = skg_part_of_triangle(parts, blocks, triangle);
+        while (triangle < end) {
+            skg_range range;
+            skg_range_of(parts, part++, &range);
+            const int last = min(end, range.end);
+            if (range.writes == 0) triangle = max(triangle, last);
+            for (; triangle < last; triangle++) skg_submit(&target, &batch, &range, triangle);
+        }
+    }
+    skg_flush(&target, &batch);
+}

@@ -1,0 +1,129 @@
+/* Triangles that reach the source's plane, or lie behind it: their projection is no triangle. A row j of pixels and
+ * the source span a plane; it parts the corners in two classes and cuts two edges, at points P. A line from the
+ * source through pixel (i, j) passes an edge's point on one side or the other: it hits the triangle where the two
+ * sides differ. Hits on both sides of the source are counted, and depths clamped to the path, so that signed counts
+ * still cancel. A corner in front has the class, and an edge between two such corners the crossing, that triangle.clh
+ * gives it: neighbours that are drawn there fit without a seam. */
+
+/* A corner: projected x, y where in front, and h = (t i, t j, t) relative to the part's own pixel. */
+typedef struct {
+    skg_real x, y, hx, hy, t, r;
+    int front;
+} skg_corner;
+
+static void skg_corner_of(__global const skg_part_entry *p, __global const skg_real *vertices, int corner,
+                                skg_real4 projected, skg_corner *out) {
+    __global const skg_real *v = vertices + 3 * (p->mesh_vertex + corner);
+    skg_corner k;
+    k.x = projected.x;
+    k.y = projected.y;
+    k.t = projected.w;
+    k.front = k.t > (skg_real)SKG_NEAR;
+    k.r = p->offset_r + fma(p->row2[0], v[0], fma(p->row2[1], v[1], p->row2[2] * v[2]));
+    k.hx = fma(p->anchor_x, k.t, p->offset_x + fma(p->row0[0], v[0], fma(p->row0[1], v[1], p->row0[2] * v[2])));
+    k.hy = fma(p->anchor_y, k.t, p->offset_y + fma(p->row1[0], v[0], fma(p->row1[1], v[1], p->row1[2] * v[2])));
+    *out = k;
+}
+
+static int skg_below(const skg_corner *k, skg_real j) {
+    return k->front ? k->y <= j : fma(-j, k->t, k->hy) <= 0;
+}
+
+/* Where the row's plane cuts an edge. */
+typedef struct {
+    skg_real x;          /* column, where both ends are in front */
+    skg_real px, pt, pr; /* the point, as hx, t, r */
+    int front;
+} skg_cut;
+
+static void skg_cut_of(const skg_corner *low, const skg_corner *high, skg_real j, skg_cut *out) {
+    skg_cut cut;
+    const skg_real s = fma(-j, low->t, low->hy), e = fma(-j, high->t, high->hy);
+    skg_real part = s / (s - e);
+    part = part > 0 ? part : 0;
+    part = part < 1 ? part : 1;
+    cut.px = fma(part, high->hx - low->hx, low->hx);
+    cut.pt = fma(part, high->t - low->t, low->t);
+    cut.pr = fma(part, high->r - low->r, low->r);
+    cut.front = low->front && high->front;
+    cut.x = fma(j - low->y, (high->x - low->x) / (high->y - low->y), low->x);
+    *out = cut;
+}
+
+static skg_real skg_beside(const skg_cut *cut, skg_real i) {
+    return fma(i, cut->pt, -cut->px);
+}
+
+static int skg_passed(const skg_cut *cut, skg_real i) {
+    return cut->front ? i >= cut->x : skg_beside(cut, i) >= 0;
+}
+
+/* Columns [x, y) outside of which both cuts are on the same side of every line; the whole row where in doubt. */
+static int2 skg_columns_between(const skg_cut *a, const skg_cut *b, int left, int right) {
+    const skg_real first = (skg_real)left, end = (skg_real)right;
+    if (!(a->pt * b->pt > 0)) return (int2)(left, right);
+    const skg_real xa = a->front ? a->x : a->px / a->pt, xb = b->front ? b->x : b->px / b->pt;
+    skg_real low = xa < xb ? xa : xb, high = xa < xb ? xb : xa;
+    const skg_real margin = 2 + (fabs(low) + fabs(high)) * (skg_real)0x1p-12f;
+    low -= margin;
+    high += margin;
+    low = low > first ? low : first;
+    low = low < end ? low : end;
+    high = high > first ? high : first;
+    high = high < end ? high : end;
+    return (int2)((int)low, (int)high == right ? right : (int)high + 1);
+}
+
+/* r of the hit between the cuts, within the path. */
+static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i, skg_real reference) {
+    const skg_real s = skg_beside(a, i), e = skg_beside(b, i);
+    skg_real part = s / (s - e);
+    part = part > 0 ? part : 0;
+    part = part < 1 ? part : 1;
+    const skg_real r = fma(part, b->pr - a->pr, a->pr);
+    const skg_real end = 1 - reference;
+    return r < -reference ? -reference : r > end ? end : r;
+}
+
+/* One work-item SKG_SOURCE_ROWS rows of one triangle. */
+__kernel void skg_source_plane(skg_frame_args frame, __global const int *corners,
+                               __global const skg_real4 *projected, __global const skg_part_entry *parts,
+                               __global const skg_write *writes, __global const int *blocks,
+                               __global const skg_real *vertices, __global skg_sum *sums) {
+    const int triangle = (int)get_global_id(0), first = SKG_SOURCE_ROWS * (int)get_global_id(1);
+    if (triangle >= frame.triangles) return;
+    skg_range range;
+    skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
+    __global const skg_part_entry *p = &parts[range.number];
+    __global const int *corner = corners + 3 * (triangle + range.corner_shift);
+    skg_real4 a, b, c;
+    skg_corners(corners, projected, &range, triangle, &a, &b, &c);
+    if (range.writes == 0 || (a.w > (skg_real)SKG_NEAR && b.w > (skg_real)SKG_NEAR && c.w > (skg_real)SKG_NEAR))
+        return;
+    skg_corner k[3];
+    skg_corner_of(p, vertices, corner[0], a, &k[0]);
+    skg_corner_of(p, vertices, corner[1], b, &k[1]);
+    skg_corner_of(p, vertices, corner[2], c, &k[2]);
+    const int end = min(first + SKG_SOURCE_ROWS, frame.rows);
+    for (int row = first; row < end; row++) {
+        const skg_real j = (skg_real)(row - range.pixel_j);
+        const int below[3] = {skg_below(&k[0], j), skg_below(&k[1], j), skg_below(&k[2], j)};
+        if (below[0] == below[1] && below[1] == below[2]) continue;
+        skg_cut up, down; /* edges that go from below to above, and back, in the triangle's own direction */
+        for (int e = 0; e < 3; e++) {
+            const int next = e == 2 ? 0 : e + 1;
+            if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, &up);
+            if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, &down);
+        }
+        const int2 columns = skg_columns_between(&up, &down, -range.pixel_i, frame.columns - range.pixel_i);
+        __global skg_sum *line = sums + (row * frame.stride + range.pixel_i);
+        for (int column = columns.x; column < columns.y; column++) {
+            const skg_real i = (skg_real)column;
+            const int passed = skg_passed(&down, i);
+            if (passed == skg_passed(&up, i)) continue;
+            const skg_real r = skg_depth_between(&down, &up, i, p->reference);
+            skg_deposit_global(line + column, frame.plane, writes, &range, r / p->reference,
+                               (passed != 0) == (range.turned == 0) ? 1 : -1);
+        }
+    }
+}

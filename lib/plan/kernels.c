@@ -1,0 +1,62 @@
+#include "plan/kernels.h"
+
+#include <skiagraph/plan.h>
+
+#include <stdio.h>
+
+int32_t skg_kernel_lanes(skg_context *context, int32_t precision) {
+    const int32_t width = context->device->info.float_width;
+    if (precision == SKG_DOUBLE) return width >= 16 ? 8 : 4;
+    return width >= 16 ? 16 : width >= 8 ? 8 : 4;
+}
+
+skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
+                           const char *const *names, const char *more_options, cl_program *program) {
+    static const char *const headers[] = {"config.clh",   "types.clh",    "skg_shared.h",
+                                          "scalar.clh",   "triangle.clh", "wide.clh",
+                                          "triangle.clh", "parts.clh",    "sums.clh"};
+    enum { HEADERS = sizeof headers / sizeof *headers, MOST = 7 };
+    const char *all[HEADERS + MOST];
+    char text[512];
+    if (files > MOST) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", names[0]);
+    for (int32_t i = 0; i < HEADERS; i++) all[i] = headers[i];
+    for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];
+    snprintf(text, sizeof text,
+             "-D SKG_DOUBLE=%d -D SKG_BITS=%d -D SKG_WIDE=%d -D SKG_PARALLEL=%d -D SKG_SOURCE_PLANE=%d "
+             "-D SKG_WRITES=%d %s",
+             options->precision == SKG_DOUBLE, options->bits, skg_kernel_lanes(context, options->precision),
+             options->parallel != 0, options->source_plane != 0, options->listed_writes ? 0 : 1,
+             more_options ? more_options : "");
+    return skg_program_get(context, HEADERS + files, all, text, program);
+}
+
+skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count, const cl_mem *memory) {
+    for (int32_t i = 0; i < count; i++)
+        SKG_TRY(skg_kernel_set(kernel, first + (cl_uint)i, sizeof *memory, &memory[i]));
+    return SKG_OK;
+}
+
+void skg_stage_log_clear(skg_stage_log *log) {
+    for (int32_t i = 0; i < log->count; i++) clReleaseEvent(log->events[i]);
+    log->count = 0;
+}
+
+skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
+                          const size_t *global, const size_t *local, skg_stage_log *log) {
+    const int logged = log && log->count < SKG_MOST_STAGES;
+    cl_event event = NULL;
+    cl_int code = clEnqueueNDRangeKernel(context->device->queue, kernel, dimensions, NULL, global, local, 0,
+                                         NULL, logged ? &event : NULL);
+    if (code != CL_SUCCESS) {
+        skg_cl_fail(code, "clEnqueueNDRangeKernel", __FILE__, __LINE__);
+        return skg_fail(code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES
+                            ? SKG_ERR_DEVICE_MEMORY
+                            : SKG_ERR_DEVICE,
+                        "stage %s: %s", stage, skg_cl_name(code));
+    }
+    if (logged) {
+        log->names[log->count] = stage;
+        log->events[log->count++] = event;
+    }
+    return SKG_OK;
+}

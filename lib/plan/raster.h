@@ -1,0 +1,65 @@
+/* Stage `raster`: exact integer sums of signed path parameters, per plane and pixel, by one of three
+ * strategies that give the same bits. The plan decides, this obeys. Private. */
+#ifndef SKG_RASTER_H
+#define SKG_RASTER_H
+
+#include "plan/project.h"
+
+/* What a tile is; AUTO: squares on a GPU, bands elsewhere. */
+enum { SKG_TILE_AUTO = 0, SKG_TILE_BANDS = 1, SKG_TILE_SQUARES = 2 };
+
+typedef struct {
+    skg_kernel_options kernels;
+    int32_t strategy;      /* SKG_STRATEGY_COPIES, _TILES or _ATOMICS */
+    int32_t shape;         /* tiles: SKG_TILE_... */
+    int32_t tile;          /* tiles: rows of a band or side of a square, in pixels; 0: chosen here */
+    int64_t columns, rows; /* of the detector */
+    int64_t planes;        /* accumulator planes, >= 1 */
+    int64_t triangles;     /* most triangles of a frame */
+} skg_raster_options;
+
+typedef struct skg_raster skg_raster;
+
+/* Compiles and allocates. The options are kept. */
+skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster);
+void skg_raster_release(skg_raster **raster);
+
+/* Enqueues a frame: what skg_geometry_project has projected is added up. Nothing is waited for. */
+skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
+
+/* Where the sums of the last frame are, for kernels that read them with sums.clh: arguments (frame, sums,
+ * used). */
+typedef struct {
+    skg_frame_args frame;
+    cl_mem sums; /* [copies][planes][rows + spare][stride] of bits / 8 bytes */
+    cl_mem used; /* int[copies]: copies that count */
+} skg_raster_sums;
+void skg_raster_get_sums(const skg_raster *raster, skg_raster_sums *sums);
+
+/* Enqueues path lengths of a plane: sum / scale * |ray|, mm, into output (float, or double where
+ * output_double), from element `offset` on, rows row_stride elements apart. */
+skg_status skg_raster_lengths(skg_raster *raster, const skg_camera *camera, int64_t plane, double scale,
+                              int32_t output_double, cl_mem output, int64_t offset, int64_t row_stride,
+                              skg_stage_log *log);
+
+/* Enqueues the verdict on a count plane into int result[1 + SKG_FIRST_BAD]: how many pixels do not cancel,
+ * then the first ones, row * columns + column, ascending. */
+skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t plane, cl_mem result, skg_stage_log *log);
+
+/* Shape of the tiles (the whole detector where there are none) and their number; bytes allocated. */
+void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);
+int64_t skg_raster_bytes(const skg_raster *raster);
+
+/* What a strategy is chosen by. */
+typedef struct {
+    int32_t is_gpu;
+    int32_t workers;        /* compute units */
+    int64_t image_bytes;    /* of all accumulator planes */
+    int64_t triangles;      /* of a frame */
+    double triangle_pixels; /* mean pixels of a triangle's box */
+} skg_raster_facts;
+
+/* The strategy for these facts, and why in a few words (static storage). */
+int32_t skg_raster_choose(const skg_raster_facts *facts, const char **why);
+
+#endif

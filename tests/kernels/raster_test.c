@@ -1,0 +1,481 @@
+/* Path lengths: watertight, exact, and the same bits from every strategy. */
+#include "device/sources.h"
+#include "kernels/picture.h"
+#include "suite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static skg_context *context;
+
+static void open_context(void) {
+    ck_skg(skg_context_create(NULL, &context));
+}
+
+static void close_context(void) {
+    skg_context_release(&context);
+}
+
+static skg_raster_options options_of(int32_t precision, int32_t strategy) {
+    return (skg_raster_options){
+        .kernels = {.precision = precision, .bits = precision == SKG_DOUBLE ? 64 : 32},
+        .strategy = strategy,
+        .planes = 1};
+}
+
+static double scale_of(const skg_raster_options *options) {
+    return options->kernels.bits == 64 ? 0x1p48 : 0x1p28;
+}
+
+static picture take(const skg_raster_options *options, const skg_view *view, int bodies, const body *of) {
+    picture result;
+    ck_skg(picture_take(context, options, view, bodies, of, scale_of(options), &result));
+    ck_assert_int_eq(result.bad, INT32_MAX);
+    return result;
+}
+
+/* Every strategy and shape of tile; returns the number of variants. */
+enum { VARIANTS = 7 };
+static skg_raster_options variant(const skg_raster_options *of, int number) {
+    static const struct {
+        int32_t strategy, shape, tile;
+    } all[VARIANTS] = {{SKG_STRATEGY_COPIES, 0, 0},
+                       {SKG_STRATEGY_ATOMICS, 0, 0},
+                       {SKG_STRATEGY_TILES, SKG_TILE_BANDS, 0},
+                       {SKG_STRATEGY_TILES, SKG_TILE_BANDS, 1},
+                       {SKG_STRATEGY_TILES, SKG_TILE_BANDS, 13},
+                       {SKG_STRATEGY_TILES, SKG_TILE_SQUARES, 8},
+                       {SKG_STRATEGY_TILES, SKG_TILE_SQUARES, 32}};
+    skg_raster_options options = *of;
+    options.strategy = all[number].strategy;
+    options.shape = all[number].shape;
+    options.tile = all[number].tile;
+    return options;
+}
+
+/* A sphere and two boxes, one of them mirrored, turned and stretched. */
+enum { THREE = 3 };
+static void three_bodies(const shape *sphere, const shape *box, body bodies[THREE]) {
+    for (int b = 0; b < THREE; b++) bodies[b] = body_make(b ? box : sphere, 0);
+    const double turned[12] = {-0.8, 0.6, 0, 33.3, 0.6, 0.8, 0, 20, 0.1, 0, 1.5, 0};
+    memcpy(bodies[1].pose, turned, sizeof turned);
+    bodies[2].pose[3] = -20.123;
+    bodies[2].pose[11] = 37;
+    bodies[2].weight = 0.25;
+}
+
+/* --- bits
+ * ---------------------------------------------------------------------------------------------------------
+ */
+
+static void check_variants(const skg_raster_options *options, const skg_view *view, int bodies,
+                           const body *of) {
+    const skg_raster_options reference = variant(options, 0);
+    picture first = take(&reference, view, bodies, of);
+    for (int v = 1; v < VARIANTS; v++) {
+        const skg_raster_options other = variant(options, v);
+        picture result = take(&other, view, bodies, of);
+        ck_assert_msg(result.hash == first.hash, "variant %d differs (precision %d, parallel %d, source %d)",
+                      v, (int)options->kernels.precision, (int)options->kernels.parallel,
+                      (int)options->kernels.source_plane);
+        picture_free(&result);
+    }
+    picture_free(&first);
+}
+
+START_TEST(strategies_give_the_same_bits) {
+    shape sphere = shape_sphere(40, 48, 24), box = shape_box(30, 20, 10);
+    body bodies[THREE];
+    three_bodies(&sphere, &box, bodies);
+    for (int n = 0; n < 6; n++) {
+        skg_raster_options options = options_of(n == 1 ? SKG_DOUBLE : SKG_SINGLE, 0);
+        skg_view view = view_make(75, 49, 1.7);
+        if (n == 2) options.kernels.bits = 64;
+        options.kernels.parallel = n == 3;
+        options.kernels.source_plane = n >= 3;
+        view.projection = n == 3 ? SKG_PARALLEL : SKG_POINT;
+        if (n == 3 || n == 4) view.source[0] = 5, view.source[2] = 10; /* inside the sphere */
+        if (options.kernels.precision == SKG_DOUBLE && !context->device->info.has_double) continue;
+        check_variants(&options, &view, THREE, bodies);
+    }
+    shape_free(&sphere);
+    shape_free(&box);
+}
+END_TEST
+
+START_TEST(planes_are_apart) {
+    shape sphere = shape_sphere(40, 48, 24), box = shape_box(30, 20, 10);
+    body bodies[THREE];
+    three_bodies(&sphere, &box, bodies);
+    skg_view view = view_make(75, 49, 1.7);
+    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES), one = options;
+    options.kernels.listed_writes = 1;
+    options.planes = THREE;
+    for (int b = 0; b < THREE; b++) bodies[b].plane = b;
+    check_variants(&options, &view, THREE, bodies);
+    picture all = take(&options, &view, THREE, bodies);
+    const size_t size = (size_t)(view.columns * view.rows);
+    for (int b = 0; b < THREE; b++) { /* a body alone, through the program for one plane */
+        body alone = bodies[b];
+        alone.plane = 0;
+        picture single = take(&one, &view, 1, &alone);
+        ck_assert_mem_eq(single.sums, all.sums + (size_t)b * size, size * sizeof *all.sums);
+        picture_free(&single);
+    }
+    picture_free(&all);
+    shape_free(&sphere);
+    shape_free(&box);
+}
+END_TEST
+
+START_TEST(order_and_threads_do_not_matter) {
+    shape sphere = shape_sphere(60, 128, 64), shuffled = shape_shuffle(&sphere, 3),
+          apart = shape_unweld(&sphere);
+    const shape *same[3] = {&sphere, &shuffled, &apart};
+    skg_view view = view_make(96, 96, 1.5);
+    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    uint64_t hash = 0;
+    for (int n = 0; n < 4; n++) {
+        if (n == 3) {
+            close_context();
+            if (skg_context_create("threads=1", &context) != SKG_OK) {
+                open_context(); /* a device that cannot be parted */
+                break;
+            }
+        }
+        body b = body_make(same[n % 3], 0);
+        picture result = take(&options, &view, 1, &b);
+        if (n == 0) hash = result.hash;
+        ck_assert_uint_eq(result.hash, hash);
+        picture_free(&result);
+    }
+    shape_free(&sphere);
+    shape_free(&shuffled);
+    shape_free(&apart);
+}
+END_TEST
+
+/* --- no seam
+ * ------------------------------------------------------------------------------------------------------ */
+
+/* Signed hits of a closed shape cancel in every pixel, by copies (wide) and by atomics (scalar). */
+static void check_cancels(const char *what, const skg_view *view, const shape *s, const double *pose,
+                          int32_t source) {
+    for (int32_t precision = SKG_SINGLE; precision <= SKG_DOUBLE; precision++) {
+        if (precision == SKG_DOUBLE && !context->device->info.has_double) continue;
+        for (int v = 0; v < 2; v++) {
+            skg_raster_options options = options_of(precision, 0);
+            options.kernels.listed_writes = 1;
+            options.kernels.source_plane = source;
+            options.kernels.parallel = view->projection != SKG_POINT;
+            options = variant(&options, v);
+            body b = body_make(s, 0);
+            b.weight = 0;
+            b.bias = 1;
+            if (pose) memcpy(b.pose, pose, sizeof b.pose);
+            picture counts = take(&options, view, 1, &b);
+            int64_t bad = 0;
+            for (int64_t p = 0; p < view->rows * view->columns; p++) bad += counts.sums[p] != 0;
+            ck_assert_msg(bad == 0, "%s: %d bad pixels (precision %d, variant %d)", what, (int)bad,
+                          (int)precision, v);
+            picture_free(&counts);
+        }
+    }
+}
+
+START_TEST(corners_within_three_ulps_of_rays) {
+    skg_view view = view_make(256, 256, 0.8);
+    for (unsigned seed = 1; seed <= 3; seed++) {
+        shape s = shape_octahedra(400, seed, &view, 3), apart = shape_unweld(&s);
+        check_cancels("octahedra", &view, &s, NULL, 0);
+        check_cancels("octahedra, corners not shared", &view, &apart, NULL, 0);
+        skg_view parallel = view;
+        parallel.projection = SKG_PARALLEL;
+        check_cancels("octahedra, parallel", &parallel, &s, NULL, 0);
+        shape_free(&s);
+        shape_free(&apart);
+    }
+}
+END_TEST
+
+START_TEST(edges_on_pixel_centres) {
+    skg_view view = view_make(65, 65, 1);
+    view.projection = SKG_PARALLEL; /* corners and edges stand exactly on centres */
+    shape cube = shape_box(32, 32, 32);
+    check_cancels("cube on centres", &view, &cube, NULL, 0);
+    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    options.kernels.parallel = 1;
+    body b = body_make(&cube, 0);
+    picture result = take(&options, &view, 1, &b);
+    for (int64_t p = 0; p < 65 * 65;
+         p++) { /* half open: the edge of one side counts, that of the other not */
+        const int64_t i = p % 65 - 32, j = p / 65 - 32;
+        const double expected = i >= -16 && i < 16 && j >= -16 && j < 16 ? 32 : 0;
+        ck_assert_double_eq_tol(result.values[p], expected, 32 * 1e-6); /* bits of the scale: 1200 / 2^28 */
+    }
+    picture_free(&result);
+    shape_free(&cube);
+}
+END_TEST
+
+START_TEST(slivers_and_dust) {
+    skg_view view = view_make(128, 128, 1.5);
+    const double flat[16] = {1, 0.3, 0, 0, 0, 0.01, 0, 0.2, 0.2, 0, 0.02, 0, 0, 0, 0, 1};
+    const double speck[16] = {0.02, 0, 0, 3.1, 0, 0.02, 0, 2.7, 0, 0, 0.02, 0, 0, 0, 0, 1};
+    const double giant[16] = {900, 0, 0, 100, 0, 900, 0, 50, 0, 0, 1, 0, 0, 0, 0, 1};
+    shape fine = shape_sphere(60, 400, 200), coarse = shape_sphere(60, 16, 8);
+    check_cancels("slivers", &view, &fine, flat, 0);
+    check_cancels("coarse slivers", &view, &coarse, flat, 0);
+    check_cancels("dust", &view, &fine, NULL, 0);
+    check_cancels("speck", &view, &fine, speck, 0);
+    check_cancels("giant", &view, &coarse, giant, 0);
+    shape_free(&fine);
+    shape_free(&coarse);
+}
+END_TEST
+
+START_TEST(source_inside) {
+    shape sphere = shape_sphere(60, 48, 24), box = shape_box(80, 60, 500);
+    for (int n = 0; n < 6; n++) {
+        skg_view view = view_make(80, 80, 2);
+        view.source[0] = n * 3.7;
+        view.source[1] = n == 5 ? 0 : 1.3;
+        view.source[2] = n == 5 ? 0 : -40 + 17 * n;
+        check_cancels("source in a sphere", &view, &sphere, NULL, 1);
+        check_cancels("box across source and detector", &view, &box, NULL, 1);
+    }
+    shape_free(&sphere);
+    shape_free(&box);
+}
+END_TEST
+
+/* --- truth
+ * -------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    double rms, worst, longest;
+} errors;
+
+static errors compare(const skg_view *view, const picture *result, const double *truth) {
+    errors e = {0};
+    const int64_t count = view->rows * view->columns;
+    for (int64_t p = 0; p < count; p++) {
+        const double d = result->values[p] - truth[p];
+        e.rms += d * d / (double)count;
+        e.worst = fmax(e.worst, fabs(d));
+        e.longest = fmax(e.longest, truth[p]);
+    }
+    e.rms = sqrt(e.rms);
+    return e;
+}
+
+START_TEST(lengths_are_those_of_the_referee) {
+    shape sphere = shape_sphere(40, 24, 12), box = shape_box(30, 20, 10);
+    body bodies[THREE];
+    three_bodies(&sphere, &box, bodies);
+    for (int n = 0; n < 6; n++) {
+        skg_view view = view_make(48, 40, 2.7);
+        view.projection = n % 3;
+        if (n % 3 == SKG_PARALLEL_FROM_INFINITY) view.source[0] = 0.1, view.source[2] = 1;
+        if (n % 3 == SKG_PARALLEL) view.source[0] = 30;
+        if (n >= 3 && n % 3 != SKG_PARALLEL_FROM_INFINITY) view.source[2] = 6; /* within the bodies */
+        view.centre[2] = n == 4 ? 20 : 200;                                    /* and the detector, too */
+        view.row_step[2] = n == 1 || n == 4 ? 0.4 : 0;                         /* tilted */
+        double *truth = referee(&view, THREE, bodies);
+        for (int32_t precision = SKG_SINGLE; precision <= SKG_DOUBLE; precision++) {
+            if (precision == SKG_DOUBLE && !context->device->info.has_double) continue;
+            skg_raster_options options = options_of(precision, SKG_STRATEGY_COPIES);
+            options.kernels.parallel = n % 3 != SKG_POINT;
+            options.kernels.source_plane = n >= 3;
+            picture result;
+            const double scale = scale_of(&options) / (n % 3 == SKG_PARALLEL_FROM_INFINITY ? 256 : 1);
+            ck_skg(picture_take(context, &options, &view, THREE, bodies, scale, &result));
+            const errors e = compare(&view, &result, truth);
+            /* Single: the bars of the contract. Double: a hundred times its epsilon, and the scale's own
+             * step. */
+            ck_assert_double_le(e.rms, (precision == SKG_SINGLE ? 3e-7 : 1e-11) * e.longest);
+            ck_assert_double_le(e.worst, (precision == SKG_SINGLE ? 1e-3 : 1e-11) * e.longest);
+            picture_free(&result);
+        }
+        free(truth);
+    }
+    shape_free(&sphere);
+    shape_free(&box);
+}
+END_TEST
+
+START_TEST(plates_in_series_add_up) {
+    enum { PLATES = 100 };
+    shape plate = shape_box(400, 400, 1);
+    body plates[PLATES];
+    for (int k = 0; k < PLATES; k++) {
+        plates[k] = body_make(&plate, 0);
+        plates[k].pose[11] = -700 + 8 * k;
+    }
+    skg_view view = view_make(32, 32, 1);
+    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    picture result;
+    ck_skg(picture_take(context, &options, &view, PLATES, plates, 0x1p32, &result));
+    for (int64_t p = 0; p < 32 * 32; p++) {
+        const double x = (double)(p % 32) - 15.5, y = (double)(p / 32) - 15.5;
+        /* 200 hits, each rounded to half a step of 1200 / 2^32 mm and to a few units of 1 mm's last place. */
+        ck_assert_double_eq_tol(result.values[p], 100 * sqrt(1 + (x * x + y * y) / (1200 * 1200)), 2e-4);
+    }
+    picture_free(&result);
+    shape_free(&plate);
+}
+END_TEST
+
+/* --- what is wrong is told
+ * ---------------------------------------------------------------------------------------- */
+
+START_TEST(vertex_that_is_not_finite) {
+    shape sphere = shape_sphere(40, 24, 12), bad = shape_sphere(40, 24, 12);
+    bad.positions[3 * 17 + 1] = (double)NAN;
+    bad.positions[3 * 30] = (double)INFINITY;
+    body bodies[2] = {body_make(&sphere, 0), body_make(&bad, 0)};
+    skg_view view = view_make(64, 64, 2);
+    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    picture result;
+    ck_skg(picture_take(context, &options, &view, 2, bodies, 0x1p28, &result));
+    ck_assert_int_eq(result.bad, sphere.vertices + 17);
+    picture_free(&result);
+    skg_geometry geometry = {.parts = 3, .first_vertex = (int64_t[]){0, 10, 10, 40}};
+    int64_t part = 0, vertex = 0;
+    skg_geometry_find(&geometry, 12, &part, &vertex);
+    ck_assert_int_eq(part, 2);
+    ck_assert_int_eq(vertex, 2);
+    shape_free(&sphere);
+    shape_free(&bad);
+}
+END_TEST
+
+START_TEST(pixels_of_an_open_mesh) {
+    shape open = shape_sphere(40, 24, 12);
+    open.triangles -= 80;
+    body b = body_make(&open, 0);
+    b.weight = 0;
+    b.bias = 1;
+    skg_view view = view_make(64, 64, 2);
+    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    options.kernels.listed_writes = 1;
+    picture result;
+    ck_skg(picture_take(context, &options, &view, 1, &b, 0x1p28, &result));
+    int expected[1 + SKG_FIRST_BAD] = {0};
+    for (int p = 0; p < 64 * 64; p++)
+        if (result.sums[p] != 0 && ++expected[0] <= SKG_FIRST_BAD) expected[expected[0]] = p;
+    ck_assert_int_gt(expected[0], SKG_FIRST_BAD);
+    ck_assert_mem_eq(result.bad_pixels, expected, sizeof expected);
+    picture_free(&result);
+    shape_free(&open);
+}
+END_TEST
+
+START_TEST(strategy_follows_from_the_facts) {
+    const char *why = NULL;
+    skg_raster_facts facts = {
+        .workers = 2, .image_bytes = 1 << 20, .triangles = 41616, .triangle_pixels = 20};
+    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_COPIES);
+    facts.workers = 64;
+    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_TILES);
+    facts =
+        (skg_raster_facts){.workers = 2, .image_bytes = 16 << 20, .triangles = 168100, .triangle_pixels = 80};
+    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_TILES);
+    facts.triangle_pixels = 10;
+    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_COPIES);
+    facts.is_gpu = 1;
+    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_ATOMICS);
+    ck_assert_ptr_nonnull(why);
+}
+END_TEST
+
+/* --- the layout of structs
+ * ---------------------------------------------------------------------------------------- */
+
+/* What the device's compiler makes of skg_shared.h: sizes, and places of the last fields. */
+static const char layout_kernel[] =
+    "__kernel void layout(__global int *out, __global const skg_part_entry *p, __global const skg_write *w,\n"
+    "                     __global const skg_ray_args *r, __global const skg_frame_args *f) {\n"
+    "    out[0] = sizeof(skg_part_entry); out[1] = sizeof(skg_write); out[2] = sizeof(skg_ray_args);\n"
+    "    out[3] = sizeof(skg_frame_args);\n"
+    "    out[4] = (int)((__global const char *)&p->pixel_i - (__global const char *)p);\n"
+    "    out[5] = (int)((__global const char *)&p->writes - (__global const char *)p);\n"
+    "    out[6] = (int)((__global const char *)&w->plane - (__global const char *)w);\n"
+    "    out[7] = (int)((__global const char *)&r->unit - (__global const char *)r);\n"
+    "    out[8] = (int)((__global const char *)&f->queue - (__global const char *)f);\n"
+    "}\n";
+
+static const char *built_in(const char *name) {
+    for (int i = 0; i < skg_kernel_source_count; i++)
+        if (strcmp(skg_kernel_sources[i].name, name) == 0) return skg_kernel_sources[i].text;
+    return NULL;
+}
+
+static void device_layout(const char *options, int32_t out[9]) {
+    const char *sources[4] = {built_in("config.clh"), built_in("types.clh"), built_in("skg_shared.h"),
+                              layout_kernel};
+    const skg_device *device = context->device;
+    cl_int code = CL_SUCCESS;
+    cl_program program = clCreateProgramWithSource(device->cl, 4, sources, NULL, &code);
+    ck_assert_int_eq(clBuildProgram(program, 1, &device->id, options, NULL, NULL), CL_SUCCESS);
+    cl_kernel kernel = NULL;
+    skg_buffer buffer = {0};
+    skg_stage_log log = {0};
+    ck_skg(skg_kernel_create(program, "layout", &kernel));
+    ck_skg(skg_buffer_reserve(context, &buffer, 4096, CL_MEM_READ_WRITE, "layout"));
+    const cl_mem memory[5] = {buffer.memory, buffer.memory, buffer.memory, buffer.memory, buffer.memory};
+    const size_t one = 1;
+    ck_skg(skg_kernel_set_memory(kernel, 0, 5, memory));
+    ck_skg(skg_kernel_run(context, kernel, "layout", 1, &one, &one, &log));
+    ck_assert_int_eq(
+        clEnqueueReadBuffer(device->queue, buffer.memory, CL_TRUE, 0, 9 * sizeof *out, out, 0, NULL, NULL),
+        CL_SUCCESS);
+    ck_assert_int_eq(log.count, 1);
+    skg_stage_log_clear(&log);
+    skg_buffer_release(&buffer);
+    clReleaseKernel(kernel);
+    clReleaseProgram(program);
+}
+
+START_TEST(structs_are_laid_out_alike) {
+    const int32_t single[9] = {
+        sizeof(skg_part_float),           sizeof(skg_write_float),           sizeof(skg_ray_float),
+        sizeof(skg_frame_args),           offsetof(skg_part_float, pixel_i), offsetof(skg_part_float, writes),
+        offsetof(skg_write_float, plane), offsetof(skg_ray_float, unit),     offsetof(skg_frame_args, queue)};
+    const int32_t twice[9] = {sizeof(skg_part_double),
+                              sizeof(skg_write_double),
+                              sizeof(skg_ray_double),
+                              sizeof(skg_frame_args),
+                              offsetof(skg_part_double, pixel_i),
+                              offsetof(skg_part_double, writes),
+                              offsetof(skg_write_double, plane),
+                              offsetof(skg_ray_double, unit),
+                              offsetof(skg_frame_args, queue)};
+    int32_t out[9];
+    device_layout("-cl-std=CL1.2", out);
+    ck_assert_mem_eq(out, single, sizeof out);
+    if (!context->device->info.has_double) return;
+    device_layout("-cl-std=CL1.2 -D SKG_DOUBLE=1 -D SKG_BITS=64 -D SKG_WIDE=4", out);
+    ck_assert_mem_eq(out, twice, sizeof out);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, open_context, close_context);
+    tcase_add_test(tests, strategies_give_the_same_bits);
+    tcase_add_test(tests, planes_are_apart);
+    tcase_add_test(tests, order_and_threads_do_not_matter);
+    tcase_add_test(tests, corners_within_three_ulps_of_rays);
+    tcase_add_test(tests, edges_on_pixel_centres);
+    tcase_add_test(tests, slivers_and_dust);
+    tcase_add_test(tests, source_inside);
+    tcase_add_test(tests, lengths_are_those_of_the_referee);
+    tcase_add_test(tests, plates_in_series_add_up);
+    tcase_add_test(tests, vertex_that_is_not_finite);
+    tcase_add_test(tests, pixels_of_an_open_mesh);
+    tcase_add_test(tests, strategy_follows_from_the_facts);
+    tcase_add_test(tests, structs_are_laid_out_alike);
+}
+
+SKG_SUITE_MAIN("raster", add_tests)
