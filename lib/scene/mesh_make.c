@@ -6,6 +6,12 @@
 
 static const double pi = 3.14159265358979323846;
 
+static skg_status check_place(const char *shape, skg_mesh **mesh) {
+    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "%s: no place for the mesh", shape);
+    *mesh = NULL;
+    return SKG_OK;
+}
+
 static skg_status check_length(const char *shape, const char *what, double length) {
     if (isfinite(length) && length > 0) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT, "%s: %s %g mm: finite and above 0", shape, what, length);
@@ -18,11 +24,8 @@ static skg_status check_count(const char *shape, const char *what, int64_t count
                     fewest, most);
 }
 
-static skg_status start(const char *shape, int64_t vertices, int64_t triangles, skg_mesh_arrays *arrays,
-                        skg_mesh **mesh) {
+static skg_status start(const char *shape, int64_t vertices, int64_t triangles, skg_mesh_arrays *arrays) {
     *arrays = (skg_mesh_arrays){0};
-    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "%s: no place for the mesh", shape);
-    *mesh = NULL;
     skg_status status = skg_alloc(3 * vertices, sizeof(double), shape, &arrays->positions);
     if (status == SKG_OK) status = skg_alloc(3 * triangles, sizeof(int32_t), shape, &arrays->corners);
     if (status != SKG_OK) skg_mesh_arrays_free(arrays);
@@ -47,7 +50,7 @@ static void add_quad(skg_mesh_arrays *arrays, int64_t a, int64_t b, int64_t c, i
 
 static skg_status make_cuboid(const char *shape, const double length[3], skg_mesh **mesh) {
     skg_mesh_arrays arrays;
-    SKG_TRY(start(shape, 8, 12, &arrays, mesh));
+    SKG_TRY(start(shape, 8, 12, &arrays));
     for (int i = 0; i < 8; i++) /* bits of i: x, y, z at the upper end */
         add_vertex(&arrays, (i & 1 ? 0.5 : -0.5) * length[0], (i & 2 ? 0.5 : -0.5) * length[1],
                    (i & 4 ? 0.5 : -0.5) * length[2]);
@@ -61,11 +64,13 @@ static skg_status make_cuboid(const char *shape, const double length[3], skg_mes
 }
 
 skg_status skg_mesh_cube(double edge, skg_mesh **mesh) {
+    SKG_TRY(check_place("cube", mesh));
     SKG_TRY(check_length("cube", "edge", edge));
     return make_cuboid("cube", (double[3]){edge, edge, edge}, mesh);
 }
 
 skg_status skg_mesh_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh) {
+    SKG_TRY(check_place("cuboid", mesh));
     SKG_TRY(check_length("cuboid", "length along x", length_x));
     SKG_TRY(check_length("cuboid", "length along y", length_y));
     SKG_TRY(check_length("cuboid", "length along z", length_z));
@@ -98,11 +103,12 @@ static void add_wall(skg_mesh_arrays *arrays, int64_t lower, int64_t upper, int6
 
 skg_status skg_mesh_sphere(double radius, int64_t segments, skg_mesh **mesh) {
     skg_mesh_arrays arrays;
+    SKG_TRY(check_place("sphere", mesh));
     SKG_TRY(check_length("sphere", "radius", radius));
     /* 26,000 around are 676 million triangles, within SKG_MESH_LIMIT. */
     SKG_TRY(check_count("sphere", "segments", segments, 3, 26000));
     int64_t bands = segments / 2 < 2 ? 2 : segments / 2, rings = bands - 1;
-    SKG_TRY(start("sphere", 2 + rings * segments, 2 * rings * segments, &arrays, mesh));
+    SKG_TRY(start("sphere", 2 + rings * segments, 2 * rings * segments, &arrays));
     add_vertex(&arrays, 0, 0, -radius);
     for (int64_t r = 1; r <= rings; r++) {
         double angle = pi * (double)r / (double)bands; /* from the lower pole */
@@ -117,10 +123,11 @@ skg_status skg_mesh_sphere(double radius, int64_t segments, skg_mesh **mesh) {
 
 skg_status skg_mesh_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh) {
     skg_mesh_arrays arrays;
+    SKG_TRY(check_place("cylinder", mesh));
     SKG_TRY(check_length("cylinder", "radius", radius));
     SKG_TRY(check_length("cylinder", "height", height));
     SKG_TRY(check_count("cylinder", "segments", segments, 3, SKG_MESH_LIMIT / 4));
-    SKG_TRY(start("cylinder", 2 + 2 * segments, 4 * segments, &arrays, mesh));
+    SKG_TRY(start("cylinder", 2 + 2 * segments, 4 * segments, &arrays));
     add_vertex(&arrays, 0, 0, -0.5 * height);
     add_ring(&arrays, radius, -0.5 * height, segments);
     add_ring(&arrays, radius, 0.5 * height, segments);
@@ -136,12 +143,13 @@ skg_status skg_mesh_cylinder(double radius, double height, int64_t segments, skg
 skg_status skg_mesh_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
                                skg_mesh **mesh) {
     skg_mesh_arrays arrays;
+    SKG_TRY(check_place("step wedge", mesh));
     SKG_TRY(check_length("step wedge", "length along x", length_x));
     SKG_TRY(check_length("step wedge", "length along y", length_y));
     SKG_TRY(check_length("step wedge", "height", height_z));
     SKG_TRY(check_count("step wedge", "steps", steps, 1, SKG_MESH_LIMIT / 12));
     int64_t outline = 3 * steps + 1;
-    SKG_TRY(start("step wedge", 2 * outline, 12 * steps, &arrays, mesh));
+    SKG_TRY(start("step wedge", 2 * outline, 12 * steps, &arrays));
     for (int side = 0; side < 2; side++) {
         double y = (side ? 0.5 : -0.5) * length_y, n = (double)steps;
         for (int64_t k = 0; k <= steps; k++)

@@ -1,0 +1,584 @@
+/* Meshes from arrays and makers: numbering, health, moving, order. */
+#include "core/context.h"
+#include "scene/mesh.h"
+#include "suite.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* The linker sends the library's warnings here (--wrap), so that no device is needed. */
+static char last_warning[1024];
+void __wrap_skg_log(skg_context *context, int32_t level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+void __wrap_skg_log(skg_context *context, int32_t level, const char *format, ...) {
+    (void)context, (void)level;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(last_warning, sizeof last_warning, format, arguments);
+    va_end(arguments);
+}
+
+/* Random numbers (Knuth's MMIX generator): the same ones in every run. */
+static uint64_t seed = 1;
+static int64_t draw(int64_t below) {
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return (int64_t)((seed >> 33) % (uint64_t)below);
+}
+
+static skg_mesh_health health_of(const skg_mesh *mesh) {
+    skg_mesh_health health;
+    skg_mesh_health_init(&health);
+    ck_skg(skg_mesh_get_health(mesh, &health));
+    return health;
+}
+
+/* One closed surface of the sphere's topology: V - E + F = 2 with E = 3 F / 2. */
+static void check_perfect(const skg_mesh *mesh, double volume, double area) {
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.consistent, 1);
+    ck_assert_int_eq(health.outward, 1);
+    ck_assert_int_eq(health.flipped, 0);
+    ck_assert_int_eq(health.welded_vertices, health.vertices);
+    ck_assert_int_eq(health.duplicate_triangles, 0);
+    ck_assert_int_eq(health.degenerate_triangles, 0);
+    ck_assert_int_eq(health.nonmanifold_edges, 0);
+    ck_assert_int_eq(health.components, 1);
+    ck_assert_int_eq(health.open_edges, 0);
+    ck_assert_int_eq(health.first_open_vertex, -1);
+    ck_assert_int_eq(2 * health.vertices - health.triangles, 4);
+    /* Thousands of terms of some epsilon each. */
+    ck_assert_double_eq_tol(health.volume / volume, 1, 1e-12);
+    if (area > 0) ck_assert_double_eq_tol(health.area / area, 1, 1e-12);
+    for (int k = 0; k < 3; k++)
+        ck_assert_double_eq_tol(health.bounds[k], -health.bounds[3 + k],
+                                4 * DBL_EPSILON * health.bounds[3 + k]);
+}
+
+static double polygon_area(double radius, int64_t corners) {
+    return 0.5 * (double)corners * radius * radius * sin(2 * pi / (double)corners);
+}
+
+START_TEST(cuboids_are_closed_and_outward) {
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_cube(10, &mesh));
+    check_perfect(mesh, 1000, 600);
+    skg_mesh_release(&mesh);
+    ck_assert_ptr_null(mesh);
+    ck_skg(skg_mesh_cuboid(1, 2, 3, &mesh));
+    check_perfect(mesh, 6, 22);
+    ck_assert_double_eq(health_of(mesh).bounds[5], 1.5);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* Bands between rings of polygons are frusta: h/3 (A + sqrt(A B) + B). */
+START_TEST(sphere_has_its_vertices_on_the_sphere) {
+    static const int64_t segments[] = {3, 4, 5, 64};
+    for (size_t i = 0; i < sizeof segments / sizeof *segments; i++) {
+        int64_t n = segments[i], bands = n / 2 < 2 ? 2 : n / 2;
+        double volume = 0;
+        for (int64_t b = 0; b < bands; b++) {
+            double a = pi * (double)b / (double)bands, c = pi * (double)(b + 1) / (double)bands;
+            double lower = polygon_area(50 * sin(a), n), upper = polygon_area(50 * sin(c), n);
+            volume += 50 * (cos(a) - cos(c)) / 3 * (lower + sqrt(lower * upper) + upper);
+        }
+        skg_mesh *mesh;
+        ck_skg(skg_mesh_sphere(50, n, &mesh));
+        skg_mesh_health health = health_of(mesh);
+        ck_assert_double_eq_tol(health.volume / volume, 1, 1e-12);
+        ck_assert_int_eq(health.closed && health.outward && health.consistent, 1);
+        ck_assert_int_eq(2 * health.vertices - health.triangles, 4);
+        ck_assert_int_eq(health.components, 1);
+        ck_assert_double_eq(health.bounds[5], 50);
+        for (int64_t v = 0; v < health.vertices; v++) {
+            double p[3];
+            skg_mesh_vertex(mesh, v, p);
+            ck_assert_double_eq_tol(sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), 50, 200 * DBL_EPSILON);
+        }
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(cylinder_is_a_prism) {
+    skg_mesh *mesh;
+    for (int64_t n = 4; n < 100; n += 24) {
+        ck_skg(skg_mesh_cylinder(7, 20, n, &mesh));
+        double side = 2 * 7 * sin(pi / (double)n);
+        check_perfect(mesh, 20 * polygon_area(7, n), 2 * polygon_area(7, n) + 20 * side * (double)n);
+        skg_mesh_release(&mesh);
+    }
+    ck_skg(skg_mesh_cylinder(7, 20, 3, &mesh));
+    ck_assert_double_eq_tol(health_of(mesh).volume, 20 * polygon_area(7, 3), 1e-11);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* Volume: l w h (n+1)/2n. Area: floor and treads 2 l w, risers and the tall end 2 w h, two sides. */
+START_TEST(step_wedge_has_its_steps) {
+    for (int64_t n = 1; n < 12; n++) {
+        skg_mesh *mesh;
+        double side = 60 * 8 * (double)(n + 1) / (double)(2 * n);
+        ck_skg(skg_mesh_step_wedge(60, 20, 8, n, &mesh));
+        check_perfect(mesh, 20 * side, 2 * 60 * 20 + 2 * 20 * 8 + 2 * side);
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(makers_refuse_what_is_no_length_or_count) {
+    skg_mesh *mesh;
+    ck_skg_fails(skg_mesh_cube(0, &mesh), SKG_ERR_ARGUMENT, "cube: edge 0 mm");
+    ck_assert_ptr_null(mesh);
+    ck_skg_fails(skg_mesh_cuboid(1, -2, 3, &mesh), SKG_ERR_ARGUMENT, "along y");
+    ck_skg_fails(skg_mesh_sphere((double)INFINITY, 8, &mesh), SKG_ERR_ARGUMENT, "radius");
+    ck_skg_fails(skg_mesh_sphere(1, 2, &mesh), SKG_ERR_ARGUMENT, "2 segments");
+    ck_skg_fails(skg_mesh_sphere(1, INT64_MAX, &mesh), SKG_ERR_ARGUMENT, "segments");
+    ck_skg_fails(skg_mesh_cylinder(1, (double)NAN, 8, &mesh), SKG_ERR_ARGUMENT, "height");
+    ck_skg_fails(skg_mesh_cylinder(1, 1, INT64_MAX, &mesh), SKG_ERR_ARGUMENT, "segments");
+    ck_skg_fails(skg_mesh_step_wedge(1, 1, 1, 0, &mesh), SKG_ERR_ARGUMENT, "0 steps");
+    ck_skg_fails(skg_mesh_cube(1, NULL), SKG_ERR_ARGUMENT, "cube");
+}
+END_TEST
+
+/* Arrays of a cube for the tests to damage. */
+static double cube_positions[8 * 3];
+static int32_t cube_corners[12 * 3];
+static void take_cube(void) {
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_cube(2, &mesh));
+    ck_skg(skg_mesh_read_positions(mesh, cube_positions, 0));
+    ck_skg(skg_mesh_read_triangles(mesh, cube_corners, 0));
+    skg_mesh_release(&mesh);
+}
+
+static skg_mesh *make(int64_t vertices, const double *positions, int64_t triangles, const int32_t *corners) {
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_create(NULL, "thing", vertices, positions, 0, triangles, corners, 0, 1, &mesh));
+    return mesh;
+}
+
+START_TEST(numbering_strides_and_units_are_the_callers) {
+    float positions[8 * 5];
+    int32_t corners[12 * 4], corners_back[12 * 4];
+    double back[8 * 4];
+    take_cube();
+    for (int i = 0; i < 40; i++) positions[i] = NAN; /* what lies between the rows is not read */
+    for (int i = 0; i < 48; i++) corners[i] = -7, corners_back[i] = 99;
+    for (int i = 0; i < 24; i++) positions[i / 3 * 5 + i % 3] = (float)cube_positions[i] + 0.25F;
+    for (int i = 0; i < 36; i++) corners[i / 3 * 4 + i % 3] = cube_corners[i];
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_create_float(NULL, NULL, 8, positions, 5, 12, corners, 4, 10, &mesh));
+    const char *name;
+    ck_skg(skg_mesh_name(mesh, &name));
+    ck_assert_str_eq(name, "mesh");
+    int64_t vertices, triangles;
+    ck_skg(skg_mesh_size(mesh, &vertices, &triangles));
+    ck_assert_int_eq(vertices, 8);
+    ck_assert_int_eq(triangles, 12);
+    ck_skg(skg_mesh_read_positions(mesh, back, 4));
+    ck_skg(skg_mesh_read_triangles(mesh, corners_back, 4));
+    for (int i = 0; i < 24; i++) ck_assert_double_eq(back[i / 3 * 4 + i % 3], 10 * cube_positions[i] + 2.5);
+    for (int i = 0; i < 36; i++) ck_assert_int_eq(corners_back[i / 3 * 4 + i % 3], cube_corners[i]);
+    for (int i = 3; i < 48; i += 4) ck_assert_int_eq(corners_back[i], 99);
+    ck_skg(skg_mesh_retain(mesh));
+    skg_mesh *other = mesh;
+    skg_mesh_release(&mesh);
+    ck_assert_double_eq_tol(health_of(other).volume, 8000, 8000 * 12 * DBL_EPSILON); /* a sum of 12 */
+    skg_mesh_release(&other);
+}
+END_TEST
+
+START_TEST(missing_triangle_leaves_three_open_edges) {
+    take_cube();
+    skg_mesh *mesh = make(8, cube_positions, 11, cube_corners);
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.closed, 0);
+    ck_assert_int_eq(health.outward, 0);
+    ck_assert_int_eq(health.open_edges, 3);
+    const int32_t *lost = cube_corners + 33;
+    int64_t first = health.first_open_vertex;
+    ck_assert(first == lost[0] || first == lost[1] || first == lost[2]);
+    for (int k = 0; k < 3; k++)
+        ck_assert_double_eq(health.first_open_position[k], cube_positions[3 * first + k]);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+START_TEST(inverted_cube_is_turned_and_told) {
+    int32_t corners[36], back[36];
+    take_cube();
+    for (int i = 0; i < 36; i++) corners[i] = cube_corners[i / 3 * 3 + 2 - i % 3];
+    skg_mesh *mesh = make(8, cube_positions, 12, corners);
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.flipped, 1);
+    ck_assert_int_eq(health.outward, 1);
+    ck_assert_double_eq(health.volume, 8);
+    ck_assert_int_eq(mesh->orientation, -1);
+    ck_assert_ptr_nonnull(strstr(last_warning, "thing: inverted"));
+    ck_skg(skg_mesh_read_triangles(mesh, back, 0));
+    ck_assert_mem_eq(back, corners, sizeof corners);
+    ck_skg(skg_mesh_write_positions(mesh, cube_positions, 0));
+    ck_assert_double_eq(health_of(mesh).volume, 8); /* still as turned */
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* Corner by corner, as STL has it; half of the zeros negative. */
+static void make_soup(double *soup, int32_t *corners) {
+    take_cube();
+    for (int i = 0; i < 36; i++) {
+        corners[i] = i;
+        for (int k = 0; k < 3; k++) {
+            double x = cube_positions[3 * cube_corners[i] + k] + 1;
+            soup[3 * i + k] = x == 0 && i % 2 ? -0.0 : x;
+        }
+    }
+}
+
+START_TEST(equal_positions_are_welded_for_the_health) {
+    double soup[36 * 3];
+    int32_t corners[36];
+    make_soup(soup, corners);
+    skg_mesh *mesh = make(36, soup, 12, corners);
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.vertices, 36);
+    ck_assert_int_eq(health.welded_vertices, 8);
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.components, 1);
+    ck_assert_double_eq(health.volume, 8);
+    /* Moved together it stays closed; moved apart it would open. */
+    for (int i = 0; i < 36 * 3; i++) soup[i] *= 3;
+    ck_skg(skg_mesh_write_positions(mesh, soup, 0));
+    soup[3 * 35] += 1e-9;
+    ck_skg_fails(skg_mesh_write_positions(mesh, soup, 0), SKG_ERR_MESH, "and 35 were at the same place");
+    ck_assert_double_eq(health_of(mesh).volume, 8 * 27);
+    float *offsets;
+    ck_skg(skg_mesh_positions(mesh, &offsets, NULL));
+    offsets[3 * 35] += 1;
+    ck_skg_fails(skg_mesh_moved(mesh), SKG_ERR_MESH, "move them together");
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+START_TEST(faults_are_counted) {
+    int32_t corners[16 * 3];
+    take_cube();
+    memcpy(corners, cube_corners, sizeof cube_corners);
+    const int32_t more[] = {cube_corners[1],
+                            cube_corners[2],
+                            cube_corners[0], /* repeats 0, another start */
+                            cube_corners[5],
+                            cube_corners[4],
+                            cube_corners[3], /* repeats 1, inverted */
+                            0,
+                            0,
+                            1, /* two corners are one */
+                            0,
+                            8,
+                            7}; /* on a diagonal: no area */
+    double positions[27];
+    memcpy(positions, cube_positions, sizeof cube_positions);
+    positions[24] = positions[25] = positions[26] = 0.25;
+    memcpy(corners + 36, more, sizeof more);
+    skg_mesh *mesh = make(9, positions, 16, corners);
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.duplicate_triangles, 2);
+    ck_assert_int_eq(health.degenerate_triangles, 2);
+    ck_assert_int_eq(health.consistent, 0);
+    ck_assert_int_eq(health.closed, 0);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+START_TEST(cubes_that_share_an_edge_are_closed) {
+    double positions[16 * 3];
+    int32_t corners[24 * 3];
+    take_cube();
+    for (int i = 0; i < 24; i++) {
+        positions[i] = cube_positions[i];
+        positions[24 + i] = cube_positions[i] + (i % 3 < 2 ? 2 : 0);
+    }
+    for (int i = 0; i < 36; i++) corners[i] = cube_corners[i], corners[36 + i] = cube_corners[i] + 8;
+    skg_mesh *mesh = make(16, positions, 24, corners);
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.nonmanifold_edges, 1);
+    ck_assert_int_eq(health.welded_vertices, 14);
+    ck_assert_int_eq(health.components, 1);
+    ck_assert_double_eq(health.volume, 16);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* Against counting by brute force: random triangles over few places, some of them at the same position. */
+enum { PLACES = 9, FACES = 14 };
+static void brute_health(const int32_t *place, const int32_t *corners, skg_mesh_health *brute) {
+    int edges[PLACES][PLACES] = {{0}}, group[PLACES];
+    for (int i = 0; i < PLACES; i++) group[i] = -1;
+    for (int t = 0; t < FACES; t++) {
+        int a[3];
+        for (int k = 0; k < 3; k++) a[k] = place[corners[3 * t + k]];
+        for (int k = 0; k < 3; k++)
+            if (group[a[k]] < 0) group[a[k]] = a[k];
+        for (int k = 0; k < 2; k++)
+            for (int i = 0, from = group[a[k + 1]], to = group[a[0]]; i < PLACES; i++)
+                if (group[i] == from) group[i] = to;
+        if (a[0] == a[1] || a[1] == a[2] || a[2] == a[0]) continue;
+        for (int k = 0; k < 3; k++) edges[a[k]][a[(k + 1) % 3]]++;
+        int repeats = 0;
+        for (int s = 0; s < t; s++) {
+            int same = 0, used[3] = {0};
+            for (int k = 0; k < 3; k++)
+                for (int j = 0; j < 3; j++)
+                    if (!used[j] && a[k] == place[corners[3 * s + j]]) {
+                        used[j] = 1, same++;
+                        break;
+                    }
+            repeats |= same == 3;
+        }
+        brute->duplicate_triangles += repeats;
+    }
+    brute->consistent = 1;
+    for (int i = 0; i < PLACES; i++) {
+        brute->components += group[i] == i;
+        for (int j = 0; j < PLACES; j++) {
+            if (edges[i][j] > edges[j][i]) brute->open_edges += edges[i][j] - edges[j][i];
+            if (edges[i][j] > 1) brute->consistent = 0;
+            if (i < j) brute->nonmanifold_edges += edges[i][j] + edges[j][i] > 2;
+        }
+    }
+}
+
+START_TEST(health_agrees_with_brute_force) {
+    for (int round = 0; round < 500; round++) {
+        double positions[PLACES * 3];
+        int32_t place[PLACES], corners[FACES * 3];
+        for (int32_t i = 0; i < PLACES; i++) {
+            place[i] = draw(3) ? i : (int32_t)draw(i + 1);
+            place[i] = place[place[i]];
+            for (int k = 0; k < 3; k++)
+                positions[3 * i + k] = place[i] == i ? (double)draw(1000000) : positions[3 * place[i] + k];
+        }
+        for (int i = 0; i < FACES * 3; i++) corners[i] = (int32_t)draw(PLACES);
+        skg_mesh_health brute = {0};
+        brute_health(place, corners, &brute);
+        skg_mesh *mesh = make(PLACES, positions, FACES, corners);
+        skg_mesh_health health = health_of(mesh);
+        ck_assert_int_eq(health.open_edges, brute.open_edges);
+        ck_assert_int_eq(health.closed, brute.open_edges == 0);
+        ck_assert_int_eq(health.nonmanifold_edges, brute.nonmanifold_edges);
+        ck_assert_int_eq(health.duplicate_triangles, brute.duplicate_triangles);
+        ck_assert_int_eq(health.components, brute.components);
+        ck_assert_int_eq(health.consistent, brute.consistent);
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
+/* A fan of many triangles around vertex 0: one large group of edges. */
+START_TEST(many_triangles_at_one_vertex) {
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_cylinder(10, 10, 50000, &mesh));
+    check_perfect(mesh, 10 * polygon_area(10, 50000), 0);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+START_TEST(far_mesh_keeps_its_volume_and_offsets) {
+    double positions[24];
+    take_cube();
+    for (int i = 0; i < 24; i++) positions[i] = cube_positions[i] + 1048576; /* exact */
+    skg_mesh *mesh = make(8, positions, 12, cube_corners);
+    ck_assert_double_eq(health_of(mesh).volume, 8);
+    float *offsets, lowest[3], highest[3];
+    const double *origin;
+    int64_t bad;
+    ck_skg(skg_mesh_positions(mesh, &offsets, &origin));
+    for (int i = 0; i < 24; i++) ck_assert(offsets[i] == (float)cube_positions[i]);
+    for (int k = 0; k < 3; k++) ck_assert_double_eq(origin[k], 1048576);
+    /* Moved a little: the origin stays. Far: it follows. */
+    positions[0] += 0.5;
+    ck_skg(skg_mesh_write_positions(mesh, positions, 0));
+    ck_assert_double_eq(origin[0], 1048576);
+    for (int i = 0; i < 24; i++) positions[i] = cube_positions[i] + 0.125;
+    ck_skg(skg_mesh_write_positions(mesh, positions, 0));
+    ck_assert_double_eq(origin[0], 0.125);
+    skg_mesh_bounds(mesh, lowest, highest, &bad);
+    ck_assert(lowest[0] == -1 && highest[2] == 1 && bad == -1);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+START_TEST(moving_in_place) {
+    skg_mesh *mesh;
+    float *offsets, lowest[3], highest[3];
+    const double *origin;
+    int64_t version, bad;
+    double positions[24];
+    ck_skg(skg_mesh_cube(2, &mesh));
+    ck_skg(skg_mesh_version(mesh, &version));
+    ck_assert_int_eq(version, 1);
+    ck_skg(skg_mesh_positions(mesh, &offsets, &origin));
+    for (int i = 0; i < 24; i++) offsets[i] *= 2;
+    ck_skg(skg_mesh_moved(mesh));
+    ck_skg(skg_mesh_version(mesh, &version));
+    ck_assert_int_eq(version, 2);
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_double_eq(health.volume, 64);
+    ck_assert_double_eq(health.area, 96);
+    ck_assert_double_eq(health.bounds[0], -2);
+    ck_assert_int_eq(health.closed, 1);
+    ck_skg(skg_mesh_read_positions(mesh, positions, 0));
+    for (int i = 0; i < 24; i++) ck_assert_double_eq(fabs(positions[i]), 2);
+    skg_mesh_bounds(mesh, lowest, highest, &bad);
+    ck_assert(lowest[1] == -2 && highest[1] == 2 && bad == -1);
+    offsets[3 * 5 + 1] = INFINITY;
+    offsets[3 * 6] = NAN;
+    ck_skg(skg_mesh_moved(mesh));
+    skg_mesh_bounds(mesh, lowest, highest, &bad);
+    ck_assert(lowest[1] == -2 && highest[1] == 2 && bad == 5);
+    ck_skg_fails(skg_mesh_save(mesh, "never.ply"), SKG_ERR_MESH, "vertex 5 is not finite");
+    ck_skg(skg_mesh_write_positions(mesh, positions, 0)); /* mended */
+    skg_mesh_bounds(mesh, lowest, highest, &bad);
+    ck_assert_int_eq(bad, -1);
+    ck_assert_double_eq(health_of(mesh).volume, 64);
+    positions[3 * 4 + 2] = (double)NAN;
+    ck_skg_fails(skg_mesh_write_positions(mesh, positions, 0), SKG_ERR_MESH, "vertex 4");
+    ck_skg(skg_mesh_version(mesh, &version));
+    ck_assert_int_eq(version, 4);
+    ck_assert_double_eq(health_of(mesh).volume, 64);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+START_TEST(bad_arrays_are_named) {
+    skg_mesh *mesh = NULL;
+    double p[24];
+    int32_t c[36];
+    take_cube();
+    memcpy(p, cube_positions, sizeof p);
+    memcpy(c, cube_corners, sizeof c);
+#define CREATE(vertices, ps, triangles, cs, unit)                                                            \
+    skg_mesh_create(NULL, "liver", vertices, p, ps, triangles, c, cs, unit, &mesh)
+    ck_skg_fails(CREATE(8, 0, 0, 0, 1), SKG_ERR_MESH, "liver: no triangles");
+    ck_skg_fails(CREATE(0, 0, 12, 0, 1), SKG_ERR_MESH, "liver: no vertices");
+    ck_skg_fails(CREATE(-1, 0, 12, 0, 1), SKG_ERR_ARGUMENT, "-1 vertices");
+    ck_skg_fails(CREATE(8, 2, 12, 0, 1), SKG_ERR_ARGUMENT, "position stride 2");
+    ck_skg_fails(CREATE(8, 0, 12, -3, 1), SKG_ERR_ARGUMENT, "triangle stride -3");
+    ck_skg_fails(CREATE(8, 0, 12, 0, 0), SKG_ERR_ARGUMENT, "unit 0 mm");
+    ck_skg_fails(CREATE(8, 0, 12, 0, -1), SKG_ERR_ARGUMENT, "unit -1 mm");
+    ck_skg_fails(CREATE(8, 0, 12, 0, (double)NAN), SKG_ERR_ARGUMENT, "unit nan mm");
+    ck_skg_fails(CREATE(8, 0, 12, 0, (double)INFINITY), SKG_ERR_ARGUMENT, "unit inf mm");
+    ck_skg_fails(CREATE(INT64_C(1) << 31, 0, 12, 0, 1), SKG_ERR_MESH, "at most 715827882");
+    ck_skg_fails(CREATE(8, 0, INT64_MAX, 0, 1), SKG_ERR_MESH, "at most 715827882");
+    ck_skg_fails(CREATE(8, 0, 12, 0, 1e308), SKG_ERR_MESH, "more than single precision");
+    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, NULL, 0, 12, c, 0, 1, &mesh), SKG_ERR_ARGUMENT,
+                 "positions are NULL");
+    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, NULL, 0, 1, &mesh), SKG_ERR_ARGUMENT,
+                 "triangles are NULL");
+    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, c, 0, 1, NULL), SKG_ERR_ARGUMENT, "no place");
+    c[3 * 7 + 1] = 8;
+    ck_skg_fails(CREATE(8, 0, 12, 0, 1), SKG_ERR_MESH, "liver: triangle 7 names vertex 8, but");
+    c[3 * 7 + 1] = -1;
+    ck_skg_fails(CREATE(8, 0, 12, 0, 1), SKG_ERR_MESH, "triangle 7 names vertex -1");
+    p[3 * 6] = (double)NAN;
+    p[3 * 5 + 2] = -(double)INFINITY;
+    ck_skg_fails(CREATE(8, 0, 12, 0, 1), SKG_ERR_MESH, "liver: vertex 5 is at (");
+#undef CREATE
+    ck_assert_ptr_null(mesh);
+    ck_skg_fails(skg_mesh_retain(NULL), SKG_ERR_ARGUMENT, "skg_mesh_retain");
+    ck_skg_fails(skg_mesh_read_positions(NULL, p, 0), SKG_ERR_ARGUMENT, "mesh is NULL");
+    ck_skg_fails(skg_mesh_moved(NULL), SKG_ERR_ARGUMENT, "mesh is NULL");
+    skg_mesh_release(&mesh);
+    skg_mesh_release(NULL);
+}
+END_TEST
+
+START_TEST(health_of_another_size) {
+    skg_mesh *mesh;
+    skg_mesh_health health;
+    ck_skg(skg_mesh_cube(1, &mesh));
+    skg_mesh_health_init(&health);
+    health.size = 3 * sizeof(int32_t); /* an older caller's */
+    health.outward = 77;
+    ck_skg(skg_mesh_get_health(mesh, &health));
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.outward, 77);
+    ck_assert_int_eq(health.size, 3 * (int)sizeof(int32_t));
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+static int compare_triangles(const void *a, const void *b) {
+    return memcmp(a, b, 3 * sizeof(int32_t));
+}
+
+START_TEST(shuffled_triangles_are_put_in_order) {
+    skg_mesh *sphere, *shuffled;
+    int64_t vertices, triangles;
+    int32_t sorted, *corners, *given;
+    double *positions;
+    ck_skg(skg_mesh_sphere(100, 128, &sphere));
+    ck_skg(skg_mesh_size(sphere, &vertices, &triangles));
+    ck_skg(skg_alloc(3 * vertices, sizeof *positions, "test", &positions));
+    ck_skg(skg_alloc(3 * triangles, sizeof *corners, "test", &corners));
+    ck_skg(skg_alloc(3 * triangles, sizeof *given, "test", &given));
+    ck_skg(skg_mesh_read_positions(sphere, positions, 0));
+    ck_skg(skg_mesh_read_triangles(sphere, given, 0));
+    ck_skg(skg_mesh_sorted_corners(sphere, corners, &sorted));
+    ck_assert_int_eq(sorted, 0); /* rings are good enough */
+    ck_assert_mem_eq(corners, given, 3 * (size_t)triangles * sizeof *given);
+    for (int64_t i = triangles - 1; i > 0; i--) {
+        int64_t j = draw(i + 1);
+        for (int k = 0; k < 3; k++) {
+            int32_t swap = given[3 * i + k];
+            given[3 * i + k] = given[3 * j + k], given[3 * j + k] = swap;
+        }
+    }
+    ck_skg(skg_mesh_create(NULL, "shuffled", vertices, positions, 0, triangles, given, 0, 1, &shuffled));
+    ck_skg(skg_mesh_sorted_corners(shuffled, corners, &sorted));
+    ck_assert_int_eq(sorted, 1);
+    double step = 0; /* mean distance of first corners, in a mesh with edges of some 5 mm */
+    for (int64_t i = 1; i < triangles; i++)
+        step += fabs(positions[3 * corners[3 * i]] - positions[3 * corners[3 * i - 3]]) / (double)triangles;
+    ck_assert_double_lt(step, 5);
+    qsort(corners, (size_t)triangles, 3 * sizeof *corners, compare_triangles);
+    qsort(given, (size_t)triangles, 3 * sizeof *given, compare_triangles);
+    ck_assert_mem_eq(corners, given, 3 * (size_t)triangles * sizeof *given);
+    skg_free(&positions);
+    skg_free(&corners);
+    skg_free(&given);
+    skg_mesh_release(&sphere);
+    skg_mesh_release(&shuffled);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, cuboids_are_closed_and_outward);
+    tcase_add_test(tests, sphere_has_its_vertices_on_the_sphere);
+    tcase_add_test(tests, cylinder_is_a_prism);
+    tcase_add_test(tests, step_wedge_has_its_steps);
+    tcase_add_test(tests, makers_refuse_what_is_no_length_or_count);
+    tcase_add_test(tests, numbering_strides_and_units_are_the_callers);
+    tcase_add_test(tests, missing_triangle_leaves_three_open_edges);
+    tcase_add_test(tests, inverted_cube_is_turned_and_told);
+    tcase_add_test(tests, equal_positions_are_welded_for_the_health);
+    tcase_add_test(tests, faults_are_counted);
+    tcase_add_test(tests, cubes_that_share_an_edge_are_closed);
+    tcase_add_test(tests, health_agrees_with_brute_force);
+    tcase_add_test(tests, many_triangles_at_one_vertex);
+    tcase_add_test(tests, far_mesh_keeps_its_volume_and_offsets);
+    tcase_add_test(tests, moving_in_place);
+    tcase_add_test(tests, bad_arrays_are_named);
+    tcase_add_test(tests, health_of_another_size);
+    tcase_add_test(tests, shuffled_triangles_are_put_in_order);
+}
+
+SKG_SUITE_MAIN("mesh", add_tests)
