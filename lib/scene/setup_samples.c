@@ -213,7 +213,7 @@ static skg_status add_bounds(const skg_scene_part_data *part, double *bounds) {
 }
 
 static skg_status move_all_to_centre(skg_scene *scene) {
-    double bounds[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    double bounds[6] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (int64_t i = 0; i < scene->count; i++) SKG_TRY(add_bounds(&scene->parts[i], bounds));
     for (int64_t i = 0; i < scene->count; i++) {
         double pose[16];

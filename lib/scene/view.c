@@ -123,7 +123,7 @@ static skg_status prepare_parallel(const skg_view *view, skg_view_frame *frame) 
             "the detector stands edge-on to the beam, which runs along (%g, %g, %g); turn it towards the beam",
             frame->d0[0], frame->d0[1], frame->d0[2]);
     if (from_infinity) {
-        frame->start[0] = -INFINITY;
+        frame->start[0] = -HUGE_VAL;
         return SKG_OK;
     }
     double way[3];

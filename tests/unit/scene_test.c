@@ -112,7 +112,7 @@ START_TEST(plans_can_see_what_changed) {
     ck_assert_int_eq(scene->structure, structure);
     ck_assert_int_gt(scene->poses, poses);
     poses = scene->poses;
-    pose[0] = NAN;
+    pose[0] = (double)NAN;
     ck_skg_fails(skg_scene_set_pose(scene, 0, pose), SKG_ERR_SCENE, "not finite");
     ck_assert_int_eq(scene->poses, poses);
     ck_assert_double_eq(scene->parts[0].pose[3], 5);

@@ -138,7 +138,7 @@ static void world_bounds(int64_t id, double *bounds) {
     ck_skg(skg_mesh_size(part.mesh, &vertices, &triangles));
     ck_assert_int_le(vertices, 512);
     ck_skg(skg_mesh_read_positions(part.mesh, x, 3));
-    for (int k = 0; k < 3; k++) bounds[k] = INFINITY, bounds[3 + k] = -INFINITY;
+    for (int k = 0; k < 3; k++) bounds[k] = HUGE_VAL, bounds[3 + k] = -HUGE_VAL;
     for (int64_t i = 0; i < vertices; i++) {
         skg_pose_point(part.pose, x + 3 * i, x + 3 * i);
         for (int k = 0; k < 3; k++) {
@@ -340,6 +340,28 @@ START_TEST(labels_with_dots_can_be_set) {
 }
 END_TEST
 
+/* The example in docs/scene-files.md loads as it stands. */
+START_TEST(the_example_of_the_manual_is_read) {
+    char text[16384];
+    FILE *stream = fopen(SKG_SOURCE_DIR "/docs/scene-files.md", "rb");
+    ck_assert_ptr_nonnull(stream);
+    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
+    fclose(stream);
+    char *begin = strstr(text, "```json\n");
+    ck_assert_ptr_nonnull(begin);
+    begin += strlen("```json\n");
+    char *end = strstr(begin, "```"), *mesh = strstr(begin, "bone.stl");
+    ck_assert(end && mesh && mesh < end);
+    *end = '\0';
+    memcpy(mesh, "box.stl\"", 8); /* one shorter: the quote moves forward */
+    mesh[8] = ' ';
+    write_box();
+    write_file("scene.json", begin);
+    ck_skg(load());
+    ck_assert_int_eq(part_at(1).inside, 0);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, a_scene_file_is_read);
@@ -356,6 +378,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_scan_gives_its_first_projection);
     tcase_add_test(tests, options_are_given_on);
     tcase_add_test(tests, settings_change_the_file);
+    tcase_add_test(tests, the_example_of_the_manual_is_read);
     tcase_add_test(tests, labels_with_dots_can_be_set);
 }
 

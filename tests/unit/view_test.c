@@ -144,13 +144,13 @@ static void edge_on_source(skg_view *v) {
     v->column_step[0] = 0, v->column_step[1] = 0.5, v->source[0] = 0;
 }
 static void nan_source(skg_view *v) {
-    v->source[2] = NAN;
+    v->source[2] = (double)NAN;
 }
 static void infinite_centre(skg_view *v) {
-    v->centre[0] = INFINITY;
+    v->centre[0] = HUGE_VAL;
 }
 static void nan_step(skg_view *v) {
-    v->column_step[1] = NAN;
+    v->column_step[1] = (double)NAN;
 }
 static void huge(skg_view *v) {
     v->column_step[0] = 1e200, v->row_step[2] = 1e200;

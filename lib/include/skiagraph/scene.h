@@ -20,9 +20,10 @@ typedef struct skg_scene skg_scene;
 /* One part. Prepare with skg_part_init: identity pose, no parent. */
 typedef struct {
     int32_t size;
-    int32_t reserved;       /* 0 */
-    int64_t inside;         /* number of the part that this one displaces, or -1: it stands in the world */
-    skg_mesh *mesh;         /* retained by the scene */
+    int32_t reserved; /* 0 */
+    int64_t inside;   /* number of the part that this one displaces, or -1: it stands in the world. In a scene
+                         from a file it may be larger than the part's own. */
+    skg_mesh *mesh;   /* retained by the scene */
     skg_material *material; /* retained by the scene */
     const char *label;      /* unique in the scene; NULL: the mesh's name; copied */
     double pose[16];
@@ -45,7 +46,8 @@ SKG_API skg_status skg_scene_size(const skg_scene *scene, int64_t *parts);
  * caller. */
 SKG_API skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part);
 
-/* The number of the part with this label. SKG_ERR_SCENE with the nearest label where there is none. */
+/* The number of the part with this label, or else of the only one that is equal but for case. SKG_ERR_SCENE
+ * with the nearest label where there is none. */
 SKG_API skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id);
 
 /* A new pose; plans use it from the next frame on. */
@@ -60,7 +62,8 @@ enum {
 
 /* Source and detector. Pixel (row r, column c) has its centre at
  *     centre + (c - (columns-1)/2) column_step + (r - (rows-1)/2) row_step.
- * A length is measured from the source (or its plane) to that centre. */
+ * A length is measured from the source (or its plane) to that centre; a pixel behind that plane sees nothing.
+ * No entry may exceed 1e9 mm. */
 typedef struct {
     int32_t size;
     int32_t projection;    /* SKG_POINT, SKG_PARALLEL, SKG_PARALLEL_FROM_INFINITY */
