@@ -227,7 +227,7 @@ static int worst_first(const void *a, const void *b) {
 }
 
 static void bound(columns *grid, int64_t count, const skg_solid *solids) {
-    for (int k = 0; k < 3; k++) grid->low[k] = INFINITY, grid->high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) grid->low[k] = HUGE_VAL, grid->high[k] = -HUGE_VAL;
     for (int64_t i = 0; i < count; i++)
         for (int64_t v = 0; solids[i].triangles > 0 && v < 3 * solids[i].vertices; v++) {
             grid->low[v % 3] = fmin(grid->low[v % 3], solids[i].positions[v]);

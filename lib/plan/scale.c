@@ -60,7 +60,7 @@ static double largest_sum(const skg_scale_grid *grid) {
 void skg_scale_find(const skg_scale_grid *grid, int64_t count, const skg_scale_part *parts,
                     int32_t bits_wanted, skg_scale *scale) {
     memset(grid->sums, 0, (size_t)((grid->columns + 1) * (grid->rows + 1)) * sizeof *grid->sums);
-    double total = 0, weight = 0, low = INFINITY, high = -INFINITY;
+    double total = 0, weight = 0, low = HUGE_VAL, high = -HUGE_VAL;
     for (int64_t i = 0; i < count; i++) {
         if (!add_rectangle(grid, &parts[i])) continue;
         total += most_of(&parts[i]);
@@ -76,6 +76,6 @@ void skg_scale_find(const skg_scale_grid *grid, int64_t count, const skg_scale_p
     int exponent = 0;
     frexp(bound, &exponent); /* bound < 2^exponent */
     if (bits_wanted == 32 && ldexp(plausible, 30 - exponent) < 0x1p24) scale->bits = 64;
-    /* In 64 bits 2^60 leaves double's and float's terms exact many times over. */
-    scale->scale = ldexp(1, (scale->bits == 32 ? 30 : 60) - exponent);
+    /* 2^50: the kernels round doubles to integers by adding 1.5 * 2^52. */
+    scale->scale = ldexp(1, (scale->bits == 32 ? 30 : 50) - exponent);
 }

@@ -43,7 +43,7 @@ START_TEST(a_swarm_needs_64_bits) {
         parts[i] = (skg_scale_part){100, 110, 100, 110, i % 2, i % 2 + 1.0, 1.0, 1};
     skg_scale scale = find(10000, parts, 32);
     ck_assert_int_eq(scale.bits, 64);
-    ck_assert(10000 * scale.scale < 0x1p60 && 10000 * scale.scale * 2 >= 0x1p60);
+    ck_assert(10000 * scale.scale < 0x1p50 && 10000 * scale.scale * 2 >= 0x1p50);
 }
 END_TEST
 
