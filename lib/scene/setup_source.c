@@ -1,5 +1,5 @@
 #include "scene/setup.h"
-#include "scene/units.h"
+#include "core/units.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,0 +1,18 @@
+#include "spline.h"
+
+enum { FEWEST = 4 }; /* points; fewer say nothing on curvature */
+
+void skg_spline_natural(int count, const double *x, const double *y, double *second, double *scratch) {
+    for (int i = 0; i < count; i++) second[i] = 0;
+    if (count < FEWEST) return;
+    /* Tridiagonal system h[i-1] d[i-1] + 2 (h[i-1] + h[i]) d[i] + h[i] d[i+1] = 6 (slope[i] - slope[i-1]). */
+    scratch[0] = 0;
+    for (int i = 1; i < count - 1; i++) {
+        double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
+        double bend = 6 * ((y[i + 1] - y[i]) / after - (y[i] - y[i - 1]) / before);
+        double pivot = 2 * (before + after) - before * scratch[i - 1];
+        scratch[i] = after / pivot;
+        second[i] = (bend - before * second[i - 1]) / pivot;
+    }
+    for (int i = count - 2; i > 0; i--) second[i] -= scratch[i] * second[i + 1];
+}
