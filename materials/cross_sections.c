@@ -20,7 +20,7 @@ static void fit(const skg_knot *knots, int process, int count, const int *rows, 
         x[i] = knots[rows[i]].log_energy;
         y[i] = knots[rows[i]].value[process];
     }
-    skg_spline_natural(count, x, y, second, scratch);
+    (process == SKG_PHOTO ? skg_spline_piece : skg_spline_natural)(count, x, y, second, scratch);
     for (int i = 0; i < count; i++) out[rows[i]].second[process] = second[i];
 }
 

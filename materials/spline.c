@@ -16,3 +16,14 @@ void skg_spline_natural(int count, const double *x, const double *y, double *sec
     }
     for (int i = count - 2; i > 0; i--) second[i] -= scratch[i] * second[i + 1];
 }
+
+void skg_spline_piece(int count, const double *x, const double *y, double *second, double *scratch) {
+    enum { CLOSE = 10 };
+    int first = 0, last = count - 1;
+    if (count >= FEWEST) {
+        if (CLOSE * (x[1] - x[0]) < x[2] - x[1]) first = 1;
+        if (CLOSE * (x[last] - x[last - 1]) < x[last - 1] - x[last - 2]) last--;
+    }
+    second[0] = second[count - 1] = 0;
+    skg_spline_natural(last - first + 1, x + first, y + first, second + first, scratch);
+}
