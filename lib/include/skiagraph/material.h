@@ -50,7 +50,8 @@ enum { SKG_BILINEAR = 0, SKG_BILOGARITHMIC = 1 };
 
 /* The naive way, kept to show its error (Vidal and Villard 2016, Eq. 13 and Fig. 12): mu interpolated between
  * tissue-equivalent gas, water, soft tissue and cortical bone by their Hounsfield numbers at 80 keV and
- * between the energies of the tables; -999 to 1330. Not for images. */
+ * between the energies of the tables, linear or logarithmic in all three (HU + 1000); from the gas's -998 to
+ * bone's 1330. Not for images. */
 SKG_API skg_status skg_material_naive_hounsfield(double hu, int32_t interpolation, skg_material **material);
 
 /* The same linear attenuation coefficient at every energy; per_cm in 1/cm, finite, >= 0. */
