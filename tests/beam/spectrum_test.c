@@ -36,7 +36,7 @@ START_TEST(bins_are_sorted_and_merged) {
     ck_skg_fails(skg_spectrum_bins(1, e + 3, n + 3, &s), SKG_ERR_BEAM, "without photons");
     ck_skg_fails(skg_spectrum_bins(1, e, (double[1]){-1}, &s), SKG_ERR_BEAM, "-1 photons");
     ck_skg_fails(skg_spectrum_bins(1, (double[1]){0.5}, n, &s), SKG_ERR_BEAM, "outside");
-    ck_skg_fails(skg_spectrum_bins(1, (double[1]){NAN}, n, &s), SKG_ERR_BEAM, "outside");
+    ck_skg_fails(skg_spectrum_bins(1, (double[1]){(double)NAN}, n, &s), SKG_ERR_BEAM, "outside");
 }
 END_TEST
 

@@ -109,7 +109,7 @@ START_TEST(energies_outside_are_refused) {
     ck_skg(skg_material_element(26, &iron));
     ck_skg_fails(skg_material_attenuation(iron, 0.99, &mu), SKG_ERR_MATERIAL, "outside");
     ck_skg_fails(skg_material_attenuation(iron, 20001, &mu), SKG_ERR_MATERIAL, "1 to 20000 keV");
-    ck_skg_fails(skg_material_attenuation(iron, NAN, &mu), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_material_attenuation(iron, (double)NAN, &mu), SKG_ERR_MATERIAL, "outside");
     ck_skg(skg_material_attenuation(iron, 1, &mu));
     ck_skg(skg_material_attenuation(iron, 20000, &mu));
     skg_material_release(&iron);

@@ -258,7 +258,7 @@ START_TEST(hounsfield_joints) {
     }
     ck_skg_fails(skg_material_hounsfield(-1051, &m), SKG_ERR_MATERIAL, "outside");
     ck_skg_fails(skg_material_hounsfield(3001, &m), SKG_ERR_MATERIAL, "outside");
-    ck_skg_fails(skg_material_hounsfield(NAN, &m), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_material_hounsfield((double)NAN, &m), SKG_ERR_MATERIAL, "outside");
 }
 END_TEST
 
