@@ -170,6 +170,7 @@ static skg_status finish(const submission *s, skg_job *job) {
     cl_command_queue queue = plan->context->device->queue;
     SKG_TRY(skg_job_read(job, plan->negative.memory, sizeof *job->negative, job->negative));
     SKG_TRY(skg_job_read(job, plan->geometry.bad.memory, sizeof *job->broken, job->broken));
+    SKG_TRY(skg_raster_read_listed(plan->main, job->listed));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     SKG_CL_TRY(clFlush(queue));
     return SKG_OK;
@@ -183,6 +184,7 @@ static skg_status submit(submission *s, skg_job **job) {
     SKG_TRY(skg_job_create(plan, &made));
     SKG_TRY_CLEANUP(skg_alloc(plan->scene->count, sizeof *poses, "poses", &poses));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->negative, "counters", &made->negative));
+    SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->listed, "counters", &made->listed));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->broken, "counters", &made->broken));
     if (plan->open_count)
         SKG_TRY_CLEANUP(skg_job_stage(made, plan->open_count * (1 + SKG_FIRST_BAD), sizeof *made->bad,
