@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static int is_quiet;
 
@@ -44,7 +45,10 @@ int cli_exit_status(skg_status status) {
 
 int cli_fail(skg_status status) {
     const char *sentence = status < 0 ? skg_last_error() : skg_status_text(status);
-    return cli_error(cli_exit_status(status), "%s", *sentence ? sentence : skg_status_text(status));
+    if (!*sentence) sentence = skg_status_text(status);
+    int length = (int)strlen(sentence); /* a build log ends in empty lines */
+    while (length > 0 && sentence[length - 1] == '\n') length--;
+    return cli_error(cli_exit_status(status), "%.*s", length, sentence);
 }
 
 void cli_warn(const char *format, ...) {
