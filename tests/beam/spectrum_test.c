@@ -221,8 +221,8 @@ START_TEST(response_tables) {
     ck_skg(skg_response_at(NULL, 75, 1, &recorded, &seen)); /* ideal */
     ck_assert_double_eq(recorded, 75);
     ck_assert_double_eq(seen, 1);
-    ck_skg_fails(skg_response_table(3, r + 1, e, NULL, &t), SKG_ERR_BEAM, "row");
-    ck_skg_fails(skg_response_table(2, r, e + 1, NULL, &t), SKG_ERR_BEAM,
+    ck_skg_fails(skg_response_table(2, e + 1, (double[2]){1, 101}, NULL, &t), SKG_ERR_BEAM, "row 2");
+    ck_skg_fails(skg_response_table(2, e, e + 1, NULL, &t), SKG_ERR_BEAM,
                  "50 keV recorded of a photon of 10");
     char path[] = "/tmp/skg_response_XXXXXX";
     write_file(path, "0.01 0.01\n0.1 0.06\n");

@@ -159,6 +159,7 @@ START_TEST(density_unknown_or_another) {
     ck_skg(skg_material_at_density(glass, 3.16, &dense));
     ck_assert_double_eq_tol(mu_of(dense, 60), 3.16 * mass_mu(glass, 60), 1e-14);
     skg_material_release(&glass);
+    skg_material_release(&dense);
     glass = named("mu:0.2");
     ck_skg_fails(skg_material_at_density(glass, 2, &dense), SKG_ERR_MATERIAL, "no density");
     skg_material_release(&glass);
@@ -166,7 +167,6 @@ START_TEST(density_unknown_or_another) {
     skg_material *lung = NULL;
     ck_skg_fails(skg_material_at_density(glass, 0, &lung), SKG_ERR_MATERIAL, "above 0");
     skg_material_release(&glass);
-    skg_material_release(&dense);
 }
 END_TEST
 
