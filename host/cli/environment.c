@@ -74,9 +74,11 @@ static int folder_error(const char *path) {
     snprintf(above, sizeof above, "%s", path);
     while (access(above, W_OK | X_OK) != 0) {
         char *slash = strrchr(above, '/');
-        if (errno != ENOENT || !slash) return errno == ENOENT ? access(".", W_OK) == 0 ? 0 : errno : errno;
-        if (slash == above) return access("/", W_OK | X_OK) == 0 ? 0 : errno;
-        *slash = '\0';
+        if (errno != ENOENT || strcmp(above, "/") == 0 || strcmp(above, ".") == 0) return errno;
+        if (!slash)
+            strcpy(above, ".");
+        else
+            slash[slash == above] = '\0'; /* the root keeps its slash */
     }
     return 0;
 }
