@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *affinity_reason = "not decided yet";
@@ -68,19 +69,18 @@ static int find_cache(char *path, size_t size) {
     return length > 0 && (size_t)length < size;
 }
 
-/* Whether the folder, or the nearest one above it that is there, can be written; 0 or an errno value. */
+/* Makes the folder with those above it, as PoCL would; 0, or the errno value that says why it cannot be used.
+ * (Asking is not enough: some file systems let root write and make nothing.) */
 static int folder_error(const char *path) {
     char above[1024];
     snprintf(above, sizeof above, "%s", path);
-    while (access(above, W_OK | X_OK) != 0) {
-        char *slash = strrchr(above, '/');
-        if (errno != ENOENT || strcmp(above, "/") == 0 || strcmp(above, ".") == 0) return errno;
-        if (!slash)
-            strcpy(above, ".");
-        else
-            slash[slash == above] = '\0'; /* the root keeps its slash */
+    for (char *slash = strchr(above + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        if (mkdir(above, 0777) != 0 && errno != EEXIST) return errno;
+        *slash = '/';
     }
-    return 0;
+    if (mkdir(above, 0777) != 0 && errno != EEXIST) return errno;
+    return access(above, W_OK | X_OK) == 0 ? 0 : errno;
 }
 
 static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *where) {
