@@ -97,7 +97,8 @@ static void remove_cache(void) {
 
 static void decide_cache(void) {
     char path[1024];
-    const char *folder = getenv("TMPDIR");
+    const char *folder = getenv("TMPDIR"), *own = getenv("POCL_CACHE_DIR");
+    if (own && !*own) unsetenv("POCL_CACHE_DIR"); /* an empty one stops PoCL by an assertion */
     if (!find_cache(path, sizeof path)) return;
     int reason = folder_error(path);
     if (reason == 0) return;
