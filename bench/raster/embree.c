@@ -16,7 +16,7 @@ struct embree {
     RTCScene scene;
     float *lengths;
     int threads, columns, rows;
-    double source[3], first[3], column[3], row[3];
+    float source[3], first[3], column[3], row[3];
 };
 
 /* What the filter adds to: Embree hands the context back. */
@@ -42,18 +42,20 @@ static inline void collect_lanes(const float *ray, const float *hit, int *restri
     }
 }
 
+/* Embree hands over 16 rays at once, or 8 or fewer where that is how it works; `id` is the ray's place in the
+ * packet. */
 static void collect(const struct RTCFilterFunctionNArguments *arguments) {
     collector *into = (collector *)(void *)arguments->context;
+    const unsigned count = arguments->N, *id = (const unsigned *)arguments->ray + RAY_NUMBER * count;
     const float *ray = (const float *)arguments->ray, *hit = (const float *)arguments->hit;
-    if (arguments->N == RAYS) {
-        collect_lanes(ray, hit, arguments->valid, RAYS, into->sum);
-        return;
-    }
-    const unsigned count = arguments->N; /* fewer where Embree splits the packet */
     float sum[RAYS] = {0};
-    collect_lanes(ray, hit, arguments->valid, count, sum);
-    for (unsigned k = 0; k < count; k++)
-        into->sum[((const unsigned *)arguments->ray)[RAY_NUMBER * count + k]] += sum[k];
+    if (count == RAYS)
+        collect_lanes(ray, hit, arguments->valid, RAYS, sum);
+    else if (count == RAYS / 2)
+        collect_lanes(ray, hit, arguments->valid, RAYS / 2, sum);
+    else
+        collect_lanes(ray, hit, arguments->valid, count, sum);
+    for (unsigned k = 0; k < count; k++) into->sum[id[k]] += sum[k];
 }
 
 static void build(embree *self, const bench_shape *shape) {
@@ -84,11 +86,13 @@ embree *embree_create(const bench_shape *shape, const skg_view *view, int thread
     self->threads = threads;
     self->columns = (int)view->columns;
     self->rows = (int)view->rows;
-    to_first_pixel(view, self->first);
+    double first[3];
+    to_first_pixel(view, first);
     for (int k = 0; k < 3; k++) {
-        self->source[k] = view->source[k];
-        self->column[k] = view->column_step[k];
-        self->row[k] = view->row_step[k];
+        self->first[k] = (float)first[k];
+        self->source[k] = (float)view->source[k];
+        self->column[k] = (float)view->column_step[k];
+        self->row[k] = (float)view->row_step[k];
     }
     return self;
 }
@@ -100,25 +104,25 @@ void embree_free(embree *self) {
     free(self);
 }
 
-/* Ray k of the packet whose first pixel is (i, j): from the source at t = 0 to the pixel at t = 1. */
-static void aim(const embree *self, int i, int j, int k, struct RTCRayHit16 *rays) {
-    const int column = i + k % SIDE, row = j + k / SIDE;
-    double to[3];
-    for (int m = 0; m < 3; m++) to[m] = self->first[m] + column * self->column[m] + row * self->row[m];
-    rays->ray.org_x[k] = (float)self->source[0];
-    rays->ray.org_y[k] = (float)self->source[1];
-    rays->ray.org_z[k] = (float)self->source[2];
-    rays->ray.dir_x[k] = (float)to[0];
-    rays->ray.dir_y[k] = (float)to[1];
-    rays->ray.dir_z[k] = (float)to[2];
-    rays->ray.tnear[k] = 0;
-    rays->ray.tfar[k] = 1;
-    rays->ray.time[k] = 0;
-    rays->ray.mask[k] = ~0u;
-    rays->ray.id[k] = (unsigned)k;
-    rays->ray.flags[k] = 0;
-    rays->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-    rays->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+/* The rays of the packet whose first pixel is (i, j): from the source at t = 0 to their pixels at t = 1. */
+static void aim(const embree *self, int i, int j, struct RTCRayHit16 *rays) {
+    for (int k = 0; k < RAYS; k++) {
+        const float column = (float)(i + k % SIDE), row = (float)(j + k / SIDE);
+        rays->ray.org_x[k] = self->source[0];
+        rays->ray.org_y[k] = self->source[1];
+        rays->ray.org_z[k] = self->source[2];
+        rays->ray.dir_x[k] = self->first[0] + column * self->column[0] + row * self->row[0];
+        rays->ray.dir_y[k] = self->first[1] + column * self->column[1] + row * self->row[1];
+        rays->ray.dir_z[k] = self->first[2] + column * self->column[2] + row * self->row[2];
+        rays->ray.tnear[k] = 0;
+        rays->ray.tfar[k] = 1;
+        rays->ray.time[k] = 0;
+        rays->ray.mask[k] = ~0u;
+        rays->ray.id[k] = (unsigned)k;
+        rays->ray.flags[k] = 0;
+        rays->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        rays->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
 }
 
 static void trace(const embree *self, int i, int j) {
@@ -127,8 +131,8 @@ static void trace(const embree *self, int i, int j) {
     collector into;
     rtcInitIntersectContext(&into.context);
     into.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    aim(self, i, j, &rays);
     for (int k = 0; k < RAYS; k++) {
-        aim(self, i, j, k, &rays);
         into.sum[k] = 0;
         valid[k] = i + k % SIDE < self->columns && j + k / SIDE < self->rows ? -1 : 0;
     }
