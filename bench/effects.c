@@ -69,6 +69,7 @@ static void frame(void *who) {
 static void make_plan(skg_context *context, const effect *kind, long size, contender *out) {
     bench_scene scene;
     scene_generate(context, &kind->changes, size, &scene);
+    scene.options.overlaps = 0; /* the parts of the flat scenes overlap on purpose */
     scene.options.precision = kind->precision;
     scene.options.strategy = kind->strategy;
     scene.options.quantity = kind->quantity;

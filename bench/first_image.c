@@ -81,8 +81,7 @@ static void live(const settings *set, story *out) {
 /* A process of its own; the most memory that it held, MiB. */
 static double live_once(const settings *set, story *out) {
     int ends[2], status = 0;
-    struct rusage before, after;
-    getrusage(RUSAGE_CHILDREN, &before);
+    struct rusage children;
     if (pipe(ends) != 0) bench_die("no pipe");
     const pid_t child = fork();
     if (child < 0) bench_die("no process");
@@ -95,8 +94,8 @@ static double live_once(const settings *set, story *out) {
     close(ends[0]);
     waitpid(child, &status, 0);
     if (got != (ssize_t)sizeof *out || status != 0) bench_die("a process did not end well");
-    getrusage(RUSAGE_CHILDREN, &after);
-    return (double)after.ru_maxrss / 1024; /* of the largest child so far */
+    getrusage(RUSAGE_CHILDREN, &children);
+    return (double)children.ru_maxrss / 1024; /* of the largest child so far */
 }
 
 int main(int count, char **words) {

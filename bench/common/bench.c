@@ -31,8 +31,11 @@ void bench_try(skg_status status, const char *what) {
 }
 
 static void warn(int32_t level, const char *sentence, void *user) {
+    static char last[512];
     (void)user;
-    if (level == SKG_LOG_WARNING) fprintf(stderr, "warning: %s\n", sentence);
+    if (level != SKG_LOG_WARNING || !strncmp(last, sentence, sizeof last - 1)) return;
+    snprintf(last, sizeof last, "%s", sentence);
+    fprintf(stderr, "warning: %s\n", sentence);
 }
 
 skg_context *bench_context(const char *config) {

@@ -17,7 +17,8 @@ _Noreturn void bench_die(const char *format, ...) __attribute__((format(printf, 
 /* Ends the program with the library's own sentence where a call failed; answers such as SKG_RANGE pass. */
 void bench_try(skg_status status, const char *what);
 
-/* A context whose warnings go to standard error. config: as skg_context_create takes it. */
+/* A context whose warnings go to standard error, the same one in a row once. config: as skg_context_create
+ * takes it. */
 skg_context *bench_context(const char *config);
 
 /* `count` zeroed elements aligned to a cache line; ends the program when there is no memory. free() releases.

@@ -23,7 +23,7 @@ static int64_t add_part(bench_scene *out, skg_mesh *mesh, double per_cm, int64_t
     char label[32];
     bench_try(skg_material_mu("tissue", per_cm, &material), "material");
     bench_try(skg_scene_size(out->scene, &parts), "scene");
-    snprintf(label, sizeof label, "part %lld", (long long)parts);
+    snprintf(label, sizeof label, "organ %lld", (long long)parts);
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside, part.label = label;
     for (int k = 0; k < 3; k++) part.pose[5 * k] = scale[k], part.pose[4 * k + 3] = place[k];
