@@ -15,6 +15,8 @@ typedef struct {
     double low[3], high[3]; /* mm */
 } box;
 
+static const box nothing = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+
 static int64_t add_part(bench_scene *out, skg_mesh *mesh, double per_cm, int64_t inside, const double *place,
                         const double *scale) {
     skg_material *material = NULL;
@@ -140,7 +142,7 @@ static double organ_mu(const char *path) {
 static void from_folder(skg_context *context, const char *folder, long size, bench_scene *out) {
     char *paths[FILES];
     skg_mesh *meshes[FILES], *envelope = NULL;
-    box all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    box all = nothing;
     double edges[3], middle[3];
     begin(context, out);
     const int count = list_meshes(folder, paths);
@@ -207,7 +209,7 @@ void scene_close(bench_scene *scene) {
 /* Middle of the box about the middles of all parts. */
 static void find_middle(const skg_scene *scene, double *middle) {
     int64_t parts = 0;
-    box all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    box all = nothing;
     bench_try(skg_scene_size(scene, &parts), "scene");
     for (int64_t i = 0; i < parts; i++) {
         skg_part part;
