@@ -1,5 +1,6 @@
 #include "plan/plan.h"
 #include "beam/spectrum.h"
+#include "plan/frame.h"
 #include "plan/report.h"
 
 #include <inttypes.h>
@@ -41,7 +42,8 @@ static void start_report(skg_plan *plan) {
     report->parts = plan->scene->count;
     for (int64_t i = 0; i < plan->scene->count; i++)
         report->triangles += plan->scene->parts[i].mesh->triangles;
-    for (int64_t i = 0; i < plan->meshes.count; i++) report->vertices += plan->meshes.meshes[i].mesh->vertices;
+    for (int64_t i = 0; i < plan->meshes.count; i++)
+        report->vertices += plan->meshes.meshes[i].mesh->vertices;
     report->open_parts = plan->open_count;
     report->planes = plan->model.planes;
     report->strategy = plan->strategy;
@@ -81,10 +83,16 @@ cleanup:
 static skg_status make_attenuation(skg_plan *plan) {
     const double one = 1;
     const skg_model *model = &plan->model;
-    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, model->planes, model->nodes,
-                                   model->channels, model->coefficients, model->weights, &plan->attenuation));
+    /* The attenuation of one energy is the exponent itself. */
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
+                          : model->nodes == 1                       ? SKG_SHOWN_EXPONENT
+                                                                    : SKG_SHOWN_LOGARITHM;
+    const skg_attenuation image = {model->planes, model->nodes, model->channels, shown, {0}, {0}};
+    const skg_attenuation length = {1, 1, 1, SKG_SHOWN_EXPONENT, {0}, {0}};
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
+                                   model->weights, &plan->attenuation));
     SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, 1, 1, 1, &one, &one, &plan->lengths));
+        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
     SKG_TRY(
         skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
@@ -103,7 +111,8 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
     SKG_TRY(skg_report_overlaps(plan));
-    return skg_report_effects(plan);
+    SKG_TRY(skg_report_effects(plan));
+    return skg_frame_prepare(plan);
 }
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
