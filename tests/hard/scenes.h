@@ -1,0 +1,37 @@
+/* Solids and views at which coverage by rounded arithmetic goes wrong, with the truth about each. */
+#ifndef SKG_TESTS_SCENES_H
+#define SKG_TESTS_SCENES_H
+
+#include "support/run.h"
+
+enum {
+    HARD_OCTAHEDRA,          /* 3000; corners within 3 ulp of the rays of pixels */
+    HARD_OCTAHEDRA_PARALLEL, /* corners on the rays exactly, but for float rounding */
+    HARD_CUBE_ON_CENTRES,    /* parallel: corners and edges on pixel centres, sides along the rays */
+    HARD_CUBES_ON_CENTRES,   /* point: front corners and edges on centres, cubes side by side sharing faces'
+                                places */
+    HARD_SLIVERS,            /* flattened 50 times */
+    HARD_SLIVERS_OBLIQUE,    /* by a pose, edge-on to many rays */
+    HARD_SOURCE_INSIDE,
+    HARD_CUT_BY_DETECTOR,
+    HARD_SOURCE_AND_DETECTOR, /* a long box through both */
+    HARD_DUST,                /* triangles much smaller than a pixel */
+    HARD_SPECK,               /* 40,000 triangles within three pixels */
+    HARD_LAYERS,              /* one mesh of 20 equal shells at the same place */
+    HARD_GIANT,               /* its corners are far outside the detector */
+    HARD_SCENES
+};
+
+typedef struct {
+    const char *name;
+    solid body;
+    double pose[16];
+    skg_view view;
+    double wobble; /* pixels: a face may lie in a ray's plane, where the length jumps; 0: it does not */
+    int sliver;    /* 1: the bars of slivers hold */
+} hard_scene;
+
+hard_scene hard_make(int which);
+void hard_free(hard_scene *h);
+
+#endif
