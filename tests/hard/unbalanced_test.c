@@ -5,6 +5,7 @@
 #include "support/verdict.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* A triangle of `pixels` across about (column, row), half-way to the detector: what it is added to is open.

@@ -4,6 +4,7 @@
 #include "support/verdict.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Three axes at right angles, anyhow (from a random unit quaternion). */
