@@ -159,6 +159,12 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
     part->turned = mirrored != (flipped != 0) ? -1 : 0;
 }
 
+double skg_camera_pixel_area(const skg_camera *camera) {
+    double across[3];
+    cross(camera->column, camera->row, across);
+    return sqrt(dot(across, across));
+}
+
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray) {
     const double column = 0.5 * (double)(camera->columns - 1), row = 0.5 * (double)(camera->rows - 1);
     *ray = (skg_ray_double){.unit = 1 / scale};

@@ -38,7 +38,10 @@ void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]
 void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double radius,
                      int32_t flipped, skg_part_double *part);
 
-/* What resolve multiplies by: lengths of the rays, and 1 / scale. */
+/* mm2 of a pixel. */
+double skg_camera_pixel_area(const skg_camera *camera);
+
+/* What sums are multiplied by: lengths of the rays, and 1 / scale. */
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);
 
 #endif

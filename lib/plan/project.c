@@ -175,12 +175,12 @@ void skg_geometry_release(skg_geometry *geometry) {
 }
 
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
-                               const void *offsets) {
-    const size_t row = 3 * real_size(geometry);
+                               const void *offsets, skg_stage_log *log) {
+    const int64_t row = 3 * (int64_t)real_size(geometry);
     const int64_t first = geometry->mesh_vertex[mesh], count = geometry->mesh_vertex[mesh + 1] - first;
     if (count == 0) return SKG_OK;
-    SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->offsets.memory, CL_TRUE,
-                                    (size_t)first * row, (size_t)count * row, offsets, 0, NULL, NULL));
+    SKG_TRY(
+        skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets, log));
     return reset_bad(context, geometry);
 }
 

@@ -66,9 +66,9 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
 void skg_geometry_release(skg_geometry *geometry);
 
 /* Uploads the vertices of a mesh: offsets from its origin, [vertices][3], float or double as the precision
- * is; copied when the call returns. */
+ * is. Nothing is waited for: the offsets must stay until they are read. */
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
-                               const void *offsets);
+                               const void *offsets, skg_stage_log *log);
 
 /* Enqueues one frame's part table and projection. part: [parts]; scale: of the accumulators (multiplies
  * weights). */

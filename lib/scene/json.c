@@ -253,6 +253,6 @@ skg_status skg_json_direction(const skg_json_node *node, double *direction) {
     if (!(length > 0) || !isfinite(length))
         return skg_json_fail(node, SKG_ERR_FORMAT, "is (%g, %g, %g), which is no direction", direction[0],
                              direction[1], direction[2]);
-    skg_scale(1 / length, direction, direction);
+    skg_scale_vector(1 / length, direction, direction);
     return SKG_OK;
 }

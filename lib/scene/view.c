@@ -67,7 +67,7 @@ static skg_status prepare_detector(const skg_view *view, skg_view_frame *frame) 
             "the detector's rows and columns run in the same direction (%g, %g, %g); up and right "
             "must not be parallel",
             frame->du[0] / width, frame->du[1] / width, frame->du[2] / width);
-    skg_scale(1 / area, frame->normal, frame->normal);
+    skg_scale_vector(1 / area, frame->normal, frame->normal);
     skg_add_scaled(view->centre, -0.5 * (double)(view->columns - 1), frame->du, frame->pixel0);
     skg_add_scaled(frame->pixel0, -0.5 * (double)(view->rows - 1), frame->dv, frame->pixel0);
     return SKG_OK;
@@ -107,7 +107,7 @@ static skg_status prepare_parallel(const skg_view *view, skg_view_frame *frame) 
         skg_add_scaled(view->centre, -1, view->source, direction);
     /* Scaled first: a direction may be of any length, and its square need not be a number. */
     double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
-    if (largest > 0) skg_scale(1 / largest, direction, direction);
+    if (largest > 0) skg_scale_vector(1 / largest, direction, direction);
     double length = skg_length(direction);
     if (!(length > 0))
         return skg_fail(SKG_ERR_SCENE,
@@ -115,7 +115,7 @@ static skg_status prepare_parallel(const skg_view *view, skg_view_frame *frame) 
                                       : "the source is at the detector's centre, so the parallel beam has "
                                         "no direction; move it away");
     frame->parallel = 1;
-    skg_scale(1 / length, direction, frame->d0);
+    skg_scale_vector(1 / length, direction, frame->d0);
     memcpy(frame->origin, frame->pixel0, sizeof frame->origin);
     if (!(fabs(skg_dot(frame->normal, frame->d0)) > DEGENERATE))
         return skg_fail(
@@ -157,7 +157,7 @@ skg_status skg_view_prepare(const skg_view *view, skg_view_frame *frame) {
         SKG_TRY(prepare_point(&ours, frame));
     else
         SKG_TRY(prepare_parallel(&ours, frame));
-    if (skg_dot(frame->normal, frame->d0) < 0) skg_scale(-1, frame->normal, frame->normal);
+    if (skg_dot(frame->normal, frame->d0) < 0) skg_scale_vector(-1, frame->normal, frame->normal);
     return invert(frame);
 }
 

@@ -421,7 +421,7 @@ static void device_layout(const char *options, int32_t out[9]) {
     ck_assert_int_eq(clBuildProgram(program, 1, &device->id, options, NULL, NULL), CL_SUCCESS);
     cl_kernel kernel = NULL;
     skg_buffer buffer = {0};
-    skg_stage_log log = {0};
+    skg_stage_log log = {.on = 1};
     ck_skg(skg_kernel_create(program, "layout", &kernel));
     ck_skg(skg_buffer_reserve(context, &buffer, 4096, CL_MEM_READ_WRITE, "layout"));
     const cl_mem memory[5] = {buffer.memory, buffer.memory, buffer.memory, buffer.memory, buffer.memory};

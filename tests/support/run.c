@@ -91,16 +91,18 @@ static void widen(double *values, int64_t count) {
 static double *image_of(skg_plan *plan, const skg_view *view, int lengths) {
     skg_plan_report report;
     skg_output output;
+    skg_frame frame;
     skg_job *job = NULL;
     const int64_t count = view->rows * view->columns;
     double *image = calloc((size_t)count, sizeof *image);
     skg_plan_report_init(&report);
     ck_skg(skg_plan_get_report(plan, &report));
+    skg_frame_init(&frame);
     skg_output_init(&output);
     output.type = report.precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
     output.data = image;
     if (lengths) {
-        ck_skg(skg_plan_lengths(plan, 0, SKG_SURFACE, 1, NULL, &output, &job));
+        ck_skg(skg_plan_lengths(plan, 0, SKG_SURFACE, 1, &frame, &output, &job));
         ck_skg(skg_job_wait(&job));
     } else {
         ck_skg(skg_plan_image(plan, &output));

@@ -136,6 +136,21 @@ SKG_API void skg_effect_init(skg_effect *effect);
 SKG_API skg_status skg_plan_effects(const skg_plan *plan, int64_t *count);
 SKG_API skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect);
 
+/* Parts that overlap, or leave their parent, as found when the plan was made; worst volume first. Method: a grid of
+ * 256 x 256 columns along z over the scene; volumes carry its resolution. */
+typedef struct {
+    int32_t size;
+    int32_t protrudes;   /* 1: part leaves its parent `other`; 0: they overlap */
+    int64_t part, other; /* numbers in the scene */
+    double volume;       /* mm3 */
+    double longest;      /* mm, longest chord along z */
+    double place[3];     /* mm, its middle */
+} skg_overlap;
+
+SKG_API void skg_overlap_init(skg_overlap *overlap);
+SKG_API skg_status skg_plan_overlaps(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_overlap(const skg_plan *plan, int64_t index, skg_overlap *overlap);
+
 /* Time per stage of the last job that was waited for, where the plan was made with profile = 1. */
 typedef struct {
     int32_t size;
