@@ -6,6 +6,8 @@ static void octahedra(hard_scene *h, int projection) {
     h->name = projection == SKG_POINT ? "octahedra" : "octahedra, parallel";
     h->view = run_view(512, 0.75); /* steps and places of pixels are floats */
     h->view.projection = projection;
+    h->wobble =
+        0x1p-15; /* an ulp of a corner's float place, 256 pixels from the part's own: these are steep */
     h->body = solid_octahedra(3000, &h->view, projection == SKG_POINT ? 3 : 0, 11);
 }
 

@@ -27,7 +27,8 @@ typedef struct {
     solid body;
     double pose[16];
     skg_view view;
-    double wobble; /* pixels: a face may lie in a ray's plane, where the length jumps; 0: it does not */
+    double wobble; /* pixels by which a ray may be off: the length jumps where a face lies in its plane, and
+                      is steep at needles; 0: none */
     int sliver;    /* 1: the bars of slivers hold */
 } hard_scene;
 

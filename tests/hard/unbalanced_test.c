@@ -105,7 +105,7 @@ START_TEST(lengths_are_right) {
         double *got = run_solid(&h.body, h.pose, &h.view, (run_choice){.precision = precision});
         verdict v = {0};
         const int64_t rays = h.body.triangles > 100000 ? 60 : 500;
-        verdict_cast(&v, c, &h.view, got, where, h.wobble > 0 ? pixels : rays, h.wobble, &seed);
+        verdict_cast(&v, c, &h.view, got, where, pixels < 5000 ? pixels : rays, h.wobble, &seed);
         check_bars(&v, &h, precision);
         /* The other pixels: an unbalanced one would be off by its distance to the source, far below or above.
          */
@@ -161,14 +161,14 @@ START_TEST(a_hundred_plates) {
     enum { PLATES = 100, PIXELS = 32 };
     const skg_view view = run_view(PIXELS, 1);
     for (int together = 0; together < 2; together++) {
-        solid plate = solid_box(400, 400, 1), all = solid_plates(PLATES, 400, 400, 1, together ? -1 : 4);
+        solid plate = solid_box(400, 400, 1), all = solid_plates(PLATES, 400, 400, 1, together ? -1 : 2.9);
         skg_mesh *mesh = run_mesh(&plate);
         skg_scene *scene = NULL;
         ck_skg(skg_scene_create(run_context, &scene));
         for (int n = 0; n < PLATES; n++) {
             char label[16];
             double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-            pose[11] = together ? 0 : 5 * n - 247.5;
+            pose[11] = together ? 0 : 3.9 * n - 193.05;
             snprintf(label, sizeof label, "plate %d", n);
             run_part(scene, label, mesh, 0.5, pose, -1); /* 0.05 per mm: exponent 5 */
         }
@@ -208,7 +208,11 @@ START_TEST(a_million_tetrahedra) {
     caster *c = caster_create(&s, NULL);
     verdict v = {0};
     verdict_cast(&v, c, &view, got, window_of(&s, NULL, &view), 12, 0, &seed);
-    verdict_check(&v, SKG_SINGLE, "a million tetrahedra");
+    /* A ray meets about a hundred small ones. Each is as exact as its own size and place allow, with corners
+     * in pixels to 2^-18 (floats, 64 pixels from the part's own): 1 mm per pixel, sqrt(200) hits, over the 40
+     * mm of all. */
+    ck_assert_msg(verdict_rms(&v) <= 3e-6 && verdict_worst(&v) <= 1e-5, "rms %.3g, worst %.3g of Lmax",
+                  verdict_rms(&v), verdict_worst(&v));
     for (int64_t p = 0; p < 128 * 128; p++) ck_assert(got[p] >= -1e-3 * v.longest && got[p] <= 2 * v.longest);
     verdict_free(&v);
     caster_free(c);
