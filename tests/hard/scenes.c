@@ -2,13 +2,16 @@
 
 #include <string.h>
 
-static void octahedra(hard_scene *h, int projection) {
-    h->name = projection == SKG_POINT ? "octahedra" : "octahedra, parallel";
+static void octahedra(hard_scene *h, int projection, int edges) {
+    h->name = edges                     ? "octahedra with edges along rays"
+              : projection == SKG_POINT ? "octahedra"
+                                        : "octahedra, parallel";
+    h->turned = edges ? 1e-4 : 0;
     h->view = run_view(512, 0.75); /* steps and places of pixels are floats */
     h->view.projection = projection;
     h->wobble =
         0x1p-15; /* an ulp of a corner's float place, 256 pixels from the part's own: these are steep */
-    h->body = solid_octahedra(3000, &h->view, projection == SKG_POINT ? 3 : 0, 11);
+    h->body = solid_octahedra(3000, &h->view, projection == SKG_POINT ? 3 : 0, edges ? 1 : 2, 11);
 }
 
 static void cubes_on_centres(hard_scene *h) {
@@ -95,10 +98,13 @@ hard_scene hard_make(int which) {
     hard_scene h = {.pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
     switch (which) {
     case HARD_OCTAHEDRA:
-        octahedra(&h, SKG_POINT);
+        octahedra(&h, SKG_POINT, 0);
+        break;
+    case HARD_OCTAHEDRA_EDGES:
+        octahedra(&h, SKG_POINT, 1);
         break;
     case HARD_OCTAHEDRA_PARALLEL:
-        octahedra(&h, SKG_PARALLEL);
+        octahedra(&h, SKG_PARALLEL, 0);
         break;
     case HARD_CUBES_ON_CENTRES:
         cubes_on_centres(&h);

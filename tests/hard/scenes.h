@@ -6,6 +6,7 @@
 
 enum {
     HARD_OCTAHEDRA,          /* 3000; corners within 3 ulp of the rays of pixels */
+    HARD_OCTAHEDRA_EDGES,    /* the same, and edges and faces along rays but for those ulps */
     HARD_OCTAHEDRA_PARALLEL, /* corners on the rays exactly, but for float rounding */
     HARD_CUBE_ON_CENTRES,    /* parallel: corners and edges on pixel centres, sides along the rays */
     HARD_CUBES_ON_CENTRES,   /* point: front corners and edges on centres, cubes side by side sharing faces'
@@ -30,6 +31,8 @@ typedef struct {
     double wobble; /* pixels by which a ray may be off: the length jumps where a face lies in its plane, and
                       is steep at needles; 0: none */
     int sliver;    /* 1: the bars of slivers hold */
+    double turned; /* fraction of pixels at which rounding may turn an edge along the ray inside out: the
+                      length is then off by that edge's own, either way */
 } hard_scene;
 
 hard_scene hard_make(int which);

@@ -29,7 +29,7 @@ START_TEST(makers_are_outward_and_of_the_right_volume) {
                    solid_shell(10, 9, 400, 200),
                    solid_blob(10, 60, 30, 1),
                    solid_tetrahedra(10, 3, box, 2),
-                   solid_octahedra(10, &view, 3, 3)};
+                   solid_octahedra(10, &view, 3, 2, 3)};
     const double volumes[] = {24, 250, 4 * pi * 1000 / 3, 2 * pi * pi * 20 * 25, 4 * pi * 271 / 3};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) {
         const double volume = solid_volume(&all[n]);
@@ -98,7 +98,7 @@ START_TEST(signed_hits_always_cancel) {
     skg_view view = view_of(200, 1);
     for (int projection = SKG_POINT; projection <= SKG_PARALLEL; projection++) {
         view.projection = projection;
-        solid s = solid_octahedra(500, &view, projection == SKG_POINT ? 3 : 0, 7),
+        solid s = solid_octahedra(500, &view, projection == SKG_POINT ? 3 : 0, 1, 7),
               cube = solid_box(64, 64, 64);
         solid_add(&s, &cube);
         caster *c = caster_create(&s, NULL);

@@ -180,17 +180,18 @@ static void near_ray(double *at, const skg_view *view, double column, double row
     }
 }
 
-solid solid_octahedra(int64_t count, const skg_view *view, int ulps, uint64_t seed) {
+solid solid_octahedra(int64_t count, const skg_view *view, int ulps, int least, uint64_t seed) {
     solid s = allocate(6 * count, 8 * count);
     int32_t *at = s.corners;
     for (int64_t n = 0; n < count; n++) {
         double *p = s.positions + 18 * n;
         const double t = draw(&seed, 0.4, 0.7), deep = draw(&seed, 0.002, 0.02);
-        const double c = (double)(5 + draw_below(&seed, view->columns - 10));
-        const double r = (double)(5 + draw_below(&seed, view->rows - 10));
+        const double c = (double)(6 + draw_below(&seed, view->columns - 12));
+        const double r = (double)(6 + draw_below(&seed, view->rows - 12));
         for (int v = 0; v < 6; v++) { /* 0, 1: +- columns; 2, 3: +- rows; 4, 5: +- along */
             const double way = v % 2 ? -1 : 1;
-            const double side = (double)(1 + draw_below(&seed, 4)), skew = (double)(draw_below(&seed, 3) - 1);
+            const double side = (double)(least + draw_below(&seed, 4)),
+                         skew = (double)(draw_below(&seed, 3) - 1);
             const double dc = v / 2 == 0 ? way * side : v / 2 == 1 ? skew : 0;
             const double dr = v / 2 == 1 ? way * side : v / 2 == 0 ? skew : 0;
             near_ray(p + 3 * v, view, c + dc, r + dr, t + (v / 2 == 2 ? way : draw(&seed, -0.5, 0.5)) * deep,
@@ -256,13 +257,11 @@ solid solid_copy(const solid *from) {
 
 solid solid_shuffled(const solid *from, uint64_t seed) {
     solid s = solid_copy(from);
-    for (int64_t t = s.triangles - 1; t >= 0; t--) {
-        const int64_t other = draw_below(&seed, t + 1), turn = draw_below(&seed, 3);
-        int32_t kept[3], moved[3];
-        memcpy(kept, s.corners + 3 * t, sizeof kept);
-        memcpy(moved, s.corners + 3 * other, sizeof moved);
-        memcpy(s.corners + 3 * other, kept, sizeof kept);
-        for (int64_t k = 0; k < 3; k++) s.corners[3 * t + k] = moved[(k + turn) % 3];
+    for (int64_t t = s.triangles - 1; t > 0; t--) {
+        int32_t *here = s.corners + 3 * t, *there = s.corners + 3 * draw_below(&seed, t + 1), kept[3];
+        memcpy(kept, here, sizeof kept);
+        memmove(here, there, sizeof kept);
+        memcpy(there, kept, sizeof kept);
     }
     return s;
 }

@@ -23,8 +23,10 @@ solid solid_shell(double outer, double inner, int around, int down); /* two sphe
 solid solid_tetrahedra(int64_t count, double size, const double box[3], uint64_t seed);
 
 /* `count` octahedra in a layer around half-way from source to detector; every corner is within `ulps` float
- * ulps of the ray of a pixel. */
-solid solid_octahedra(int64_t count, const skg_view *view, int ulps, uint64_t seed);
+ * ulps of the ray of a pixel.
+ * least: pixels from the middle to a corner; 2: no edge or face lies along a ray; 1: some do, but for the
+ * ulps. */
+solid solid_octahedra(int64_t count, const skg_view *view, int ulps, int least, uint64_t seed);
 
 /* `count` plates x by y across z, each `thickness` thick, `gap` between them. */
 solid solid_plates(int count, double x, double y, double thickness, double gap);
@@ -34,7 +36,7 @@ void solid_shift(solid *s, double x, double y, double z); /* mm */
 void solid_round(solid *s);                               /* positions become floats */
 void solid_add(solid *to, const solid *other);            /* both in one */
 solid solid_copy(const solid *from);
-solid solid_shuffled(const solid *from, uint64_t seed); /* triangles in another order, corners turned */
+solid solid_shuffled(const solid *from, uint64_t seed); /* triangles in another order */
 solid solid_unwelded(const solid *from);                /* every triangle has corners of its own */
 double solid_volume(const solid *s);                    /* mm3 */
 
