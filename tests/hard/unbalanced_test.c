@@ -105,8 +105,8 @@ START_TEST(lengths_are_right) {
         double *got = run_solid(&h.body, h.pose, &h.view, (run_choice){.precision = precision});
         verdict v = {0};
         int turned = 0;
-        const int64_t rays = h.body.triangles > 100000 ? 60 : 500;
-        verdict_cast(&v, c, &h.view, got, where, pixels < 5000 ? pixels : rays, h.wobble, &seed);
+        const int64_t rays = h.body.triangles > 100000 ? 60 : pixels < 5000 ? pixels : 500;
+        verdict_cast(&v, c, &h.view, got, where, rays, h.wobble, &seed);
         check_bars(&v, &h, precision);
         /* The other pixels: an unbalanced one would be off by its distance to the source, far below or above.
          */
