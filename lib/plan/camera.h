@@ -17,7 +17,7 @@ typedef struct {
     double origin[3];    /* S, or D0 with a parallel beam */
     double matrix[3][3]; /* of h */
     double determinant;  /* of its inverse: its sign is the handedness of the picture */
-    double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d */
+    double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d, 1 mm long */
     double column[3], row[3];
     double start[3]; /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
 } skg_camera;

@@ -119,28 +119,41 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
                          plan->negative.memory, &work->place, &job->log);
 }
 
+/* Camera, parts, scale, and the rasteriser that they call for. */
+static skg_status prepare(skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &frame->camera));
+    SKG_TRY(list_writes(plan, work, frame));
+    SKG_TRY(place_parts(plan, work, frame));
+    frame->kernels.precision = plan->options.precision;
+    frame->kernels.bits = frame->scale.bits;
+    frame->kernels.parallel = frame->camera.parallel;
+    frame->kernels.listed_writes = frame->planes > 1;
+    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes, plan->open_count > 0,
+                            &plan->main));
+    plan->report.plane_bits = frame->scale.bits;
+    skg_raster_tiles(plan->main, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
+    return SKG_OK;
+}
+
+skg_status skg_frame_prepare(skg_plan *plan) {
+    const skg_frame_work work = {.view = &plan->view, .lengths_of = -1};
+    skg_frame_parts frame = {0};
+    skg_status status = prepare(plan, &work, &frame);
+    release_parts(&frame);
+    return status;
+}
+
 skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
     skg_frame_parts frame = {0};
-    skg_raster *raster = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_camera_make(work->view, NULL, 0, 0, &frame.camera));
-    SKG_TRY_CLEANUP(list_writes(plan, work, &frame));
-    SKG_TRY_CLEANUP(place_parts(plan, work, &frame));
+    SKG_TRY_CLEANUP(prepare(plan, work, &frame));
     skg_warn_unseen(plan, &frame);
     SKG_TRY_CLEANUP(upload(plan, job));
-    frame.kernels.precision = plan->options.precision;
-    frame.kernels.bits = frame.scale.bits;
-    frame.kernels.parallel = frame.camera.parallel;
-    frame.kernels.listed_writes = frame.planes > 1;
-    SKG_TRY_CLEANUP(
-        skg_plan_raster(plan, &frame.kernels, plan->strategy, frame.planes, plan->open_count > 0, &raster));
     SKG_TRY_CLEANUP(skg_geometry_project(plan->context, &plan->geometry, &frame.kernels, &frame.camera,
                                          frame.parts, frame.scale.scale, &job->log));
-    SKG_TRY_CLEANUP(skg_raster_run(raster, &plan->geometry, &job->log));
-    if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, raster));
-    SKG_TRY_CLEANUP(resolve(plan, job, work, &frame, raster));
-    plan->report.plane_bits = frame.scale.bits;
-    skg_raster_tiles(raster, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
+    SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
+    if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
+    SKG_TRY_CLEANUP(resolve(plan, job, work, &frame, plan->main));
 cleanup:
     release_parts(&frame);
     return status;

@@ -29,6 +29,9 @@ typedef struct {
     skg_scale scale;
 } skg_frame_parts;
 
+/* Compiles and allocates for images of the plan's view. */
+skg_status skg_frame_prepare(skg_plan *plan);
+
 /* Enqueues the frame; when it is done the result is in its place. */
 skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work);
 

@@ -1,5 +1,6 @@
 #include "plan/plan.h"
 #include "beam/spectrum.h"
+#include "plan/frame.h"
 #include "plan/report.h"
 
 #include <inttypes.h>
@@ -41,7 +42,8 @@ static void start_report(skg_plan *plan) {
     report->parts = plan->scene->count;
     for (int64_t i = 0; i < plan->scene->count; i++)
         report->triangles += plan->scene->parts[i].mesh->triangles;
-    for (int64_t i = 0; i < plan->meshes.count; i++) report->vertices += plan->meshes.meshes[i].mesh->vertices;
+    for (int64_t i = 0; i < plan->meshes.count; i++)
+        report->vertices += plan->meshes.meshes[i].mesh->vertices;
     report->open_parts = plan->open_count;
     report->planes = plan->model.planes;
     report->strategy = plan->strategy;
@@ -103,7 +105,8 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
     SKG_TRY(skg_report_overlaps(plan));
-    return skg_report_effects(plan);
+    SKG_TRY(skg_report_effects(plan));
+    return skg_frame_prepare(plan);
 }
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,

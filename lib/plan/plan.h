@@ -62,6 +62,7 @@ struct skg_plan {
     int32_t raster_count, next_raster;
     skg_raster *rasters[SKG_MOST_RASTERS];
     skg_raster_options raster_options[SKG_MOST_RASTERS];
+    skg_raster *main; /* of the last frame: that of the closed parts */
     skg_buffer image, negative, bad;
 
     int64_t overlap_count;

@@ -301,6 +301,12 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
     return skg_kernel_run(context, geometry->kernel, "project", 1, &global, &local, log);
 }
 
+int64_t skg_geometry_bytes(const skg_geometry *geometry) {
+    return geometry->offsets.bytes + geometry->corners.bytes + geometry->part_table.bytes +
+           geometry->write_table.bytes + geometry->vertex_blocks.bytes + geometry->triangle_blocks.bytes +
+           geometry->projected.bytes + geometry->bad.bytes;
+}
+
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex) {
     int64_t low = 0, high = geometry->parts; /* first_vertex[low] <= vertex < first_vertex[high] */
     while (high - low > 1) {

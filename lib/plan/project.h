@@ -76,6 +76,9 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
                                 const skg_kernel_options *options, const skg_camera *camera,
                                 const skg_geometry_part *part, double scale, skg_stage_log *log);
 
+/* Bytes on the device. */
+int64_t skg_geometry_bytes(const skg_geometry *geometry);
+
 /* Which part and which vertex of its mesh a number in `bad` means. */
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex);
 

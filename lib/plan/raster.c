@@ -310,6 +310,17 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
 /* --- what was decided and made
  * ------------------------------------------------------------------------------------ */
 
+skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {
+    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
+    const int64_t tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
+    const skg_buffer *from = squares(raster) ? &raster->starts : &raster->counts;
+    const size_t first =
+        squares(raster) ? (size_t)tiles : 1; /* as the kernels of tiles.cl and bands.cl leave it */
+    SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, from->memory, CL_FALSE,
+                                   first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL, NULL));
+    return SKG_OK;
+}
+
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles) {
     *columns = raster->frame.tile_columns;
     *rows = raster->frame.tile_rows;

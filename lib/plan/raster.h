@@ -33,6 +33,10 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
  * then the first ones, row * columns + column, ascending. */
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t plane, cl_mem result, skg_stage_log *log);
 
+/* Enqueues a read of how often triangles are listed in tiles, into listed[2]: in lists of one tile, in the
+ * list for all tiles. It must stay. Nothing is written by strategies without tiles. */
+skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed);
+
 /* Shape of the tiles (the whole detector where there are none) and their number; bytes allocated. */
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);
 int64_t skg_raster_bytes(const skg_raster *raster);

@@ -149,6 +149,10 @@ skg_status skg_report_job(skg_job *job) {
     SKG_TRY(add_stages(job));
     SKG_TRY(tell_broken(plan, *job->broken));
     tell_negative(plan, *job->negative);
+    const double listings = (double)job->listed[0] + (double)job->listed[1] * (double)plan->report.tiles;
+    plan->report.triangles_per_tile = plan->strategy == SKG_STRATEGY_TILES
+                                          ? listings / (double)plan->report.tiles
+                                          : (double)plan->report.triangles;
     plan->report.bad_pixels = 0;
     for (int64_t k = 0; k < plan->open_count; k++) {
         const int32_t *bad = job->bad + k * (1 + SKG_FIRST_BAD);
@@ -164,7 +168,13 @@ void skg_plan_report_init(skg_plan_report *report) {
 
 skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_get_report: no plan");
-    return skg_struct_write(&plan->report, sizeof plan->report, "skg_plan_report", report);
+    skg_plan_report ours = plan->report;
+    ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
+                        plan->bad.bytes + plan->attenuation.coefficients.bytes +
+                        plan->attenuation.weights.bytes + plan->lengths.coefficients.bytes +
+                        plan->lengths.weights.bytes;
+    for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);
+    return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 
 void skg_stage_init(skg_stage *stage) {

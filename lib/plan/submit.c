@@ -11,7 +11,7 @@
 typedef struct {
     skg_plan *plan;
     int64_t count;
-    const skg_frame *frames; /* as the caller gave them; NULL: one as the scene stands */
+    const skg_frame *frames; /* as the caller gave them; NULL: as the scene stands */
     skg_output output;       /* strides filled in */
     int64_t channels;
     int64_t lengths_of; /* -1: images */
@@ -170,6 +170,7 @@ static skg_status finish(const submission *s, skg_job *job) {
     cl_command_queue queue = plan->context->device->queue;
     SKG_TRY(skg_job_read(job, plan->negative.memory, sizeof *job->negative, job->negative));
     SKG_TRY(skg_job_read(job, plan->geometry.bad.memory, sizeof *job->broken, job->broken));
+    SKG_TRY(skg_raster_read_listed(plan->main, job->listed));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     SKG_CL_TRY(clFlush(queue));
     return SKG_OK;
@@ -183,6 +184,7 @@ static skg_status submit(submission *s, skg_job **job) {
     SKG_TRY(skg_job_create(plan, &made));
     SKG_TRY_CLEANUP(skg_alloc(plan->scene->count, sizeof *poses, "poses", &poses));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->negative, "counters", &made->negative));
+    SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->listed, "counters", &made->listed));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->broken, "counters", &made->broken));
     if (plan->open_count)
         SKG_TRY_CLEANUP(skg_job_stage(made, plan->open_count * (1 + SKG_FIRST_BAD), sizeof *made->bad,
@@ -208,7 +210,6 @@ skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frame
                            skg_job **job) {
     SKG_TRY(begin("skg_plan_submit", plan, job));
     submission s = {.plan = plan, .count = count, .frames = frames, .lengths_of = -1};
-    if (!frames) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_submit: no frames");
     SKG_TRY(check_submission(&s, output));
     return submit(&s, job);
 }
@@ -231,7 +232,6 @@ skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t 
     if (kind != SKG_NET && kind != SKG_SURFACE)
         return skg_fail(SKG_ERR_ARGUMENT, "lengths of kind %" PRId32 " are unknown; SKG_NET or SKG_SURFACE",
                         kind);
-    if (!frames) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_lengths: no frames");
     submission s = {.plan = plan, .count = count, .frames = frames, .lengths_of = part, .kind = kind};
     SKG_TRY(check_submission(&s, output));
     return submit(&s, job);
@@ -264,7 +264,7 @@ skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *fr
     SKG_TRY(begin("skg_plan_submit_cl", plan, job));
     submission s = {.plan = plan, .count = count, .frames = frames, .lengths_of = -1, .buffer = buffer};
     if (done) *done = NULL;
-    if (!buffer || !frames) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_submit_cl: no buffer or no frames");
+    if (!buffer) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_submit_cl: no buffer");
     if (waits < 0 || (waits > 0 && !wait_list))
         return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_submit_cl: %" PRId32 " events to wait for, but no list",
                         waits);

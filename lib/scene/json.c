@@ -35,6 +35,7 @@ skg_status skg_json_fail(const skg_json_node *node, skg_status status, const cha
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
     write_path(node, path, sizeof path);
+    if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT; /* the file is wrong, not its reader's caller */
     int64_t line = skg_json_line(node);
     if (line > 0)
         return skg_fail(status, "%s: line %" PRId64 ": %s: %s", node->file->path, line, path, sentence);

@@ -205,7 +205,7 @@ static const struct {
     {"[\"mu\", 0.5]", "[\"mu\", 0.5], \"Transform\": {}", SKG_ERR_FORMAT, "Transform: is an object"},
     {"[\"mu\", 0.5]", "[\"mu\", 0.5], \"Transform\": [[\"Translation\", 1, 2, 3, \"inch\"]]", SKG_ERR_FORMAT,
      "Transform[0][4]: \"inch\" is no unit"},
-    {"[1, 2, 3, \"cm\"]", "[1, -2, 3, \"cm\"]", SKG_ERR_ARGUMENT, "Samples[1].Cuboid: "},
+    {"[1, 2, 3, \"cm\"]", "[1, -2, 3, \"cm\"]", SKG_ERR_FORMAT, "Samples[1].Cuboid: "},
     {"\"Cuboid\": [1, 2, 3, \"cm\"]",
      "\"StepWedge\": {\"NumberOfSteps\": 5, \"TotalLength\": 5, \"Width\": 2, \"FirstStepHeight\": 1, "
      "\"OtherStepHeight\": 0.5, \"Unit\": \"cm\"}",

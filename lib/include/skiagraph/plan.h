@@ -83,10 +83,11 @@ typedef struct {
 
 SKG_API void skg_output_init(skg_output *output);
 
-/* Starts `count` >= 1 frames; everything they need from meshes, poses and views is copied before the call
- * returns. The plan splits batches to fit the device's memory. *job is waited for, and released, by
- * skg_job_wait. SKG_STALE: the scene has changed in a way that the plan cannot absorb (parts added,
- * triangles); nothing was started. SKG_ERR_MESH: a vertex is not finite; part and vertex are named. */
+/* Starts `count` >= 1 frames (frames NULL: each as plan and scene stand); everything they need from meshes,
+ * poses and views is copied before the call returns. The plan splits batches to fit the device's memory. *job
+ * is waited for, and released, by skg_job_wait. SKG_STALE: the scene has changed in a way that the plan
+ * cannot absorb (parts added, triangles); nothing was started. SKG_ERR_MESH: a vertex is not finite; part and
+ * vertex are named. */
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
@@ -136,8 +137,8 @@ SKG_API void skg_effect_init(skg_effect *effect);
 SKG_API skg_status skg_plan_effects(const skg_plan *plan, int64_t *count);
 SKG_API skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect);
 
-/* Parts that overlap, or leave their parent, as found when the plan was made; worst volume first. Method: a grid of
- * 256 x 256 columns along z over the scene; volumes carry its resolution. */
+/* Parts that overlap, or leave their parent, as found when the plan was made; worst volume first. Method: a
+ * grid of 256 x 256 columns along z over the scene; volumes carry its resolution. */
 typedef struct {
     int32_t size;
     int32_t protrudes;   /* 1: part leaves its parent `other`; 0: they overlap */
