@@ -79,6 +79,26 @@ static void about_the_source(hard_scene *h, int which) {
     }
 }
 
+/* Depths of the origin and of the bounding sphere say little about what is between source and detector here.
+ */
+static void large(hard_scene *h, int which) {
+    h->view = run_view(64, 3.7);
+    h->wobble = 0x1p-15;
+    if (which == HARD_WIDE) {
+        h->name = "a wide slab";
+        h->body = solid_box(2000, 1600, 7);
+    } else if (which == HARD_LONG) {
+        h->name = "a very long box";
+        h->body = solid_box(150, 90, 40000);
+    } else {
+        h->name = which == HARD_MOSTLY_BEHIND ? "mostly behind the detector"
+                                              : "mostly behind the detector, parallel";
+        h->body = solid_box(150, 90, 1000);
+        solid_shift(&h->body, 0, 0, 650);
+        h->view.projection = which == HARD_MOSTLY_BEHIND ? SKG_POINT : SKG_PARALLEL;
+    }
+}
+
 static void simple(hard_scene *h, int which) {
     if (which == HARD_CUBE_ON_CENTRES) {
         h->name = "cube on centres";
@@ -123,6 +143,12 @@ hard_scene hard_make(int which) {
         break;
     case HARD_LAYERS:
         layers(&h);
+        break;
+    case HARD_LONG:
+    case HARD_WIDE:
+    case HARD_MOSTLY_BEHIND:
+    case HARD_MOSTLY_BEHIND_PARALLEL:
+        large(&h, which);
         break;
     case HARD_CUBE_ON_CENTRES:
     case HARD_GIANT:

@@ -16,10 +16,14 @@ enum {
     HARD_SOURCE_INSIDE,
     HARD_CUT_BY_DETECTOR,
     HARD_SOURCE_AND_DETECTOR, /* a long box through both */
-    HARD_DUST,                /* triangles much smaller than a pixel */
-    HARD_SPECK,               /* 40,000 triangles within three pixels */
-    HARD_LAYERS,              /* one mesh of 20 equal shells at the same place */
-    HARD_GIANT,               /* its corners are far outside the detector */
+    HARD_LONG,                /* through both, and 20 m beyond */
+    HARD_MOSTLY_BEHIND,       /* a twentieth of it is before the detector, the rest far behind */
+    HARD_MOSTLY_BEHIND_PARALLEL,
+    HARD_WIDE,   /* a slab whose bounding sphere holds the source, but it does not */
+    HARD_DUST,   /* triangles much smaller than a pixel */
+    HARD_SPECK,  /* 40,000 triangles within three pixels */
+    HARD_LAYERS, /* one mesh of 20 equal shells at the same place */
+    HARD_GIANT,  /* its corners are far outside the detector */
     HARD_SCENES
 };
 
