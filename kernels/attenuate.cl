@@ -1,6 +1,10 @@
 /* From sums of path parameters to what a pixel shows. The exponent of node n is the sum over planes of
  * coefficient[n][p] * x_p, x_p = sum / scale * |ray| in mm times the plane's weights; channel c shows
- * sum over nodes of weight[n][c] * exp(-exponent_n). */
+ * sum over nodes of weight[n][c] * exp(-exponent_n). Coefficients come times -log2(e): powers of two are at hand. */
+
+/* Compilers that do not know the pragma skip it; bits do not depend on it. */
+#define SKG_UNROLL _Pragma("unroll")
+#define SKG_LN2 0.693147180559945309417
 
 #if SKG_OUTPUT_DOUBLE
 #if !SKG_DOUBLE
@@ -17,14 +21,12 @@ typedef float skg_out;
 #if SKG_DOUBLE
 #define SKG_SCALAR double
 #define SKG_AS_MASK_V SKG_CAT(as_long, SKG_WIDE)
-#define SKG_TO_MASK_V SKG_CAT(convert_long, SKG_WIDE)
-SKG_DEFINE_EXP_DOUBLE(skg_exp_minus_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_MASK_V)
+SKG_DEFINE_EXP2_DOUBLE(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
 SKG_DEFINE_LOG_DOUBLE(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
 #else
 #define SKG_SCALAR float
 #define SKG_AS_MASK_V SKG_CAT(as_int, SKG_WIDE)
-#define SKG_TO_MASK_V SKG_CAT(convert_int, SKG_WIDE)
-SKG_DEFINE_EXP_FLOAT(skg_exp_minus_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_MASK_V)
+SKG_DEFINE_EXP2_FLOAT(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
 SKG_DEFINE_LOG_FLOAT(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
 #endif
 
@@ -38,12 +40,6 @@ static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row)
     return sqrt(fma(x, x, fma(y, y, z * z)));
 }
 
-static skg_realv skg_exponent_v(__constant const skg_real *coefficient, const skg_realv *x) {
-    skg_realv exponent = coefficient[0] * x[0];
-    for (int p = 1; p < SKG_PLANES; p++) exponent = fma((skg_realv)(coefficient[p]), x[p], exponent);
-    return exponent;
-}
-
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
     if (pixels >= SKG_WIDE) {
         SKG_STORE_V(SKG_TO_OUT_V(value), 0, place);
@@ -54,49 +50,84 @@ static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
     for (int k = 0; k < pixels; k++) place[k] = rest[k];
 }
 
-/* One work-item a run of SKG_WIDE pixels of a row. Strides and offset of the output in elements.
- * factor: of intensities. negative: counts the
- * pixels whose least exponent lies below `least`, where more was subtracted for children than their parent has. */
+/* Sums of coefficient times mm over the planes, for each run. */
+static void skg_exponents(__constant const skg_real *coefficient, skg_realv x[SKG_PLANES][SKG_RUNS],
+                          skg_realv *exponent) {
+    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) exponent[r] = coefficient[0] * x[0][r];
+    SKG_UNROLL for (int p = 1; p < SKG_PLANES; p++)
+        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
+            exponent[r] = fma((skg_realv)(coefficient[p]), x[p][r], exponent[r]);
+}
+
+/* How many of these pixels' lanes exceed the limit. */
+static void skg_count(skg_realv value, skg_real limit, int pixels, __global int *count) {
+    const skg_intv above = SKG_TO_INT_V(value > (skg_realv)(limit));
+    if (!skg_any(above)) return;
+    int lanes[SKG_WIDE], found = 0;
+    SKG_STORE_V(above, 0, lanes);
+    for (int k = 0; k < min(pixels, SKG_WIDE); k++) found -= lanes[k];
+    if (found) atomic_add(count, found);
+}
+
+/* One work-item SKG_RUNS runs of SKG_WIDE pixels of a row. coefficients: of -exponent * log2(e), or of the exponent where
+ * that is shown. Strides and offset of the output in elements. factor: of intensities. negative: counts the pixels that
+ * exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was subtracted
+ * for children than their parent has. */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
-                            __constant const skg_real *weights, skg_real factor, skg_real least,
-                            __global int *negative, __global skg_out *output, long offset, long row_stride, long channel_stride) {
-    const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
+                            __constant const skg_real *weights, skg_real factor, skg_real limit,
+                            __global int *negative, __global skg_out *output, long offset, long row_stride,
+                            long channel_stride) {
+    const int column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0), row = (int)get_global_id(1);
     if (column >= frame.columns || row >= frame.rows) return;
-    const int pixels = min(SKG_WIDE, frame.columns - column);
-    __global skg_out *place = output + offset + row * row_stride + column;
-    const skg_realv length = skg_ray_lengths_v(&ray, column, row) * ray.unit;
-    skg_realv x[SKG_PLANES], shown[SKG_CHANNELS];
-    for (int p = 0; p < SKG_PLANES; p++)
-        x[p] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, column)) * length;
-    skg_realv lowest = skg_exponent_v(coefficients, x);
+    skg_realv x[SKG_PLANES][SKG_RUNS], shown[SKG_CHANNELS][SKG_RUNS], power[SKG_RUNS], highest[SKG_RUNS];
+    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
+        const int at = min(column + r * SKG_WIDE, frame.columns - 1); /* runs past the end stay in the row */
+        const skg_realv length = skg_ray_lengths_v(&ray, at, row) * ray.unit;
+        SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++)
+            x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * length;
+    }
+    skg_exponents(coefficients, x, highest);
 #if SKG_SHOW == SKG_SHOW_EXPONENT
-    shown[0] = lowest;
+    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
+        shown[0][r] = highest[r];
+        highest[r] = -highest[r];
+    }
 #else
-    for (int c = 0; c < SKG_CHANNELS; c++) shown[c] = (skg_realv)(0);
+    SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) shown[c][r] = (skg_realv)(0);
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
-    /* -ln sum w exp(-e) = e0 - ln sum w exp(-(e - e0)) with e0 the least exponent: nothing underflows. */
-    for (int n = 1; n < nodes; n++) lowest = fmin(lowest, skg_exponent_v(coefficients + n * SKG_PLANES, x));
-    const skg_realv base = lowest;
-#else
-    const skg_realv base = (skg_realv)(0);
+    /* -ln sum w 2^z = -(z0 ln 2 + ln sum w 2^(z - z0)) with z0 the greatest: nothing underflows. */
+    for (int n = 1; n < nodes; n++) {
+        skg_exponents(coefficients + n * SKG_PLANES, x, power);
+        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) highest[r] = power[r] > highest[r] ? power[r] : highest[r];
+    }
 #endif
     for (int n = 0; n < nodes; n++) {
-        const skg_realv exponent = skg_exponent_v(coefficients + n * SKG_PLANES, x);
-        lowest = fmin(lowest, exponent);
-        const skg_realv passed = skg_exp_minus_v(exponent - base);
-        for (int c = 0; c < SKG_CHANNELS; c++)
-            shown[c] = fma((skg_realv)(weights[n * SKG_CHANNELS + c]), passed, shown[c]);
-    }
-    for (int c = 0; c < SKG_CHANNELS; c++)
-        shown[c] = SKG_SHOW == SKG_SHOW_LOGARITHM ? base - skg_log_v(shown[c]) : shown[c] * factor;
+        skg_exponents(coefficients + n * SKG_PLANES, x, power);
+        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
+#if SKG_SHOW == SKG_SHOW_LOGARITHM
+            const skg_realv passed = skg_exp2_v(power[r] - highest[r]);
+#else
+            const skg_realv passed = skg_exp2_v(power[r]);
 #endif
-    for (int c = 0; c < SKG_CHANNELS; c++) skg_show(shown[c], place + c * channel_stride, pixels);
-    const skg_maskv below = lowest < least;
-    if (skg_any(SKG_TO_INT_V(below))) {
-        int lanes[SKG_WIDE], count = 0;
-        SKG_STORE_V(SKG_TO_INT_V(below), 0, lanes);
-        for (int k = 0; k < pixels; k++) count -= lanes[k];
-        atomic_add(negative, count);
+            SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+                shown[c][r] = fma((skg_realv)(weights[n * SKG_CHANNELS + c]), passed, shown[c][r]);
+        }
+    }
+    SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
+#if SKG_SHOW == SKG_SHOW_LOGARITHM
+            shown[c][r] = -fma(highest[r], (skg_realv)(SKG_LN2), skg_log_v(shown[c][r]));
+#else
+            shown[c][r] *= factor;
+#endif
+#endif
+    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
+        const int at = column + r * SKG_WIDE, pixels = frame.columns - at;
+        if (pixels <= 0) break;
+        SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+            skg_show(shown[c][r], output + offset + row * row_stride + c * channel_stride + at, pixels);
+        skg_count(highest[r], limit, pixels, negative);
     }
 }

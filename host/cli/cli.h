@@ -60,6 +60,13 @@ void cli_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Receives the library's warnings and notes. */
 void cli_log(int32_t level, const char *sentence, void *user);
 
+/* On a terminal, from the first second on: "12 of 200 frames, 3.4 per second, 55 s left". start_ms: of
+ * cli_now_ms. The line goes away when done == total. */
+void cli_progress(const char *things, int64_t done, int64_t total, double start_ms);
+
+/* Milliseconds of a clock that only goes forward. */
+double cli_now_ms(void);
+
 void cli_set_quiet(int quiet);
 int cli_is_quiet(void);
 

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *affinity_reason = "not decided yet";
@@ -68,17 +69,18 @@ static int find_cache(char *path, size_t size) {
     return length > 0 && (size_t)length < size;
 }
 
-/* Whether the folder, or the nearest one above it that is there, can be written; 0 or an errno value. */
+/* Makes the folder with those above it, as PoCL would; 0, or the errno value that says why it cannot be used.
+ * (Asking is not enough: some file systems let root write and make nothing.) */
 static int folder_error(const char *path) {
     char above[1024];
     snprintf(above, sizeof above, "%s", path);
-    while (access(above, W_OK | X_OK) != 0) {
-        char *slash = strrchr(above, '/');
-        if (errno != ENOENT || !slash) return errno == ENOENT ? access(".", W_OK) == 0 ? 0 : errno : errno;
-        if (slash == above) return access("/", W_OK | X_OK) == 0 ? 0 : errno;
+    for (char *slash = strchr(above + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
+        if (mkdir(above, 0777) != 0 && errno != EEXIST) return errno;
+        *slash = '/';
     }
-    return 0;
+    if (mkdir(above, 0777) != 0 && errno != EEXIST) return errno;
+    return access(above, W_OK | X_OK) == 0 ? 0 : errno;
 }
 
 static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *where) {
@@ -95,7 +97,8 @@ static void remove_cache(void) {
 
 static void decide_cache(void) {
     char path[1024];
-    const char *folder = getenv("TMPDIR");
+    const char *folder = getenv("TMPDIR"), *own = getenv("POCL_CACHE_DIR");
+    if (own && !*own) unsetenv("POCL_CACHE_DIR"); /* an empty one stops PoCL by an assertion */
     if (!find_cache(path, sizeof path)) return;
     int reason = folder_error(path);
     if (reason == 0) return;

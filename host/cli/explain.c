@@ -183,6 +183,15 @@ static void print_beam(const cli_session *session) {
         printf("beam       %" PRId64 " energies\n", bins);
 }
 
+static void print_strategy(const skg_plan_report *report) {
+    printf("strategy   %s: ", cli_strategy_names[report->strategy]);
+    if (report->tiles == 1)
+        printf("the detector is one tile\n");
+    else
+        printf("%" PRId64 " tiles of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
+               report->tiles, report->tile_columns, report->tile_rows, report->triangles_per_tile);
+}
+
 void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     skg_plan_report_init(&report);
@@ -195,10 +204,9 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     printf("device     %s, %.1f MiB used\n", session->device.name,
            (double)report.device_bytes / (1024.0 * 1024.0));
     printf("precision  %s\n", cli_precision_names[report.precision]);
-    printf("strategy   %s: %" PRId64 " tiles of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
-           cli_strategy_names[report.strategy], report.tiles, report.tile_columns, report.tile_rows,
-           report.triangles_per_tile);
-    printf("planes     %" PRId64 " of %" PRId64 " bits\n", report.planes, report.plane_bits);
+    print_strategy(&report);
+    printf("planes     %" PRId64 " of %" PRId64 " bits for %" PRId64 " parts\n", report.planes,
+           report.plane_bits, report.parts - report.open_parts);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
            " with a negative exponent\n",
            report.bad_pixels, report.negative_pixels);

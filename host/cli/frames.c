@@ -4,13 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-double cli_now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 static cli_stage_times *find_stage(cli_times *times, const char *name) {
     for (int i = 0; i < times->stage_count; i++)
@@ -42,6 +35,7 @@ int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, co
     times->frame_ms = calloc((size_t)times->repeats + 1, sizeof *times->frame_ms);
     if (!times->frame_ms) return cli_error(CLI_DEVICE, "out of host memory");
     double start = cli_now_ms();
+    const double begun = start;
     skg_status status = frame(plan, output, user);
     times->first_ms = cli_now_ms() - start;
     for (int64_t i = 0; status >= SKG_OK && i < times->repeats; i++) {
@@ -50,6 +44,7 @@ int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, co
         times->frame_ms[i] = cli_now_ms() - start;
         skg_status noted = status < SKG_OK ? status : note_stages(plan, times);
         if (noted < SKG_OK) status = noted;
+        cli_progress("frames", i + 1, times->repeats, begun);
     }
     if (status == SKG_RANGE) cli_warn("%s", skg_status_text(status));
     return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);

@@ -20,9 +20,6 @@ typedef struct {
     int stage_count;
 } cli_times;
 
-/* Milliseconds of a clock that only goes forward. */
-double cli_now_ms(void);
-
 /* One frame into the caller's output: submit and wait. */
 typedef skg_status (*cli_frame)(skg_plan *plan, const skg_output *output, const void *user);
 

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 double skg_picture_value(const skg_picture *picture, int64_t index) {
     return picture->type == SKG_FLOAT64 ? ((const double *)picture->data)[index]
@@ -37,21 +38,33 @@ void skg_picture_title(const skg_picture *picture, char *text, size_t length) {
     snprintf(text, length, *unit ? "%s (%s)" : "%s%s", name, unit);
 }
 
-/* Exactly as many digits as bring the double back. */
+void skg_picture_numbers(const double *numbers, int count, char *text, size_t length) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < count && used < length; i++) {
+        char number[32];
+        for (int digits = 15; digits <= 17; digits++) {
+            snprintf(number, sizeof number, "%.*g", digits, numbers[i] + 0.0); /* + 0: no minus zero */
+            if (strtod(number, NULL) == numbers[i]) break;
+        }
+        used += (size_t)snprintf(text + used, length - used, "%s%s", i ? " " : "", number);
+    }
+}
+
 void skg_picture_describe(const skg_picture *picture, char *text, size_t length) {
     static const char *const sources[] = {"point source at", "parallel beam from", "parallel beam along"};
     const skg_view *view = picture->view;
-    char title[256];
+    char title[256], source[96], centre[96], column[96], row[96];
     skg_picture_title(picture, title, sizeof title);
     if (!view) {
         snprintf(text, length, "%s", title);
         return;
     }
-    snprintf(text, length,
-             "%s; %s %.17g %.17g %.17g; detector centre %.17g %.17g %.17g mm; column step %.17g %.17g %.17g "
-             "mm; row step %.17g %.17g %.17g mm",
-             title, sources[view->projection >= 0 && view->projection <= 2 ? view->projection : 0],
-             view->source[0], view->source[1], view->source[2], view->centre[0], view->centre[1],
-             view->centre[2], view->column_step[0], view->column_step[1], view->column_step[2],
-             view->row_step[0], view->row_step[1], view->row_step[2]);
+    skg_picture_numbers(view->source, 3, source, sizeof source);
+    skg_picture_numbers(view->centre, 3, centre, sizeof centre);
+    skg_picture_numbers(view->column_step, 3, column, sizeof column);
+    skg_picture_numbers(view->row_step, 3, row, sizeof row);
+    snprintf(text, length, "%s; %s %s; detector centre %s mm; column step %s mm; row step %s mm", title,
+             sources[view->projection >= 0 && view->projection <= 2 ? view->projection : 0], source, centre,
+             column, row);
 }

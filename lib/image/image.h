@@ -22,6 +22,9 @@ void skg_picture_curve(const skg_picture *picture, char *text, size_t length);
 /* "energy (keV per pixel)", without brackets where there is no unit. */
 void skg_picture_title(const skg_picture *picture, char *text, size_t length);
 
+/* Up to `count` numbers with spaces between, each with as few digits as bring the double back. */
+void skg_picture_numbers(const double *numbers, int count, char *text, size_t length);
+
 /* The title with source, detector centre and steps, on one line. */
 void skg_picture_describe(const skg_picture *picture, char *text, size_t length);
 

@@ -27,22 +27,27 @@ skg_status skg_metaimage_check(const skg_picture *picture, const char *path) {
 /* The detector as a slice of a volume, one layer thick: spacing, direction of each axis in a row of its own,
  * and the centre of pixel (0, 0). */
 static void write_place(const skg_view *view, FILE *stream) {
-    double u[3], v[3], first[3];
-    double width = sqrt(dot(view->column_step, view->column_step));
-    double height = sqrt(dot(view->row_step, view->row_step));
+    double axes[9], spacing[3], first[3];
+    char text[320];
+    spacing[0] = sqrt(dot(view->column_step, view->column_step));
+    spacing[1] = sqrt(dot(view->row_step, view->row_step));
+    spacing[2] = 1;
     for (int k = 0; k < 3; k++) {
-        u[k] = view->column_step[k] / width;
-        v[k] = view->row_step[k] / height;
+        axes[k] = view->column_step[k] / spacing[0];
+        axes[3 + k] = view->row_step[k] / spacing[1];
         first[k] = view->centre[k] - (double)(view->columns - 1) / 2 * view->column_step[k] -
                    (double)(view->rows - 1) / 2 * view->row_step[k];
     }
-    fprintf(stream,
-            "TransformMatrix = %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n"
-            "Offset = %.17g %.17g %.17g\n"
-            "CenterOfRotation = 0 0 0\n"
-            "ElementSpacing = %.17g %.17g 1\n",
-            u[0], u[1], u[2], v[0], v[1], v[2], u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-            u[0] * v[1] - u[1] * v[0], first[0], first[1], first[2], width, height);
+    for (int k = 0; k < 3; k++) { /* the third is square to both */
+        int a = (k + 1) % 3, b = (k + 2) % 3;
+        axes[6 + k] = axes[a] * axes[3 + b] - axes[b] * axes[3 + a];
+    }
+    skg_picture_numbers(axes, 9, text, sizeof text);
+    fprintf(stream, "TransformMatrix = %s\n", text);
+    skg_picture_numbers(first, 3, text, sizeof text);
+    fprintf(stream, "Offset = %s\nCenterOfRotation = 0 0 0\n", text);
+    skg_picture_numbers(spacing, 3, text, sizeof text);
+    fprintf(stream, "ElementSpacing = %s\n", text);
 }
 
 /* Values as the host holds them; the header says in which order. */

@@ -4,6 +4,7 @@
 #include "core/names.h"
 
 #include <inttypes.h>
+#include <locale.h>
 #include <math.h>
 #include <string.h>
 
@@ -86,6 +87,17 @@ skg_status skg_picture_check_path(const char *path) {
     return SKG_OK;
 }
 
+/* Numbers in headers have a decimal point in every locale (of this thread only). */
+static skg_status write_plainly(const format *writer, const skg_picture *picture, skg_output_file *file) {
+    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (plain == (locale_t)0) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for a locale", file->path);
+    locale_t before = uselocale(plain);
+    skg_status status = writer->write(picture, file);
+    uselocale(before);
+    freelocale(plain);
+    return status;
+}
+
 skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
     skg_picture picture;
     const format *writer = NULL;
@@ -94,7 +106,7 @@ skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
     SKG_TRY(find_format(path, &writer));
     if (writer->check) SKG_TRY(writer->check(&picture, path));
     SKG_TRY(skg_output_open(path, &file));
-    skg_status status = writer->write(&picture, &file);
+    skg_status status = write_plainly(writer, &picture, &file);
     if (status == SKG_OK) return skg_output_commit(&file);
     skg_output_discard(&file);
     return status;

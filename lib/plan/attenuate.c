@@ -10,9 +10,12 @@
 /* Kernels of one context's plan: by precision of sums, of the output, planes, channels and what is shown. */
 enum { MOST_KERNELS = 16 };
 
+/* Vectors of a work-item where there are several nodes. */
+enum { RUNS = 4 };
+
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, output_double;
+    int32_t planes, channels, shown, output_double, runs;
 } kernel_key;
 
 struct skg_attenuator {
@@ -35,13 +38,22 @@ static skg_status upload(skg_context *context, int32_t is_double, int64_t count,
     return status;
 }
 
-skg_status skg_attenuation_create(skg_context *context, int32_t precision, int32_t planes, int32_t nodes,
-                                  int32_t channels, const double *coefficients, const double *weights,
+skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
+                                  const double *coefficients, const double *weights,
                                   skg_attenuation *attenuation) {
-    *attenuation = (skg_attenuation){planes, nodes, channels, precision == SKG_DOUBLE, {0}, {0}};
-    SKG_TRY(upload(context, attenuation->is_double, (int64_t)nodes * planes, coefficients,
-                   &attenuation->coefficients));
-    return upload(context, attenuation->is_double, (int64_t)nodes * channels, weights, &attenuation->weights);
+    const int32_t is_double = precision == SKG_DOUBLE;
+    const int64_t count = (int64_t)shape->nodes * shape->planes;
+    double *scaled = NULL;
+    SKG_TRY(skg_alloc(count, sizeof *scaled, "attenuation", &scaled));
+    /* exp(-x) = 2^(-x log2 e) */
+    for (int64_t i = 0; i < count; i++)
+        scaled[i] = coefficients[i] * (shape->shown == SKG_SHOWN_EXPONENT ? 1 : -1.4426950408889634);
+    *attenuation = *shape;
+    skg_status status = upload(context, is_double, count, scaled, &attenuation->coefficients);
+    skg_free(&scaled);
+    SKG_TRY(status);
+    return upload(context, is_double, (int64_t)shape->nodes * shape->channels, weights,
+                  &attenuation->weights);
 }
 
 void skg_attenuation_release(skg_attenuation *attenuation) {
@@ -70,8 +82,9 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
             *kernel = attenuator->kernels[i];
             return SKG_OK;
         }
-    snprintf(more, sizeof more, "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_OUTPUT_DOUBLE=%d",
-             (int)key->planes, (int)key->channels, (int)key->shown, (int)key->output_double);
+    snprintf(more, sizeof more,
+             "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_RUNS=%d",
+             (int)key->planes, (int)key->channels, (int)key->shown, (int)key->output_double, (int)key->runs);
     SKG_TRY(skg_kernels_get(attenuator->context, &key->options, 2, files, more, &program));
     SKG_TRY(skg_kernel_create(program, "skg_attenuate", kernel));
     /* Full: the oldest goes; its program stays with the context. */
@@ -108,17 +121,20 @@ static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
 }
 
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
-                         double scale, const skg_attenuation *attenuation, int32_t shown, double factor,
-                         double least, cl_mem negative, const skg_image_place *place, skg_stage_log *log) {
+                         double scale, const skg_attenuation *attenuation, double factor, double least,
+                         cl_mem negative, const skg_image_place *place, skg_stage_log *log) {
     const skg_kernel_options *sums = &raster->options.kernels;
     /* Of the raster's abilities only the type of its sums is of interest here. */
     const kernel_key key = {.options = {.precision = sums->precision, .bits = sums->bits},
                             .planes = attenuation->planes,
                             .channels = attenuation->channels,
-                            .shown = shown,
-                            .output_double = place->output_double};
+                            .shown = attenuation->shown,
+                            .output_double = place->output_double,
+                            .runs = attenuation->nodes > 1 ? RUNS : 1};
     const int single = sums->precision == SKG_SINGLE;
-    const float factor_single = (float)factor, least_single = (float)least;
+    /* As the kernel counts: powers of two above a limit. */
+    const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : 1.4426950408889634);
+    const float factor_single = (float)factor, limit_single = (float)limit;
     cl_kernel kernel = NULL;
     skg_ray_double ray;
     skg_ray_float ray_single;
@@ -134,11 +150,11 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
                                   (cl_mem[]){attenuation->coefficients.memory, attenuation->weights.memory}));
     SKG_TRY(skg_kernel_set(kernel, 7, single ? sizeof factor_single : sizeof factor,
                            single ? (const void *)&factor_single : (const void *)&factor));
-    SKG_TRY(skg_kernel_set(kernel, 8, single ? sizeof least_single : sizeof least,
-                           single ? (const void *)&least_single : (const void *)&least));
+    SKG_TRY(skg_kernel_set(kernel, 8, single ? sizeof limit_single : sizeof limit,
+                           single ? (const void *)&limit_single : (const void *)&limit));
     SKG_TRY(skg_kernel_set(kernel, 9, sizeof negative, &negative));
     SKG_TRY(set_place(kernel, place));
-    const int64_t lanes = skg_kernel_lanes(raster->context, sums->precision);
+    const int64_t lanes = skg_kernel_lanes(raster->context, sums->precision) * key.runs;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
                               padded(raster->frame.rows, 16)};

@@ -10,13 +10,15 @@ enum { SKG_SHOWN_INTENSITY = 0, SKG_SHOWN_LOGARITHM = 1, SKG_SHOWN_EXPONENT = 2 
 /* Exponent of node n: sum over planes of coefficient[n][p] times mm of plane p; a channel shows the sum over
  * nodes of weight[n][c] exp(-exponent). On the device. */
 typedef struct {
-    int32_t planes, nodes, channels, is_double;
+    int32_t planes, nodes, channels;
+    int32_t shown; /* SKG_SHOWN_... */
     skg_buffer coefficients, weights;
 } skg_attenuation;
 
-/* coefficients: [nodes][planes]; weights: [nodes][channels]; copied. */
-skg_status skg_attenuation_create(skg_context *context, int32_t precision, int32_t planes, int32_t nodes,
-                                  int32_t channels, const double *coefficients, const double *weights,
+/* shape: planes, nodes, channels and what is shown. coefficients: [nodes][planes]; weights:
+ * [nodes][channels]; copied. */
+skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
+                                  const double *coefficients, const double *weights,
                                   skg_attenuation *attenuation);
 void skg_attenuation_release(skg_attenuation *attenuation);
 
@@ -34,7 +36,7 @@ typedef struct {
 /* Enqueues one image. scale: of the sums; factor: of intensities; least: exponents below it are counted into
  * negative (one int). */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
-                         double scale, const skg_attenuation *attenuation, int32_t shown, double factor,
-                         double least, cl_mem negative, const skg_image_place *place, skg_stage_log *log);
+                         double scale, const skg_attenuation *attenuation, double factor, double least,
+                         cl_mem negative, const skg_image_place *place, skg_stage_log *log);
 
 #endif

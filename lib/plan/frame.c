@@ -104,10 +104,6 @@ static skg_status upload(skg_plan *plan, skg_job *job) {
 static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work,
                           const skg_frame_parts *frame, const skg_raster *raster) {
     const int lengths = work->lengths_of >= 0, quantity = plan->options.quantity;
-    const int32_t shown = lengths || (quantity == SKG_ATTENUATION && plan->model.nodes == 1)
-                              ? SKG_SHOWN_EXPONENT
-                          : quantity == SKG_ATTENUATION ? SKG_SHOWN_LOGARITHM
-                                                        : SKG_SHOWN_INTENSITY;
     const double factor = quantity == SKG_FLUENCE && !lengths ? 1 / skg_camera_pixel_area(&frame->camera) : 1;
     /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
     const double least = -1e-6 * frame->scale.bound - 1e-6;
@@ -115,8 +111,8 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
     SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
     return skg_attenuate(plan->attenuator, raster, &frame->camera, frame->scale.scale,
-                         lengths ? &plan->lengths : &plan->attenuation, shown, factor, least,
-                         plan->negative.memory, &work->place, &job->log);
+                         lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
+                         &work->place, &job->log);
 }
 
 /* Camera, parts, scale, and the rasteriser that they call for. */

@@ -83,10 +83,16 @@ cleanup:
 static skg_status make_attenuation(skg_plan *plan) {
     const double one = 1;
     const skg_model *model = &plan->model;
-    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, model->planes, model->nodes,
-                                   model->channels, model->coefficients, model->weights, &plan->attenuation));
+    /* The attenuation of one energy is the exponent itself. */
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
+                          : model->nodes == 1                       ? SKG_SHOWN_EXPONENT
+                                                                    : SKG_SHOWN_LOGARITHM;
+    const skg_attenuation image = {model->planes, model->nodes, model->channels, shown, {0}, {0}};
+    const skg_attenuation length = {1, 1, 1, SKG_SHOWN_EXPONENT, {0}, {0}};
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
+                                   model->weights, &plan->attenuation));
     SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, 1, 1, 1, &one, &one, &plan->lengths));
+        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
     SKG_TRY(
         skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));

@@ -1,7 +1,7 @@
 #include "scene/json.h"
 
 #include "core/names.h"
-#include "scene/units.h"
+#include "core/units.h"
 #include "scene/vector.h"
 
 #include <ctype.h>

@@ -1,4 +1,5 @@
 #include "scene/setup.h"
+#include "core/names.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,7 +17,7 @@ static const skg_json_key top_keys[] = {
     {"Breathing", "breathing", SKG_KEY_NOT_YET},
     {"Noise", "noise", SKG_KEY_NOT_YET},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
-    {"World", "a material around the samples", SKG_KEY_NOT_YET},
+    {"World", NULL, SKG_KEY_READ},
 };
 
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
@@ -63,6 +64,14 @@ static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
+/* "Air", ["Compound", ...] or "Vacuum". */
+static skg_status read_world(skg_setup_reader *reader, const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "World"), no_density = {0};
+    if (!node.value) return SKG_OK;
+    if (json_is_string(node.value) && skg_same_name(json_string_value(node.value), "vacuum")) return SKG_OK;
+    return skg_setup_read_material(reader, &node, &no_density, "world", &reader->setup->world);
+}
+
 static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
     skg_json_object top;
@@ -75,6 +84,8 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_tolerance(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
+    SKG_TRY(skg_setup_place_beam(reader, &source));
+    SKG_TRY(read_world(reader, &top));
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
     return skg_setup_read_samples(reader, &samples);
@@ -108,6 +119,8 @@ void skg_setup_release(skg_setup **setup) {
     if (!setup || !*setup) return;
     skg_scene_release(&(*setup)->scene);
     skg_spectrum_release(&(*setup)->spectrum);
+    skg_response_release(&(*setup)->response);
+    skg_material_release(&(*setup)->world);
     skg_free(&(*setup)->scan.folder);
     skg_free(setup);
 }
@@ -121,6 +134,24 @@ skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene) {
 skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum) {
     if (!setup || !spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_spectrum: no set-up or no result");
     *spectrum = setup->spectrum;
+    return SKG_OK;
+}
+
+skg_status skg_setup_absolute(const skg_setup *setup, int32_t *absolute) {
+    if (!setup || !absolute) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_absolute: no set-up or no result");
+    *absolute = setup->absolute;
+    return SKG_OK;
+}
+
+skg_status skg_setup_response(const skg_setup *setup, skg_response **response) {
+    if (!setup || !response) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_response: no set-up or no result");
+    *response = setup->response;
+    return SKG_OK;
+}
+
+skg_status skg_setup_world(const skg_setup *setup, skg_material **world) {
+    if (!setup || !world) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_world: no set-up or no result");
+    *world = setup->world;
     return SKG_OK;
 }
 

@@ -95,11 +95,19 @@ START_TEST(affinity_is_left_alone_where_it_would_hurt) {
 END_TEST
 
 START_TEST(an_unwritable_kernel_cache_is_a_warning) {
+    char line[128];
     ck_run(0, "POCL_CACHE_DIR=/dev/null/cache TMPDIR=. |devices --json");
     ck_assert_ptr_nonnull(
         strstr(complained, "skiagraph: warning: kernels cannot be kept in /dev/null/cache"));
     json_decref(said_json());
-    ck_assert_int_eq(look_at_folder(0), 0); /* the temporary cache is gone */
+    ck_assert_int_eq(look_at_folder(0), 0);                /* the temporary cache is gone */
+    ck_run(0, "POCL_CACHE_DIR=/proc/none/cache |devices"); /* where even root makes no folder */
+    ck_assert_ptr_nonnull(
+        strstr(complained, "skiagraph: warning: kernels cannot be kept in /proc/none/cache"));
+    ck_run(0, "POCL_CACHE_DIR= XDG_CACHE_HOME=. |devices"); /* as if it were not set */
+    ck_assert_str_eq(complained, "");
+    snprintf(line, sizeof line, "rm -r %s/pocl", folder);
+    ck_assert_int_eq(system(line), 0);
     ck_run(0, "POCL_CACHE_DIR=/dev/null/cache |devices --quiet");
     ck_assert_str_eq(complained, "");
 }

@@ -246,11 +246,12 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
             .memory = output.memory, .output_double = wide, .row_stride = result->columns};
         skg_attenuation attenuation;
         coefficients[plane] = 1;
-        status = skg_attenuation_create(context, raster->options.kernels.precision, (int32_t)result->planes,
-                                        1, 1, coefficients, &weight, &attenuation);
+        const skg_attenuation of_plane = {(int32_t)result->planes, 1, 1, SKG_SHOWN_EXPONENT, {0}, {0}};
+        status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, coefficients,
+                                        &weight, &attenuation);
         if (status == SKG_OK)
-            status = skg_attenuate(attenuator, raster, camera, scale, &attenuation, SKG_SHOWN_EXPONENT, 1,
-                                   -HUGE_VAL, negative.memory, &place, NULL);
+            status = skg_attenuate(attenuator, raster, camera, scale, &attenuation, 1, -HUGE_VAL,
+                                   negative.memory, &place, NULL);
         skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;
         SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, output.memory, CL_TRUE, 0,

@@ -116,7 +116,9 @@ START_TEST(png_shows_dense_white_or_dark) {
         ck_assert_int_le(abs(levels[i] - (int)lround(expected[i] * 65535)), 1); /* a rounded log */
     ck_assert_ptr_nonnull(strstr(texts, "Display=radiograph: -ln(I/I0);"));
     ck_assert_ptr_nonnull(strstr(texts, "Range=black 0, white 3.4;"));
-    ck_assert_ptr_nonnull(strstr(texts, "Description=energy (keV per pixel); point source at 0 -400 0;"));
+    ck_assert_ptr_nonnull(
+        strstr(texts, "Description=energy (keV per pixel); point source at 0 -400 0; "
+                      "detector centre 10 20 30 mm; column step 0.3 0 0.4 mm; row step 0 -0.25 0 mm;"));
 
     picture.display = SKG_DISPLAY_TRANSMISSION;
     picture.low = 0, picture.high = 0.5;
