@@ -57,7 +57,7 @@ static void layers(hard_scene *h) {
 static void dust(hard_scene *h, int speck) {
     h->name = speck ? "a speck" : "dust";
     h->view = run_view(64, 2);
-    h->body = solid_blob(speck ? 2.5 : 40, speck ? 200 : 600, speck ? 100 : 300, 8);
+    h->body = solid_blob(speck ? 2.5 : 40, speck ? 200 : 400, speck ? 100 : 200, 8);
     if (speck) solid_shift(&h->body, 31.7, -22.9, 14);
 }
 

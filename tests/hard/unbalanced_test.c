@@ -60,9 +60,9 @@ static void check_bars(const verdict *v, const hard_scene *h, int32_t precision)
                   "%s, single: rms %.3g, worst %.3g of Lmax", h->name, verdict_rms(v), verdict_worst(v));
 }
 
-/* As many rays as take the caster about half a second. */
+/* As many rays as take the caster about a quarter of a second. */
 static int64_t rays_for(const hard_scene *h) {
-    const int64_t rays = 10000000 / (h->body.vertices * (h->wobble > 0 ? 5 : 1));
+    const int64_t rays = 5000000 / (h->body.vertices * (h->wobble > 0 ? 5 : 1));
     return rays < 4225 ? rays : 4225;
 }
 
