@@ -60,10 +60,10 @@ static void check_bars(const verdict *v, const hard_scene *h, int32_t precision)
                   "%s, single: rms %.3g, worst %.3g of Lmax", h->name, verdict_rms(v), verdict_worst(v));
 }
 
-/* As many rays as take the caster about half a second. */
+/* As many rays as take the caster a tenth of a second, but enough of them. */
 static int64_t rays_for(const hard_scene *h) {
-    const int64_t rays = 10000000 / (h->body.vertices * (h->wobble > 0 ? 5 : 1));
-    return rays < 4225 ? rays : 4225;
+    const int64_t rays = 2000000 / (h->body.vertices * (h->wobble > 0 ? 5 : 1));
+    return rays < 80 ? 80 : rays < 4225 ? rays : 4225;
 }
 
 static void check_lengths(int which) {
