@@ -69,23 +69,65 @@ static void skg_count(skg_realv value, skg_real limit, int pixels, __global int 
     if (found) atomic_add(count, found);
 }
 
-/* One work-item SKG_RUNS runs of SKG_WIDE pixels of a row. coefficients: of -exponent * log2(e), or of the exponent where
- * that is shown. Strides and offset of the output in elements. factor: of intensities. negative: counts the pixels that
- * exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was subtracted
- * for children than their parent has. */
+/* Sum over nodes of weight * 2^(power - base) of one channel of the open beam, power = coefficient of the world's plane
+ * times mm there. */
+#if SKG_RATIO
+static skg_realv skg_open_beam(int nodes, __constant const skg_real *coefficients, __constant const skg_real *weights,
+                               int world_plane, skg_realv world, skg_realv base) {
+    skg_realv open = (skg_realv)(0);
+    for (int n = 0; n < nodes; n++)
+        open = fma((skg_realv)(weights[n * SKG_CHANNELS]),
+                   skg_exp2_v(fma((skg_realv)(coefficients[n * SKG_PLANES + world_plane]), world, -base)), open);
+    return open;
+}
+
+static skg_realv skg_highest_open(int nodes, __constant const skg_real *coefficients, int world_plane,
+                                  skg_realv world) {
+    skg_realv highest = (skg_realv)(coefficients[world_plane]) * world;
+    for (int n = 1; n < nodes; n++) {
+        const skg_realv power = (skg_realv)(coefficients[n * SKG_PLANES + world_plane]) * world;
+        highest = power > highest ? power : highest;
+    }
+    return highest;
+}
+#endif
+
+/* One work-item SKG_RUNS runs of SKG_WIDE pixels of a row. coefficients: of -exponent * log2(e), or of the exponent
+ * where that is shown. Strides and offset of the output in elements. factor: of intensities. negative: counts the pixels
+ * that exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was
+ * subtracted for children than their parent has. World: a plane gets `world` for each mm of path, which is |ray| times
+ * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
                             __constant const skg_real *weights, skg_real factor, skg_real limit,
                             __global int *negative, __global skg_out *output, long offset, long row_stride,
-                            long channel_stride) {
+                            long channel_stride
+#if SKG_WORLD
+                            ,
+                            int world_plane, skg_real4 world
+#endif
+#if SKG_FALLOFF
+                            ,
+                            skg_real nearest
+#endif
+) {
     const int column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0), row = (int)get_global_id(1);
     if (column >= frame.columns || row >= frame.rows) return;
     skg_realv x[SKG_PLANES][SKG_RUNS], shown[SKG_CHANNELS][SKG_RUNS], power[SKG_RUNS], highest[SKG_RUNS];
+#if SKG_WORLD
+    skg_realv surroundings[SKG_RUNS];
+#endif
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
         const int at = min(column + r * SKG_WIDE, frame.columns - 1); /* runs past the end stay in the row */
-        const skg_realv length = skg_ray_lengths_v(&ray, at, row) * ray.unit;
+        const skg_realv length = skg_ray_lengths_v(&ray, at, row), scaled = length * ray.unit;
         SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++)
-            x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * length;
+            x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * scaled;
+#if SKG_WORLD
+        const skg_realv path = fma((skg_realv)(world.z), (skg_real)at + SKG_LANES,
+                                   (skg_realv)(fma(world.w, (skg_real)row, world.y)));
+        surroundings[r] = world.x * length * path;
+        SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++) if (p == world_plane) x[p][r] += surroundings[r];
+#endif
     }
     skg_exponents(coefficients, x, highest);
 #if SKG_SHOW == SKG_SHOW_EXPONENT
@@ -115,13 +157,36 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
                 shown[c][r] = fma((skg_realv)(weights[n * SKG_CHANNELS + c]), passed, shown[c][r]);
         }
     }
-    SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
-        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
+    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
+#if SKG_FALLOFF
+        const skg_realv near = nearest / skg_ray_lengths_v(&ray, column + r * SKG_WIDE, row);
+        const skg_realv all = near * near * near * factor;
+#else
+        const skg_realv all = (skg_realv)(factor);
+#endif
+#if SKG_RATIO
+        const skg_realv top = skg_highest_open(nodes, coefficients, world_plane, surroundings[r]);
+#endif
+        SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++) {
+#if SKG_RATIO
+            const skg_realv open =
+                skg_open_beam(nodes, coefficients, weights + c, world_plane, surroundings[r], top);
+#endif
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
             shown[c][r] = -fma(highest[r], (skg_realv)(SKG_LN2), skg_log_v(shown[c][r]));
-#else
-            shown[c][r] *= factor;
+#if SKG_RATIO
+            shown[c][r] += fma(top, (skg_realv)(SKG_LN2), skg_log_v(open));
 #endif
+#elif SKG_RATIO
+            shown[c][r] = shown[c][r] / open * skg_exp2_v(-top);
+#else
+            shown[c][r] *= all;
+#endif
+        }
+#if SKG_WORLD
+        highest[r] -= coefficients[world_plane] * surroundings[r]; /* what the parts alone subtract is told */
+#endif
+    }
 #endif
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
         const int at = column + r * SKG_WIDE, pixels = frame.columns - at;

@@ -15,6 +15,8 @@ struct skg_response {
     double mm;              /* of the material at full density */
 };
 
+static const double ROUNDING = 0.01; /* tables in use have three digits */
+
 static skg_status check_table(int64_t count, const double *energies, const double *recorded,
                               const double *efficiency) {
     if (count < 2 || !energies || !recorded)
@@ -22,7 +24,7 @@ static skg_status check_table(int64_t count, const double *energies, const doubl
     for (int64_t i = 0; i < count; i++) {
         if (!(isfinite(energies[i]) && energies[i] >= 0) || (i > 0 && !(energies[i] > energies[i - 1])))
             return skg_fail(SKG_ERR_BEAM, "energy response, row %" PRId64 ": energies have to rise", i + 1);
-        if (!(recorded[i] >= 0 && recorded[i] <= energies[i] * (1 + 1e-6)))
+        if (!(recorded[i] >= 0 && recorded[i] <= energies[i] * (1 + ROUNDING)))
             return skg_fail(SKG_ERR_BEAM,
                             "energy response, row %" PRId64 ": %g keV recorded of a photon of %g keV; give 0 "
                             "to the photon's own",
@@ -152,8 +154,8 @@ static skg_status look_up(const skg_response *r, double energy_kev, double *reco
     }
     double part = (energy_kev - r->energy_kev[low]) / (r->energy_kev[high] - r->energy_kev[low]);
     *recorded = (1 - part) * r->recorded_kev[low] + part * r->recorded_kev[high];
-    *efficiency =
-        r->efficiency ? (1 - part) * r->efficiency[low] + part * r->efficiency[high] : *recorded / energy_kev;
+    *efficiency = r->efficiency ? (1 - part) * r->efficiency[low] + part * r->efficiency[high]
+                                : fmin(*recorded / energy_kev, 1);
     return SKG_OK;
 }
 

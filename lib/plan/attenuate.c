@@ -15,7 +15,7 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, output_double, runs;
+    int32_t planes, channels, shown, world, ratio, falloff, output_double, runs;
 } kernel_key;
 
 struct skg_attenuator {
@@ -76,15 +76,18 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
     static const char *const files[] = {"exponential.clh", "attenuate.cl"};
     cl_program program = NULL;
-    char more[128];
+    char more[256];
     for (int32_t i = 0; i < attenuator->count; i++)
         if (memcmp(&attenuator->keys[i], key, sizeof *key) == 0) {
             *kernel = attenuator->kernels[i];
             return SKG_OK;
         }
-    snprintf(more, sizeof more,
-             "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_RUNS=%d",
-             (int)key->planes, (int)key->channels, (int)key->shown, (int)key->output_double, (int)key->runs);
+    snprintf(
+        more, sizeof more,
+        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
+        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_RUNS=%d",
+        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
+        (int)key->falloff, (int)key->output_double, (int)key->runs);
     SKG_TRY(skg_kernels_get(attenuator->context, &key->options, 2, files, more, &program));
     SKG_TRY(skg_kernel_create(program, "skg_attenuate", kernel));
     /* Full: the oldest goes; its program stays with the context. */
@@ -120,6 +123,31 @@ static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
     return skg_kernel_set(kernel, 13, sizeof channel, &channel);
 }
 
+/* Arguments from `first` on of effects that are there: world and falloff. */
+static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key *key,
+                              const skg_camera *camera, const skg_attenuation *attenuation) {
+    const int single = key->options.precision == SKG_SINGLE;
+    if (key->world) {
+        /* |ray| times path: the whole ray of a point source; with a parallel beam, whose |ray| is 1 mm, from
+         * the start. */
+        const double way[4] = {attenuation->world_weight, camera->parallel ? 1 - camera->start[0] : 1,
+                               -camera->start[1], -camera->start[2]};
+        const cl_int plane = attenuation->world_plane;
+        cl_float4 way_single;
+        for (int k = 0; k < 4; k++) way_single.s[k] = (float)way[k];
+        SKG_TRY(skg_kernel_set(kernel, first++, sizeof plane, &plane));
+        SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof way_single : sizeof way,
+                               single ? (const void *)&way_single : (const void *)way));
+    }
+    if (key->falloff) {
+        const double nearest = skg_camera_nearest_ray(camera);
+        const float nearest_single = (float)nearest;
+        SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof nearest_single : sizeof nearest,
+                               single ? (const void *)&nearest_single : (const void *)&nearest));
+    }
+    return SKG_OK;
+}
+
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
                          cl_mem negative, const skg_image_place *place, skg_stage_log *log) {
@@ -129,6 +157,9 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
                             .planes = attenuation->planes,
                             .channels = attenuation->channels,
                             .shown = attenuation->shown,
+                            .world = attenuation->world_plane >= 0,
+                            .ratio = attenuation->ratio,
+                            .falloff = attenuation->falloff && !camera->parallel,
                             .output_double = place->output_double,
                             .runs = attenuation->nodes > 1 ? RUNS : 1};
     const int single = sums->precision == SKG_SINGLE;
@@ -154,6 +185,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
                            single ? (const void *)&limit_single : (const void *)&limit));
     SKG_TRY(skg_kernel_set(kernel, 9, sizeof negative, &negative));
     SKG_TRY(set_place(kernel, place));
+    SKG_TRY(set_effects(kernel, 14, &key, camera, attenuation));
     const int64_t lanes = skg_kernel_lanes(raster->context, sums->precision) * key.runs;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),

@@ -11,7 +11,12 @@ enum { SKG_SHOWN_INTENSITY = 0, SKG_SHOWN_LOGARITHM = 1, SKG_SHOWN_EXPONENT = 2 
  * nodes of weight[n][c] exp(-exponent). On the device. */
 typedef struct {
     int32_t planes, nodes, channels;
-    int32_t shown; /* SKG_SHOWN_... */
+    int32_t shown;       /* SKG_SHOWN_... */
+    int32_t world_plane; /* that the world's path adds to; -1: vacuum */
+    int32_t ratio;       /* 1: over what the world alone lets pass */
+    int32_t falloff;     /* 1: intensities fall with the distance */
+    int32_t reserved;
+    double world_weight; /* of a mm of the world's path in its plane */
     skg_buffer coefficients, weights;
 } skg_attenuation;
 

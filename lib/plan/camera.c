@@ -157,6 +157,19 @@ double skg_camera_pixel_area(const skg_camera *camera) {
     return skg_length(across);
 }
 
+double skg_camera_nearest_ray(const skg_camera *camera) {
+    /* The foot is where the ray is across both steps: least squares over (i, j). */
+    const double uu = skg_dot(camera->column, camera->column), vv = skg_dot(camera->row, camera->row);
+    const double uv = skg_dot(camera->column, camera->row), fu = skg_dot(camera->first, camera->column);
+    const double fv = skg_dot(camera->first, camera->row), area = uu * vv - uv * uv;
+    const double i = own_pixel((uv * fv - vv * fu) / area, camera->columns);
+    const double j = own_pixel((uv * fu - uu * fv) / area, camera->rows);
+    double ray[3];
+    skg_add_scaled(camera->first, i, camera->column, ray);
+    skg_add_scaled(ray, j, camera->row, ray);
+    return skg_length(ray);
+}
+
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray) {
     const double column = 0.5 * (double)(camera->columns - 1), row = 0.5 * (double)(camera->rows - 1);
     *ray = (skg_ray_double){.unit = 1 / scale};

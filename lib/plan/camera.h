@@ -41,6 +41,9 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
 /* mm2 of a pixel. */
 double skg_camera_pixel_area(const skg_camera *camera);
 
+/* Point source: mm to the pixel of the detector that is nearest the foot of the perpendicular. */
+double skg_camera_nearest_ray(const skg_camera *camera);
+
 /* What sums are multiplied by: lengths of the rays, and 1 / scale. */
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);
 

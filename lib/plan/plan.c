@@ -28,6 +28,8 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
     if (options->quantity < SKG_ENERGY || options->quantity > SKG_ATTENUATION)
         return skg_fail(SKG_ERR_ARGUMENT, "quantity %" PRId32 " is unknown; SKG_ENERGY to SKG_ATTENUATION",
                         options->quantity);
+    if (options->falloff != 0 && options->falloff != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
@@ -87,8 +89,19 @@ static skg_status make_attenuation(skg_plan *plan) {
     const int32_t shown = plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
                           : model->nodes == 1                       ? SKG_SHOWN_EXPONENT
                                                                     : SKG_SHOWN_LOGARITHM;
-    const skg_attenuation image = {model->planes, model->nodes, model->channels, shown, {0}, {0}};
-    const skg_attenuation length = {1, 1, 1, SKG_SHOWN_EXPONENT, {0}, {0}};
+    const int is_ratio = plan->options.quantity == SKG_TRANSMISSION || shown != SKG_SHOWN_INTENSITY;
+    /* Over one energy's open beam the world cancels. */
+    const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
+    const skg_attenuation image = {.planes = model->planes,
+                                   .nodes = model->nodes,
+                                   .channels = model->channels,
+                                   .shown = shown,
+                                   .world_plane = has_world ? (int32_t)model->world_plane : -1,
+                                   .world_weight = model->world_weight,
+                                   .ratio = has_world && is_ratio,
+                                   .falloff = plan->options.falloff && !is_ratio};
+    const skg_attenuation length = {
+        .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
     SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
                                    model->weights, &plan->attenuation));
     SKG_TRY(
@@ -103,7 +116,8 @@ static skg_status make_attenuation(skg_plan *plan) {
 static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_meshes_create(plan->scene, &plan->meshes));
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
-    SKG_TRY(skg_model_create(plan->scene, plan->spectrum, plan->options.quantity, &plan->model));
+    SKG_TRY(skg_model_create(plan->scene, plan->spectrum, &plan->options, &plan->model));
+    SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(find_open(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(make_attenuation(plan));
@@ -113,6 +127,12 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_report_overlaps(plan));
     SKG_TRY(skg_report_effects(plan));
     return skg_frame_prepare(plan);
+}
+
+/* The caller's arrays are not kept, its handles are. */
+static void retain_parts_of_options(skg_plan_options *options) {
+    if (options->response) skg_response_retain(options->response);
+    if (options->world) skg_material_retain(options->world);
 }
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
@@ -137,6 +157,7 @@ skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_vie
     if (options)
         SKG_TRY_CLEANUP(skg_struct_read(options, "skg_plan_options", &made->options, sizeof made->options));
     SKG_TRY_CLEANUP(skg_struct_read(view, "skg_view", &made->view, sizeof made->view));
+    retain_parts_of_options(&made->options);
     SKG_TRY_CLEANUP(check_options(context, &made->options));
     SKG_TRY_CLEANUP(make(made));
     *plan = made;
@@ -172,8 +193,11 @@ void skg_plan_release(skg_plan **plan) {
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);
+    skg_free(&last->channel_names);
     skg_model_release(&last->model);
     skg_plan_meshes_release(&last->meshes);
+    skg_response_release(&last->options.response);
+    skg_material_release(&last->options.world);
     skg_spectrum_release(&last->spectrum);
     skg_scene_release(&last->scene);
     skg_context_release(&last->context);
@@ -197,11 +221,5 @@ skg_status skg_plan_move(skg_plan *plan, const skg_view *view) {
     SKG_TRY(skg_struct_read(view, "skg_view", &moved, sizeof moved));
     SKG_TRY(skg_plan_check_size(plan, &moved));
     plan->view = moved;
-    return SKG_OK;
-}
-
-skg_status skg_plan_channels(const skg_plan *plan, int64_t *channels) {
-    if (!plan || !channels) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channels: no plan or no result");
-    *channels = plan->model.channels;
     return SKG_OK;
 }

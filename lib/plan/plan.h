@@ -51,6 +51,9 @@ struct skg_plan {
     skg_plan_meshes meshes;
     skg_geometry geometry;
     skg_model model;
+    struct {
+        char text[64];
+    } * channel_names;           /* [channels] */
     skg_attenuation attenuation; /* of images */
     skg_attenuation lengths;     /* of path lengths: the plane itself */
     skg_attenuator *attenuator;
@@ -73,6 +76,9 @@ struct skg_plan {
     skg_stage_time stages[SKG_MOST_STAGES];
     int32_t told_unseen; /* that nothing falls on the detector has been told */
 };
+
+/* Names the channels of the model, by the caller's bands (channel.c). */
+skg_status skg_plan_name_channels(skg_plan *plan);
 
 /* SKG_STALE where a view has another size than the plan's. */
 skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);

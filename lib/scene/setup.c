@@ -137,24 +137,6 @@ skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum) {
     return SKG_OK;
 }
 
-skg_status skg_setup_absolute(const skg_setup *setup, int32_t *absolute) {
-    if (!setup || !absolute) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_absolute: no set-up or no result");
-    *absolute = setup->absolute;
-    return SKG_OK;
-}
-
-skg_status skg_setup_response(const skg_setup *setup, skg_response **response) {
-    if (!setup || !response) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_response: no set-up or no result");
-    *response = setup->response;
-    return SKG_OK;
-}
-
-skg_status skg_setup_world(const skg_setup *setup, skg_material **world) {
-    if (!setup || !world) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_world: no set-up or no result");
-    *world = setup->world;
-    return SKG_OK;
-}
-
 skg_status skg_setup_view(const skg_setup *setup, skg_view *view) {
     if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_view: no set-up");
     return skg_struct_write(&setup->view, sizeof setup->view, "skg_view", view);
@@ -165,5 +147,8 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
+    if (setup->absolute) ours.falloff = 1;
+    if (setup->response) ours.response = setup->response;
+    if (setup->world) ours.world = setup->world;
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
 }

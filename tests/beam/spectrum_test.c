@@ -221,7 +221,7 @@ START_TEST(response_tables) {
     ck_skg(skg_response_at(NULL, 75, 1, &recorded, &seen)); /* ideal */
     ck_assert_double_eq(recorded, 75);
     ck_assert_double_eq(seen, 1);
-    ck_skg_fails(skg_response_table(2, e + 1, (double[2]){1, 101}, NULL, &t), SKG_ERR_BEAM, "row 2");
+    ck_skg_fails(skg_response_table(2, e + 1, (double[2]){1, 102}, NULL, &t), SKG_ERR_BEAM, "row 2");
     ck_skg_fails(skg_response_table(2, e, e + 1, NULL, &t), SKG_ERR_BEAM,
                  "50 keV recorded of a photon of 10");
     char path[] = "/tmp/skg_response_XXXXXX";

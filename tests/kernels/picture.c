@@ -246,7 +246,11 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
             .memory = output.memory, .output_double = wide, .row_stride = result->columns};
         skg_attenuation attenuation;
         coefficients[plane] = 1;
-        const skg_attenuation of_plane = {(int32_t)result->planes, 1, 1, SKG_SHOWN_EXPONENT, {0}, {0}};
+        const skg_attenuation of_plane = {.planes = (int32_t)result->planes,
+                                          .nodes = 1,
+                                          .channels = 1,
+                                          .shown = SKG_SHOWN_EXPONENT,
+                                          .world_plane = -1};
         status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, coefficients,
                                         &weight, &attenuation);
         if (status == SKG_OK)

@@ -103,12 +103,19 @@ START_TEST(beams_of_many_energies) {
 }
 END_TEST
 
+static skg_plan_options options(void) {
+    skg_plan_options o;
+    skg_plan_options_init(&o);
+    ck_skg(skg_setup_options(setup, &o));
+    return o;
+}
+
 static skg_quality quality(int32_t *absolute) {
     int64_t count = 0;
     skg_quality q;
     skg_quality_init(&q);
     ck_skg(skg_spectrum_quality(spectrum(&count), &q));
-    ck_skg(skg_setup_absolute(setup, absolute));
+    *absolute = options().falloff;
     return q;
 }
 
@@ -149,20 +156,20 @@ START_TEST(tubes) {
 END_TEST
 
 START_TEST(responses) {
-    skg_response *r = NULL;
+    const skg_response *r = NULL;
     double kev = 0;
     write_file("scene.json", good);
     ck_skg(load());
-    ck_skg(skg_setup_response(setup, &r));
+    r = options().response;
     ck_assert_ptr_null(r);
     ck_skg(load_with("Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 600, \"Unit\": \"um\"}",
                      NULL));
-    ck_skg(skg_setup_response(setup, &r));
+    r = options().response;
     ck_skg(skg_response_at(r, 60, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 52.97, 0.01);
     ck_skg(load_with(
         "Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 270.6, \"Unit\": \"mg/cm2\"}", NULL));
-    ck_skg(skg_setup_response(setup, &r));
+    r = options().response;
     ck_skg(skg_response_at(r, 60, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 52.97, 0.01);
     ck_skg(load_with(
@@ -170,25 +177,25 @@ START_TEST(responses) {
         NULL));
     write_file("motion.csv", "0.01 0.01\n0.1 0.04\n");
     ck_skg(load_with("Detector.Energy response={\"File\": \"motion.csv\", \"Energy\": \"MeV\"}", NULL));
-    ck_skg(skg_setup_response(setup, &r));
+    r = options().response;
     ck_skg(skg_response_at(r, 100, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 40, 1e-9);
     ck_skg(load_with("Detector.EnergyResponse={\"LUT\": [[10, 10], [100, 40]]}", NULL));
-    ck_skg(skg_setup_response(setup, &r));
+    r = options().response;
     ck_skg(skg_response_at(r, 55, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 25, 1e-9);
 }
 END_TEST
 
 START_TEST(worlds) {
-    skg_material *world = NULL;
+    const skg_material *world = NULL;
     double mu = 0;
     ck_skg(load_with("World=Air", NULL));
-    ck_skg(skg_setup_world(setup, &world));
+    world = options().world;
     ck_skg(skg_material_attenuation(world, 80, &mu));
     ck_assert_double_eq_tol(mu, 1.205e-3 * 0.1662, 1e-7);
     ck_skg(load_with("World=vacuum", NULL));
-    ck_skg(skg_setup_world(setup, &world));
+    world = options().world;
     ck_assert_ptr_null(world);
 }
 END_TEST

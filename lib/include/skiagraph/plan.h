@@ -28,6 +28,8 @@ enum {
     SKG_ATTENUATION = 4   /* -ln(I/I0) */
 };
 
+enum { SKG_MOST_CHANNELS = 16 };
+
 typedef struct {
     int32_t size;
     int32_t
@@ -38,7 +40,15 @@ typedef struct {
     int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
                          looked for */
     int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
-    int32_t reserved; /* 0 */
+    int32_t
+        falloff; /* 1: intensities fall with the cube of the distance from the source (inverse square and
+                    obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
+    skg_response *response; /* of the detector; NULL: ideal. Retained by the plan */
+    skg_material *world;    /* around the parts; NULL: vacuum. Retained by the plan */
+    int64_t bands; /* photon-counting bands, 0 to SKG_MOST_CHANNELS: a channel each; 0: one channel of
+                      everything */
+    const double
+        *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -104,8 +114,19 @@ enum { SKG_NET = 0, SKG_SURFACE = 1 };
 SKG_API skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
                                     const skg_frame *frames, const skg_output *output, skg_job **job);
 
-/* How many channels an image of this plan has. */
+/* A channel of this plan's images. Text valid as long as the plan. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;
+    const char *name; /* "energy", "photons from 20 to 40 keV" */
+    const char *unit; /* "keV per pixel" */
+    double open; /* in this unit: what the beam gives without parts (and world), where it is not weakened by
+                    falloff; 1 for transmission, 0 for attenuation */
+} skg_channel;
+
+SKG_API void skg_channel_init(skg_channel *channel);
 SKG_API skg_status skg_plan_channels(const skg_plan *plan, int64_t *channels);
+SKG_API skg_status skg_plan_channel(const skg_plan *plan, int64_t index, skg_channel *channel);
 
 /* What was decided. */
 typedef struct {
