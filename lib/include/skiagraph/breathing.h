@@ -43,7 +43,7 @@ typedef struct {
     int32_t exponent;        /* n of LUJAN, 1 to 8; 2 */
     int32_t reserved;        /* 0 */
     double period_s;         /* of one breath, 0.2 to 60 s; 4 */
-    double start_phase;      /* at time 0, 0 to below 1; 0 */
+    double start_phase;      /* at time 0, 0 to 1; 0 */
     double expiration_ratio; /* of ASYMMETRIC, 0.2 to 5; 1.5 */
     double thoracic;         /* weight of the ribs, 0 to 4: 0 for diaphragmatic breathing; 1 quiet */
     double diaphragmatic;    /* weight of the diaphragm, 0 to 4: 0 for thoracic breathing; 1 quiet */
