@@ -87,14 +87,14 @@ static skg_status cartilages(const skg_thorax_plan *plan, int64_t skin, skg_thor
             p[2][0] = sternum_edge(joint[k]) + 0.5 * r + 2;
         } else {
             p[2][0] = middle[0] + 4;
-            p[2][2] = middle[2] - radius[k - 1] - r - 3;
+            p[2][2] = middle[2] - radius[k - 1] - r - 6;
         }
         for (int i = 0; i < 3; i += 2) p[1][i] = 0.5 * (p[0][i] + p[2][i]);
         p[1][2] -= k >= 4 && k < 7 ? 0.1 * (p[2][2] - p[0][2]) : 0;
         for (int i = 1; i < 3; i++) p[i][1] = skg_cage_front(p[i][0], p[i][2]);
         SKG_TRY(skg_shape_spline((const double(*)[3])p, 3, 17, curve));
         for (int i = 1; i < 17; i++) skg_cage_project(curve[i]);
-        memcpy(middle, curve[8], sizeof middle);
+        memcpy(middle, curve[k < 7 ? 8 : 10], sizeof middle);
         for (int side = 0; side < 2; side++) {
             char label[40];
             snprintf(label, sizeof label, "cartilage %d %s", k + 1, side_name[side]);

@@ -63,7 +63,8 @@ double skg_cage_front(double x, double z) {
     return centre - b * pow(fmax(0, 1 - pow(fabs(x) / a, roundness)), 1 / roundness);
 }
 
-/* Left ribs: head, point at half the length, most lateral point, anterior end; section in mm2. */
+/* Left ribs: head, point at half the length, most lateral point, anterior end; section in mm2. (Rib 12 is
+ * 6 mm lower than measured: on the cage it would touch rib 11.) */
 static const struct {
     double point[4][3], section;
 } rib_table[RIBS] = {{{{15, -19, 171}, {53, -33, 157}, {67, -48, 141}, {51, -77, 124}}, 60},
@@ -77,7 +78,7 @@ static const struct {
                      {{{18, 8, -6}, {104, 20, -72}, {127, -47, -119}, {118, -78, -145}}, 85},
                      {{{19, 2, -35}, {94, 20, -104}, {126, -44, -158}, {117, -61, -181}}, 74},
                      {{{21, -5, -72}, {76, 21, -129}, {114, -40, -185}, {109, -43, -194}}, 59},
-                     {{{20, -16, -107}, {50, 21, -144}, {82, -5, -188}, {79, -7, -197}}, 51}};
+                     {{{20, -16, -107}, {46, 21, -150}, {66, 9, -194}, {64, 11, -200}}, 51}};
 
 /* From the head beside the spine backward to the angle, which is on the cage, and along the cage. */
 static skg_status rib_line(int k, skg_rib *rib) {
@@ -87,7 +88,7 @@ static skg_status rib_line(int k, skg_rib *rib) {
     memcpy(p[0], rib_table[k].point[0], sizeof p[0]);
     p[0][0] += 9; /* clear of the body, whose half width is up to 20 */
     for (int i = 1; i < 4; i++) memcpy(p[i + 1], rib_table[k].point[i], sizeof p[i]);
-    p[1][0] = 0.45 * p[2][0];
+    p[1][0] = fmax(0.45 * p[2][0], p[0][0] + 8);
     p[1][2] = p[0][2] - 0.2 * (p[0][2] - p[2][2]);
     double a, b, centre;
     section(p[1][2], 0, &a, &b, &centre);

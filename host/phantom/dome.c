@@ -24,7 +24,7 @@ void skg_dome_rim(skg_thorax_plan *plan) {
         double azimuth = 2 * pi * i / RIM_POINTS, direction[3] = {cos(azimuth), sin(azimuth), 0};
         plan->rim[i] = skg_shape_exit(rim_region, NULL, centre, direction, 300);
     }
-    skg_shape_smooth(plan->rim, RIM_POINTS, 120);
+    skg_shape_smooth(plan->rim, RIM_POINTS, 40);
 }
 
 double skg_dome_rim_radius(const skg_thorax_plan *plan, double azimuth) {
@@ -50,9 +50,9 @@ double skg_dome_height(const skg_thorax_plan *plan, double x, double y) {
     double dx = x - skg_dome_centre[0], dy = y - skg_dome_centre[1], azimuth = atan2(dy, dx);
     double r = hypot(dx, dy) / skg_dome_rim_radius(plan, azimuth), square = fmin(r, 1.05) * fmin(r, 1.05);
     /* right dome, left dome 13 mm lower, the saddle under the heart between them */
-    double top = -26 + 31 * hump(x, y, -64, -58, 46, 70) + 17 * hump(x, y, 68, -56, 42, 70);
+    double top = -26 + 31 * hump(x, y, -60, -56, 50, 75) + 17 * hump(x, y, 66, -54, 46, 75);
     double rim = skg_dome_rim_height(azimuth);
-    return rim + (top - rim) * (1 - square * square * square);
+    return rim + (top - rim) * (1 - square * square * square * square);
 }
 
 double skg_dome_steepness(const skg_thorax_plan *plan, double x, double y) {

@@ -13,8 +13,8 @@ static const struct {
     const char *label;
     double from[3], to[3], radius;
 } airway[AIRWAYS] = {{"trachea", {0, -56, 200}, {0, -40, 102}, 8.5},
-                     {"bronchus left", {9, -39, 88}, {40, -33, 66}, 5.5},
-                     {"bronchus right", {-8, -39, 87}, {-31, -34, 66}, 6}};
+                     {"bronchus left", {10, -39, 88}, {25, -36, 74}, 5.5},
+                     {"bronchus right", {-10, -39, 87}, {-24, -36, 70}, 6}};
 
 double skg_airway_distance(const double point[3]) {
     double least = INFINITY;
@@ -54,11 +54,17 @@ typedef struct {
 
 static const double apex = 160; /* mm */
 
+/* How low the recess between diaphragm and wall reaches: lowest at the back, beside the spine. */
+static double recess(double x, double y) {
+    double azimuth = atan2(y - skg_dome_centre[1], x - skg_dome_centre[0]);
+    double behind = (fabs(x) - 62) / 45, back = fmax(0, sin(azimuth));
+    return skg_dome_rim_height(azimuth) + 70 - 26 * back * exp(-behind * behind);
+}
+
 /* z over a point of the base: above the diaphragm, and no lower than the recess reaches. */
 static double base_height(const lung *l, double x, double y) {
-    double dome = skg_dome_height(l->plan, x, y);
-    double over = dome + (1.5 + l->gap) * fmin(skg_dome_steepness(l->plan, x, y), 6);
-    double floor = skg_dome_rim_height(atan2(y - skg_dome_centre[1], x - skg_dome_centre[0])) + 55;
+    double dome = skg_dome_height(l->plan, x, y), floor = recess(x, y);
+    double over = dome + (1.5 + 2.6 * l->gap) * fmin(skg_dome_steepness(l->plan, x, y), 12);
     double d = over - floor; /* the larger, rounded over 8 mm */
     return floor + 0.5 * (d + sqrt(d * d + 64));
 }
@@ -83,8 +89,9 @@ static double lung_region(const void *shape, const double flat[3]) {
     const lung *l = at->l;
     const double p[3] = {flat[0], flat[1], height_of(l, at->level, flat[0], flat[1])};
     double most = skg_cage_inside(p, 9.5 + l->gap);
-    /* apart from the other lung: vessels, thymus, oesophagus */
-    most = fmax(most, 11 - l->side * p[0]);
+    /* apart from the other lung: vessels, thymus, oesophagus; and from the bronchus at its root */
+    double up = (p[2] - 78) / 24, across = (p[1] + 37) / 22;
+    most = fmax(most, 11 + 27 * exp(-up * up - across * across) - l->side * p[0]);
     most = fmax(most, skg_spine_inside(p, l->gap));
     most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->gap));
     most = fmax(most, l->gap - skg_airway_distance(p));
@@ -110,7 +117,10 @@ static void lung_place(const void *shape, int64_t ring, double azimuth, double p
     const lung *l = shape;
     int64_t side = ring < l->base ? 0 : ring - l->base < l->sides ? ring - l->base : l->sides - 1;
     double level = (double)side / (double)l->sides, r = radius_at(l, side, azimuth), axis[2];
-    if (ring < l->base) r *= (double)ring / (double)l->base;
+    if (ring < l->base) { /* denser to the rim, where the diaphragm bends */
+        double t = (double)ring / (double)l->base;
+        r *= 1.45 * t - 0.45 * t * t;
+    }
     if (ring == l->base + l->sides) r = 0, level += 0.5 / (double)l->sides;
     axis_at(l, level, axis);
     p[0] = axis[0] + r * cos(2 * pi * azimuth), p[1] = axis[1] + r * sin(2 * pi * azimuth);
@@ -142,8 +152,8 @@ static void find_radii(const lung *l, double *radius) {
 static skg_status make_lung(const skg_thorax_plan *plan, double side, const char *label, int64_t skin,
                             skg_thorax *thorax) {
     lung l = {.plan = plan, .side = side, .gap = fmax(1.2, 1.5 / plan->resolution)};
-    l.base = skg_shape_count(plan->resolution, 9, 3);
-    l.sides = skg_shape_count(plan->resolution, 31, 8);
+    l.base = skg_shape_count(plan->resolution, 15, 4);
+    l.sides = skg_shape_count(plan->resolution, 29, 8);
     l.around = skg_shape_count(plan->resolution, 46, 12);
     double *radius = NULL;
     int64_t *counts = NULL, rings = l.base + l.sides + 1;

@@ -7,12 +7,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-const skg_ellipsoid skg_heart = {{20, -79, 40}, {60, 41, 40}, {0.76, -0.25, -0.60}};
+const skg_ellipsoid skg_heart = {{20, -78, 40}, {66, 45, 45}, {0.76, -0.25, -0.60}};
 
 static const skg_ellipsoid gallbladder = {{-54, -98, -128}, {11, 13, 23}, {1, 0, 0.3}};
-static const skg_ellipsoid kidney_left = {{58, -12, -160}, {21, 19, 50}, {1, 0.3, 0.15}};
-static const skg_ellipsoid kidney_right = {{-56, -12, -172}, {21, 19, 50}, {1, -0.3, -0.15}};
-static const skg_ellipsoid spleen = {{84, -6, -70}, {24, 30, 42}, {1, -0.4, 0.2}};
+static const skg_ellipsoid kidney_left = {{57, -26, -162}, {24, 21, 52}, {1, 0.3, 0.15}};
+static const skg_ellipsoid kidney_right = {{-56, -26, -174}, {24, 21, 52}, {1, -0.3, -0.15}};
+static const skg_ellipsoid spleen = {{80, -22, -72}, {24, 30, 42}, {1, -0.4, 0.2}};
 
 /* Half thickness of the diaphragm, mm. */
 static const double half_thickness = 1.5;
@@ -59,7 +59,8 @@ static skg_status diaphragm(const skg_thorax_plan *plan, int64_t skin, skg_thora
 static double belly(const skg_thorax_plan *plan, const double p[3], double gap) {
     double dx = p[0] - skg_dome_centre[0], dy = p[1] - skg_dome_centre[1], angle = atan2(dy, dx);
     double within = hypot(dx, dy) - 0.985 * skg_dome_rim_radius(plan, angle) + half_thickness + gap;
-    double steep = fmin(skg_dome_steepness(plan, p[0], p[1]), 8);
+    double steep = fmin(skg_dome_steepness(plan, p[0], p[1]), 12);
+    gap += 1; /* the dome bends towards what lies under it */
     double under = (p[2] - skg_dome_height(plan, p[0], p[1])) / steep + half_thickness + gap;
     return fmax(fmax(within, under), skg_spine_inside(p, gap + 2));
 }
@@ -78,7 +79,7 @@ static double liver_region(const void *shape, const double p[3]) {
     const organ *o = shape;
     double most = fmax(belly(o->plan, p, o->gap), -over_liver_floor(p));
     most = fmax(most, -skg_ellipsoid_inside(&gallbladder, p, o->gap));
-    most = fmax(most, -skg_ellipsoid_inside(&kidney_right, p, o->gap));
+    most = fmax(most, -skg_ellipsoid_inside(&kidney_right, p, o->gap + 1));
     return fmax(most, p[0] - 72);
 }
 
@@ -132,18 +133,18 @@ static const struct {
     double line[3][3], radius;
 } duct[DUCTS] = {
     {{{-34, -62, -93}, {-48, -60, -86}, {-60, -60, -78}}, 2.0},    /* right hepatic duct */
-    {{{-66, -64, -75}, {-80, -78, -72}, {-94, -92, -74}}, 1.5},    /* right anterior */
-    {{{-65, -54, -76}, {-78, -40, -76}, {-88, -24, -84}}, 1.5},    /* right posterior */
-    {{{-62, -62, -70}, {-68, -66, -52}, {-70, -66, -32}}, 1.3},    /* upward */
-    {{{-98, -94, -78}, {-104, -92, -92}, {-106, -86, -108}}, 1.1}, /* anterior, downward */
+    {{{-66, -64, -75}, {-76, -74, -72}, {-86, -84, -75}}, 1.5},    /* right anterior */
+    {{{-65, -54, -76}, {-73, -44, -77}, {-78, -34, -84}}, 1.5},    /* right posterior */
+    {{{-62, -62, -70}, {-68, -66, -52}, {-70, -66, -34}}, 1.3},    /* upward */
+    {{{-90, -84, -79}, {-93, -80, -92}, {-92, -74, -106}}, 1.1}, /* anterior, downward */
     {{{-26, -64, -88}, {-10, -72, -74}, {4, -80, -62}}, 1.8},      /* left hepatic duct */
-    {{{8, -83, -57}, {20, -88, -50}, {32, -92, -45}}, 1.3},        /* left lateral */
-    {{{3, -86, -62}, {4, -98, -62}, {2, -112, -64}}, 1.2},         /* left medial */
+    {{{8, -81, -59}, {20, -82, -52}, {32, -82, -44}}, 1.3},        /* left lateral */
+    {{{2, -85, -66}, {0, -93, -66}, {-4, -104, -68}}, 1.2},         /* left medial */
 };
 
 static skg_status ducts(const skg_thorax_plan *plan, int64_t liver, int64_t skin, skg_thorax *thorax) {
     static const double common[4][3] = {
-        {-30, -64, -111}, {-26, -60, -126}, {-20, -52, -150}, {-10, -44, -184}};
+        {-30, -64, -111}, {-26, -64, -126}, {-21, -66, -150}, {-14, -66, -184}};
     skg_mesh_arrays arrays = {0};
     skg_status status = SKG_OK;
     int64_t around = skg_shape_count(plan->resolution, 8, 5), rings = skg_shape_count(plan->resolution, 9, 4);

@@ -166,6 +166,7 @@ skg_status skg_shape_star(const char *name, skg_region region, const void *shape
                           double far, int64_t rings, skg_mesh_arrays *arrays) {
     int64_t *counts = NULL, *first = NULL, total = 0;
     double *radius = NULL;
+    if (region(shape, centre) > 0) return skg_fail(SKG_ERR_INTERNAL, "%s: its centre is outside it", name);
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(rings, sizeof *counts, name, &counts));
     SKG_TRY_CLEANUP(skg_alloc(rings, sizeof *first, name, &first));
