@@ -24,7 +24,7 @@ void skg_dome_rim(skg_thorax_plan *plan) {
         double azimuth = 2 * pi * i / RIM_POINTS, direction[3] = {cos(azimuth), sin(azimuth), 0};
         plan->rim[i] = skg_shape_exit(rim_region, NULL, centre, direction, 300);
     }
-    skg_shape_smooth(plan->rim, RIM_POINTS, 40);
+    skg_shape_smooth(plan->rim, RIM_POINTS, 70);
 }
 
 double skg_dome_rim_radius(const skg_thorax_plan *plan, double azimuth) {
@@ -33,6 +33,14 @@ double skg_dome_rim_radius(const skg_thorax_plan *plan, double azimuth) {
     int i = (int)at % RIM_POINTS, j = (i + 1) % RIM_POINTS;
     double w = at - floor(at);
     return (1 - w) * plan->rim[i] + w * plan->rim[j];
+}
+
+double skg_dome_rim_distance(const skg_thorax_plan *plan, double x, double y) {
+    double dx = x - skg_dome_centre[0], dy = y - skg_dome_centre[1], azimuth = atan2(dy, dx), h = 0.03;
+    double radius = skg_dome_rim_radius(plan, azimuth);
+    double oblique =
+        (skg_dome_rim_radius(plan, azimuth + h) - skg_dome_rim_radius(plan, azimuth - h)) / (2 * h * radius);
+    return (radius - hypot(dx, dy)) / sqrt(1 + oblique * oblique);
 }
 
 /* The rim: xiphoid in front, costal margin at the sides, deepest behind (mm). */

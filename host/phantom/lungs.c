@@ -57,14 +57,14 @@ static const double apex = 160; /* mm */
 /* How low the recess between diaphragm and wall reaches: lowest at the back, beside the spine. */
 static double recess(double x, double y) {
     double azimuth = atan2(y - skg_dome_centre[1], x - skg_dome_centre[0]);
-    double behind = (fabs(x) - 62) / 45, back = fmax(0, sin(azimuth));
+    double behind = (fabs(x) - 70) / 26, back = fmax(0, sin(azimuth));
     return skg_dome_rim_height(azimuth) + 70 - 26 * back * exp(-behind * behind);
 }
 
 /* z over a point of the base: above the diaphragm, and no lower than the recess reaches. */
 static double base_height(const lung *l, double x, double y) {
     double dome = skg_dome_height(l->plan, x, y), floor = recess(x, y);
-    double over = dome + (1.5 + 2.6 * l->gap) * fmin(skg_dome_steepness(l->plan, x, y), 12);
+    double over = dome + fmin((1.5 + 3.4 * l->gap) * skg_dome_steepness(l->plan, x, y), 110);
     double d = over - floor; /* the larger, rounded over 8 mm */
     return floor + 0.5 * (d + sqrt(d * d + 64));
 }
@@ -75,7 +75,8 @@ static double height_of(const lung *l, double level, double x, double y) {
 }
 
 static void axis_at(const lung *l, double level, double axis[2]) {
-    axis[0] = l->side * (66 - 26 * level), axis[1] = -46 + 8 * level;
+    /* left, where the heart is, farther out: it sees the lung in front of the heart */
+    axis[0] = l->side * ((l->side > 0 ? 84 : 72) * (1 - level) + 40 * level), axis[1] = -48 + 10 * level;
 }
 
 /* Where the lung may be. Level rides in z: the region is asked along rays at one level. */
@@ -91,9 +92,11 @@ static double lung_region(const void *shape, const double flat[3]) {
     double most = skg_cage_inside(p, 9.5 + l->gap);
     /* apart from the other lung: vessels, thymus, oesophagus; and from the bronchus at its root */
     double up = (p[2] - 78) / 24, across = (p[1] + 37) / 22;
-    most = fmax(most, 11 + 27 * exp(-up * up - across * across) - l->side * p[0]);
-    most = fmax(most, skg_spine_inside(p, l->gap));
-    most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->gap));
+    most = fmax(most, 11 + 32 * exp(-up * up - across * across) - l->side * p[0]);
+    /* beside the spine, the diaphragm's rim has a fold that the lung does not fill */
+    double fold = 11 / (1 + exp((p[2] - 15) / 12));
+    most = fmax(most, skg_spine_inside(p, l->gap + fold));
+    most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->gap + 0.5));
     most = fmax(most, l->gap - skg_airway_distance(p));
     if (p[2] > 95) { /* the apex is a dome of its own */
         double u = (p[0] - l->side * 44) / 62, v = (p[1] + 36) / 66, w = (p[2] - 95) / (apex + 1 - 95);
@@ -138,15 +141,18 @@ static void find_radii(const lung *l, double *radius) {
             const double direction[3] = {cos(angle), sin(angle), 0};
             radius[s * l->around + i] = skg_shape_exit(lung_region, &at, from, direction, 150);
         }
+        skg_shape_limit(radius + s * l->around, l->around, 2.5);
         skg_shape_smooth(radius + s * l->around, l->around, 3);
     }
-    double *column = radius; /* and from ring to ring, downwards too */
-    for (int pass = 0; pass < 2; pass++)
-        for (int64_t s = 1; s + 1 < l->sides; s++)
-            for (int64_t i = 0; i < l->around; i++) {
-                double *here = column + s * l->around + i;
-                *here = fmin(*here, 0.25 * here[-l->around] + 0.5 * *here + 0.25 * here[l->around]);
-            }
+    /* and from level to level, by 2 mm a mm of height */
+    double rise = 2 * 250 / (double)l->sides;
+    for (int64_t i = 0; i < l->around; i++) {
+        double *column = radius + i;
+        for (int64_t s = 1; s < l->sides; s++)
+            column[s * l->around] = fmin(column[s * l->around], rise + column[(s - 1) * l->around]);
+        for (int64_t s = l->sides - 1; s > 0; s--)
+            column[(s - 1) * l->around] = fmin(column[(s - 1) * l->around], rise + column[s * l->around]);
+    }
 }
 
 static skg_status make_lung(const skg_thorax_plan *plan, double side, const char *label, int64_t skin,

@@ -40,8 +40,8 @@ static void sheet_place(const void *shape, int64_t ring, double azimuth, double 
 }
 
 static skg_status diaphragm(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
-    sheet s = {plan, skg_shape_count(plan->resolution, 24, 6)};
-    int64_t *counts, rings = 2 * s.rings + 1, around = skg_shape_count(plan->resolution, 64, 16);
+    sheet s = {plan, skg_shape_count(plan->resolution, 20, 6)};
+    int64_t *counts, rings = 2 * s.rings + 1, around = skg_shape_count(plan->resolution, 78, 24);
     SKG_TRY(skg_alloc(rings, sizeof *counts, "diaphragm", &counts));
     for (int64_t r = 0; r < rings; r++) {
         int64_t out = r <= s.rings ? r : 2 * s.rings - r, part = around * 3 * out / (2 * s.rings);
@@ -57,12 +57,11 @@ static skg_status diaphragm(const skg_thorax_plan *plan, int64_t skin, skg_thora
 
 /* What every organ of the belly keeps: under the diaphragm by a gap, within its rim. */
 static double belly(const skg_thorax_plan *plan, const double p[3], double gap) {
-    double dx = p[0] - skg_dome_centre[0], dy = p[1] - skg_dome_centre[1], angle = atan2(dy, dx);
-    double within = hypot(dx, dy) - 0.985 * skg_dome_rim_radius(plan, angle) + half_thickness + gap;
+    double within = 2 * half_thickness + gap + 1 - skg_dome_rim_distance(plan, p[0], p[1]);
     double steep = fmin(skg_dome_steepness(plan, p[0], p[1]), 12);
-    gap += 1; /* the dome bends towards what lies under it */
+    gap += 2.3; /* the dome bends towards what lies under it */
     double under = (p[2] - skg_dome_height(plan, p[0], p[1])) / steep + half_thickness + gap;
-    return fmax(fmax(within, under), skg_spine_inside(p, gap + 2));
+    return fmax(fmax(within, under), skg_spine_inside(p, gap + 6));
 }
 
 typedef struct {
@@ -132,14 +131,14 @@ enum { DUCTS = 8 };
 static const struct {
     double line[3][3], radius;
 } duct[DUCTS] = {
-    {{{-34, -62, -93}, {-48, -60, -86}, {-60, -60, -78}}, 2.0},    /* right hepatic duct */
-    {{{-66, -64, -75}, {-76, -74, -72}, {-86, -84, -75}}, 1.5},    /* right anterior */
-    {{{-65, -54, -76}, {-73, -44, -77}, {-78, -34, -84}}, 1.5},    /* right posterior */
-    {{{-62, -62, -70}, {-68, -66, -52}, {-70, -66, -34}}, 1.3},    /* upward */
+    {{{-34, -62, -93}, {-48, -60, -86}, {-60, -60, -78}}, 2.0},  /* right hepatic duct */
+    {{{-66, -64, -75}, {-76, -74, -72}, {-86, -84, -75}}, 1.5},  /* right anterior */
+    {{{-65, -54, -76}, {-73, -44, -77}, {-78, -34, -84}}, 1.5},  /* right posterior */
+    {{{-62, -62, -70}, {-68, -66, -52}, {-70, -66, -34}}, 1.3},  /* upward */
     {{{-90, -84, -79}, {-93, -80, -92}, {-92, -74, -106}}, 1.1}, /* anterior, downward */
-    {{{-26, -64, -88}, {-10, -72, -74}, {4, -80, -62}}, 1.8},      /* left hepatic duct */
-    {{{8, -81, -59}, {20, -82, -52}, {32, -82, -44}}, 1.3},        /* left lateral */
-    {{{2, -85, -66}, {0, -93, -66}, {-4, -104, -68}}, 1.2},         /* left medial */
+    {{{-26, -64, -88}, {-10, -72, -74}, {4, -80, -62}}, 1.8},    /* left hepatic duct */
+    {{{8, -81, -59}, {20, -82, -52}, {32, -82, -44}}, 1.3},      /* left lateral */
+    {{{2, -85, -66}, {0, -93, -66}, {-4, -104, -68}}, 1.2},      /* left medial */
 };
 
 static skg_status ducts(const skg_thorax_plan *plan, int64_t liver, int64_t skin, skg_thorax *thorax) {
@@ -241,11 +240,11 @@ skg_status skg_thorax_skin(const skg_thorax_plan *plan, skg_thorax *thorax) {
 skg_status skg_thorax_needle(const skg_thorax_plan *plan, skg_thorax *thorax) {
     (void)plan;
     static const double tip[3] = {-54, -60, -81.5}, toward[3] = {-1, 0.02, -0.36};
-    double line[2][3];
-    memcpy(line[0], tip, sizeof line[0]);
-    skg_add_scaled(tip, 200 / skg_length(toward), toward, line[1]);
+    skg_tube_ring ring[2] = {{{0}, 0.36, 0.36}, {{0}, 0.36, 0.36}};
+    memcpy(ring[0].centre, tip, sizeof tip);
+    skg_add_scaled(tip, 200 / skg_length(toward), toward, ring[1].centre);
     skg_mesh_arrays arrays = {0};
-    skg_status status = skg_shape_cord("needle", (const double(*)[3])line, 2, 0.36, 0.36, 1, 2, 8, &arrays);
+    skg_status status = skg_shape_tube("needle", 2, ring, 0.36, 8, &arrays);
     if (status == SKG_OK) status = skg_thorax_add(thorax, "needle", 0, -1, &arrays);
     skg_mesh_arrays_free(&arrays);
     if (status != SKG_OK) return status;

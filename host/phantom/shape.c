@@ -140,6 +140,14 @@ void skg_shape_smooth(double *radius, int64_t count, int passes) {
     }
 }
 
+void skg_shape_limit(double *radius, int64_t count, double slope) {
+    double rise = 1 + slope * 2 * pi / (double)count;
+    for (int64_t i = 1; i < 2 * count; i++) /* twice around, both ways: the ring is closed */
+        radius[i % count] = fmin(radius[i % count], rise * radius[(i - 1) % count]);
+    for (int64_t i = 2 * count - 1; i > 0; i--)
+        radius[(i - 1) % count] = fmin(radius[(i - 1) % count], rise * radius[i % count]);
+}
+
 typedef struct {
     const double *centre;
     int64_t rings;
@@ -184,6 +192,7 @@ skg_status skg_shape_star(const char *name, skg_region region, const void *shape
             star_direction(rings, r, (double)i / (double)counts[r], direction);
             radius[first[r] + i] = skg_shape_exit(region, shape, centre, direction, far);
         }
+        skg_shape_limit(radius + first[r], counts[r], 4);
         skg_shape_smooth(radius + first[r], counts[r], 2);
     }
     SKG_TRY_CLEANUP(skg_shape_rings(name, rings, counts, star_place,

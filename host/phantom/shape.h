@@ -45,9 +45,12 @@ double skg_shape_exit(skg_region region, const void *shape, const double from[3]
 skg_status skg_shape_star(const char *name, skg_region region, const void *shape, const double centre[3],
                           double far, int64_t rings, skg_mesh_arrays *arrays);
 
-/* Smooths radii around a ring or over a periodic row downwards: each becomes at most the mean of its
- * neighbours' and its own. */
+/* Smooths the radii of a ring, downwards only: what was allowed stays allowed. `passes` times over, none
+ * exceeds the mean of its neighbours' and its own. */
 void skg_shape_smooth(double *radius, int64_t count, int passes);
+
+/* Likewise: none exceeds its neighbours' by more than a slope (radial over tangential) gives. */
+void skg_shape_limit(double *radius, int64_t count, double slope);
 
 /* Cubic through knots (x rising), slopes from both neighbours; constant outside. Row k of knots: x, value. */
 double skg_shape_curve(const double (*knots)[2], int count, double x);

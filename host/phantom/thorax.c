@@ -50,8 +50,8 @@ skg_status skg_thorax_create(const skg_thorax_options *options, skg_thorax **res
     if (!result) return skg_fail(SKG_ERR_ARGUMENT, "thorax: no place for the result");
     *result = NULL;
     if (options) SKG_TRY(skg_struct_read(options, "skg_thorax_options", &ours, sizeof ours));
-    if (ours.triangles < 6000 || ours.triangles > 20000000)
-        return skg_fail(SKG_ERR_ARGUMENT, "thorax: %" PRId64 " triangles; 6000 to 20000000", ours.triangles);
+    if (ours.triangles < 10000 || ours.triangles > 20000000)
+        return skg_fail(SKG_ERR_ARGUMENT, "thorax: %" PRId64 " triangles; 10000 to 20000000", ours.triangles);
     skg_thorax *thorax;
     SKG_TRY(skg_alloc(1, sizeof *thorax, "thorax", &thorax));
     skg_status status = fill(sqrt((double)ours.triangles / 42000), thorax);

@@ -49,6 +49,7 @@ double skg_spine_inside(const double point[3], double gap); /* <= 0 clear of the
 extern const double skg_dome_centre[2];
 void skg_dome_rim(skg_thorax_plan *plan);
 double skg_dome_rim_radius(const skg_thorax_plan *plan, double azimuth);
+double skg_dome_rim_distance(const skg_thorax_plan *plan, double x, double y); /* about mm; > 0 within */
 double skg_dome_rim_height(double azimuth);
 double skg_dome_height(const skg_thorax_plan *plan, double x, double y);    /* of the diaphragm's middle */
 double skg_dome_steepness(const skg_thorax_plan *plan, double x, double y); /* 1/cos of its slope */

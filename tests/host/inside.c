@@ -82,7 +82,8 @@ int solid_holds(const solid *s, const double p[3]) {
 
 static double segment_distance(const double *a, const double *b, const double *p) {
     double along = 0, length = 0, d = 0;
-    for (int k = 0; k < 3; k++) along += (p[k] - a[k]) * (b[k] - a[k]), length += (b[k] - a[k]) * (b[k] - a[k]);
+    for (int k = 0; k < 3; k++)
+        along += (p[k] - a[k]) * (b[k] - a[k]), length += (b[k] - a[k]) * (b[k] - a[k]);
     double t = length > 0 ? fmin(fmax(along / length, 0), 1) : 0;
     for (int k = 0; k < 3; k++) d += pow(p[k] - a[k] - t * (b[k] - a[k]), 2);
     return sqrt(d);
