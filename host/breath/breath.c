@@ -68,7 +68,7 @@ static skg_status check_samples(const skg_breath *b) {
 static skg_status check_holds(const skg_breath *b) {
     if (b->hold_count < 0 || (b->hold_count > 0 && !b->holds))
         return skg_fail(SKG_ERR_BREATHING, "breath: %" PRId64 " holds without a list", b->hold_count);
-    double last = -INFINITY;
+    double last = -HUGE_VAL;
     for (int64_t i = 0; i < b->hold_count; i++) {
         const skg_breath_hold *h = b->holds + i;
         if (!(h->from >= last && h->to >= h->from && isfinite(h->from) && isfinite(h->to)))

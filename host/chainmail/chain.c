@@ -187,7 +187,7 @@ void skg_chain_check(const skg_chain *chain, const double *u, double tolerance, 
     *broken = 0, *worst = 0;
     for (int64_t i = 0; i < chain->nodes; i++)
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
-            double most = -INFINITY;
+            double most = -HUGE_VAL;
             for (int k = 0; k < 3; k++) {
                 const skg_chain_edge *edge = chain->edge[k] + e;
                 double stretch = u[k * chain->nodes + edge->node] - u[k * chain->nodes + i];

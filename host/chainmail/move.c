@@ -97,15 +97,16 @@ void skg_chain_bounds(const skg_chain *chain, int axis, int direction, const dou
                       skg_chain_front *f) {
     forget(f);
     const skg_chain_edge *edges = chain->edge[axis];
-    for (int64_t i = 0; i < chain->nodes; i++) f->gain[i] = -INFINITY;
+    for (int64_t i = 0; i < chain->nodes; i++) f->gain[i] = -HUGE_VAL;
     for (int64_t s = 0; !sources && s < chain->drivers; s++)
-        offer(f, chain->driver[s], direction * chain->target[axis][s], -INFINITY);
+        offer(f, chain->driver[s], direction * chain->target[axis][s], -HUGE_VAL);
     for (int64_t i = 0; sources && i < chain->nodes; i++)
-        offer(f, (int32_t)i, direction * sources[i], -INFINITY);
+        offer(f, (int32_t)i, direction * sources[i], -HUGE_VAL);
     while (f->waiting > 0) {
         int32_t i = pop(f);
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++)
-            offer(f, edges[e].node, f->gain[i] - (direction > 0 ? edges[e].fall : edges[e].rise), -INFINITY);
+            offer(f, edges[e].node, f->gain[i] - (direction > 0 ? edges[e].fall : edges[e].rise),
+                  -HUGE_VAL);
     }
 }
 

@@ -104,7 +104,7 @@ static skg_status rib_line(int k, skg_rib *rib) {
 }
 
 double skg_rib_distance(const skg_thorax_plan *plan, const double p[3]) {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int k = 0; k < RIBS; k++)
         for (int i = 0; i < RIB_POINTS; i++) {
             const double *q = plan->rib[k].line[i];

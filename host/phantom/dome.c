@@ -10,7 +10,7 @@ static const double rim_inset = 9; /* mm: half a rib, a gap, half the diaphragm 
 
 static double rim_region(const void *unused, const double p[3]) {
     (void)unused;
-    double most = -INFINITY;
+    double most = -HUGE_VAL;
     for (int i = 0; i < 3; i++) { /* where the rim may be */
         const double q[3] = {p[0], p[1], -60 - 60 * i};
         most = fmax(most, fmax(skg_cage_inside(q, rim_inset), skg_spine_inside(q, 5)));

@@ -17,7 +17,7 @@ static const struct {
                      {"bronchus right", {-10, -39, 87}, {-24, -36, 70}, 6}};
 
 double skg_airway_distance(const double point[3]) {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int i = 0; i < AIRWAYS; i++) {
         double d[3], p[3];
         skg_add_scaled(airway[i].to, -1, airway[i].from, d);

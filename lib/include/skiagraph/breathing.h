@@ -1,4 +1,4 @@
-/* Breathing: tissues, waveforms, the generated thorax.
+/* Breathing: tissues, waveforms, the generated thorax, bodies that move.
  *
  * The method is that of Vidal and Villard, Comput. Med. Imaging Graph. 49 (2016) 1-15, "the paper": meshes
  * move on the host, and the picture is made of where they are. Lengths in mm, angles in radians, time in s,
@@ -7,6 +7,7 @@
 #ifndef SKIAGRAPH_BREATHING_H
 #define SKIAGRAPH_BREATHING_H
 
+#include <skiagraph/context.h>
 #include <skiagraph/mesh.h>
 
 #ifdef __cplusplus
@@ -120,6 +121,90 @@ SKG_API skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number,
  * in front of a detector behind the patient's back, head up, the patient's right on the viewer's left.
  * SKG_ERR_OUTPUT. */
 SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder);
+
+/* A body: organs that move with the breath. Each has a rule, found by its label (without regard to case):
+ *     rib N left/right              turns about an axis through its head: Wilson et al., J. Appl. Physiol. 62
+ *                                   (1987) 1872, ribs 3 to 7; others extrapolated (an assumption)
+ *     sternum ...                   rigid, fitted to the anterior ends of ribs 1 to 7
+ *     cartilage N left/right        between its rib and the sternum
+ *     diaphragm                     tendon rigid above a plane, muscle below it deformable, rim with the ribs
+ *     lung ..., liver, heart, skin  deformable; linked to ribs, diaphragm or both
+ *     gallbladder; stomach, spleen, kidney ...; trachea, bronchus ..., common bile duct
+ *                                   with the liver; the diaphragm (kidneys 0.65 of it); between their ends
+ *     needle                        rigid: pivots where it enters the skin, tip with the liver
+ *     spine ..., clavicle ...       stay
+ * Any other part moves with the one that it lies inside, if that is deformable; else it stays, and a warning
+ * says so. Links are found once, at rest. */
+typedef struct skg_body skg_body;
+
+/* Prepare with skg_body_options_init. */
+typedef struct {
+    int32_t size;
+    int32_t relaxation;        /* passes of elastic relaxation, 0 to 20; 0 */
+    double tendon_mm[3];       /* displacement of the tendon at diaphragmatic weight 1; 0, 0, -15 */
+    double tendon_plane[4];    /* a x + b y + c z + d > 0: tendon; all 0 (default): the upper third */
+    double reference_thoracic; /* weights at which the meshes were made: there every vertex is the file's; */
+    double reference_diaphragmatic; /* 0, 0: end-expiration */
+    double hysteresis; /* 0 to 1; 0: the state depends on the phase's weights only; 1: the paper's */
+} skg_body_options;
+
+SKG_API void skg_body_options_init(skg_body_options *options);
+
+/* One organ. Prepare with skg_organ_init. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;  /* 0 */
+    int64_t inside;    /* number of the organ that it lies in, added before it; -1: none */
+    skg_mesh *mesh;    /* retained; the body writes its positions */
+    const char *label; /* copied */
+    skg_tissue tissue; /* all 0: by label */
+} skg_organ;
+
+SKG_API void skg_organ_init(skg_organ *organ);
+
+/* An empty body. context: for warnings; may be NULL. options NULL: the defaults. SKG_ERR_BREATHING for an
+ * option out of range. The caller releases the body. */
+SKG_API skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **body);
+SKG_API void skg_body_release(skg_body **body);
+
+/* Adds an organ; *id: its number from 0 (NULL: not wanted). */
+SKG_API skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id);
+
+/* Finds links, axes and regions in the meshes as they lie; to be called once, after the last organ.
+ * SKG_ERR_BREATHING: no organ that moves. */
+SKG_API skg_status skg_body_link(skg_body *body);
+
+/* With hysteresis only: goes round the breath until it repeats itself and keeps the loop, from which
+ * skg_body_pose then starts at any phase. */
+SKG_API skg_status skg_body_breathe(skg_body *body, const skg_breath *breath);
+
+/* Poses all organs: writes the meshes that move. The same state gives the same bits, whatever came before
+ * (with hysteresis: after the same skg_body_breathe). state: as skg_breath_at_time gives it. */
+SKG_API skg_status skg_body_pose(skg_body *body, const skg_breath_state *state);
+
+/* From the next pose on, the needle is drawn back along its axis by so many mm from where its file has it
+ * (negative: farther in). */
+SKG_API skg_status skg_body_set_needle(skg_body *body, double withdrawn_mm);
+
+/* What a pose is like. Filled by the library; prepare with skg_body_measure_init. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;          /* 0 */
+    double lung_ml, tidal_ml;  /* volume of the lungs; its excess over the reference pose */
+    double lung_density_ratio; /* V0/V: density against the reference, mass kept */
+    double diaphragm_mm[2];    /* descent of the top of each half: left, right */
+    double liver_mm[3];        /* mean displacement */
+    double conflict_mm;        /* largest contradiction between drivers of one organ */
+    double liver_volume_ratio; /* V/V0 */
+    int64_t broken_links;      /* by more than 1e-9 mm; 0 */
+    int64_t flipped_triangles; /* whose normal turned by more than 90 degrees, over all organs */
+} skg_body_measure;
+
+SKG_API void skg_body_measure_init(skg_body_measure *measure);
+SKG_API skg_status skg_body_get_measure(const skg_body *body, skg_body_measure *measure);
+
+/* HU at a density of ratio times that at hounsfield: (HU + 1000) goes with the density. */
+SKG_API double skg_lung_hounsfield(double hounsfield, double density_ratio);
 
 #ifdef __cplusplus
 }
