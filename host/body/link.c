@@ -41,29 +41,32 @@ static int diaphragm_rule(const skg_body *body, const skg_body_organ *organ, con
     const double *bounds = organ->mesh->health.bounds;
     *link = (skg_link){.organ = LINK_TENDON, .part = 1};
     if (plane_value(body, p) > 0) return 1;
-    if (p[2] > bounds[2] + 0.15 * (bounds[5] - bounds[2])) return 0;
-    if (nearest_of(body, ROLE_RIB, 6, 12, p, 20, link) > 20) *link = (skg_link){.organ = LINK_STAYS};
-    return 1;
+    if (p[2] > bounds[2] + 0.1 * (bounds[5] - bounds[2])) return 0;
+    if (nearest_of(body, ROLE_RIB, 6, 12, p, 16, link) < HUGE_VAL) return 1;
+    skg_link spine;
+    int32_t beside = find_organ(body, "spine");
+    *link = (skg_link){.organ = LINK_STAYS};
+    return beside >= 0 && skg_nearest(body->organ + beside, p, 12, &spine) < HUGE_VAL;
 }
 
-/* Walls go with the ribs, the base with the diaphragm, whichever is nearer. */
+/* The base goes with the diaphragm, the upper wall with the ribs; between them the lung slides. */
 static int lung_rule(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link) {
-    skg_link rib, base;
+    skg_link base;
     (void)organ;
-    double to_base = nearest_of(body, ROLE_DIAPHRAGM, 0, 0, p, 16, &base);
-    double to_rib = nearest_of(body, ROLE_RIB, 1, 10, p, fmin(to_base, 16), &rib);
-    *link = to_rib < to_base ? rib : base;
-    return fmin(to_rib, to_base) < HUGE_VAL;
+    double to_base = nearest_of(body, ROLE_DIAPHRAGM, 0, 0, p, 45, &base);
+    *link = base;
+    if (to_base < 16) return 1;
+    return to_base == HUGE_VAL && nearest_of(body, ROLE_RIB, 2, 7, p, 16, link) < HUGE_VAL;
 }
 
 /* What hangs on the tendon or lies on it. */
 static int tendon_rule(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link) {
     (void)organ;
-    if (nearest_of(body, ROLE_DIAPHRAGM, 0, 0, p, 9, link) > 9) return 0;
-    double q[3] = {0};
+    if (nearest_of(body, ROLE_DIAPHRAGM, 0, 0, p, 9, link) == HUGE_VAL) return 0;
+    int tendon = 1;
     for (int c = 0; c < 3; c++)
-        skg_add_scaled(q, link->weight[c], body->organ[link->organ].rest + 3 * link->corner[c], q);
-    return plane_value(body, q) > 0;
+        tendon &= plane_value(body, body->organ[link->organ].rest + 3 * link->corner[c]) > 0;
+    return tendon;
 }
 
 /* The threshold is about the fat's thickness and half a space between two ribs. */
@@ -227,14 +230,16 @@ static skg_status follow(skg_body *body, skg_body_organ *o) {
     return carrier >= 0 ? carry(body, o, carrier) : SKG_OK;
 }
 
-/* A cartilage goes from its rib (share 0) to the sternum, or to the cartilage above (share 1). */
+/* A cartilage goes from its rib (share 0) to the sternum, or to the cartilage above, which there goes about
+ * as its own rib does (share 1). */
 static skg_status tie_cartilage(skg_body *body, skg_body_organ *o) {
     int32_t rib = -1, other = -1;
     for (int64_t i = 0; i < body->organs; i++) {
         const skg_body_organ *c = body->organ + i;
         if (c->role == ROLE_RIB && c->number == o->number && c->side == o->side) rib = (int32_t)i;
         if (c->role == ROLE_STERNUM && o->number <= 7) other = (int32_t)i;
-        if (c->role == ROLE_RIB && c->number == 7 && c->side == o->side && o->number > 7) other = (int32_t)i;
+        if (c->role == ROLE_RIB && o->number > 7 && c->number == o->number - 1 && c->side == o->side)
+            other = (int32_t)i;
     }
     if (rib < 0 || other < 0) {
         o->role = ROLE_STATIC;

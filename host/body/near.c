@@ -33,8 +33,14 @@ static void nearest_weights(const double *a, const double *b, const double *c, c
 }
 
 double skg_nearest(const skg_body_organ *organ, const double p[3], double reach, skg_link *link) {
-    double least = reach * reach;
+    double least = reach * reach, away = 0;
     int found = 0;
+    for (int k = 0; k < 3; k++) { /* the whole organ out of reach: most are */
+        const double *bounds = organ->mesh->health.bounds;
+        double d = fmax(0, fmax(bounds[k] - p[k], p[k] - bounds[3 + k]));
+        away += d * d;
+    }
+    if (away > least) return HUGE_VAL;
     for (int64_t t = 0; t < organ->triangles; t++) {
         const int32_t *corner = organ->corner + 3 * t;
         const double *a = organ->rest + 3 * corner[0], *b = organ->rest + 3 * corner[1];

@@ -152,6 +152,22 @@ static skg_status write_mesh(skg_body_organ *o) {
     return differs ? skg_mesh_moved(o->mesh) : SKG_OK;
 }
 
+/* Organs of one role do not follow each other. */
+static skg_status pose_role(skg_body *body, skg_role role) {
+    skg_status status = SKG_OK;
+#pragma omp parallel for schedule(dynamic, 1) if (role == ROLE_LINKED)
+    for (int64_t i = 0; i < body->organs; i++) {
+        if (body->organ[i].role != role) continue;
+        skg_status one = pose_one(body, body->organ + i);
+#pragma omp critical(skg_body_status)
+        if (one != SKG_OK) status = one;
+    }
+    if (status == SKG_ERR_BREATHING)
+        return skg_fail(status,
+                        "body: a driven point of an organ is not finite; check the meshes and the breath");
+    return status;
+}
+
 /* All organs in memory; meshes are written by the caller. */
 static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic) {
     const skg_body_options *options = &body->options;
@@ -171,9 +187,7 @@ static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic
         }
     static const skg_role order[] = {ROLE_CARTILAGE, ROLE_DIAPHRAGM, ROLE_LINKED,
                                      ROLE_CARRIED,   ROLE_SPANNED,   ROLE_NEEDLE};
-    for (size_t r = 0; r < sizeof order / sizeof *order; r++)
-        for (int64_t i = 0; i < body->organs; i++)
-            if (body->organ[i].role == order[r]) SKG_TRY(pose_one(body, body->organ + i));
+    for (size_t r = 0; r < sizeof order / sizeof *order; r++) SKG_TRY(pose_role(body, order[r]));
     return SKG_OK;
 }
 

@@ -63,9 +63,9 @@ skg_tissue skg_tissue_of(const char *label) {
         skg_tissue tissue;
     } known[] = {{"diaphragm", {0.7, 1.1, 0.1}},
                  {"lung", {0.5, 1.6, 0.3}},
-                 {"liver", {0.85, 1.15, 0.1}},
+                 {"liver", {0.97, 1.05, 0.03}},
                  {"heart", {0.7, 1.3, 0.1}},
-                 {"skin", {0.8, 1.25, 0.2}}};
+                 {"skin", {0.75, 1.3, 0.25}}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (skg_label_begins(label, known[i].word)) return known[i].tissue;
     return (skg_tissue){0.8, 1.2, 0.1};

@@ -105,8 +105,7 @@ void skg_chain_bounds(const skg_chain *chain, int axis, int direction, const dou
     while (f->waiting > 0) {
         int32_t i = pop(f);
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++)
-            offer(f, edges[e].node, f->gain[i] - (direction > 0 ? edges[e].fall : edges[e].rise),
-                  -HUGE_VAL);
+            offer(f, edges[e].node, f->gain[i] - (direction > 0 ? edges[e].fall : edges[e].rise), -HUGE_VAL);
     }
 }
 
@@ -168,8 +167,11 @@ static void settle_conflict(skg_chain *chain, int axis, const double *u, skg_cha
     }
 }
 
+/* Below so many nodes, starting threads costs more than they save. */
+static const int64_t threads_from = 10000;
+
 static void solve(skg_chain *chain, double *u, skg_chain_report *report) {
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (chain->nodes >= threads_from)
     for (int task = 0; task < 6; task++)
         spread(chain, task / 2, task % 2 ? -1 : 1, u + task / 2 * chain->nodes, chain->front + task);
     *report = (skg_chain_report){.axis = -1, .driver = -1};
@@ -218,7 +220,7 @@ skg_status skg_chain_relax(skg_chain *chain, int32_t passes, double fraction, do
     double *mean;
     SKG_TRY(skg_alloc(3 * chain->nodes, sizeof(double), chain->name, &mean));
     for (int32_t pass = 0; pass < passes; pass++) {
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (chain->nodes >= threads_from)
         for (int axis = 0; axis < 3; axis++)
             relax_axis(chain, axis, fraction, u + axis * chain->nodes, mean + axis * chain->nodes);
         skg_chain_report report;

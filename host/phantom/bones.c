@@ -87,7 +87,7 @@ static skg_status cartilages(const skg_thorax_plan *plan, int64_t skin, skg_thor
             p[2][0] = sternum_edge(joint[k]) + 0.5 * r + 2;
         } else {
             p[2][0] = middle[0] + 4;
-            p[2][2] = middle[2] - radius[k - 1] - r - 6;
+            p[2][2] = middle[2] - radius[k - 1] - r - 7;
         }
         for (int i = 0; i < 3; i += 2) p[1][i] = 0.5 * (p[0][i] + p[2][i]);
         p[1][2] -= k >= 4 && k < 7 ? 0.1 * (p[2][2] - p[0][2]) : 0;

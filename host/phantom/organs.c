@@ -11,7 +11,7 @@ const skg_ellipsoid skg_heart = {{20, -78, 40}, {66, 45, 45}, {0.76, -0.25, -0.6
 
 static const skg_ellipsoid gallbladder = {{-54, -98, -128}, {11, 13, 23}, {1, 0, 0.3}};
 static const skg_ellipsoid kidney_left = {{57, -26, -162}, {24, 21, 52}, {1, 0.3, 0.15}};
-static const skg_ellipsoid kidney_right = {{-56, -26, -174}, {24, 21, 52}, {1, -0.3, -0.15}};
+static const skg_ellipsoid kidney_right = {{-56, -26, -184}, {24, 21, 50}, {1, -0.3, -0.15}};
 static const skg_ellipsoid spleen = {{80, -22, -72}, {24, 30, 42}, {1, -0.4, 0.2}};
 
 /* Half thickness of the diaphragm, mm. */
