@@ -9,8 +9,11 @@ configure_package_config_file(cmake/skiagraph-config.cmake.in ${CMAKE_BINARY_DIR
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/skiagraph-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/skiagraph-config.cmake ${CMAKE_BINARY_DIR}/skiagraph-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/skiagraph)
+# Where the prefix is, seen from skiagraph.pc: an installed tree may be moved.
+file(RELATIVE_PATH SKG_PREFIX_FROM_PC "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 configure_file(cmake/skiagraph.pc.in ${CMAKE_BINARY_DIR}/skiagraph.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/skiagraph.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 if(TARGET skiagraph_command)
+  set_target_properties(skiagraph_command PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS skiagraph_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

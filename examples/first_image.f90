@@ -156,7 +156,7 @@ program first_image
     call skg_material_release(water)
     call skg_mesh_release(mesh)
     call skg_context_release(context)
-    if (abs(middle - 30.0) > 1.0e-4) error stop 'that is not the edge of the cube'
+    if (abs(middle - 30.0) > 1.0e-4) call fail('that is not the edge of the cube')
 
 contains
 
@@ -171,6 +171,12 @@ contains
             write (*, '(a)', advance='no') text(i)
         end do
         print *
-        error stop 'skiagraph failed'
+        call fail('skiagraph failed')
+    end subroutine
+
+    subroutine fail(text)
+        character(len=*), intent(in) :: text
+        print '(a)', text
+        stop 1
     end subroutine
 end program

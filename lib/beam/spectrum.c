@@ -1,33 +1,104 @@
 #include "beam/spectrum.h"
+#include "material/material.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 
-/* The range over which cross sections stand: 1 keV to 20 MeV. */
-static const double LOWEST_KEV = 1.0, HIGHEST_KEV = 20000.0;
-
-skg_status skg_spectrum_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_mono: no place for the spectrum");
-    *spectrum = NULL;
-    if (!(energy_kev >= LOWEST_KEV && energy_kev <= HIGHEST_KEV))
-        return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV lies outside %g to %g keV", energy_kev,
-                        LOWEST_KEV, HIGHEST_KEV);
-    if (!(isfinite(photons) && photons > 0))
-        return skg_fail(SKG_ERR_BEAM, "%g photons per pixel make no beam; give a number above 0", photons);
+skg_status skg_spectrum_make(int64_t count, skg_spectrum **spectrum) {
     skg_spectrum *made = NULL;
+    skg_status status = SKG_OK;
     SKG_TRY(skg_alloc(1, sizeof *made, "spectrum", &made));
     skg_refs_init(&made->refs);
-    made->count = 1;
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(1, sizeof(double), "spectrum", &made->energy_kev));
-    SKG_TRY_CLEANUP(skg_alloc(1, sizeof(double), "spectrum", &made->photons));
-    made->energy_kev[0] = energy_kev;
-    made->photons[0] = photons;
+    made->count = count;
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "spectrum", &made->energy_kev));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "spectrum", &made->photons));
     *spectrum = made;
     return SKG_OK;
 cleanup:
     skg_spectrum_release(&made);
     return status;
+}
+
+static skg_status check_energy(double energy_kev) {
+    if (energy_kev >= SKG_LOWEST_KEV && energy_kev <= SKG_HIGHEST_KEV) return SKG_OK;
+    return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV lies outside %g to %g keV", energy_kev,
+                    SKG_LOWEST_KEV, SKG_HIGHEST_KEV);
+}
+
+skg_status skg_spectrum_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_mono: no place for the spectrum");
+    *spectrum = NULL;
+    SKG_TRY(check_energy(energy_kev));
+    if (!(isfinite(photons) && photons > 0))
+        return skg_fail(SKG_ERR_BEAM, "%g photons per pixel make no beam; give a number above 0", photons);
+    SKG_TRY(skg_spectrum_make(1, spectrum));
+    (*spectrum)->energy_kev[0] = energy_kev;
+    (*spectrum)->photons[0] = photons;
+    return SKG_OK;
+}
+
+typedef struct {
+    double energy_kev, photons;
+} bin;
+
+static int by_energy(const void *a, const void *b) {
+    double x = ((const bin *)a)->energy_kev, y = ((const bin *)b)->energy_kev;
+    return (x > y) - (x < y);
+}
+
+/* Sorts, adds equal energies, drops those without photons; the new count. */
+static int64_t merge(int64_t count, bin *bins) {
+    int64_t used = 0;
+    qsort(bins, (size_t)count, sizeof *bins, by_energy);
+    for (int64_t i = 0; i < count; i++) {
+        if (!(bins[i].photons > 0)) continue;
+        if (used > 0 && !(bins[i].energy_kev > bins[used - 1].energy_kev))
+            bins[used - 1].photons += bins[i].photons;
+        else
+            bins[used++] = bins[i];
+    }
+    return used;
+}
+
+skg_status skg_spectrum_bins(int64_t count, const double *energies_kev, const double *photons,
+                             skg_spectrum **spectrum) {
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bins: no place for the spectrum");
+    *spectrum = NULL;
+    if (count < 1 || !energies_kev || !photons)
+        return skg_fail(SKG_ERR_BEAM, "a spectrum has at least one energy");
+    for (int64_t i = 0; i < count; i++) {
+        SKG_TRY(check_energy(energies_kev[i]));
+        if (!(isfinite(photons[i]) && photons[i] >= 0))
+            return skg_fail(SKG_ERR_BEAM, "%g photons of %g keV: give a number of at least 0", photons[i],
+                            energies_kev[i]);
+    }
+    bin *bins = NULL;
+    SKG_TRY(skg_alloc(count, sizeof *bins, "spectrum", &bins));
+    for (int64_t i = 0; i < count; i++) bins[i] = (bin){energies_kev[i], photons[i]};
+    int64_t used = merge(count, bins);
+    skg_status status = used > 0 ? skg_spectrum_make(used, spectrum)
+                                 : skg_fail(SKG_ERR_BEAM, "a spectrum without photons makes no beam");
+    for (int64_t i = 0; status == SKG_OK && i < used; i++) {
+        (*spectrum)->energy_kev[i] = bins[i].energy_kev;
+        (*spectrum)->photons[i] = bins[i].photons;
+    }
+    skg_free(&bins);
+    return status;
+}
+
+skg_status skg_spectrum_scaled(const skg_spectrum *spectrum, double factor, skg_spectrum **scaled) {
+    if (!scaled) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_scaled: no place for the spectrum");
+    *scaled = NULL;
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_scaled: no spectrum");
+    if (!(isfinite(factor) && factor > 0))
+        return skg_fail(SKG_ERR_BEAM, "a spectrum times %g makes no beam; give a factor above 0", factor);
+    SKG_TRY(skg_spectrum_make(spectrum->count, scaled));
+    for (int64_t i = 0; i < spectrum->count; i++) {
+        (*scaled)->energy_kev[i] = spectrum->energy_kev[i];
+        (*scaled)->photons[i] = spectrum->photons[i] * factor;
+    }
+    return SKG_OK;
 }
 
 skg_status skg_spectrum_retain(skg_spectrum *spectrum) {

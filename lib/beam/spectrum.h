@@ -1,4 +1,4 @@
-/* The inside of a spectrum. Private. */
+/* The inside of spectra and responses. Private. */
 #ifndef SKG_SPECTRUM_PRIVATE_H
 #define SKG_SPECTRUM_PRIVATE_H
 
@@ -9,8 +9,38 @@
 struct skg_spectrum {
     skg_refs refs;
     int64_t count;
-    double *energy_kev; /* [count] */
-    double *photons;    /* [count] per pixel */
+    double *energy_kev; /* [count], rising */
+    double *photons;    /* [count] per pixel, above 0 */
 };
+
+/* A spectrum with room for `count` energies, which the caller fills. */
+skg_status skg_spectrum_make(int64_t count, skg_spectrum **spectrum);
+
+/* Transmission exp(-sum mu mm) of filters at an energy. */
+skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed);
+
+/* Air kerma in uGy of one photon per mm2. */
+double skg_air_kerma(double energy_kev);
+
+/* Air kerma in uGy of a spectrum per mm2. */
+double skg_spectrum_kerma(const skg_spectrum *spectrum);
+
+/* First and second half-value layers of air kerma in mm of a material. */
+skg_status skg_half_value_layers(const skg_spectrum *spectrum, const skg_material *material, double *first,
+                                 double *second);
+
+/* What a tube model needs to know. */
+typedef struct {
+    int32_t z;
+    double kvp, angle_deg;
+} skg_anode;
+
+/* Bremsstrahlung photons per keV, mAs and mm2 at 1 m, without filters: Ebel's and Birch's shapes. */
+double skg_ebel_continuum(const skg_anode *anode, double energy_kev);
+double skg_birch_continuum(const skg_anode *anode, double energy_kev);
+
+/* Photons of K line k (of SKG_K_LINES) per mAs and mm2 at 1 m, and its energy; 0 where there is none.
+ * overvoltage: kV / K edge. */
+double skg_ebel_line(const skg_anode *anode, int k, double *energy_kev, double *overvoltage);
 
 #endif

@@ -2,18 +2,34 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+skg_status skg_output_fail(const char *path, int reason, const char *otherwise) {
+    const char *mend = "";
+    if (reason == ENOENT || reason == ENOTDIR) mend = "; make its folder first";
+    if (reason == EACCES || reason == EPERM || reason == EROFS)
+        mend = "; choose a folder that you may write to";
+    if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) mend = "; make room or choose another disk";
+    return skg_fail(SKG_ERR_OUTPUT, "%s: cannot be written: %s%s", path,
+                    reason ? strerror(reason) : otherwise, mend);
+}
 
 skg_status skg_output_open(const char *path, skg_output_file *file) {
     *file = (skg_output_file){0};
     skg_status status = SKG_OK;
     size_t length = strlen(path) + 32;
+    struct stat there;
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) /* the rename would replace a device */
+        return skg_output_fail(path, 0,
+                               S_ISDIR(there.st_mode) ? "it is a folder; add a file name"
+                                                      : "it is a device, not a file; name a file");
     SKG_TRY_CLEANUP(skg_copy_text(path, &file->path));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)length, 1, "file name", &file->temporary));
     snprintf(file->temporary, length, "%s.part-%ld", path, (long)getpid());
-    file->stream = fopen(file->temporary, "wbx");
+    file->stream = fopen(file->temporary, "w+bx"); /* libtiff reads back what it links to */
     if (!file->stream) {
-        status = skg_fail(SKG_ERR_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
+        status = skg_output_fail(path, errno, "");
         skg_free(&file->temporary); /* not ours to remove */
         goto cleanup;
     }
@@ -31,7 +47,7 @@ skg_status skg_output_commit(skg_output_file *file) {
     if (!failed && rename(file->temporary, file->path) != 0) failed = 1, reason = errno;
     skg_status status = SKG_OK;
     if (failed)
-        status = skg_fail(SKG_ERR_OUTPUT, "%s: cannot be written: %s", file->path, strerror(reason));
+        status = skg_output_fail(file->path, reason, "not everything was taken");
     else
         skg_free(&file->temporary);
     skg_output_discard(file);

@@ -12,8 +12,12 @@ typedef struct {
     char *path, *temporary;
 } skg_output_file;
 
-/* Opens the temporary file. SKG_ERR_OUTPUT names path and reason. */
+/* Opens the temporary file. A folder or device of that name is refused. */
 skg_status skg_output_open(const char *path, skg_output_file *file);
+
+/* SKG_ERR_OUTPUT with path, reason (of an errno value; otherwise as the writer's library gave it) and mend.
+ */
+skg_status skg_output_fail(const char *path, int reason, const char *otherwise);
 
 /* Syncs, closes and renames; on failure nothing is left. */
 skg_status skg_output_commit(skg_output_file *file);

@@ -1,6 +1,39 @@
 #include "material/material.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <string.h>
+
+skg_status skg_material_make(const char *name, const char *note, int32_t kind, skg_material **material) {
+    skg_material *made = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(1, sizeof *made, "material", &made));
+    skg_refs_init(&made->refs);
+    made->kind = kind;
+    SKG_TRY_CLEANUP(skg_copy_text(name && *name ? name : "material", &made->name));
+    SKG_TRY_CLEANUP(skg_copy_text(note ? note : "", &made->note));
+    *material = made;
+    return SKG_OK;
+cleanup:
+    skg_material_release(&made);
+    return status;
+}
+
+skg_status skg_material_compose(const char *name, const char *note, int64_t count,
+                                const skg_mass_fraction *parts, double density, skg_material **material) {
+    skg_material *made = NULL;
+    SKG_TRY(skg_material_make(name, note, SKG_MATTER_COMPOSITION, &made));
+    skg_status status = skg_alloc(count, sizeof *parts, "material", &made->parts);
+    if (status != SKG_OK) {
+        skg_material_release(&made);
+        return status;
+    }
+    memcpy(made->parts, parts, (size_t)count * sizeof *parts);
+    made->count = count;
+    made->density = density;
+    *material = made;
+    return SKG_OK;
+}
 
 skg_status skg_material_mu(const char *name, double per_cm, skg_material **material) {
     if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_mu: no place for the material");
@@ -11,14 +44,9 @@ skg_status skg_material_mu(const char *name, double per_cm, skg_material **mater
             "%s: a linear attenuation coefficient of %g 1/cm is not usable; give a finite value of at "
             "least 0",
             name && *name ? name : "material", per_cm);
-    skg_material *made = NULL;
-    SKG_TRY(skg_alloc(1, sizeof *made, "material", &made));
-    skg_refs_init(&made->refs);
-    made->mu_per_cm = per_cm;
-    skg_status status = skg_copy_text(name && *name ? name : "material", &made->name);
-    if (status != SKG_OK) skg_free(&made);
-    *material = made;
-    return status;
+    SKG_TRY(skg_material_make(name, NULL, SKG_MATTER_CONSTANT, material));
+    (*material)->mu_per_cm = per_cm;
+    return SKG_OK;
 }
 
 skg_status skg_material_retain(skg_material *material) {
@@ -31,23 +59,63 @@ void skg_material_release(skg_material **material) {
     if (!material || !*material) return;
     if (skg_unref(&(*material)->refs)) {
         skg_free(&(*material)->name);
+        skg_free(&(*material)->note);
+        skg_free(&(*material)->parts);
+        skg_free(&(*material)->energy_kev);
+        skg_free(&(*material)->per_cm);
         skg_free(material);
     }
     *material = NULL;
 }
 
-skg_status skg_material_attenuation(const skg_material *material, double energy_kev, double *per_cm) {
-    if (!material || !per_cm)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_attenuation: no material or no result");
-    if (!isfinite(energy_kev) || energy_kev <= 0)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: a photon energy of %g keV is not usable", material->name,
-                        energy_kev);
-    *per_cm = material->mu_per_cm;
-    return SKG_OK;
+skg_status skg_material_at_density(const skg_material *material, double density, skg_material **dense) {
+    if (!dense) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_at_density: no place for the material");
+    *dense = NULL;
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_at_density: no material");
+    if (material->kind != SKG_MATTER_COMPOSITION)
+        return skg_fail(SKG_ERR_MATERIAL,
+                        "%s: a material given by its linear attenuation coefficient has no density to change",
+                        material->name);
+    if (!(isfinite(density) && density > 0))
+        return skg_fail(SKG_ERR_MATERIAL, "%s: a density of %g g/cm3 is not usable; give one above 0",
+                        material->name, density);
+    return skg_material_compose(material->name, material->note, material->count, material->parts, density,
+                                dense);
 }
 
 skg_status skg_material_name(const skg_material *material, const char **name) {
     if (!material || !name) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_name: no material or no result");
     *name = material->name;
+    return SKG_OK;
+}
+
+skg_status skg_material_note(const skg_material *material, const char **note) {
+    if (!material || !note) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_note: no material or no result");
+    *note = material->note;
+    return SKG_OK;
+}
+
+skg_status skg_material_density(const skg_material *material, double *density) {
+    if (!material || !density)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_density: no material or no result");
+    *density = material->density;
+    return SKG_OK;
+}
+
+skg_status skg_material_size(const skg_material *material, int64_t *count) {
+    if (!material || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_size: no material or no result");
+    *count = material->kind == SKG_MATTER_COMPOSITION ? material->count : 0;
+    return SKG_OK;
+}
+
+skg_status skg_material_part(const skg_material *material, int64_t index, int32_t *z, double *fraction) {
+    int64_t count = 0;
+    if (!z || !fraction) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_part: no result");
+    SKG_TRY(skg_material_size(material, &count));
+    if (index < 0 || index >= count)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: element %" PRId64 " of %" PRId64, material->name, index,
+                        count);
+    *z = material->parts[index].z;
+    *fraction = material->parts[index].fraction;
     return SKG_OK;
 }

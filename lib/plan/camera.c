@@ -1,23 +1,16 @@
 #include "plan/camera.h"
 
+#include "scene/vector.h"
+#include "scene/view.h"
+
 #include <math.h>
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3]) {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* matrix = [a b c]^-1, by cofactors; returns the determinant of [a b c]. */
 static double invert(const double a[3], const double b[3], const double c[3], double matrix[3][3]) {
-    cross(b, c, matrix[0]);
-    cross(c, a, matrix[1]);
-    cross(a, b, matrix[2]);
-    const double determinant = dot(a, matrix[0]);
+    skg_cross(b, c, matrix[0]);
+    skg_cross(c, a, matrix[1]);
+    skg_cross(a, b, matrix[2]);
+    const double determinant = skg_dot(a, matrix[0]);
     for (int r = 0; r < 3; r++)
         for (int k = 0; k < 3; k++) matrix[r][k] /= determinant;
     return determinant;
@@ -30,12 +23,12 @@ static void parallel_start(const skg_view *view, const double pixel[3], skg_came
         camera->start[0] = -1e30;
         return;
     }
-    const double *d = camera->first, square = dot(d, d);
+    const double *d = camera->first, square = skg_dot(d, d);
     double from[3];
     for (int k = 0; k < 3; k++) from[k] = pixel[k] - view->source[k];
-    camera->start[0] = 1 - dot(from, d) / square;
-    camera->start[1] = -dot(view->column_step, d) / square;
-    camera->start[2] = -dot(view->row_step, d) / square;
+    camera->start[0] = 1 - skg_dot(from, d) / square;
+    camera->start[1] = -skg_dot(view->column_step, d) / square;
+    camera->start[2] = -skg_dot(view->row_step, d) / square;
 }
 
 skg_status skg_camera_make(const skg_view *view, const double *source, double shift_column, double shift_row,
@@ -53,10 +46,9 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
     const double *seen_from = source ? source : view->source;
     for (int k = 0; k < 3; k++) {
         camera->origin[k] = camera->parallel ? pixel[k] : seen_from[k];
-        camera->first[k] = view->projection == SKG_POINT      ? pixel[k] - seen_from[k]
-                           : view->projection == SKG_PARALLEL ? view->centre[k] - view->source[k]
-                                                              : view->source[k];
+        camera->first[k] = pixel[k] - seen_from[k];
     }
+    if (camera->parallel) skg_view_direction(view, camera->first);
     camera->determinant = invert(camera->column, camera->row, camera->first, camera->matrix);
     if (!(fabs(camera->determinant) > 0) || !isfinite(camera->determinant))
         return skg_fail(SKG_ERR_SCENE,
@@ -69,7 +61,7 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
 void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]) {
     double v[3];
     for (int k = 0; k < 3; k++) v[k] = world[k] - camera->origin[k];
-    for (int r = 0; r < 3; r++) h[r] = dot(camera->matrix[r], v);
+    for (int r = 0; r < 3; r++) h[r] = skg_dot(camera->matrix[r], v);
 }
 
 /* The nearest pixel of the detector, along one axis. */
@@ -81,8 +73,8 @@ static double own_pixel(double x, int64_t count) {
 
 static double determinant(double m[3][3]) {
     double c[3];
-    cross(m[1], m[2], c);
-    return dot(m[0], c);
+    skg_cross(m[1], m[2], c);
+    return skg_dot(m[0], c);
 }
 
 /* Along one axis of the picture: anchor, offset and row, relative to the part's pixel. */
@@ -124,7 +116,7 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
     double pose_linear[3][3], linear[3][3], world[3], h[3];
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) pose_linear[r][c] = pose[4 * r + c];
-        world[r] = dot(pose_linear[r], origin) + pose[4 * r + 3];
+        world[r] = skg_dot(pose_linear[r], origin) + pose[4 * r + 3];
     }
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
@@ -145,7 +137,7 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
     }
     for (int k = 0; k < 3; k++) part->row2[k] = linear[2][k];
     part->reference =
-        camera->parallel ? depth : reference_of(depth, radius * sqrt(dot(linear[2], linear[2])));
+        camera->parallel ? depth : reference_of(depth, radius * sqrt(skg_dot(linear[2], linear[2])));
     part->offset_r = depth - part->reference;
     part->highest = 1 - part->reference;
     part->start[0] = camera->start[0] + camera->start[1] * part->pixel_i + camera->start[2] * part->pixel_j -
@@ -157,6 +149,25 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
     /* Seen from the source, the far faces of an outward mesh turn as the picture's axes do. */
     const int mirrored = (determinant(pose_linear) < 0) != (camera->determinant < 0);
     part->turned = mirrored != (flipped != 0) ? -1 : 0;
+}
+
+double skg_camera_pixel_area(const skg_camera *camera) {
+    double across[3];
+    skg_cross(camera->column, camera->row, across);
+    return skg_length(across);
+}
+
+double skg_camera_nearest_ray(const skg_camera *camera) {
+    /* The foot is where the ray is across both steps: least squares over (i, j). */
+    const double uu = skg_dot(camera->column, camera->column), vv = skg_dot(camera->row, camera->row);
+    const double uv = skg_dot(camera->column, camera->row), fu = skg_dot(camera->first, camera->column);
+    const double fv = skg_dot(camera->first, camera->row), area = uu * vv - uv * uv;
+    const double i = own_pixel((uv * fv - vv * fu) / area, camera->columns);
+    const double j = own_pixel((uv * fu - uu * fv) / area, camera->rows);
+    double ray[3];
+    skg_add_scaled(camera->first, i, camera->column, ray);
+    skg_add_scaled(ray, j, camera->row, ray);
+    return skg_length(ray);
 }
 
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray) {

@@ -17,7 +17,7 @@ typedef struct {
     double origin[3];    /* S, or D0 with a parallel beam */
     double matrix[3][3]; /* of h */
     double determinant;  /* of its inverse: its sign is the handedness of the picture */
-    double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d */
+    double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d, 1 mm long */
     double column[3], row[3];
     double start[3]; /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
 } skg_camera;
@@ -38,7 +38,13 @@ void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]
 void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double radius,
                      int32_t flipped, skg_part_double *part);
 
-/* What resolve multiplies by: lengths of the rays, and 1 / scale. */
+/* mm2 of a pixel. */
+double skg_camera_pixel_area(const skg_camera *camera);
+
+/* Point source: mm to the pixel of the detector that is nearest the foot of the perpendicular. */
+double skg_camera_nearest_ray(const skg_camera *camera);
+
+/* What sums are multiplied by: lengths of the rays, and 1 / scale. */
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);
 
 #endif

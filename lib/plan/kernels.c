@@ -37,16 +37,42 @@ skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count,
 }
 
 void skg_stage_log_clear(skg_stage_log *log) {
-    for (int32_t i = 0; i < log->count; i++) clReleaseEvent(log->events[i]);
-    log->count = 0;
+    for (int64_t i = 0; i < log->count; i++) clReleaseEvent(log->events[i]);
+    skg_free(&log->names);
+    skg_free(&log->events);
+    log->count = log->room = 0;
+}
+
+cl_event *skg_stage_event(const skg_stage_log *log, cl_event *event) {
+    return log && log->on ? event : NULL;
+}
+
+static skg_status make_room(skg_stage_log *log) {
+    const int64_t room = 2 * log->room + 16;
+    if (log->count < log->room) return SKG_OK;
+    SKG_TRY(skg_realloc(room, sizeof *log->names, "stage log", &log->names));
+    SKG_TRY(skg_realloc(room, sizeof *log->events, "stage log", &log->events));
+    log->room = room;
+    return SKG_OK;
+}
+
+skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event event) {
+    if (!event) return SKG_OK;
+    skg_status status = log && log->on ? make_room(log) : SKG_STALE;
+    if (status != SKG_OK) {
+        clReleaseEvent(event);
+        return status == SKG_STALE ? SKG_OK : status;
+    }
+    log->names[log->count] = stage;
+    log->events[log->count++] = event;
+    return SKG_OK;
 }
 
 skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
                           const size_t *global, const size_t *local, skg_stage_log *log) {
-    const int logged = log && log->count < SKG_MOST_STAGES;
     cl_event event = NULL;
     cl_int code = clEnqueueNDRangeKernel(context->device->queue, kernel, dimensions, NULL, global, local, 0,
-                                         NULL, logged ? &event : NULL);
+                                         NULL, skg_stage_event(log, &event));
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clEnqueueNDRangeKernel", __FILE__, __LINE__);
         return skg_fail(code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES
@@ -54,9 +80,14 @@ skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *st
                             : SKG_ERR_DEVICE,
                         "stage %s: %s", stage, skg_cl_name(code));
     }
-    if (logged) {
-        log->names[log->count] = stage;
-        log->events[log->count++] = event;
-    }
-    return SKG_OK;
+    return skg_stage_log_add(log, stage, event);
+}
+
+skg_status skg_stage_write(skg_context *context, const char *stage, cl_mem buffer, int64_t offset,
+                           int64_t bytes, const void *data, skg_stage_log *log) {
+    cl_event event = NULL;
+    if (bytes == 0) return SKG_OK;
+    SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, buffer, CL_FALSE, (size_t)offset, (size_t)bytes,
+                                    data, 0, NULL, skg_stage_event(log, &event)));
+    return skg_stage_log_add(log, stage, event);
 }

@@ -23,17 +23,28 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
 /* Sets arguments `first`, first + 1, ... to these buffers. */
 skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count, const cl_mem *memory);
 
-/* Enqueues a kernel and logs its event; log may be NULL. */
-enum { SKG_MOST_STAGES = 16 };
+/* Events of what was enqueued, by stage, where stages are timed. All zero and on = 1 to begin. */
 typedef struct {
-    int32_t count;
-    const char *names[SKG_MOST_STAGES];
-    cl_event events[SKG_MOST_STAGES]; /* released by whoever reads the log: skg_stage_log_clear */
+    int32_t on, reserved;
+    int64_t count, room;
+    const char **names; /* [count] static storage */
+    cl_event *events;   /* [count] */
 } skg_stage_log;
+
+/* Takes an event over; keeps it where the log is on. log or event may be NULL. */
+skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event event);
 void skg_stage_log_clear(skg_stage_log *log);
 
-/* global and local: sizes in `dimensions` dimensions; local may be NULL. stage: for the log. */
+/* Where the log wants an event put; NULL where it wants none. */
+cl_event *skg_stage_event(const skg_stage_log *log, cl_event *event);
+
+/* Enqueues a kernel. global and local: sizes in `dimensions` dimensions; local may be NULL. stage: for the
+ * log, which may be NULL, and for messages. */
 skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
                           const size_t *global, const size_t *local, skg_stage_log *log);
+
+/* Enqueues a write that reads `bytes` of data when its turn comes: the data must stay. */
+skg_status skg_stage_write(skg_context *context, const char *stage, cl_mem buffer, int64_t offset,
+                           int64_t bytes, const void *data, skg_stage_log *log);
 
 #endif

@@ -175,12 +175,12 @@ void skg_geometry_release(skg_geometry *geometry) {
 }
 
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
-                               const void *offsets) {
-    const size_t row = 3 * real_size(geometry);
+                               const void *offsets, skg_stage_log *log) {
+    const int64_t row = 3 * (int64_t)real_size(geometry);
     const int64_t first = geometry->mesh_vertex[mesh], count = geometry->mesh_vertex[mesh + 1] - first;
     if (count == 0) return SKG_OK;
-    SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->offsets.memory, CL_TRUE,
-                                    (size_t)first * row, (size_t)count * row, offsets, 0, NULL, NULL));
+    SKG_TRY(
+        skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets, log));
     return reset_bad(context, geometry);
 }
 
@@ -299,6 +299,12 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
     SKG_TRY(skg_kernel_set(geometry->kernel, 0, sizeof frame, &frame));
     SKG_TRY(skg_kernel_set_memory(geometry->kernel, 1, 5, memory));
     return skg_kernel_run(context, geometry->kernel, "project", 1, &global, &local, log);
+}
+
+int64_t skg_geometry_bytes(const skg_geometry *geometry) {
+    return geometry->offsets.bytes + geometry->corners.bytes + geometry->part_table.bytes +
+           geometry->write_table.bytes + geometry->vertex_blocks.bytes + geometry->triangle_blocks.bytes +
+           geometry->projected.bytes + geometry->bad.bytes;
 }
 
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex) {

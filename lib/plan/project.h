@@ -66,15 +66,18 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
 void skg_geometry_release(skg_geometry *geometry);
 
 /* Uploads the vertices of a mesh: offsets from its origin, [vertices][3], float or double as the precision
- * is; copied when the call returns. */
+ * is. Nothing is waited for: the offsets must stay until they are read. */
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
-                               const void *offsets);
+                               const void *offsets, skg_stage_log *log);
 
 /* Enqueues one frame's part table and projection. part: [parts]; scale: of the accumulators (multiplies
  * weights). */
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
                                 const skg_kernel_options *options, const skg_camera *camera,
                                 const skg_geometry_part *part, double scale, skg_stage_log *log);
+
+/* Bytes on the device. */
+int64_t skg_geometry_bytes(const skg_geometry *geometry);
 
 /* Which part and which vertex of its mesh a number in `bad` means. */
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex);

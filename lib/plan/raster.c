@@ -181,8 +181,6 @@ void skg_raster_release(skg_raster **raster) {
                                    &r->list, &r->for_all, &r->queue,   &r->rows_bad};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     for (int i = 0; i < SKG_RASTER_KERNELS; i++) release_kernel(r->kernels[i]);
-    release_kernel(r->lengths[0]);
-    release_kernel(r->lengths[1]);
     release_kernel(r->bad_rows);
     release_kernel(r->bad);
     skg_free(raster);
@@ -219,7 +217,7 @@ static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stag
                              raster->used.memory};
     const int64_t of_int = sizeof(cl_int);
     SKG_TRY(fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
-    if (raster->kernels[SKG_RASTER_SOURCE]) { /* adds to the first copy, whoever else does */
+    if (raster->kernels[SKG_RASTER_SOURCE] || raster->options.more_sums) { /* the first copy is added to */
         SKG_TRY(fill(raster, &raster->sums, 0, 0, (int64_t)frame->planes * frame->plane * sum_bytes(raster)));
         SKG_TRY(fill(raster, &raster->used, 1, 0, of_int));
     }
@@ -312,9 +310,15 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
 /* --- what was decided and made
  * ------------------------------------------------------------------------------------ */
 
-void skg_raster_get_sums(const skg_raster *raster, skg_raster_sums *sums) {
-    *sums =
-        (skg_raster_sums){.frame = raster->frame, .sums = raster->sums.memory, .used = raster->used.memory};
+skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {
+    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
+    const int64_t tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
+    const skg_buffer *from = squares(raster) ? &raster->starts : &raster->counts;
+    const size_t first =
+        squares(raster) ? (size_t)tiles : 1; /* as the kernels of tiles.cl and bands.cl leave it */
+    SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, from->memory, CL_FALSE,
+                                   first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL, NULL));
+    return SKG_OK;
 }
 
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles) {

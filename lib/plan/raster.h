@@ -16,6 +16,8 @@ typedef struct {
     int64_t columns, rows; /* of the detector */
     int64_t planes;        /* accumulator planes, >= 1 */
     int64_t triangles;     /* most triangles of a frame */
+    int32_t more_sums;     /* 1: other kernels add to the sums of the first copy after a frame */
+    int32_t reserved;
 } skg_raster_options;
 
 typedef struct skg_raster skg_raster;
@@ -27,24 +29,13 @@ void skg_raster_release(skg_raster **raster);
 /* Enqueues a frame: what skg_geometry_project has projected is added up. Nothing is waited for. */
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
 
-/* Where the sums of the last frame are, for kernels that read them with sums.clh: arguments (frame, sums,
- * used). */
-typedef struct {
-    skg_frame_args frame;
-    cl_mem sums; /* [copies][planes][rows + spare][stride] of bits / 8 bytes */
-    cl_mem used; /* int[copies]: copies that count */
-} skg_raster_sums;
-void skg_raster_get_sums(const skg_raster *raster, skg_raster_sums *sums);
-
-/* Enqueues path lengths of a plane: sum / scale * |ray|, mm, into output (float, or double where
- * output_double), from element `offset` on, rows row_stride elements apart. */
-skg_status skg_raster_lengths(skg_raster *raster, const skg_camera *camera, int64_t plane, double scale,
-                              int32_t output_double, cl_mem output, int64_t offset, int64_t row_stride,
-                              skg_stage_log *log);
-
 /* Enqueues the verdict on a count plane into int result[1 + SKG_FIRST_BAD]: how many pixels do not cancel,
  * then the first ones, row * columns + column, ascending. */
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t plane, cl_mem result, skg_stage_log *log);
+
+/* Enqueues a read of how often triangles are listed in tiles, into listed[2]: in lists of one tile, in the
+ * list for all tiles. It must stay. Nothing is written by strategies without tiles. */
+skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed);
 
 /* Shape of the tiles (the whole detector where there are none) and their number; bytes allocated. */
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);

@@ -26,7 +26,6 @@ struct skg_raster {
     skg_buffer queue;                         /* atomics: strips of large triangles */
     skg_buffer rows_bad;
     cl_kernel kernels[SKG_RASTER_KERNELS]; /* NULL: not used by the strategy */
-    cl_kernel lengths[2];                  /* to float, to double; made on demand */
     cl_kernel bad_rows, bad;               /* made on demand */
 };
 

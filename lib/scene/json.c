@@ -1,7 +1,7 @@
 #include "scene/json.h"
 
 #include "core/names.h"
-#include "scene/units.h"
+#include "core/units.h"
 #include "scene/vector.h"
 
 #include <ctype.h>
@@ -35,6 +35,7 @@ skg_status skg_json_fail(const skg_json_node *node, skg_status status, const cha
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
     write_path(node, path, sizeof path);
+    if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT; /* the file is wrong, not its reader's caller */
     int64_t line = skg_json_line(node);
     if (line > 0)
         return skg_fail(status, "%s: line %" PRId64 ": %s: %s", node->file->path, line, path, sentence);
@@ -253,6 +254,6 @@ skg_status skg_json_direction(const skg_json_node *node, double *direction) {
     if (!(length > 0) || !isfinite(length))
         return skg_json_fail(node, SKG_ERR_FORMAT, "is (%g, %g, %g), which is no direction", direction[0],
                              direction[1], direction[2]);
-    skg_scale(1 / length, direction, direction);
+    skg_scale_vector(1 / length, direction, direction);
     return SKG_OK;
 }

@@ -38,7 +38,8 @@ typedef struct skg_json_node {
 
 skg_json_node skg_json_root(const skg_json_file *file);
 
-/* Fails with the sentence after "FILE: line N: PATH: ". */
+/* Fails with the sentence after "FILE: line N: PATH: ". A call that found a value of the file unusable as an
+ * argument (SKG_ERR_ARGUMENT) makes it SKG_ERR_FORMAT. */
 skg_status skg_json_fail(const skg_json_node *node, skg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

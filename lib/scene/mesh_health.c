@@ -195,8 +195,11 @@ static skg_status count_components(skg_mesh *mesh) {
             mesh->health.components--;
         }
     }
+    for (int32_t v = 0; v < mesh->vertices; v++)
+        if (parent[v] >= 0) parent[v] = root_of(parent, v);
+    skg_status status = skg_mesh_count_layers(mesh, parent);
     skg_free(&parent);
-    return SKG_OK;
+    return status;
 }
 
 /* Rounding leaves a cross product of parallel edges at a few units of |u| |v| epsilon. */

@@ -60,7 +60,7 @@ void skg_scene_release(skg_scene **scene) {
 
 /* Affine, finite, and not flat: |det| is compared with the product of the columns' lengths, so that the scale
  * of a pose does not matter. */
-static skg_status check_pose(const char *label, const double *pose) {
+skg_status skg_scene_check_pose(const char *label, const double *pose) {
     if (!skg_all_finite(pose, 16))
         return skg_fail(SKG_ERR_SCENE, "part %s: its pose has an entry that is not finite", label);
     if (fabs(pose[12]) + fabs(pose[13]) + fabs(pose[14]) + fabs(pose[15] - 1) > 0)
@@ -107,7 +107,7 @@ static skg_status check_part(const skg_scene *scene, const skg_part *part, const
                         "part %s lies inside part %" PRId64 ", which is not there (%" PRId64
                         " parts so far); add the parent first",
                         label, part->inside, scene->count);
-    return check_pose(label, part->pose);
+    return skg_scene_check_pose(label, part->pose);
 }
 
 skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
@@ -209,7 +209,7 @@ skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id
 skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose) {
     SKG_TRY(check_id(scene, id, "skg_scene_set_pose"));
     if (!pose) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_set_pose: no pose");
-    SKG_TRY(check_pose(scene->parts[id].label, pose));
+    SKG_TRY(skg_scene_check_pose(scene->parts[id].label, pose));
     memcpy(scene->parts[id].pose, pose, sizeof scene->parts[id].pose);
     scene->poses++;
     return SKG_OK;

@@ -27,4 +27,7 @@ struct skg_scene {
 /* Puts part `id` inside another, or into the world (-1). A circle is refused: SKG_ERR_SCENE. */
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside);
 
+/* SKG_ERR_SCENE, naming the part, where a pose (4x4, row by row) is not finite, not affine or singular. */
+skg_status skg_scene_check_pose(const char *label, const double *pose);
+
 #endif

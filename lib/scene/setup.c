@@ -1,4 +1,5 @@
 #include "scene/setup.h"
+#include "core/names.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,7 +17,7 @@ static const skg_json_key top_keys[] = {
     {"Breathing", "breathing", SKG_KEY_NOT_YET},
     {"Noise", "noise", SKG_KEY_NOT_YET},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
-    {"World", "a material around the samples", SKG_KEY_NOT_YET},
+    {"World", NULL, SKG_KEY_READ},
 };
 
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
@@ -63,6 +64,14 @@ static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
+/* "Air", ["Compound", ...] or "Vacuum". */
+static skg_status read_world(skg_setup_reader *reader, const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "World"), no_density = {0};
+    if (!node.value) return SKG_OK;
+    if (json_is_string(node.value) && skg_same_name(json_string_value(node.value), "vacuum")) return SKG_OK;
+    return skg_setup_read_material(reader, &node, &no_density, "world", &reader->setup->world);
+}
+
 static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
     skg_json_object top;
@@ -75,6 +84,8 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_tolerance(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
+    SKG_TRY(skg_setup_place_beam(reader, &source));
+    SKG_TRY(read_world(reader, &top));
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
     return skg_setup_read_samples(reader, &samples);
@@ -108,6 +119,8 @@ void skg_setup_release(skg_setup **setup) {
     if (!setup || !*setup) return;
     skg_scene_release(&(*setup)->scene);
     skg_spectrum_release(&(*setup)->spectrum);
+    skg_response_release(&(*setup)->response);
+    skg_material_release(&(*setup)->world);
     skg_free(&(*setup)->scan.folder);
     skg_free(setup);
 }
@@ -134,5 +147,8 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
+    if (setup->absolute) ours.falloff = 1;
+    if (setup->response) ours.response = setup->response;
+    if (setup->world) ours.world = setup->world;
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
 }

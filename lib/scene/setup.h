@@ -31,7 +31,10 @@ typedef struct {
 struct skg_setup {
     skg_scene *scene;
     skg_spectrum *spectrum;
-    skg_view view; /* of the first projection */
+    int32_t absolute;       /* 1: photons come from mAs; the beam falls off with distance */
+    skg_response *response; /* NULL: ideal */
+    skg_material *world;    /* around the parts; NULL: vacuum */
+    skg_view view;          /* of the first projection */
     skg_scan_section scan;
     int32_t precision, has_precision;
     double tolerance; /* negative: not given */
@@ -51,6 +54,19 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
+
+/* The key Beam; with mAs in photons per mm2 at 1 m until the detector is known and skg_setup_place_beam was
+ * called. node: of the beam or what it lies in, for messages. */
+skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node);
+
+/* EnergyResponse or Scintillator of a detector. */
+skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
+
+/* A material: its name, or an array with its kind; density may be absent (value NULL). label: its name where
+ * it has none of its own; may be NULL. The caller releases it. */
+skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,
+                                   const skg_json_node *density, const char *label, skg_material **material);
 
 /* Meshes that were loaded, so that a file used by several samples is loaded once. */
 typedef struct {

@@ -5,16 +5,11 @@
 #include <string.h>
 
 static const skg_json_key detector_keys[] = {
-    {"Position", NULL, SKG_KEY_READ},
-    {"UpVector", NULL, SKG_KEY_READ},
-    {"RightVector", NULL, SKG_KEY_READ},
-    {"NumberOfPixels", NULL, SKG_KEY_READ},
-    {"Size", NULL, SKG_KEY_READ},
-    {"Spacing", NULL, SKG_KEY_READ},
-    {"Oversampling", NULL, SKG_KEY_READ},
-    {"EnergyResponse", "the energy response of a detector", SKG_KEY_NOT_YET},
-    {"Scintillator", "a scintillator", SKG_KEY_NOT_YET},
-    {"LSF", "blur", SKG_KEY_NOT_YET},
+    {"Position", NULL, SKG_KEY_READ},     {"UpVector", NULL, SKG_KEY_READ},
+    {"RightVector", NULL, SKG_KEY_READ},  {"NumberOfPixels", NULL, SKG_KEY_READ},
+    {"Size", NULL, SKG_KEY_READ},         {"Spacing", NULL, SKG_KEY_READ},
+    {"Oversampling", NULL, SKG_KEY_READ}, {"EnergyResponse", NULL, SKG_KEY_READ},
+    {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", "blur", SKG_KEY_NOT_YET},
 };
 
 /* Width and height of a pixel in mm, from Spacing or Size. */
@@ -61,7 +56,7 @@ static skg_status read_axes(const skg_json_object *detector, const skg_view *vie
     if (right_node.value) return skg_json_direction(&right_node, right);
     double towards_source[3];
     if (view->projection == SKG_PARALLEL_FROM_INFINITY)
-        skg_scale(-1, view->source, towards_source);
+        skg_scale_vector(-1, view->source, towards_source);
     else
         skg_add_scaled(view->source, -1, view->centre, towards_source);
     skg_cross(up, towards_source, right);
@@ -69,7 +64,7 @@ static skg_status read_axes(const skg_json_object *detector, const skg_view *vie
     if (!(length > 1e-9 * skg_length(towards_source)))
         return skg_json_fail(&node, SKG_ERR_SCENE,
                              "points along the beam, so that right is not defined by it; give RightVector");
-    skg_scale(1 / length, right, right);
+    skg_scale_vector(1 / length, right, right);
     return SKG_OK;
 }
 
@@ -100,8 +95,9 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(read_spacing(&detector, view, spacing));
     SKG_TRY(read_axes(&detector, view, right, up));
     SKG_TRY(read_oversampling(&detector));
-    skg_scale(spacing[0], right, view->column_step);
-    skg_scale(spacing[1], up, view->row_step);
+    SKG_TRY(skg_setup_read_response(reader, &detector));
+    skg_scale_vector(spacing[0], right, view->column_step);
+    skg_scale_vector(spacing[1], up, view->row_step);
     skg_status status = skg_view_check(view);
     if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
     return SKG_OK;

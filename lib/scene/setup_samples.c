@@ -63,42 +63,11 @@ static skg_status read_flag(const skg_json_object *object, const char *name, int
     return node.value ? skg_json_flag(&node, flag) : SKG_OK;
 }
 
-/* A number, or a string that holds one: gVXR's exporter writes the latter. */
-static skg_status read_mu(const skg_json_node *node, double *per_cm) {
-    if (!json_is_string(node->value)) return skg_json_number(node, per_cm);
-    const char *text = json_string_value(node->value);
-    json_t *number = json_loads(text, JSON_DECODE_ANY, NULL);
-    int usable = json_is_number(number);
-    *per_cm = usable ? json_number_value(number) : 0;
-    json_decref(number);
-    if (usable) return SKG_OK;
-    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no number; give 1/cm", text);
-}
-
-static skg_status read_material(const skg_json_object *sample, const char *label, skg_material **material) {
-    static const char *const kinds[] = {"mu", "Element", "Mixture", "Compound", "HU"};
-    static const char *const example = "[\"mu\", 0.2]";
+static skg_status read_material(skg_setup_reader *reader, const skg_json_object *sample, const char *label,
+                                skg_material **material) {
     skg_json_node node, density = skg_json_member(sample, "Density");
-    int64_t count = 0, kind = 0;
-    double per_cm = 0, g_cm3 = 1;
-    if (density.value) SKG_TRY(skg_json_number(&density, &g_cm3));
-    if (!(g_cm3 > 0))
-        return skg_json_fail(&density, SKG_ERR_MATERIAL, "is %g; a density in g/cm3 is above 0", g_cm3);
-    SKG_TRY(skg_json_need(sample, "Material", example, &node));
-    SKG_TRY(skg_json_array(&node, example, &count));
-    skg_json_node name = skg_json_element(&node, 0), value = skg_json_element(&node, 1);
-    SKG_TRY(skg_json_choice(&name, "kind of material", kinds, 5, &kind));
-    if (kind != 0)
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED,
-                             "a material of kind %s is not simulated yet; give its attenuation coefficient "
-                             "in 1/cm: [\"mu\", 0.2]",
-                             kinds[kind]);
-    if (count != 2)
-        return skg_json_fail(&node, SKG_ERR_FORMAT, "has %" PRId64 " elements; give %s, in 1/cm", count,
-                             example);
-    SKG_TRY(read_mu(&value, &per_cm));
-    skg_status status = skg_material_mu(label, per_cm, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(&value, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_need(sample, "Material", "\"Water\", [\"mu\", 0.2]", &node));
+    return skg_setup_read_material(reader, &node, &density, label, material);
 }
 
 /* pose = pose T(-centre of the mesh's bounds) */
@@ -135,7 +104,7 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     if (label.value) SKG_TRY(skg_json_text(&label, &part.label));
     SKG_TRY(read_flag(sample, "FlipNormals", &flip));
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(read_material(sample, part.label, &part.material));
+    SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
     SKG_TRY_CLEANUP(skg_setup_read_shape(reader, sample, flip, cache, &part.mesh, own));
     SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
     status = skg_scene_add(reader->setup->scene, &part, id);

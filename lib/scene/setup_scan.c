@@ -50,7 +50,7 @@ static skg_status read_rotation(const skg_json_object *object, const skg_view *v
         SKG_TRY(skg_json_lengths(&centre, example, 3, scan->centre));
     skg_json_node axis = skg_json_member(object, "RotationAxis");
     if (axis.value) return skg_json_direction(&axis, scan->axis);
-    skg_scale(1 / skg_length(view->row_step), view->row_step, scan->axis);
+    skg_scale_vector(1 / skg_length(view->row_step), view->row_step, scan->axis);
     return SKG_OK;
 }
 

@@ -22,7 +22,7 @@ static inline void skg_add_scaled(const double *a, double factor, const double *
     for (int k = 0; k < 3; k++) result[k] = a[k] + factor * b[k];
 }
 
-static inline void skg_scale(double factor, const double *a, double *result) {
+static inline void skg_scale_vector(double factor, const double *a, double *result) {
     for (int k = 0; k < 3; k++) result[k] = factor * a[k];
 }
 

@@ -2,6 +2,8 @@
 
 #include "scene/vector.h"
 
+#include <skiagraph/scene.h>
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -14,6 +16,12 @@ static const double DEGENERATE = 1e-9;
 
 /* mm: 1000 km, far beyond any set-up and far below what squares and products of lengths can hold. */
 static const double LARGEST_LENGTH = 1e9;
+
+/* The detector's plane, as the checks need it. */
+typedef struct {
+    double corner[3]; /* centre of pixel (0, 0), mm */
+    double normal[3]; /* length 1 */
+} detector_plane;
 
 void skg_view_init(skg_view *view) {
     if (view) *view = (skg_view){.size = sizeof *view};
@@ -49,48 +57,46 @@ static skg_status check_numbers(const skg_view *view) {
     return SKG_OK;
 }
 
-/* Steps, pixel (0, 0) and normal (not yet turned away from the source). */
-static skg_status prepare_detector(const skg_view *view, skg_view_frame *frame) {
-    memcpy(frame->du, view->column_step, sizeof frame->du);
-    memcpy(frame->dv, view->row_step, sizeof frame->dv);
-    double width = skg_length(frame->du), height = skg_length(frame->dv);
+static skg_status check_detector(const skg_view *view, detector_plane *plane) {
+    const double *du = view->column_step, *dv = view->row_step;
+    double width = skg_length(du), height = skg_length(dv);
     if (!(width > 0) || !(height > 0))
         return skg_fail(SKG_ERR_SCENE,
                         "the detector has no size: its pixels are %g mm wide and %g mm high; both have to be "
                         "above 0",
                         width, height);
-    skg_cross(frame->du, frame->dv, frame->normal);
-    double area = skg_length(frame->normal);
+    skg_cross(du, dv, plane->normal);
+    double area = skg_length(plane->normal);
     if (!(area > DEGENERATE * width * height))
         return skg_fail(
             SKG_ERR_SCENE,
             "the detector's rows and columns run in the same direction (%g, %g, %g); up and right "
             "must not be parallel",
-            frame->du[0] / width, frame->du[1] / width, frame->du[2] / width);
-    skg_scale(1 / area, frame->normal, frame->normal);
-    skg_add_scaled(view->centre, -0.5 * (double)(view->columns - 1), frame->du, frame->pixel0);
-    skg_add_scaled(frame->pixel0, -0.5 * (double)(view->rows - 1), frame->dv, frame->pixel0);
+            du[0] / width, du[1] / width, du[2] / width);
+    skg_scale_vector(1 / area, plane->normal, plane->normal);
+    skg_add_scaled(view->centre, -0.5 * (double)(view->columns - 1), du, plane->corner);
+    skg_add_scaled(plane->corner, -0.5 * (double)(view->rows - 1), dv, plane->corner);
     return SKG_OK;
 }
 
-/* How far the farthest corner pixel is from a point. */
-static double farthest_corner(const skg_view_frame *frame, const double *from) {
+/* How far the farthest corner pixel is from the source. */
+static double farthest_corner(const skg_view *view, const detector_plane *plane) {
     double farthest = 0;
     for (int k = 0; k < 4; k++) {
         double corner[3];
-        skg_add_scaled(frame->pixel0, k & 1 ? (double)(frame->columns - 1) : 0, frame->du, corner);
-        skg_add_scaled(corner, k & 2 ? (double)(frame->rows - 1) : 0, frame->dv, corner);
-        skg_add_scaled(corner, -1, from, corner);
+        skg_add_scaled(plane->corner, k & 1 ? (double)(view->columns - 1) : 0, view->column_step, corner);
+        skg_add_scaled(corner, k & 2 ? (double)(view->rows - 1) : 0, view->row_step, corner);
+        skg_add_scaled(corner, -1, view->source, corner);
         farthest = fmax(farthest, skg_length(corner));
     }
     return farthest;
 }
 
-static skg_status prepare_point(const skg_view *view, skg_view_frame *frame) {
-    memcpy(frame->origin, view->source, sizeof frame->origin);
-    skg_add_scaled(frame->pixel0, -1, view->source, frame->d0);
-    double distance = fabs(skg_dot(frame->normal, frame->d0));
-    if (!(distance > DEGENERATE * farthest_corner(frame, view->source)))
+static skg_status check_point(const skg_view *view, const detector_plane *plane) {
+    double way[3];
+    skg_add_scaled(plane->corner, -1, view->source, way);
+    double distance = fabs(skg_dot(plane->normal, way));
+    if (!(distance > DEGENERATE * farthest_corner(view, plane)))
         return skg_fail(SKG_ERR_SCENE,
                         "the source (%g, %g, %g) mm lies on the detector or in its plane; move it out of the "
                         "plane",
@@ -98,88 +104,41 @@ static skg_status prepare_point(const skg_view *view, skg_view_frame *frame) {
     return SKG_OK;
 }
 
-static skg_status prepare_parallel(const skg_view *view, skg_view_frame *frame) {
-    int from_infinity = view->projection == SKG_PARALLEL_FROM_INFINITY;
-    double direction[3];
-    if (from_infinity)
-        memcpy(direction, view->source, sizeof direction);
+int skg_view_direction(const skg_view *view, double *direction) {
+    if (view->projection == SKG_PARALLEL_FROM_INFINITY)
+        memcpy(direction, view->source, 3 * sizeof *direction);
     else
         skg_add_scaled(view->centre, -1, view->source, direction);
     /* Scaled first: a direction may be of any length, and its square need not be a number. */
     double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
-    if (largest > 0) skg_scale(1 / largest, direction, direction);
-    double length = skg_length(direction);
-    if (!(length > 0))
+    if (!(largest > 0)) return 0;
+    skg_scale_vector(1 / largest, direction, direction);
+    skg_scale_vector(1 / skg_length(direction), direction, direction);
+    return 1;
+}
+
+static skg_status check_parallel(const skg_view *view, const detector_plane *plane) {
+    double direction[3];
+    if (!skg_view_direction(view, direction))
         return skg_fail(SKG_ERR_SCENE,
-                        from_infinity ? "the beam's direction is (0, 0, 0); give it a length"
-                                      : "the source is at the detector's centre, so the parallel beam has "
-                                        "no direction; move it away");
-    frame->parallel = 1;
-    skg_scale(1 / length, direction, frame->d0);
-    memcpy(frame->origin, frame->pixel0, sizeof frame->origin);
-    if (!(fabs(skg_dot(frame->normal, frame->d0)) > DEGENERATE))
+                        view->projection == SKG_PARALLEL_FROM_INFINITY
+                            ? "the beam's direction is (0, 0, 0); give it a length"
+                            : "the source is at the detector's centre, so the parallel beam has "
+                              "no direction; move it away");
+    if (!(fabs(skg_dot(plane->normal, direction)) > DEGENERATE))
         return skg_fail(
             SKG_ERR_SCENE,
             "the detector stands edge-on to the beam, which runs along (%g, %g, %g); turn it towards the beam",
-            frame->d0[0], frame->d0[1], frame->d0[2]);
-    if (from_infinity) {
-        frame->start[0] = -HUGE_VAL;
-        return SKG_OK;
-    }
-    double way[3];
-    skg_add_scaled(frame->pixel0, -1, view->source, way);
-    frame->start[0] = -skg_dot(way, frame->d0);
-    frame->start[1] = -skg_dot(frame->du, frame->d0);
-    frame->start[2] = -skg_dot(frame->dv, frame->d0);
+            direction[0], direction[1], direction[2]);
     return SKG_OK;
-}
-
-/* Rows of the inverse of [a b c] are b x c, c x a, a x b over the determinant. */
-static skg_status invert(skg_view_frame *frame) {
-    skg_cross(frame->dv, frame->d0, frame->m);
-    skg_cross(frame->d0, frame->du, frame->m + 3);
-    skg_cross(frame->du, frame->dv, frame->m + 6);
-    double determinant = skg_dot(frame->m + 6, frame->d0);
-    for (int k = 0; k < 9; k++) frame->m[k] /= determinant;
-    if (!skg_all_finite(frame->m, 9))
-        return skg_fail(SKG_ERR_SCENE, "the detector's pixels are too small to compute with; give mm");
-    return SKG_OK;
-}
-
-skg_status skg_view_prepare(const skg_view *view, skg_view_frame *frame) {
-    skg_view ours;
-    skg_view_init(&ours);
-    SKG_TRY(skg_struct_read(view, "skg_view", &ours, sizeof ours));
-    *frame = (skg_view_frame){.columns = ours.columns, .rows = ours.rows};
-    SKG_TRY(check_numbers(&ours));
-    SKG_TRY(prepare_detector(&ours, frame));
-    if (ours.projection == SKG_POINT)
-        SKG_TRY(prepare_point(&ours, frame));
-    else
-        SKG_TRY(prepare_parallel(&ours, frame));
-    if (skg_dot(frame->normal, frame->d0) < 0) skg_scale(-1, frame->normal, frame->normal);
-    return invert(frame);
 }
 
 skg_status skg_view_check(const skg_view *view) {
-    skg_view_frame frame;
-    return skg_view_prepare(view, &frame);
-}
-
-void skg_view_project(const skg_view_frame *frame, const double *x, double *h) {
-    double v[3];
-    skg_add_scaled(x, -1, frame->origin, v);
-    for (int k = 0; k < 3; k++) h[k] = skg_dot(frame->m + 3 * k, v);
-}
-
-double skg_view_distance(const skg_view_frame *frame, double i, double j) {
-    if (frame->parallel) return 1;
-    double d[3];
-    skg_add_scaled(frame->d0, i, frame->du, d);
-    skg_add_scaled(d, j, frame->dv, d);
-    return skg_length(d);
-}
-
-double skg_view_start(const skg_view_frame *frame, double i, double j) {
-    return frame->start[0] + i * frame->start[1] + j * frame->start[2];
+    skg_view ours;
+    detector_plane plane;
+    skg_view_init(&ours);
+    SKG_TRY(skg_struct_read(view, "skg_view", &ours, sizeof ours));
+    SKG_TRY(check_numbers(&ours));
+    SKG_TRY(check_detector(&ours, &plane));
+    return ours.projection == SKG_POINT ? check_point(&ours, &plane) : check_parallel(&ours, &plane);
 }

@@ -1,5 +1,8 @@
 #include "kernels/picture.h"
 
+#include "plan/attenuate.h"
+#include "plan/raster_private.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -161,9 +164,10 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
         const shape *s = of[b].shape;
         float *offsets = calloc((size_t)s->vertices * 3, sizeof *offsets);
         for (int64_t k = 0; k < s->vertices * 3; k++) offsets[k] = (float)s->positions[k];
-        status =
-            skg_geometry_upload(context, geometry, mesh_of[b],
-                                precision == SKG_DOUBLE ? (const void *)s->positions : (const void *)offsets);
+        status = skg_geometry_upload(
+            context, geometry, mesh_of[b],
+            precision == SKG_DOUBLE ? (const void *)s->positions : (const void *)offsets, NULL);
+        clFinish(context->device->queue);
         free(offsets);
     }
     free(meshes);
@@ -198,16 +202,15 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
 
 /* Sums of the copies in use, by the host. */
 static skg_status read_sums(skg_context *context, const skg_raster *raster, int32_t bits, picture *result) {
-    skg_raster_sums sums;
-    skg_raster_get_sums(raster, &sums);
-    const skg_frame_args *f = &sums.frame;
+    const skg_frame_args *f = &raster->frame;
     const size_t count = (size_t)f->copies * (size_t)f->planes * (size_t)f->plane, bytes = (size_t)bits / 8;
     unsigned char *all = malloc(count * bytes);
     cl_int *used = malloc((size_t)f->copies * sizeof *used);
     cl_command_queue queue = context->device->queue;
-    SKG_CL_TRY(clEnqueueReadBuffer(queue, sums.sums, CL_TRUE, 0, count * bytes, all, 0, NULL, NULL));
-    SKG_CL_TRY(clEnqueueReadBuffer(queue, sums.used, CL_TRUE, 0, (size_t)f->copies * sizeof *used, used, 0,
-                                   NULL, NULL));
+    SKG_CL_TRY(
+        clEnqueueReadBuffer(queue, raster->sums.memory, CL_TRUE, 0, count * bytes, all, 0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueReadBuffer(queue, raster->used.memory, CL_TRUE, 0, (size_t)f->copies * sizeof *used,
+                                   used, 0, NULL, NULL));
     result->hash = 1469598103934665603u;
     for (int64_t n = 0; n < result->planes * result->rows * result->columns; n++) {
         const int64_t plane = n / (result->rows * result->columns), row = n / result->columns % result->rows;
@@ -226,17 +229,34 @@ static skg_status read_sums(skg_context *context, const skg_raster *raster, int3
     return SKG_OK;
 }
 
+/* Lengths of a plane are its exponents, with coefficient 1 for it and 0 for the others. */
 static skg_status read_lengths(skg_context *context, skg_raster *raster, const skg_camera *camera,
                                double scale, picture *result) {
     const int64_t size = result->rows * result->columns;
     const int wide = context->device->info.has_double;
-    skg_buffer output = {0};
+    skg_buffer output = {0}, negative = {0};
+    skg_attenuator *attenuator = NULL;
     float *narrow = calloc((size_t)size, sizeof *narrow);
-    skg_status status = skg_buffer_reserve(context, &output, size * 8, CL_MEM_READ_WRITE, "lengths");
+    skg_status status = skg_attenuator_create(context, &attenuator);
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &output, size * 8, CL_MEM_READ_WRITE, "lengths"));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &negative, 4, CL_MEM_READ_WRITE, "lengths"));
     for (int64_t plane = 0; plane < result->planes && status == SKG_OK; plane++) {
-        double *values = result->values + plane * size;
-        status =
-            skg_raster_lengths(raster, camera, plane, scale, wide, output.memory, 0, result->columns, NULL);
+        double *values = result->values + plane * size, weight = 1, coefficients[16] = {0};
+        const skg_image_place place = {
+            .memory = output.memory, .output_double = wide, .row_stride = result->columns};
+        skg_attenuation attenuation;
+        coefficients[plane] = 1;
+        const skg_attenuation of_plane = {.planes = (int32_t)result->planes,
+                                          .nodes = 1,
+                                          .channels = 1,
+                                          .shown = SKG_SHOWN_EXPONENT,
+                                          .world_plane = -1};
+        status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, coefficients,
+                                        &weight, &attenuation);
+        if (status == SKG_OK)
+            status = skg_attenuate(attenuator, raster, camera, scale, &attenuation, 1, -HUGE_VAL,
+                                   negative.memory, &place, NULL);
+        skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;
         SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, output.memory, CL_TRUE, 0,
                                            (size_t)size * (wide ? 8 : 4),
@@ -244,7 +264,9 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
         for (int64_t k = 0; k < size && !wide; k++) values[k] = (double)narrow[k];
     }
 cleanup:
+    skg_attenuator_release(&attenuator);
     skg_buffer_release(&output);
+    skg_buffer_release(&negative);
     free(narrow);
     return status;
 }

@@ -25,7 +25,8 @@ static skg_raster_options options_of(int32_t precision, int32_t strategy) {
 }
 
 static double scale_of(const skg_raster_options *options) {
-    return options->kernels.bits == 64 ? 0x1p48 : 0x1p28;
+    const double most = options->kernels.parallel ? 256 : 1; /* a parallel beam counts in mm */
+    return (options->kernels.bits == 64 ? 0x1p48 : 0x1p28) / most;
 }
 
 static picture take(const skg_raster_options *options, const skg_view *view, int bodies, const body *of) {
@@ -289,7 +290,7 @@ START_TEST(lengths_are_those_of_the_referee) {
             options.kernels.parallel = n % 3 != SKG_POINT;
             options.kernels.source_plane = n >= 3;
             picture result;
-            const double scale = scale_of(&options) / (n % 3 == SKG_PARALLEL_FROM_INFINITY ? 256 : 1);
+            const double scale = scale_of(&options);
             ck_skg(picture_take(context, &options, &view, THREE, bodies, scale, &result));
             const errors e = compare(&view, &result, truth);
             /* Single: the bars of the contract. Double: a hundred times its epsilon, and the scale's own
@@ -421,7 +422,7 @@ static void device_layout(const char *options, int32_t out[9]) {
     ck_assert_int_eq(clBuildProgram(program, 1, &device->id, options, NULL, NULL), CL_SUCCESS);
     cl_kernel kernel = NULL;
     skg_buffer buffer = {0};
-    skg_stage_log log = {0};
+    skg_stage_log log = {.on = 1};
     ck_skg(skg_kernel_create(program, "layout", &kernel));
     ck_skg(skg_buffer_reserve(context, &buffer, 4096, CL_MEM_READ_WRITE, "layout"));
     const cl_mem memory[5] = {buffer.memory, buffer.memory, buffer.memory, buffer.memory, buffer.memory};

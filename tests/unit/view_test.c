@@ -1,5 +1,5 @@
+#include "plan/camera.h"
 #include "scene/vector.h"
-#include "scene/view.h"
 #include "suite.h"
 
 #include <math.h>
@@ -38,45 +38,46 @@ static void pixel_centre(const skg_view *view, double i, double j, double *pixel
  * pixel's. */
 static const double TOLERANCE = 64 * 64 * 2.3e-16;
 
+static skg_camera camera_of(const skg_view *view) {
+    skg_camera camera;
+    ck_skg(skg_camera_make(view, NULL, 0, 0, &camera));
+    return camera;
+}
+
+/* mm before the pixel at which the path of a parallel ray starts. */
+static double start_of(const skg_camera *camera, double i, double j) {
+    return 1 - (camera->start[0] + i * camera->start[1] + j * camera->start[2]);
+}
+
 /* A point on the ray of pixel (i, j) must project there, at the depth where it was put. */
 static void check_projection(const skg_view *view) {
-    skg_view_frame frame;
-    ck_skg(skg_view_prepare(view, &frame));
+    const skg_camera camera = camera_of(view);
     for (int k = 0; k < 200; k++) {
         double i = (k * 37 % 64) + 0.25 * (k % 3), j = k * 29 % 48, depth = 0.05 + 0.0045 * k;
         double pixel[3], start[3], x[3], h[3];
         pixel_centre(view, i, j, pixel);
-        if (view->projection == SKG_POINT) {
+        if (!camera.parallel) {
             memcpy(start, view->source, sizeof start);
-            skg_add_scaled(pixel, -1, start, x);
-            ck_assert_double_eq_tol(skg_view_distance(&frame, i, j), skg_length(x), 1e-12 * skg_length(x));
-            ck_assert_double_eq(skg_view_start(&frame, i, j), 0);
-        } else {
-            skg_add_scaled(pixel, skg_view_start(&frame, i, j), frame.d0, start);
-            ck_assert_double_eq(skg_view_distance(&frame, i, j), 1);
-            if (view->projection == SKG_PARALLEL_FROM_INFINITY) {
-                ck_assert_double_infinite(start[1]);
-                skg_add_scaled(pixel, -400, frame.d0, start);
-            } else { /* the start lies in the plane through the source across the beam */
-                double way[3];
-                skg_add_scaled(start, -1, view->source, way);
-                ck_assert_double_eq_tol(skg_dot(way, frame.d0), 0, 1e-11);
-            }
+        } else if (view->projection == SKG_PARALLEL_FROM_INFINITY) {
+            ck_assert_double_gt(start_of(&camera, i, j), 1e29);
+            skg_add_scaled(pixel, -400, camera.first, start);
+        } else { /* the start lies in the plane through the source across the beam */
+            double way[3];
+            skg_add_scaled(pixel, -start_of(&camera, i, j), camera.first, start);
+            skg_add_scaled(start, -1, view->source, way);
+            ck_assert_double_eq_tol(skg_dot(way, camera.first), 0, 1e-11);
         }
         for (int c = 0; c < 3; c++) x[c] = start[c] + depth * (pixel[c] - start[c]);
-        skg_view_project(&frame, x, h);
-        double w = frame.parallel ? 1 : h[2], length[3];
+        skg_camera_see(&camera, x, h);
+        double w = camera.parallel ? 1 : h[2], length[3];
         ck_assert_double_eq_tol(h[0] / w, i, 64 * TOLERANCE / depth);
         ck_assert_double_eq_tol(h[1] / w, j, 64 * TOLERANCE / depth);
-        if (frame.parallel) {
-            skg_add_scaled(x, -1, pixel, length);
+        skg_add_scaled(x, -1, pixel, length);
+        if (camera.parallel)
             ck_assert_double_eq_tol(h[2], -skg_length(length), 1e-11);
-        } else {
+        else
             ck_assert_double_eq_tol(h[2], depth, TOLERANCE);
-        }
     }
-    ck_assert_double_gt(skg_dot(frame.normal, frame.d0), 0);
-    ck_assert_double_eq_tol(skg_length(frame.normal), 1, 1e-14);
 }
 
 START_TEST(points_project_to_their_pixel) {
@@ -91,16 +92,14 @@ END_TEST
 /* The direction of a parallel beam is detector's centre - source, not to any pixel. */
 START_TEST(parallel_direction_and_start) {
     skg_view view = good_view(SKG_PARALLEL);
-    skg_view_frame frame;
     view.source[0] = -300; /* 45 degrees... */
     view.centre[0] = 200;
-    ck_skg(skg_view_prepare(&view, &frame));
-    ck_assert_double_eq_tol(frame.d0[0], sqrt(0.5), 1e-15);
-    ck_assert_double_eq_tol(frame.d0[1], sqrt(0.5), 1e-15);
+    const skg_camera camera = camera_of(&view);
+    ck_assert_double_eq_tol(camera.first[0], sqrt(0.5), 1e-15);
+    ck_assert_double_eq_tol(camera.first[1], sqrt(0.5), 1e-15);
     /* ...so the rays of columns one step apart differ by half a mm times cos 45 in length */
-    ck_assert_double_eq_tol(skg_view_start(&frame, 10, 0) - skg_view_start(&frame, 11, 0), 0.5 * sqrt(0.5),
-                            1e-12);
-    ck_assert_double_eq_tol(skg_view_start(&frame, 31.5, 23.5), -500 * sqrt(2), 1e-10);
+    ck_assert_double_eq_tol(start_of(&camera, 11, 0) - start_of(&camera, 10, 0), 0.5 * sqrt(0.5), 1e-12);
+    ck_assert_double_eq_tol(start_of(&camera, 31.5, 23.5), 500 * sqrt(2), 1e-10);
 }
 END_TEST
 
@@ -201,11 +200,10 @@ START_TEST(directions_of_any_length) {
     static const double lengths[] = {1e-300, 1e-3, 1e12, 1e300};
     for (int k = 0; k < 4; k++) {
         skg_view view = good_view(SKG_PARALLEL_FROM_INFINITY);
-        skg_view_frame frame;
         view.source[0] = view.source[1] = lengths[k];
-        ck_skg(skg_view_prepare(&view, &frame));
-        ck_assert_double_eq_tol(frame.d0[0], sqrt(0.5), 1e-15);
-        ck_assert_double_eq_tol(frame.d0[1], sqrt(0.5), 1e-15);
+        const skg_camera camera = camera_of(&view);
+        ck_assert_double_eq_tol(camera.first[0], sqrt(0.5), 1e-15);
+        ck_assert_double_eq_tol(camera.first[1], sqrt(0.5), 1e-15);
     }
 }
 END_TEST

@@ -38,6 +38,10 @@ SKG_API void skg_picture_init(skg_picture *picture);
  * SKG_ERR_OUTPUT. */
 SKG_API skg_status skg_picture_write(const skg_picture *picture, const char *path);
 
+/* Whether skg_picture_write could write there, to know it before a long computation: the extension is one of
+ * those, and a file can be made (one is, for a moment, beside it). Errors as above. */
+SKG_API skg_status skg_picture_check_path(const char *path);
+
 /* The range that skg_picture_write would show when low = high = 0, so that a sequence can use one for all
  * frames. */
 SKG_API skg_status skg_picture_range(const skg_picture *picture, double *low, double *high);

@@ -28,6 +28,8 @@ enum {
     SKG_ATTENUATION = 4   /* -ln(I/I0) */
 };
 
+enum { SKG_MOST_CHANNELS = 16 };
+
 typedef struct {
     int32_t size;
     int32_t
@@ -38,7 +40,15 @@ typedef struct {
     int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
                          looked for */
     int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
-    int32_t reserved; /* 0 */
+    int32_t
+        falloff; /* 1: intensities fall with the cube of the distance from the source (inverse square and
+                    obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
+    skg_response *response; /* of the detector; NULL: ideal. Retained by the plan */
+    skg_material *world;    /* around the parts; NULL: vacuum. Retained by the plan */
+    int64_t bands; /* photon-counting bands, 0 to SKG_MOST_CHANNELS: a channel each; 0: one channel of
+                      everything */
+    const double
+        *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -83,10 +93,11 @@ typedef struct {
 
 SKG_API void skg_output_init(skg_output *output);
 
-/* Starts `count` >= 1 frames; everything they need from meshes, poses and views is copied before the call
- * returns. The plan splits batches to fit the device's memory. *job is waited for, and released, by
- * skg_job_wait. SKG_STALE: the scene has changed in a way that the plan cannot absorb (parts added,
- * triangles); nothing was started. SKG_ERR_MESH: a vertex is not finite; part and vertex are named. */
+/* Starts `count` >= 1 frames (frames NULL: each as plan and scene stand); everything they need from meshes,
+ * poses and views is copied before the call returns. The plan splits batches to fit the device's memory. *job
+ * is waited for, and released, by skg_job_wait. SKG_STALE: the scene has changed in a way that the plan
+ * cannot absorb (parts added, triangles); nothing was started. SKG_ERR_MESH: a vertex is not finite; part and
+ * vertex are named. */
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
@@ -103,8 +114,19 @@ enum { SKG_NET = 0, SKG_SURFACE = 1 };
 SKG_API skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
                                     const skg_frame *frames, const skg_output *output, skg_job **job);
 
-/* How many channels an image of this plan has. */
+/* A channel of this plan's images. Text valid as long as the plan. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;
+    const char *name; /* "energy", "photons from 20 to 40 keV" */
+    const char *unit; /* "keV per pixel" */
+    double open; /* in this unit: what the beam gives without parts (and world), where it is not weakened by
+                    falloff; 1 for transmission, 0 for attenuation */
+} skg_channel;
+
+SKG_API void skg_channel_init(skg_channel *channel);
 SKG_API skg_status skg_plan_channels(const skg_plan *plan, int64_t *channels);
+SKG_API skg_status skg_plan_channel(const skg_plan *plan, int64_t index, skg_channel *channel);
 
 /* What was decided. */
 typedef struct {
@@ -135,6 +157,21 @@ typedef struct {
 SKG_API void skg_effect_init(skg_effect *effect);
 SKG_API skg_status skg_plan_effects(const skg_plan *plan, int64_t *count);
 SKG_API skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect);
+
+/* Parts that overlap, or leave their parent, as found when the plan was made; worst volume first. Method: a
+ * grid of 256 x 256 columns along z over the scene; volumes carry its resolution. */
+typedef struct {
+    int32_t size;
+    int32_t protrudes;   /* 1: part leaves its parent `other`; 0: they overlap */
+    int64_t part, other; /* numbers in the scene */
+    double volume;       /* mm3 */
+    double longest;      /* mm, longest chord along z */
+    double place[3];     /* mm, its middle */
+} skg_overlap;
+
+SKG_API void skg_overlap_init(skg_overlap *overlap);
+SKG_API skg_status skg_plan_overlaps(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_overlap(const skg_plan *plan, int64_t index, skg_overlap *overlap);
 
 /* Time per stage of the last job that was waited for, where the plan was made with profile = 1. */
 typedef struct {

@@ -1,4 +1,4 @@
-#include "scene/units.h"
+#include "core/units.h"
 
 #include "core/names.h"
 

@@ -1,0 +1,135 @@
+/* What each effect costs by itself: a scene with it against the same scene without, by turns. */
+#include "common/bench.h"
+#include "common/scenes.h"
+
+#include "affinity.h"
+
+#include <stdlib.h>
+
+static const char usage[] = "[--quick] [--size N] [--repeats N] [--device CONFIG] [--affinity] [--csv FILE]";
+
+/* One thing that differs from the base: flat, closed, single, chosen by the plan. */
+typedef struct {
+    const char *name, *what;
+    scene_changes changes;
+    int precision, strategy, quantity, type, profile;
+} effect;
+
+static const effect effects[] = {
+    {"base", "61 closed parts without parents, one energy", {.flat = 1}, 0, 0, 0, 0, 0},
+    {"nesting", "60 parts displace their parent", {.flat = 0}, 0, 0, 0, 0, 0},
+    {"open part", "one of 61 parts has a hole", {.flat = 1, .open = 1}, 0, 0, 0, 0, 0},
+    {"source plane", "one small part more, about the source", {.flat = 1, .round_source = 1}, 0, 0, 0, 0, 0},
+    {"double", "precision double", {.flat = 1}, SKG_DOUBLE, 0, 0, 0, 0},
+    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_ATTENUATION, 0, 0},
+    {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_FLOAT64, 0},
+    {"profile", "stages are timed", {.flat = 1}, 0, 0, 0, 0, 1},
+    {"copies", "strategy copies", {.flat = 1}, 0, SKG_STRATEGY_COPIES, 0, 0, 0},
+    {"tiles", "strategy tiles", {.flat = 1}, 0, SKG_STRATEGY_TILES, 0, 0, 0},
+    {"atomics", "strategy atomics", {.flat = 1}, 0, SKG_STRATEGY_ATOMICS, 0, 0, 0},
+};
+enum { EFFECTS = sizeof effects / sizeof *effects };
+
+typedef struct {
+    long size, repeats;
+    int affinity;
+    const char *device, *csv;
+} settings;
+
+typedef struct {
+    skg_plan *plan; /* NULL: the device cannot do it */
+    double plan_ms;
+    skg_output output;
+} contender;
+
+static void read_settings(int count, char **words, settings *out) {
+    bench_arguments arguments = {count, words, 1};
+    const char *value = NULL;
+    *out = (settings){.size = 512, .repeats = 30};
+    while (arguments.next < arguments.count) {
+        if (bench_flag(&arguments, "--quick"))
+            out->repeats = 10;
+        else if (bench_flag(&arguments, "--affinity"))
+            out->affinity = 1;
+        else if (bench_option(&arguments, "--size", &value))
+            bench_numbers(value, 16, 8192, 1, &out->size);
+        else if (bench_option(&arguments, "--repeats", &value))
+            bench_numbers(value, 5, BENCH_SAMPLES, 1, &out->repeats);
+        else if (!bench_option(&arguments, "--device", &out->device) &&
+                 !bench_option(&arguments, "--csv", &out->csv))
+            bench_usage(&arguments, usage);
+    }
+}
+
+static void frame(void *who) {
+    contender *self = who;
+    bench_try(skg_plan_image(self->plan, &self->output), "image");
+}
+
+static void make_plan(skg_context *context, const effect *kind, long size, contender *out) {
+    bench_scene scene;
+    scene_generate(context, &kind->changes, size, &scene);
+    scene.options.overlaps = 0; /* the parts of the flat scenes overlap on purpose */
+    scene.options.precision = kind->precision;
+    scene.options.strategy = kind->strategy;
+    scene.options.quantity = kind->quantity;
+    scene.options.profile = kind->profile;
+    const double start = bench_now();
+    const skg_status status =
+        skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &out->plan);
+    out->plan_ms = bench_now() - start;
+    if (status == SKG_ERR_UNSUPPORTED)
+        fprintf(stderr, "%s: left out: %s\n", kind->name, skg_last_error());
+    else
+        bench_try(status, kind->name);
+    skg_output_init(&out->output);
+    out->output.type = kind->type;
+    out->output.data =
+        bench_alloc((size_t)(size * size), kind->type == SKG_FLOAT64 ? sizeof(double) : sizeof(float));
+    scene_close(&scene);
+}
+
+static void measure(const settings *set, skg_context *context, contender *base, int index, FILE *csv) {
+    const effect *kind = &effects[index];
+    contender *self = bench_alloc(1, sizeof *self);
+    make_plan(context, kind, set->size, self);
+    if (self->plan) {
+        const bench_frame frames[2] = {frame, frame};
+        void *const who[2] = {base, self};
+        bench_times times[2] = {0};
+        bench_interleave(2, frames, who, (int)(set->repeats + 4) / 5, 5, times);
+        const double without = bench_least(&times[0]), with = bench_least(&times[1]);
+        printf("| %s | %s | %.4g | %.4g / %.4g | %.4g / %.4g | %+.3f | %.2f |\n", kind->name, kind->what,
+               self->plan_ms, without, bench_median(&times[0]), with, bench_median(&times[1]), with - without,
+               with / without);
+        if (csv)
+            fprintf(csv, "%s,%.5g,%.5g,%.5g,%.5g,%.5g,%.3f\n", kind->name, self->plan_ms, without,
+                    bench_median(&times[0]), with, bench_median(&times[1]), with / without);
+    }
+    skg_plan_release(&self->plan);
+    free(self->output.data);
+    free(self);
+}
+
+int main(int count, char **words) {
+    settings set;
+    read_settings(count, words, &set);
+    if (set.affinity) host_pin_threads();
+    skg_context *context = bench_context(set.device);
+    FILE *csv = set.csv ? bench_open(set.csv) : NULL;
+    contender *base = bench_alloc(1, sizeof *base);
+    make_plan(context, &effects[0], set.size, base);
+    if (csv) fprintf(csv, "effect,plan_ms,base_min_ms,base_median_ms,with_min_ms,with_median_ms,ratio\n");
+    printf(
+        "Detector %ld x %ld. Times of a warm frame in ms, minimum / median, and of planning once; price and ratio by "
+        "minima.\nThe first row is the base against itself: what differs there is noise.\n\n"
+        "| effect | what | planning | base | with | price | ratio |\n|---|---|---:|---:|---:|---:|---:|\n",
+        set.size, set.size);
+    for (int k = 0; k < EFFECTS; k++) measure(&set, context, base, k, csv);
+    if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);
+    skg_plan_release(&base->plan);
+    free(base->output.data);
+    free(base);
+    skg_context_release(&context);
+    return 0;
+}

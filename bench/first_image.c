@@ -1,0 +1,133 @@
+/* From nothing to the first image, and the most memory used on the way: each time in a new process, as a user
+ * meets it. */
+#include "common/bench.h"
+#include "common/scenes.h"
+
+#include "affinity.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char usage[] = "[--quick] [--scene FILE.json | FOLDER | sphere:N] [--size N] [--repeats N]\n"
+                            "    [--device CONFIG] [--affinity] [--csv FILE]";
+
+typedef struct {
+    long size, repeats;
+    int affinity;
+    const char *scene, *device, *csv;
+} settings;
+
+enum { CONTEXT, LOADING, PLANNING, FIRST, SECOND, ALL, STAGES };
+static const char *const stages[STAGES] = {
+    "context", "loading", "planning", "first image", "second image", "loading, planning and first image"};
+
+typedef struct {
+    double ms[STAGES];
+    int64_t parts, triangles;
+} story;
+
+static void read_settings(int count, char **words, settings *out) {
+    bench_arguments arguments = {count, words, 1};
+    const char *value = NULL;
+    *out = (settings){.size = 512, .repeats = 7};
+    while (arguments.next < arguments.count) {
+        if (bench_flag(&arguments, "--quick"))
+            out->repeats = 2;
+        else if (bench_flag(&arguments, "--affinity"))
+            out->affinity = 1;
+        else if (bench_option(&arguments, "--size", &value))
+            bench_numbers(value, 16, 8192, 1, &out->size);
+        else if (bench_option(&arguments, "--repeats", &value))
+            bench_numbers(value, 1, BENCH_SAMPLES, 1, &out->repeats);
+        else if (!bench_option(&arguments, "--scene", &out->scene) &&
+                 !bench_option(&arguments, "--device", &out->device) &&
+                 !bench_option(&arguments, "--csv", &out->csv))
+            bench_usage(&arguments, usage);
+    }
+}
+
+static void live(const settings *set, story *out) {
+    bench_scene scene;
+    skg_plan *plan = NULL;
+    skg_plan_report report;
+    skg_output output;
+    double moment[STAGES];
+    int64_t channels = 0;
+    moment[CONTEXT] = bench_now();
+    skg_context *context = bench_context(set->device);
+    moment[LOADING] = bench_now();
+    scene_open(context, set->scene, set->size, &scene);
+    moment[PLANNING] = bench_now();
+    bench_try(skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan), "plan");
+    bench_try(skg_plan_channels(plan, &channels), "plan");
+    skg_output_init(&output);
+    output.data = bench_alloc((size_t)(channels * scene.view.rows * scene.view.columns), sizeof(float));
+    moment[FIRST] = bench_now();
+    bench_try(skg_plan_image(plan, &output), "image");
+    moment[SECOND] = bench_now();
+    bench_try(skg_plan_image(plan, &output), "image");
+    moment[ALL] = bench_now();
+    for (int k = 0; k < ALL; k++) out->ms[k] = moment[k + 1] - moment[k];
+    out->ms[ALL] = moment[SECOND] - moment[CONTEXT];
+    skg_plan_report_init(&report);
+    bench_try(skg_plan_get_report(plan, &report), "report");
+    out->parts = report.parts;
+    out->triangles = report.triangles;
+}
+
+/* A process of its own; the most memory that it held, MiB. */
+static double live_once(const settings *set, story *out) {
+    int ends[2], status = 0;
+    struct rusage children;
+    if (pipe(ends) != 0) bench_die("no pipe");
+    const pid_t child = fork();
+    if (child < 0) bench_die("no process");
+    if (child == 0) {
+        live(set, out);
+        _exit(write(ends[1], out, sizeof *out) == (ssize_t)sizeof *out ? 0 : 1);
+    }
+    close(ends[1]);
+    const ssize_t got = read(ends[0], out, sizeof *out);
+    close(ends[0]);
+    waitpid(child, &status, 0);
+    if (got != (ssize_t)sizeof *out || status != 0) bench_die("a process did not end well");
+    getrusage(RUSAGE_CHILDREN, &children);
+    return (double)children.ru_maxrss / 1024; /* of the largest child so far */
+}
+
+int main(int count, char **words) {
+    settings set;
+    story once = {0};
+    static bench_times times[STAGES];
+    double cold[STAGES], memory = 0;
+    read_settings(count, words, &set);
+    if (set.affinity) host_pin_threads();
+    live_once(&set, &once); /* may compile kernels */
+    memcpy(cold, once.ms, sizeof cold);
+    for (long k = 0; k < set.repeats; k++) {
+        memory = live_once(&set, &once);
+        for (int stage = 0; stage < STAGES; stage++) bench_add(&times[stage], once.ms[stage]);
+    }
+    printf(
+        "%lld parts, %lld triangles; %ld processes after a first one, which compiled what the cache lacked. Most memory "
+        "held: %.0f MiB. Times in ms.\nTarget: a thorax of 61 organs below 2000 in all; 4 million triangles below "
+        "1024 MiB.\n\n| stage | first process | minimum | median |\n|---|---:|---:|---:|\n",
+        (long long)once.parts, (long long)once.triangles, set.repeats, memory);
+    FILE *csv = set.csv ? bench_open(set.csv) : NULL;
+    if (csv) fprintf(csv, "stage,first_process_ms,min_ms,median_ms\n");
+    for (int k = 0; k < STAGES; k++) {
+        printf("| %s | %.4g | %.4g | %.4g |\n", stages[k], cold[k], bench_least(&times[k]),
+               bench_median(&times[k]));
+        if (csv)
+            fprintf(csv, "\"%s\",%.5g,%.5g,%.5g\n", stages[k], cold[k], bench_least(&times[k]),
+                    bench_median(&times[k]));
+    }
+    if (csv)
+        fprintf(csv, "# parts %lld, triangles %lld, most memory %.0f MiB\n", (long long)once.parts,
+                (long long)once.triangles, memory);
+    if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);
+    return 0;
+}

@@ -1,0 +1,124 @@
+/* skiagraph devices */
+#include "args.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char *const variables[] = {"SKG_DEVICE",     "SKG_KERNEL_DIR",         "POCL_AFFINITY",
+                                        "POCL_CACHE_DIR", "POCL_MAX_PTHREAD_COUNT", "OCL_ICD_VENDORS"};
+enum { VARIABLES = sizeof variables / sizeof *variables };
+
+static const char *kind_of(const skg_device_info *device) {
+    return device->is_gpu ? "gpu" : device->is_cpu ? "cpu" : "other";
+}
+
+static json_t *device_json(const skg_device_info *device, int chosen) {
+    json_t *object = json_object();
+    char number[32];
+    snprintf(number, sizeof number, "%d:%d", device->platform, device->device);
+    json_object_set_new(object, "device", cli_json_text(number));
+    json_object_set_new(object, "name", cli_json_text(device->name));
+    json_object_set_new(object, "platform", cli_json_text(device->platform_name));
+    json_object_set_new(object, "kind", cli_json_text(kind_of(device)));
+    json_object_set_new(object, "chosen", json_boolean(chosen));
+    json_object_set_new(object, "compute_units", json_integer(device->compute_units));
+    json_object_set_new(object, "float_width", json_integer(device->float_width));
+    json_object_set_new(object, "has_double", json_boolean(device->has_double));
+    json_object_set_new(object, "correct_division", json_boolean(device->correct_division));
+    json_object_set_new(object, "memory_bytes", json_integer(device->memory));
+    json_object_set_new(object, "max_allocation_bytes", json_integer(device->max_allocation));
+    json_object_set_new(object, "local_memory_bytes", json_integer(device->local_memory));
+    json_object_set_new(object, "version", cli_json_text(device->version));
+    json_object_set_new(object, "driver", cli_json_text(device->driver));
+    return object;
+}
+
+static void print_device(const skg_device_info *device, int chosen) {
+    static const double gib = 1024.0 * 1024.0 * 1024.0;
+    printf("%s %d:%d  %s (%s, %s)\n", chosen ? "*" : " ", device->platform, device->device, device->name,
+           kind_of(device), device->platform_name);
+    printf("       %d compute units, floats by %d; %.1f GiB, %.1f GiB at once, %.0f KiB local\n",
+           device->compute_units, device->float_width, (double)device->memory / gib,
+           (double)device->max_allocation / gib, (double)device->local_memory / 1024);
+    printf("       precision double: %s; division correctly rounded: %s\n",
+           device->has_double ? "yes" : "no (no fp64)",
+           device->correct_division ? "yes (same bits as other such devices)" : "no (bits of its own)");
+    printf("       %s, driver %s\n", device->version, device->driver);
+}
+
+/* PoCL's own words where they are not obvious. */
+static const char *remark_on(int variable) {
+    return variable == 2 ? cli_affinity_reason() : NULL;
+}
+
+static void print_variables(void) {
+    printf("\nenvironment:\n");
+    for (int i = 0; i < VARIABLES; i++) {
+        const char *value = getenv(variables[i]), *remark = remark_on(i);
+        printf("  %-22s %s%s%s%s\n", variables[i], value ? value : "-", remark ? " (" : "",
+               remark ? remark : "", remark ? ")" : "");
+    }
+}
+
+static json_t *variables_json(void) {
+    json_t *object = json_object();
+    for (int i = 0; i < VARIABLES; i++) {
+        const char *value = getenv(variables[i]);
+        json_object_set_new(object, variables[i], value ? cli_json_text(value) : json_null());
+    }
+    return object;
+}
+
+static int list_devices(int64_t count, const skg_device_info *best, int json) {
+    json_t *list = json ? json_array() : NULL;
+    for (int64_t i = 0; i < count; i++) {
+        skg_device_info device;
+        skg_device_info_init(&device);
+        skg_status status = skg_device_describe(i, &device);
+        if (status != SKG_OK) {
+            json_decref(list);
+            return cli_fail(status);
+        }
+        int chosen = device.platform == best->platform && device.device == best->device;
+        if (json)
+            json_array_append_new(list, device_json(&device, chosen));
+        else
+            print_device(&device, chosen);
+    }
+    if (json) {
+        json_t *object = json_object();
+        json_object_set_new(object, "devices", list);
+        json_object_set_new(object, "environment", variables_json());
+        json_object_set_new(object, "affinity", cli_json_text(cli_affinity_reason()));
+        return cli_json_print(object);
+    }
+    print_variables();
+    return CLI_DONE;
+}
+
+static int run(const cli_arguments *arguments) {
+    skg_context *context = NULL;
+    skg_device_info best;
+    int64_t count = 0;
+    int exit_status = cli_open_context(arguments, &context, &best);
+    if (exit_status != CLI_DONE) return exit_status;
+    skg_status status = skg_device_count(&count);
+    exit_status = status == SKG_OK ? list_devices(count, &best, cli_given(arguments, &cli_flag_json))
+                                   : cli_fail(status);
+    skg_context_release(&context);
+    return exit_status;
+}
+
+static const cli_flag *const flags[] = {&cli_flag_device, &cli_flag_json, &cli_flag_quiet, NULL};
+
+const cli_verb cli_devices = {
+    "devices",
+    "",
+    "what OpenCL offers, and what would be chosen",
+    "Lists every OpenCL device; the one that --device (or SKG_DEVICE, or the rule \"GPUs before CPUs, more\n"
+    "compute units first\") chooses has a star. Then the environment variables that matter. Exit status 4\n"
+    "when there is no device, or none fits.",
+    0,
+    0,
+    flags,
+    run};

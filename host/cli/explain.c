@@ -1,0 +1,219 @@
+#include "explain.h"
+
+#include "frames.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) {
+    double start = cli_now_ms();
+    skg_status status = skg_plan_create(session->context, session->scene, &session->view, session->spectrum,
+                                        &session->options, plan);
+    *plan_ms = cli_now_ms() - start;
+    if (status == SKG_OK) return CLI_DONE;
+    int exit_status = cli_fail(status);
+    return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
+}
+
+/* |a x b| */
+static double area_of(const double a[3], const double b[3]) {
+    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    return sqrt(x * x + y * y + z * z);
+}
+
+int cli_open_beam(const cli_session *session, double *open) {
+    int32_t quantity = session->options.quantity;
+    int64_t bins = 0;
+    double energy = 0, photons = 0;
+    skg_status status = skg_spectrum_size(session->spectrum, &bins);
+    for (int64_t i = 0; status == SKG_OK && i < bins; i++) {
+        double kev, count;
+        status = skg_spectrum_bin(session->spectrum, i, &kev, &count);
+        if (status != SKG_OK) break;
+        energy += kev * count;
+        photons += count;
+    }
+    *open = quantity == SKG_ENERGY    ? energy
+            : quantity == SKG_PHOTONS ? photons
+            : quantity == SKG_FLUENCE ? energy / area_of(session->view.column_step, session->view.row_step)
+                                      : 0;
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static json_t *effects_json(const skg_plan *plan) {
+    json_t *list = json_array();
+    int64_t count = 0;
+    skg_plan_effects(plan, &count);
+    for (int64_t i = 0; i < count; i++) {
+        skg_effect effect;
+        skg_effect_init(&effect);
+        if (skg_plan_effect(plan, i, &effect) != SKG_OK) break;
+        json_t *object = json_object();
+        json_object_set_new(object, "name", cli_json_text(effect.name));
+        json_object_set_new(object, "on", json_boolean(effect.on));
+        json_object_set_new(object, "reason", cli_json_text(effect.reason));
+        json_array_append_new(list, object);
+    }
+    return list;
+}
+
+/* The energies at which attenuation is computed, with their photons per pixel. Without compression (which
+ * this version has not) they are the spectrum's own, and the error bound is zero. */
+static json_t *nodes_json(const cli_session *session) {
+    json_t *list = json_array();
+    int64_t bins = 0;
+    skg_spectrum_size(session->spectrum, &bins);
+    for (int64_t i = 0; i < bins; i++) {
+        double node[2];
+        if (skg_spectrum_bin(session->spectrum, i, &node[0], &node[1]) == SKG_OK)
+            json_array_append_new(list, cli_json_numbers(node, 2));
+    }
+    return list;
+}
+
+static const char *label_of(const skg_scene *scene, int64_t id) {
+    skg_part part;
+    skg_part_init(&part);
+    return skg_scene_part(scene, id, &part) == SKG_OK ? part.label : "?";
+}
+
+static json_t *overlaps_json(const skg_plan *plan, const skg_scene *scene) {
+    json_t *list = json_array();
+    int64_t count = 0;
+    skg_plan_overlaps(plan, &count);
+    for (int64_t i = 0; i < count; i++) {
+        skg_overlap overlap;
+        skg_overlap_init(&overlap);
+        if (skg_plan_overlap(plan, i, &overlap) != SKG_OK) break;
+        json_t *object = json_object();
+        json_object_set_new(object, "part", cli_json_text(label_of(scene, overlap.part)));
+        json_object_set_new(object, "other", cli_json_text(label_of(scene, overlap.other)));
+        json_object_set_new(object, "protrudes", json_boolean(overlap.protrudes));
+        json_object_set_new(object, "volume_mm3", cli_json_number(overlap.volume));
+        json_object_set_new(object, "longest_mm", cli_json_number(overlap.longest));
+        json_object_set_new(object, "place_mm", cli_json_numbers(overlap.place, 3));
+        json_array_append_new(list, object);
+    }
+    return list;
+}
+
+static json_t *tiles_json(const skg_plan_report *report) {
+    json_t *object = json_object();
+    json_object_set_new(object, "count", json_integer(report->tiles));
+    json_object_set_new(object, "columns", json_integer(report->tile_columns));
+    json_object_set_new(object, "rows", json_integer(report->tile_rows));
+    json_object_set_new(object, "triangles_per_tile", cli_json_number(report->triangles_per_tile));
+    return object;
+}
+
+json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
+    skg_plan_report report;
+    json_t *object = json_object();
+    skg_plan_report_init(&report);
+    skg_plan_get_report(plan, &report);
+    json_object_set_new(object, "effects", effects_json(plan));
+    json_object_set_new(object, "nodes", nodes_json(session));
+    json_object_set_new(object, "planes", json_integer(report.planes));
+    json_object_set_new(object, "plane_bits", json_integer(report.plane_bits));
+    json_object_set_new(object, "strategy", cli_json_text(cli_strategy_names[report.strategy]));
+    json_object_set_new(object, "tiles", tiles_json(&report));
+    json_object_set_new(object, "bound", json_real(0));
+    json_object_set_new(object, "precision", cli_json_text(cli_precision_names[report.precision]));
+    json_object_set_new(object, "device", cli_json_text(session->device.name));
+    json_object_set_new(object, "device_bytes", json_integer(report.device_bytes));
+    json_object_set_new(object, "parts", json_integer(report.parts));
+    json_object_set_new(object, "open_parts", json_integer(report.open_parts));
+    json_object_set_new(object, "triangles", json_integer(report.triangles));
+    json_object_set_new(object, "vertices", json_integer(report.vertices));
+    json_object_set_new(object, "bad_pixels", json_integer(report.bad_pixels));
+    json_object_set_new(object, "negative_pixels", json_integer(report.negative_pixels));
+    json_object_set_new(object, "overlaps", overlaps_json(plan, session->scene));
+    return object;
+}
+
+static void print_effects(const skg_plan *plan) {
+    int64_t count = 0;
+    skg_plan_effects(plan, &count);
+    printf("\neffects\n");
+    for (int64_t i = 0; i < count; i++) {
+        skg_effect effect;
+        skg_effect_init(&effect);
+        if (skg_plan_effect(plan, i, &effect) != SKG_OK) break;
+        printf("  %-3s %-22s %s\n", effect.on ? "on" : "off", effect.name, effect.reason);
+    }
+}
+
+static void print_stages(const skg_plan *plan) {
+    int64_t count = 0;
+    if (skg_plan_stages(plan, &count) != SKG_OK || count == 0) return;
+    printf("\nmeasured on one frame, ms\n");
+    for (int64_t i = 0; i < count; i++) {
+        skg_stage stage;
+        skg_stage_init(&stage);
+        if (skg_plan_stage(plan, i, &stage) != SKG_OK) break;
+        printf("  %-26s %.3f\n", stage.name, stage.ns * 1e-6);
+    }
+}
+
+static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
+    enum { SHOWN = 10 };
+    int64_t count = 0;
+    if (skg_plan_overlaps(plan, &count) != SKG_OK || count == 0) return;
+    printf("\noverlaps (lengths add where parts overlap)\n");
+    for (int64_t i = 0; i < count && i < SHOWN; i++) {
+        skg_overlap overlap;
+        skg_overlap_init(&overlap);
+        if (skg_plan_overlap(plan, i, &overlap) != SKG_OK) break;
+        printf("  %s %s %s: %.4g mm3, longest %.4g mm at (%.4g, %.4g, %.4g) mm\n",
+               label_of(scene, overlap.part), overlap.protrudes ? "leaves its parent" : "overlaps",
+               label_of(scene, overlap.other), overlap.volume, overlap.longest, overlap.place[0],
+               overlap.place[1], overlap.place[2]);
+    }
+    if (count > SHOWN) printf("  and %" PRId64 " more; --json lists all\n", count - SHOWN);
+}
+
+static void print_beam(const cli_session *session) {
+    int64_t bins = 0;
+    double kev, photons;
+    skg_spectrum_size(session->spectrum, &bins);
+    if (bins == 1 && skg_spectrum_bin(session->spectrum, 0, &kev, &photons) == SKG_OK)
+        printf("beam       %g keV, %g photons per pixel of the open beam\n", kev, photons);
+    else
+        printf("beam       %" PRId64 " energies\n", bins);
+}
+
+static void print_strategy(const skg_plan_report *report) {
+    printf("strategy   %s: ", cli_strategy_names[report->strategy]);
+    if (report->tiles == 1)
+        printf("the detector is one tile\n");
+    else
+        printf("%" PRId64 " tiles of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
+               report->tiles, report->tile_columns, report->tile_rows, report->triangles_per_tile);
+}
+
+void cli_explain_print(const skg_plan *plan, const cli_session *session) {
+    skg_plan_report report;
+    skg_plan_report_init(&report);
+    skg_plan_get_report(plan, &report);
+    printf("scene      %s: %" PRId64 " parts (%" PRId64 " open), %" PRId64 " triangles, %" PRId64
+           " vertices\n",
+           session->path, report.parts, report.open_parts, report.triangles, report.vertices);
+    printf("detector   %" PRId64 " x %" PRId64 " pixels\n", session->view.columns, session->view.rows);
+    print_beam(session);
+    printf("device     %s, %.1f MiB used\n", session->device.name,
+           (double)report.device_bytes / (1024.0 * 1024.0));
+    printf("precision  %s\n", cli_precision_names[report.precision]);
+    print_strategy(&report);
+    printf("planes     %" PRId64 " of %" PRId64 " bits for %" PRId64 " parts\n", report.planes,
+           report.plane_bits, report.parts - report.open_parts);
+    printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
+           " with a negative exponent\n",
+           report.bad_pixels, report.negative_pixels);
+    print_effects(plan);
+    print_stages(plan);
+    print_overlaps(plan, session->scene);
+    printf(
+        "\nDirectly transmitted photons only. Scatter is not simulated: 8 %% of the primary behind a 3 cm cube\n"
+        "of bone in soft tissue, as much as the primary or more behind an abdomen without a grid.\n");
+}

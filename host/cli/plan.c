@@ -1,0 +1,54 @@
+/* skiagraph plan */
+#include "explain.h"
+
+#include "frames.h"
+
+#include <stdlib.h>
+
+/* One frame: what a plan reports of triangles per tile, pixels and stages is of the last one. */
+static int measure(skg_plan *plan, const skg_view *view) {
+    int64_t channels = 1;
+    skg_output output;
+    skg_output_init(&output);
+    skg_status status = skg_plan_channels(plan, &channels);
+    if (status != SKG_OK) return cli_fail(status);
+    output.data = calloc((size_t)(view->columns * view->rows * channels), sizeof(float));
+    if (!output.data) return cli_error(CLI_DEVICE, "out of host memory for the image");
+    status = skg_plan_image(plan, &output);
+    free(output.data);
+    return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);
+}
+
+static int run(const cli_arguments *arguments) {
+    cli_session session;
+    skg_plan *plan = NULL;
+    double plan_ms;
+    int exit_status = cli_open_session(arguments, &session);
+    session.options.profile = 1;
+    if (exit_status == CLI_DONE) exit_status = cli_make_plan(&session, &plan, &plan_ms);
+    if (exit_status == CLI_DONE) exit_status = measure(plan, &session.view);
+    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json))
+        exit_status = cli_json_print(cli_explain_json(plan, &session));
+    else if (exit_status == CLI_DONE && !cli_is_quiet())
+        cli_explain_print(plan, &session);
+    skg_plan_release(&plan);
+    cli_close_session(&session);
+    return exit_status;
+}
+
+static const cli_flag *const flags[] = {
+    &cli_flag_device, &cli_flag_precision, &cli_flag_tolerance, &cli_flag_strategy,
+    &cli_flag_set,    &cli_flag_json,      &cli_flag_quiet,     NULL};
+
+const cli_verb cli_plan = {
+    "plan",
+    "SCENE",
+    "what would be simulated, and why",
+    "Plans a scene, makes one frame without writing it, and tells what was decided: strategy, tiles, planes,\n"
+    "precision, every effect that is on or off with the reason, what each stage took, parts that overlap, and\n"
+    "what is not simulated. --json prints {effects, nodes, planes, strategy, tiles, bound, ...}; nodes are\n"
+    "[keV, photons per pixel].",
+    1,
+    1,
+    flags,
+    run};

@@ -1,0 +1,56 @@
+#include "beam/spectrum.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static const double NEGLIGIBLE = 1e-9; /* of the strongest energy's photons */
+
+skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed) {
+    double exponent = 0;
+    if (count < 0 || (count > 0 && !filters))
+        return skg_fail(SKG_ERR_ARGUMENT, "no filters where there should be %" PRId64, count);
+    for (int64_t i = 0; i < count; i++) {
+        double per_cm = 0;
+        if (!filters[i].material) return skg_fail(SKG_ERR_BEAM, "filter %" PRId64 " has no material", i + 1);
+        if (!(isfinite(filters[i].mm) && filters[i].mm >= 0))
+            return skg_fail(SKG_ERR_BEAM, "filter %" PRId64 " is %g mm thick; give at least 0", i + 1,
+                            filters[i].mm);
+        SKG_TRY(skg_material_attenuation(filters[i].material, energy_kev, &per_cm));
+        exponent += per_cm * filters[i].mm / 10;
+    }
+    *passed = exp(-exponent);
+    return SKG_OK;
+}
+
+skg_status skg_spectrum_filtered(const skg_spectrum *spectrum, int64_t count, const skg_filter *filters,
+                                 skg_spectrum **behind) {
+    if (!behind) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_filtered: no place for the spectrum");
+    *behind = NULL;
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_filtered: no spectrum");
+    skg_spectrum *made = NULL;
+    skg_status status = SKG_OK;
+    double strongest = 0;
+    SKG_TRY(skg_spectrum_make(spectrum->count, &made));
+    for (int64_t i = 0; i < spectrum->count; i++) {
+        double passed = 0;
+        SKG_TRY_CLEANUP(skg_filters_pass(count, filters, spectrum->energy_kev[i], &passed));
+        made->photons[i] = spectrum->photons[i] * passed;
+        strongest = fmax(strongest, made->photons[i]);
+    }
+    if (!(strongest > 0)) {
+        status = skg_fail(SKG_ERR_BEAM, "the filters let no photon through");
+        goto cleanup;
+    }
+    int64_t used = 0;
+    for (int64_t i = 0; i < spectrum->count; i++) {
+        if (made->photons[i] < NEGLIGIBLE * strongest) continue;
+        made->energy_kev[used] = spectrum->energy_kev[i];
+        made->photons[used++] = made->photons[i];
+    }
+    made->count = used;
+    *behind = made;
+    return SKG_OK;
+cleanup:
+    skg_spectrum_release(&made);
+    return status;
+}

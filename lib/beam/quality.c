@@ -1,0 +1,31 @@
+#include "beam/spectrum.h"
+
+void skg_quality_init(skg_quality *quality) {
+    if (quality) *quality = (skg_quality){.size = (int32_t)sizeof *quality};
+}
+
+static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first, double *second) {
+    skg_material *metal = NULL;
+    SKG_TRY(skg_material_element(z, &metal));
+    skg_status status = skg_half_value_layers(spectrum, metal, first, second);
+    skg_material_release(&metal);
+    return status;
+}
+
+skg_status skg_spectrum_quality(const skg_spectrum *spectrum, skg_quality *quality) {
+    enum { ALUMINIUM = 13, COPPER = 29 };
+    if (!spectrum || !quality)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_quality: no spectrum or no result");
+    skg_quality ours;
+    skg_quality_init(&ours);
+    for (int64_t i = 0; i < spectrum->count; i++) {
+        ours.photons += spectrum->photons[i];
+        ours.energy_kev += spectrum->photons[i] * spectrum->energy_kev[i];
+    }
+    ours.mean_kev = ours.energy_kev / ours.photons;
+    ours.air_kerma_ugy = skg_spectrum_kerma(spectrum);
+    SKG_TRY(layers(spectrum, ALUMINIUM, &ours.hvl1_mm_al, &ours.hvl2_mm_al));
+    SKG_TRY(layers(spectrum, COPPER, &ours.hvl1_mm_cu, &ours.hvl2_mm_cu));
+    ours.homogeneity = ours.hvl1_mm_al / ours.hvl2_mm_al;
+    return skg_struct_write(&ours, sizeof ours, "skg_quality", quality);
+}

@@ -1,0 +1,40 @@
+#include "beam/spectrum.h"
+#include "core/columns.h"
+#include "core/units.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The word after which a GATE macro has the numbers; NULL for a file of two columns. */
+static skg_status find_word(const char *path, const char **word) {
+    char text[512];
+    *word = NULL;
+    FILE *file = fopen(path, "r");
+    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
+    while (!*word && fgets(text, sizeof text, file)) {
+        if (text[strspn(text, " \t")] != '/') continue; /* a macro's commands start so */
+        if (strstr(text, "histpoint")) *word = "histpoint";
+        if (strstr(text, "hist/point")) *word = "hist/point";
+    }
+    fclose(file);
+    return SKG_OK;
+}
+
+skg_status skg_spectrum_file(const char *path, const char *unit, skg_spectrum **spectrum) {
+    if (!path || !unit || !spectrum)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_file: no path, unit or place for the spectrum");
+    const char *word = NULL;
+    double kev = 1, *energies = NULL, *photons = NULL;
+    int64_t count = 0;
+    *spectrum = NULL;
+    SKG_TRY(skg_unit_of_energy(unit, &kev));
+    SKG_TRY(find_word(path, &word));
+    SKG_TRY(skg_read_columns(path, word, &count, &energies, &photons));
+    for (int64_t i = 0; i < count; i++) energies[i] *= kev;
+    skg_status status = skg_spectrum_bins(count, energies, photons, spectrum);
+    skg_free(&energies);
+    skg_free(&photons);
+    if (status == SKG_ERR_BEAM) return skg_fail(status, "%s: %s", path, skg_last_error());
+    return status;
+}

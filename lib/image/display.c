@@ -1,0 +1,70 @@
+/* Display curves, and what a file says about its picture in words. */
+#include "image/image.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+double skg_picture_value(const skg_picture *picture, int64_t index) {
+    return picture->type == SKG_FLOAT64 ? ((const double *)picture->data)[index]
+                                        : (double)((const float *)picture->data)[index];
+}
+
+/* Whether I/I0 can be formed. */
+static int is_relative(const skg_picture *picture) {
+    return picture->quantity == SKG_TRANSMISSION || picture->quantity == SKG_ATTENUATION || picture->open > 0;
+}
+
+double skg_picture_shown(const skg_picture *picture, double value) {
+    if (!is_relative(picture)) return value;
+    int radiograph = picture->display == SKG_DISPLAY_RADIOGRAPH;
+    if (picture->quantity == SKG_ATTENUATION) return radiograph ? value : exp(-value);
+    double transmission = picture->quantity == SKG_TRANSMISSION ? value : value / picture->open;
+    if (!radiograph) return transmission;
+    /* Nothing comes through (or noise says less than nothing): infinitely dense. 0 - keeps -0 away. */
+    return transmission <= 0 ? HUGE_VAL : 0 - log(transmission);
+}
+
+void skg_picture_curve(const skg_picture *picture, char *text, size_t length) {
+    if (!is_relative(picture))
+        skg_picture_title(picture, text, length);
+    else
+        snprintf(text, length, "%s",
+                 picture->display == SKG_DISPLAY_RADIOGRAPH ? "radiograph: -ln(I/I0)" : "transmission: I/I0");
+}
+
+void skg_picture_title(const skg_picture *picture, char *text, size_t length) {
+    const char *name = picture->name ? picture->name : "", *unit = picture->unit ? picture->unit : "";
+    snprintf(text, length, *unit ? "%s (%s)" : "%s%s", name, unit);
+}
+
+void skg_picture_numbers(const double *numbers, int count, char *text, size_t length) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < count && used < length; i++) {
+        char number[32];
+        for (int digits = 15; digits <= 17; digits++) {
+            snprintf(number, sizeof number, "%.*g", digits, numbers[i] + 0.0); /* + 0: no minus zero */
+            if (strtod(number, NULL) == numbers[i]) break;
+        }
+        used += (size_t)snprintf(text + used, length - used, "%s%s", i ? " " : "", number);
+    }
+}
+
+void skg_picture_describe(const skg_picture *picture, char *text, size_t length) {
+    static const char *const sources[] = {"point source at", "parallel beam from", "parallel beam along"};
+    const skg_view *view = picture->view;
+    char title[256], source[96], centre[96], column[96], row[96];
+    skg_picture_title(picture, title, sizeof title);
+    if (!view) {
+        snprintf(text, length, "%s", title);
+        return;
+    }
+    skg_picture_numbers(view->source, 3, source, sizeof source);
+    skg_picture_numbers(view->centre, 3, centre, sizeof centre);
+    skg_picture_numbers(view->column_step, 3, column, sizeof column);
+    skg_picture_numbers(view->row_step, 3, row, sizeof row);
+    snprintf(text, length, "%s; %s %s; detector centre %s mm; column step %s mm; row step %s mm", title,
+             sources[view->projection >= 0 && view->projection <= 2 ? view->projection : 0], source, centre,
+             column, row);
+}

@@ -1,0 +1,135 @@
+/* Pictures: what is checked before a writer sees them, and which writer that is. */
+#include "image/image.h"
+
+#include "core/names.h"
+
+#include <inttypes.h>
+#include <locale.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+    const char *extension;
+    skg_status (*write)(const skg_picture *picture, skg_output_file *file);
+    skg_status (*check)(const skg_picture *picture, const char *path);
+} format;
+
+static const format formats[] = {
+    {".png", skg_png_write, NULL},
+    {".tif", skg_tiff_write, NULL},
+    {".tiff", skg_tiff_write, NULL},
+    {".mha", skg_metaimage_write, skg_metaimage_check},
+};
+
+void skg_picture_init(skg_picture *picture) {
+    if (picture) *picture = (skg_picture){.size = (int32_t)sizeof *picture, .channels = 1};
+}
+
+static skg_status check_range(const skg_picture *picture) {
+    if (picture->low == 0 && picture->high == 0) return SKG_OK;
+    if (!isfinite(picture->low) || !isfinite(picture->high) || picture->low >= picture->high)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "range %g:%g: the low end has to be below the high end, both finite", picture->low,
+                        picture->high);
+    return SKG_OK;
+}
+
+/* Reads the caller's struct and refuses what no writer can use. */
+static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
+    skg_picture_init(picture);
+    SKG_TRY(skg_struct_read(theirs, "skg_picture", picture, sizeof *picture));
+    if (picture->type != SKG_FLOAT32 && picture->type != SKG_FLOAT64)
+        return skg_fail(SKG_ERR_ARGUMENT, "picture: type %" PRId32 " is neither SKG_FLOAT32 nor SKG_FLOAT64",
+                        picture->type);
+    if (picture->columns < 1 || picture->rows < 1 || picture->channels < 1 || picture->columns > INT32_MAX ||
+        picture->rows > INT32_MAX || picture->channels > UINT16_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "picture: %" PRId64 " columns, %" PRId64 " rows, %" PRId64
+                        " channels; each has to be at least 1, and a file has to hold them",
+                        picture->columns, picture->rows, picture->channels);
+    if (!picture->data) return skg_fail(SKG_ERR_ARGUMENT, "picture: no data");
+    if (picture->display != SKG_DISPLAY_RADIOGRAPH && picture->display != SKG_DISPLAY_TRANSMISSION)
+        return skg_fail(SKG_ERR_ARGUMENT, "picture: display %" PRId32 " is no SKG_DISPLAY_ value",
+                        picture->display);
+    if (picture->quantity < SKG_ENERGY || picture->quantity > SKG_ATTENUATION)
+        return skg_fail(SKG_ERR_ARGUMENT, "picture: quantity %" PRId32 " is none that images have",
+                        picture->quantity);
+    if (!(picture->open >= 0) || isinf(picture->open))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "picture: an open beam of %g; it has to be finite, and 0 where there is none",
+                        picture->open);
+    if (picture->view && (picture->view->columns != picture->columns || picture->view->rows != picture->rows))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "picture: %" PRId64 " x %" PRId64 " pixels, but its view has %" PRId64 " x %" PRId64,
+                        picture->columns, picture->rows, picture->view->columns, picture->view->rows);
+    return check_range(picture);
+}
+
+static skg_status find_format(const char *path, const format **found) {
+    if (!path || !*path) return skg_fail(SKG_ERR_ARGUMENT, "picture: no path to write to");
+    const char *name = strrchr(path, '/');
+    const char *dot = strrchr(name ? name : path, '.');
+    for (size_t i = 0; dot && i < sizeof formats / sizeof *formats; i++)
+        if (skg_same_name(dot, formats[i].extension)) {
+            *found = &formats[i];
+            return SKG_OK;
+        }
+    return skg_fail(SKG_ERR_ARGUMENT, "%s: the extension %s%s is no image format; use .png, .tif or .mha",
+                    path, dot ? dot : "", dot ? "" : "is missing and");
+}
+
+skg_status skg_picture_check_path(const char *path) {
+    const format *writer = NULL;
+    skg_output_file file;
+    SKG_TRY(find_format(path, &writer));
+    SKG_TRY(skg_output_open(path, &file));
+    skg_output_discard(&file);
+    return SKG_OK;
+}
+
+/* Numbers in headers have a decimal point in every locale (of this thread only). */
+static skg_status write_plainly(const format *writer, const skg_picture *picture, skg_output_file *file) {
+    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (plain == (locale_t)0) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for a locale", file->path);
+    locale_t before = uselocale(plain);
+    skg_status status = writer->write(picture, file);
+    uselocale(before);
+    freelocale(plain);
+    return status;
+}
+
+skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
+    skg_picture picture;
+    const format *writer = NULL;
+    skg_output_file file;
+    SKG_TRY(prepare(theirs, &picture));
+    SKG_TRY(find_format(path, &writer));
+    if (writer->check) SKG_TRY(writer->check(&picture, path));
+    SKG_TRY(skg_output_open(path, &file));
+    skg_status status = write_plainly(writer, &picture, &file);
+    if (status == SKG_OK) return skg_output_commit(&file);
+    skg_output_discard(&file);
+    return status;
+}
+
+skg_status skg_picture_range(const skg_picture *theirs, double *low, double *high) {
+    skg_picture picture;
+    SKG_TRY(prepare(theirs, &picture));
+    if (!low || !high) return skg_fail(SKG_ERR_ARGUMENT, "skg_picture_range: no result");
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    int64_t pixels = picture.columns * picture.rows;
+    for (int64_t i = 0; i < pixels; i++) {
+        double shown = skg_picture_shown(&picture, skg_picture_value(&picture, i));
+        if (!isfinite(shown)) continue;
+        if (shown < least) least = shown;
+        if (shown > most) most = shown;
+    }
+    if (least > most) least = 0, most = 1; /* not one finite value */
+    if (least == most) {                   /* flat: against 0 to 1, or as far as it goes */
+        if (least > 0) least = 0;
+        if (most < 1) most = most < 0 ? 0 : 1;
+    }
+    *low = least;
+    *high = most;
+    return SKG_OK;
+}

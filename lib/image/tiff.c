@@ -1,0 +1,108 @@
+/* TIFF: floats or doubles as they are, one page per channel. */
+#include "image/image.h"
+
+#include <skiagraph/version.h>
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+#include <tiffio.h>
+#include <unistd.h>
+
+/* The offsets of a classic TIFF have 32 bits; a little is left for its tags. */
+static const double classic_limit = 4.0e9;
+
+typedef struct {
+    char text[256];
+} reason;
+
+/* 1: told, so that libtiff does not print it. */
+static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+    reason *kept = user;
+    (void)tiff;
+    (void)module;
+    if (!kept->text[0]) vsnprintf(kept->text, sizeof kept->text, format, arguments);
+    return 1;
+}
+
+static int on_warning(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+    (void)tiff;
+    (void)user;
+    (void)module;
+    (void)format;
+    (void)arguments;
+    return 1;
+}
+
+static double norm(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
+    char description[SKG_DESCRIPTION_LENGTH];
+    int bits = picture->type == SKG_FLOAT64 ? 64 : 32;
+    skg_picture_describe(picture, description, sizeof description);
+    int done = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, (uint32_t)picture->columns) &&
+               TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, (uint32_t)picture->rows) &&
+               TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits) &&
+               TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) &&
+               TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP) &&
+               TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) &&
+               TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE) &&
+               TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
+               TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0)) &&
+               TIFFSetField(tiff, TIFFTAG_SOFTWARE, "skiagraph " SKG_VERSION) &&
+               TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, description);
+    if (done && picture->channels > 1)
+        done = TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_PAGE) &&
+               TIFFSetField(tiff, TIFFTAG_PAGENUMBER, (int)channel, (int)picture->channels);
+    if (done && picture->view) /* pixels per cm, from mm per pixel */
+        done = TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_CENTIMETER) &&
+               TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 10 / norm(picture->view->column_step)) &&
+               TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 10 / norm(picture->view->row_step));
+    return done;
+}
+
+/* row: room for one row, since libtiff takes its data writable. */
+static int write_pages(TIFF *tiff, const skg_picture *picture, void *row) {
+    size_t row_bytes = (size_t)picture->columns * (picture->type == SKG_FLOAT64 ? 8 : 4);
+    for (int64_t channel = 0; channel < picture->channels; channel++) {
+        if (!set_tags(tiff, picture, channel)) return 0;
+        for (int64_t r = 0; r < picture->rows; r++) {
+            size_t at = (size_t)(channel * picture->rows + r) * row_bytes;
+            memcpy(row, (const char *)picture->data + at, row_bytes);
+            if (TIFFWriteScanline(tiff, row, (uint32_t)r, 0) < 0) return 0;
+        }
+        if (!TIFFWriteDirectory(tiff)) return 0;
+    }
+    return 1;
+}
+
+skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
+    reason kept = {""};
+    TIFF *tiff = NULL;
+    char *row = NULL;
+    int written = 0, element = picture->type == SKG_FLOAT64 ? 8 : 4;
+    double bytes = (double)picture->columns * (double)picture->rows * (double)picture->channels * element;
+    SKG_TRY(skg_alloc(picture->columns, (size_t)element, "row of a TIFF file", &row));
+    /* TIFFClose closes its descriptor; the stream keeps its own for the sync. */
+    int descriptor = dup(fileno(file->stream));
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (descriptor >= 0 && options) {
+        TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, &kept);
+        TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, NULL);
+        tiff = TIFFFdOpenExt(descriptor, file->path, bytes > classic_limit ? "w8" : "w", options);
+    }
+    if (options) TIFFOpenOptionsFree(options);
+    errno = 0;
+    if (tiff) {
+        written = write_pages(tiff, picture, row);
+        TIFFClose(tiff);
+    } else if (descriptor >= 0) {
+        close(descriptor);
+    }
+    skg_free(&row);
+    if (written && !kept.text[0]) return SKG_OK;
+    return skg_output_fail(file->path, errno, kept.text[0] ? kept.text : "libtiff gives no reason");
+}

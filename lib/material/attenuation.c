@@ -1,0 +1,117 @@
+/* What materials do to photons. */
+#include "material/material.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const skg_mass_fraction water[2] = {{1, 0.111898}, {8, 0.888102}}; /* NIST, at 1 g/cm3 */
+
+static skg_status table_value(const skg_material *material, double energy_kev, double *per_cm) {
+    const double *e = material->energy_kev, *mu = material->per_cm;
+    int64_t low = 0, high = material->count - 1;
+    if (!(energy_kev >= e[0] && energy_kev <= e[high]))
+        return skg_fail(SKG_ERR_MATERIAL,
+                        "%s: a photon energy of %g keV lies outside the table's %g to %g keV", material->name,
+                        energy_kev, e[0], e[high]);
+    while (high - low > 1) { /* at an edge, the row above it */
+        int64_t middle = low + (high - low) / 2;
+        if (e[middle] <= energy_kev)
+            low = middle;
+        else
+            high = middle;
+    }
+    if (energy_kev >= e[high])
+        *per_cm = mu[high];
+    else if (material->linear)
+        *per_cm = mu[low] + (mu[high] - mu[low]) * (energy_kev - e[low]) / (e[high] - e[low]);
+    else
+        *per_cm = mu[low] * exp(log(mu[high] / mu[low]) * log(energy_kev / e[low]) / log(e[high] / e[low]));
+    return SKG_OK;
+}
+
+/* Summed as skg_coefficients is documented to. */
+static double total(const double sections[SKG_PROCESSES]) {
+    return sections[SKG_RAYLEIGH] + sections[SKG_COMPTON] + sections[SKG_PHOTO] + sections[SKG_PAIR];
+}
+
+skg_status skg_material_attenuation(const skg_material *material, double energy_kev, double *per_cm) {
+    if (!material || !per_cm)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_attenuation: no material or no result");
+    SKG_TRY(skg_check_energy(material->name, energy_kev));
+    if (material->kind == SKG_MATTER_CONSTANT) {
+        *per_cm = material->mu_per_cm;
+        return SKG_OK;
+    }
+    if (material->kind == SKG_MATTER_TABLE) return table_value(material, energy_kev, per_cm);
+    if (!(material->density > 0))
+        return skg_fail(SKG_ERR_MATERIAL, "%s: its density is not known; give one in g/cm3", material->name);
+    double sections[SKG_PROCESSES];
+    skg_mixed_sections(material->count, material->parts, energy_kev, sections);
+    *per_cm = material->density * total(sections);
+    return SKG_OK;
+}
+
+void skg_coefficients_init(skg_coefficients *coefficients) {
+    if (coefficients) *coefficients = (skg_coefficients){.size = (int32_t)sizeof *coefficients};
+}
+
+skg_status skg_material_coefficients(const skg_material *material, double energy_kev,
+                                     skg_coefficients *coefficients) {
+    if (!material || !coefficients)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_coefficients: no material or no result");
+    if (material->kind != SKG_MATTER_COMPOSITION)
+        return skg_fail(SKG_ERR_MATERIAL,
+                        "%s: a material given by its linear attenuation coefficient has no mass coefficients",
+                        material->name);
+    SKG_TRY(skg_check_energy(material->name, energy_kev));
+    double sections[SKG_PROCESSES];
+    skg_mixed_sections(material->count, material->parts, energy_kev, sections);
+    skg_coefficients ours;
+    skg_coefficients_init(&ours);
+    ours.rayleigh = sections[SKG_RAYLEIGH];
+    ours.compton = sections[SKG_COMPTON];
+    ours.photo = sections[SKG_PHOTO];
+    ours.pair = sections[SKG_PAIR];
+    ours.total = total(sections);
+    return skg_struct_write(&ours, sizeof ours, "skg_coefficients", coefficients);
+}
+
+skg_status skg_material_to_hounsfield(const skg_material *material, double energy_kev, double *hu) {
+    double mu = 0, sections[SKG_PROCESSES];
+    if (!hu) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_to_hounsfield: no result");
+    SKG_TRY(skg_material_attenuation(material, energy_kev, &mu));
+    skg_mixed_sections(2, water, energy_kev, sections);
+    *hu = 1000 * (mu / total(sections) - 1);
+    return SKG_OK;
+}
+
+static int by_energy(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The jumps of one list of rising energies, appended. */
+static void add_edge(double energy_kev, int64_t most, double *edges, int64_t *count) {
+    if (energy_kev < SKG_LOWEST_KEV || energy_kev > SKG_HIGHEST_KEV) return;
+    if (*count < most) edges[*count] = energy_kev;
+    ++*count;
+}
+
+skg_status skg_material_edges(const skg_material *material, int64_t most, double *edges_kev, int64_t *count) {
+    if (!material || !count || most < 0 || (most > 0 && !edges_kev))
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_edges: no material or no result");
+    *count = 0;
+    if (material->kind == SKG_MATTER_TABLE)
+        for (int64_t i = 1; i < material->count; i++)
+            if (!(material->energy_kev[i] > material->energy_kev[i - 1]))
+                add_edge(material->energy_kev[i], most, edges_kev, count);
+    if (material->kind == SKG_MATTER_COMPOSITION)
+        for (int64_t k = 0; k < material->count; k++) {
+            const skg_element_row *element = &skg_elements[material->parts[k].z];
+            for (int32_t i = element->first + 1; i < element->last; i++)
+                if (!(skg_knots[i].energy_kev > skg_knots[i - 1].energy_kev))
+                    add_edge(skg_knots[i].energy_kev, most, edges_kev, count);
+        }
+    if (most > 0) qsort(edges_kev, (size_t)(*count < most ? *count : most), sizeof *edges_kev, by_energy);
+    return SKG_OK;
+}

@@ -1,0 +1,72 @@
+/* Elements, formulas and mixtures as materials. */
+#include "material/material.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+static skg_status check_density(const char *name, double density) {
+    if (isfinite(density) && density >= 0) return SKG_OK;
+    return skg_fail(SKG_ERR_MATERIAL,
+                    "%s: a density of %g g/cm3 is not usable; give one above 0, or 0 for the tables'", name,
+                    density);
+}
+
+skg_status skg_material_element(int32_t z, skg_material **material) {
+    const char *symbol;
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_element: no place for the material");
+    *material = NULL;
+    SKG_TRY(skg_element_symbol(z, &symbol));
+    skg_mass_fraction part = {z, 1};
+    return skg_material_compose(symbol, NULL, 1, &part, skg_elements[z].density, material);
+}
+
+skg_status skg_material_formula(const char *formula, double density, skg_material **material) {
+    skg_mass_fraction parts[SKG_LAST_ELEMENT];
+    int64_t count = 0;
+    double sum = 0;
+    if (!material || !formula)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_formula: no formula or no place for the material");
+    *material = NULL;
+    SKG_TRY(check_density(formula, density));
+    SKG_TRY(skg_read_formula(formula, 0, &count, parts, &sum));
+    const skg_mixture_row *known = skg_find_mixture(formula);
+    if (!(density > 0) && count == 1) density = skg_elements[parts[0].z].density;
+    if (!(density > 0) && known) density = known->density;
+    return skg_material_compose(formula, NULL, count, parts, density, material);
+}
+
+enum { LONGEST_NOTE = 160 };
+static const double SUM_TOLERANCE = 5e-3;
+
+skg_status skg_material_mixture(const char *name, int64_t count, const int32_t *z, const double *fractions,
+                                double density, skg_material **material) {
+    skg_mass_fraction parts[SKG_LAST_ELEMENT];
+    double of[SKG_LAST_ELEMENT + 1] = {0}, sum = 0;
+    char note[LONGEST_NOTE] = "";
+    const char *symbol;
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_mixture: no place for the material");
+    *material = NULL;
+    if (!name || !*name) name = "mixture";
+    if (count < 1 || !z || !fractions)
+        return skg_fail(SKG_ERR_MATERIAL, "%s: a mixture has at least one element", name);
+    SKG_TRY(check_density(name, density));
+    for (int64_t i = 0; i < count; i++) {
+        SKG_TRY(skg_element_symbol(z[i], &symbol));
+        if (!(isfinite(fractions[i]) && fractions[i] >= 0))
+            return skg_fail(SKG_ERR_MATERIAL, "%s: the fraction of %s is %g; a fraction by mass is 0 to 1",
+                            name, symbol, fractions[i]);
+        of[z[i]] += fractions[i];
+        sum += fractions[i];
+    }
+    if (!(fabs(sum - 1) <= SUM_TOLERANCE))
+        return skg_fail(SKG_ERR_MATERIAL,
+                        "%s: the fractions by mass sum to %.6g; they have to sum to 1 within %g", name, sum,
+                        SUM_TOLERANCE);
+    if (fabs(sum - 1) > 1e-9)
+        snprintf(note, sizeof note, "fractions by mass sum to %.6g and were scaled to 1", sum);
+    int64_t used = 0;
+    for (int32_t k = 1; k <= SKG_LAST_ELEMENT; k++)
+        if (of[k] > 0) parts[used++] = (skg_mass_fraction){k, of[k] / sum};
+    return skg_material_compose(name, note, used, parts, density, material);
+}

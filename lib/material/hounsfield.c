@@ -1,0 +1,36 @@
+/* Tissue by Hounsfield number.
+ *
+ * Density: Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459, Eq. 19, 21 and 23, with a
+ * straight line from air to adipose tissue below -98 and a constant between the two soft-tissue lines. */
+#include "material/material.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double LOWEST = -1050, HIGHEST = 3000;
+
+static double density_of(double hu) {
+    const double air = 1.21e-3, fat = 0.93; /* g/cm3, at -1000 and -98 */
+    if (hu <= -1000) return air;
+    if (hu < -98) return air + (hu + 1000) * (fat - air) / 902;
+    if (hu <= 14) return 1.018 + 0.893e-3 * hu; /* Eq. 21 */
+    if (hu < 23) return 1.03;                   /* soft tissue */
+    if (hu < 100) return 1.003 + 1.169e-3 * hu; /* Eq. 23 */
+    return 1.017 + 0.592e-3 * hu;               /* Eq. 19 */
+}
+
+skg_status skg_material_hounsfield(double hu, skg_material **material) {
+    char name[64], note[160];
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_hounsfield: no place for the material");
+    *material = NULL;
+    if (!(hu >= LOWEST && hu <= HIGHEST))
+        return skg_fail(SKG_ERR_MATERIAL, "HU %g lies outside %g to %g, where tissue is tabled", hu, LOWEST,
+                        HIGHEST);
+    int32_t row = 0;
+    while (row + 1 < skg_hounsfield_count && hu >= skg_hounsfield_rows[row + 1].lowest) row++;
+    const skg_hounsfield_row *tissue = &skg_hounsfield_rows[row];
+    snprintf(name, sizeof name, "HU %g", hu);
+    snprintf(note, sizeof note, "%s; composition and density by Schneider 2000", tissue->name);
+    return skg_material_compose(name, note, tissue->count, skg_mass_fractions + tissue->first, density_of(hu),
+                                material);
+}

@@ -1,0 +1,70 @@
+/* The tables that materials/ compiles in. Private. */
+#ifndef SKG_MATERIAL_TABLES_H
+#define SKG_MATERIAL_TABLES_H
+
+#include <stdint.h>
+
+enum {
+    SKG_RAYLEIGH = 0,
+    SKG_COMPTON = 1,
+    SKG_PHOTO = 2,
+    SKG_PAIR = 3,
+    SKG_PROCESSES = 4,
+    SKG_LAST_ELEMENT = 92,
+    SKG_K_LINES = 6
+};
+
+/* Twice the electron's rest energy in keV (CODATA 2018): no pairs below. */
+#define SKG_PAIR_THRESHOLD_KEV 1021.9978999
+
+/* One energy of an element: ln of the cross section in cm2/g (pairs: of cross section / (1 - threshold/E)^3)
+ * and its second derivative by ln E. An edge is two rows with the same energy: below, above. */
+typedef struct {
+    double energy_kev, log_energy;
+    double value[SKG_PROCESSES], second[SKG_PROCESSES];
+} skg_knot;
+
+typedef struct {
+    const char *symbol;
+    const char *names;   /* separated by ';' */
+    double weight;       /* g/mol */
+    double density;      /* g/cm3; 0: not known */
+    int32_t first, last; /* knots */
+} skg_element_row;
+
+typedef struct {
+    int32_t z;
+    double fraction; /* by mass */
+} skg_mass_fraction;
+
+typedef struct {
+    const char *names;    /* the first is the one to show; separated by ';' */
+    double density;       /* g/cm3 */
+    int32_t first, count; /* skg_mass_fractions */
+    const char *source;
+} skg_mixture_row;
+
+/* Tissue by Hounsfield number: the composition from `lowest` up to the next row's. */
+typedef struct {
+    double lowest;
+    const char *name;
+    int32_t first, count; /* skg_mass_fractions */
+} skg_hounsfield_row;
+
+typedef struct {
+    int32_t z;
+    double edge_kev, yield;
+    double line_kev[SKG_K_LINES], share[SKG_K_LINES]; /* of all K transitions; 0: no such line */
+} skg_k_shell_row;
+
+extern const skg_knot skg_knots[];
+extern const skg_element_row skg_elements[SKG_LAST_ELEMENT + 1]; /* by atomic number */
+extern const skg_mass_fraction skg_mass_fractions[];
+extern const skg_mixture_row skg_mixtures[];
+extern const int32_t skg_mixture_count;
+extern const skg_hounsfield_row skg_hounsfield_rows[];
+extern const int32_t skg_hounsfield_count;
+extern const skg_k_shell_row skg_k_shells[];
+extern const int32_t skg_k_shell_count;
+
+#endif

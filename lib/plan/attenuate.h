@@ -1,0 +1,47 @@
+/* Stage `attenuate`: from the sums of a raster to what pixels show. Private. */
+#ifndef SKG_ATTENUATE_H
+#define SKG_ATTENUATE_H
+
+#include "plan/raster.h"
+
+/* As SKG_SHOW_... of config.clh. */
+enum { SKG_SHOWN_INTENSITY = 0, SKG_SHOWN_LOGARITHM = 1, SKG_SHOWN_EXPONENT = 2 };
+
+/* Exponent of node n: sum over planes of coefficient[n][p] times mm of plane p; a channel shows the sum over
+ * nodes of weight[n][c] exp(-exponent). On the device. */
+typedef struct {
+    int32_t planes, nodes, channels;
+    int32_t shown;       /* SKG_SHOWN_... */
+    int32_t world_plane; /* that the world's path adds to; -1: vacuum */
+    int32_t ratio;       /* 1: over what the world alone lets pass */
+    int32_t falloff;     /* 1: intensities fall with the distance */
+    int32_t reserved;
+    double world_weight; /* of a mm of the world's path in its plane */
+    skg_buffer coefficients, weights;
+} skg_attenuation;
+
+/* shape: planes, nodes, channels and what is shown. coefficients: [nodes][planes]; weights:
+ * [nodes][channels]; copied. */
+skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
+                                  const double *coefficients, const double *weights,
+                                  skg_attenuation *attenuation);
+void skg_attenuation_release(skg_attenuation *attenuation);
+
+typedef struct skg_attenuator skg_attenuator; /* the kernels, made on demand */
+skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator);
+void skg_attenuator_release(skg_attenuator **attenuator);
+
+/* Where an image goes, in elements of float, or double where output_double. */
+typedef struct {
+    cl_mem memory;
+    int32_t output_double, reserved;
+    int64_t offset, row_stride, channel_stride;
+} skg_image_place;
+
+/* Enqueues one image. scale: of the sums; factor: of intensities; least: exponents below it are counted into
+ * negative (one int). */
+skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
+                         double scale, const skg_attenuation *attenuation, double factor, double least,
+                         cl_mem negative, const skg_image_place *place, skg_stage_log *log);
+
+#endif

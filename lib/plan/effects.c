@@ -1,0 +1,83 @@
+#include "plan/extent.h"
+#include "plan/report.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+static void set(skg_plan *plan, int effect, int on, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void set(skg_plan *plan, int effect, int on, const char *format, ...) {
+    skg_effect_state *state = &plan->effects[effect];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(state->reason, sizeof state->reason, format, arguments);
+    va_end(arguments);
+    state->on = on;
+}
+
+skg_status skg_report_effects(skg_plan *plan) {
+    const skg_scene *scene = plan->scene;
+    int64_t nested = 0;
+    for (int64_t i = 0; i < scene->count; i++) nested += scene->parts[i].inside >= 0;
+    if (plan->model.nodes > 1)
+        set(plan, SKG_EFFECT_ENERGIES, 1, "%" PRId32 " energies, %" PRId32 " planes of materials that differ",
+            plan->model.nodes, plan->model.planes);
+    else
+        set(plan, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
+    if (nested)
+        set(plan, SKG_EFFECT_NESTING, 1, "%" PRId64 " parts displace a parent: differences of mu, no pass",
+            nested);
+    else
+        set(plan, SKG_EFFECT_NESTING, 0, "no part names a parent");
+    if (plan->open_count)
+        set(plan, SKG_EFFECT_OPEN, 1,
+            "%" PRId64 " parts are not closed: each has a plane and a count of its own", plan->open_count);
+    else
+        set(plan, SKG_EFFECT_OPEN, 0, "every mesh is closed: signed hits cancel exactly");
+    if (!plan->options.overlaps)
+        set(plan, SKG_EFFECT_OVERLAPS, 0, "not asked for");
+    else
+        set(plan, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " pairs of parts overlap or leave their parent",
+            plan->overlap_count);
+    skg_camera camera;
+    int64_t near = 0;
+    SKG_TRY(skg_camera_make(&plan->view, NULL, 0, 0, &camera));
+    for (int64_t i = 0; i < scene->count; i++) {
+        skg_extent extent;
+        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, &extent);
+        near += extent.near_source && extent.on_detector;
+    }
+    if (near)
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
+    else
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
+    return SKG_OK;
+}
+
+void skg_effect_init(skg_effect *effect) {
+    if (effect) *effect = (skg_effect){.size = (int32_t)sizeof *effect};
+}
+
+skg_status skg_plan_effects(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effects: no plan or no result");
+    *count = SKG_EFFECTS;
+    return SKG_OK;
+}
+
+skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect) {
+    static const char *const names[] = {
+#define SKG_EFFECT_TEXT(name, text) text,
+        SKG_EFFECT_LIST(SKG_EFFECT_TEXT)
+#undef SKG_EFFECT_TEXT
+    };
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect: no plan");
+    if (index < 0 || index >= SKG_EFFECTS)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect: effect %" PRId64 " of %d", index, SKG_EFFECTS);
+    skg_effect ours = {.size = sizeof ours,
+                       .on = plan->effects[index].on,
+                       .name = names[index],
+                       .reason = plan->effects[index].reason};
+    return skg_struct_write(&ours, sizeof ours, "skg_effect", effect);
+}

@@ -1,0 +1,19 @@
+/* Where a part can come to lie on the detector and along the rays: what scale and warnings are decided from.
+ * Private. */
+#ifndef SKG_EXTENT_H
+#define SKG_EXTENT_H
+
+#include "plan/camera.h"
+#include "plan/scale.h"
+#include "scene/mesh.h"
+
+typedef struct {
+    skg_scale_part scale; /* its weight is the caller's to fill */
+    int32_t near_source;  /* may reach the source's plane, or where parallel rays start */
+    int32_t on_detector;  /* its rectangle meets the detector, between where rays start and end */
+} skg_extent;
+
+/* From the mesh's bounds as they stand, under a pose. */
+void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent);
+
+#endif

@@ -1,0 +1,156 @@
+#include "plan/frame.h"
+
+#include "scene/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void release_parts(skg_frame_parts *frame) {
+    skg_free(&frame->parts);
+    skg_free(&frame->writes);
+    skg_free(&frame->first_write);
+    skg_free(&frame->extents);
+}
+
+/* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
+static skg_status list_lengths(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    const int64_t parts = plan->scene->count;
+    SKG_TRY(skg_alloc(parts, sizeof *frame->writes, "parts of a frame", &frame->writes));
+    SKG_TRY(skg_alloc(parts + 1, sizeof *frame->first_write, "parts of a frame", &frame->first_write));
+    int64_t count = 0;
+    for (int64_t p = 0; p < parts; p++) {
+        const int is_child = work->kind == SKG_NET && plan->scene->parts[p].inside == work->lengths_of;
+        frame->first_write[p] = count;
+        if (p == work->lengths_of || is_child)
+            frame->writes[count++] = (skg_plane_weight){.weight = is_child ? -1 : 1};
+    }
+    frame->first_write[parts] = count;
+    frame->all_writes = frame->writes;
+    frame->firsts = frame->first_write;
+    frame->planes = 1;
+    return SKG_OK;
+}
+
+static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    if (work->lengths_of >= 0) return list_lengths(plan, work, frame);
+    frame->all_writes = plan->model.writes;
+    frame->firsts = plan->model.first_write;
+    frame->planes = plan->model.planes;
+    return SKG_OK;
+}
+
+/* Of a sphere about the mesh's origin, mm. */
+static double radius_of(const skg_mesh *mesh) {
+    double corner[3];
+    for (int k = 0; k < 3; k++)
+        corner[k] = fmax(fabs((double)mesh->lowest[k]), fabs((double)mesh->highest[k]));
+    return skg_length(corner);
+}
+
+static double largest_weight(const skg_frame_parts *frame, int64_t part) {
+    double largest = 0;
+    for (int64_t w = frame->firsts[part]; w < frame->firsts[part + 1]; w++)
+        largest = fmax(largest, fabs(frame->all_writes[w].weight));
+    return largest;
+}
+
+/* Where the parts lie, what they may add, and the scale that follows from both. */
+static skg_status place_parts(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    const skg_scene *scene = plan->scene;
+    skg_scale_part *scales = NULL;
+    int64_t adding = 0;
+    SKG_TRY(skg_alloc(scene->count, sizeof *frame->parts, "parts of a frame", &frame->parts));
+    SKG_TRY(skg_alloc(scene->count, sizeof *frame->extents, "parts of a frame", &frame->extents));
+    SKG_TRY(skg_alloc(scene->count, sizeof *scales, "parts of a frame", &scales));
+    for (int64_t p = 0; p < scene->count; p++) {
+        const skg_mesh *mesh = scene->parts[p].mesh;
+        const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
+        const int64_t writes = frame->firsts[p + 1] - frame->firsts[p];
+        frame->parts[p] = (skg_geometry_part){.pose = pose,
+                                              .origin = mesh->origin,
+                                              .flipped = mesh->orientation < 0,
+                                              .radius = radius_of(mesh),
+                                              .weights = mesh->closed ? (int32_t)writes : 0,
+                                              .weight = frame->all_writes + frame->firsts[p]};
+        skg_extent_find(&frame->camera, mesh, pose, &frame->extents[p]);
+        if (writes == 0) continue;
+        frame->extents[p].scale.weight = largest_weight(frame, p);
+        scales[adding++] = frame->extents[p].scale;
+        frame->kernels.source_plane |= frame->extents[p].near_source && frame->extents[p].on_detector;
+    }
+    skg_scale_find(&plan->grid, adding, scales, plan->options.precision == SKG_DOUBLE ? 64 : 32,
+                   &frame->scale);
+    skg_free(&scales);
+    return SKG_OK;
+}
+
+/* Vertices that have changed since they were last uploaded, as they are now. */
+static skg_status upload(skg_plan *plan, skg_job *job) {
+    const int is_double = plan->options.precision == SKG_DOUBLE;
+    SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
+    for (int64_t i = 0; i < plan->meshes.count; i++) {
+        skg_plan_mesh *mesh = &plan->meshes.meshes[i];
+        void *offsets = NULL;
+        if (mesh->version == mesh->mesh->version) continue;
+        SKG_TRY(skg_job_stage(job, 3 * mesh->mesh->vertices, is_double ? sizeof(double) : sizeof(float),
+                              "vertices", &offsets));
+        skg_plan_mesh_offsets(mesh->mesh, is_double, offsets);
+        SKG_TRY(skg_geometry_upload(plan->context, &plan->geometry, i, offsets, &job->log));
+        mesh->version = mesh->mesh->version;
+    }
+    return SKG_OK;
+}
+
+static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work,
+                          const skg_frame_parts *frame, const skg_raster *raster) {
+    const int lengths = work->lengths_of >= 0, quantity = plan->options.quantity;
+    const double factor = quantity == SKG_FLUENCE && !lengths ? 1 / skg_camera_pixel_area(&frame->camera) : 1;
+    /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
+    const double least = -1e-6 * frame->scale.bound - 1e-6;
+    const cl_int none = 0;
+    SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
+                                   sizeof none, 0, NULL, NULL));
+    return skg_attenuate(plan->attenuator, raster, &frame->camera, frame->scale.scale,
+                         lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
+                         &work->place, &job->log);
+}
+
+/* Camera, parts, scale, and the rasteriser that they call for. */
+static skg_status prepare(skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &frame->camera));
+    SKG_TRY(list_writes(plan, work, frame));
+    SKG_TRY(place_parts(plan, work, frame));
+    frame->kernels.precision = plan->options.precision;
+    frame->kernels.bits = frame->scale.bits;
+    frame->kernels.parallel = frame->camera.parallel;
+    frame->kernels.listed_writes = frame->planes > 1;
+    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes, plan->open_count > 0,
+                            &plan->main));
+    plan->report.plane_bits = frame->scale.bits;
+    skg_raster_tiles(plan->main, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
+    return SKG_OK;
+}
+
+skg_status skg_frame_prepare(skg_plan *plan) {
+    const skg_frame_work work = {.view = &plan->view, .lengths_of = -1};
+    skg_frame_parts frame = {0};
+    skg_status status = prepare(plan, &work, &frame);
+    release_parts(&frame);
+    return status;
+}
+
+skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
+    skg_frame_parts frame = {0};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(prepare(plan, work, &frame));
+    skg_warn_unseen(plan, &frame);
+    SKG_TRY_CLEANUP(upload(plan, job));
+    SKG_TRY_CLEANUP(skg_geometry_project(plan->context, &plan->geometry, &frame.kernels, &frame.camera,
+                                         frame.parts, frame.scale.scale, &job->log));
+    SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
+    if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
+    SKG_TRY_CLEANUP(resolve(plan, job, work, &frame, plan->main));
+cleanup:
+    release_parts(&frame);
+    return status;
+}

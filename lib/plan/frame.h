@@ -1,0 +1,44 @@
+/* One frame: everything from vertices to pixels, enqueued. Private to lib/plan. */
+#ifndef SKG_FRAME_H
+#define SKG_FRAME_H
+
+#include "plan/extent.h"
+#include "plan/plan.h"
+
+/* What a frame is to show. */
+typedef struct {
+    const skg_view *view;
+    const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
+    int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
+    int32_t kind;               /* of lengths: SKG_NET or SKG_SURFACE */
+    int32_t reserved;
+    skg_image_place place;
+} skg_frame_work;
+
+/* A frame's parts with what each adds, and how they lie. */
+typedef struct {
+    skg_camera camera;
+    skg_kernel_options kernels;
+    int64_t planes;
+    skg_geometry_part *parts;           /* [parts] closed ones with their writes, open ones without */
+    skg_plane_weight *writes;           /* of lengths */
+    int64_t *first_write;               /* [parts + 1] of lengths */
+    const skg_plane_weight *all_writes; /* what every part adds, open ones too: */
+    const int64_t *firsts;              /* [parts + 1] all_writes[firsts[p]] ... */
+    skg_extent *extents;                /* [parts] */
+    skg_scale scale;
+} skg_frame_parts;
+
+/* Compiles and allocates for images of the plan's view. */
+skg_status skg_frame_prepare(skg_plan *plan);
+
+/* Enqueues the frame; when it is done the result is in its place. */
+skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work);
+
+/* Enqueues the open parts of a frame after the raster of the closed ones, whose sums they join (open.c). */
+skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_parts *frame, skg_raster *shared);
+
+/* Warns once that nothing falls on the detector: which way, how far (unseen.c). */
+void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame);
+
+#endif

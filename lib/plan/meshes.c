@@ -1,0 +1,77 @@
+#include "plan/meshes.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    const skg_mesh *mesh;
+    int64_t part;
+} mesh_of_part;
+
+static int by_mesh(const void *a, const void *b) {
+    const mesh_of_part *left = a, *right = b;
+    if (left->mesh != right->mesh) return left->mesh < right->mesh ? -1 : 1;
+    return left->part < right->part ? -1 : 1;
+}
+
+/* Gives each part the number of its mesh; meshes are numbered by the first part that has them. */
+static skg_status find_distinct(const skg_scene *scene, skg_plan_meshes *meshes) {
+    mesh_of_part *sorted = NULL;
+    int64_t *first = NULL; /* [parts] the first part with the same mesh */
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *sorted, "meshes", &sorted));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *first, "meshes", &first));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *meshes->of_part, "meshes", &meshes->of_part));
+    for (int64_t i = 0; i < scene->count; i++) sorted[i] = (mesh_of_part){scene->parts[i].mesh, i};
+    qsort(sorted, (size_t)scene->count, sizeof *sorted, by_mesh);
+    for (int64_t i = 0; i < scene->count; i++)
+        first[sorted[i].part] =
+            i > 0 && sorted[i].mesh == sorted[i - 1].mesh ? first[sorted[i - 1].part] : sorted[i].part;
+    for (int64_t i = 0; i < scene->count; i++) meshes->count += first[i] == i;
+    SKG_TRY_CLEANUP(skg_alloc(meshes->count, sizeof *meshes->meshes, "meshes", &meshes->meshes));
+    int64_t number = 0;
+    for (int64_t i = 0; i < scene->count; i++) {
+        if (first[i] == i) meshes->meshes[number].mesh = scene->parts[i].mesh;
+        meshes->of_part[i] = first[i] == i ? number++ : meshes->of_part[first[i]];
+    }
+cleanup:
+    skg_free(&sorted);
+    skg_free(&first);
+    return status;
+}
+
+skg_status skg_plan_meshes_create(const skg_scene *scene, skg_plan_meshes *meshes) {
+    *meshes = (skg_plan_meshes){0};
+    return find_distinct(scene, meshes);
+}
+
+void skg_plan_meshes_release(skg_plan_meshes *meshes) {
+    skg_free(&meshes->meshes);
+    skg_free(&meshes->of_part);
+}
+
+skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene *scene) {
+    for (int64_t i = 0; i < meshes->count; i++) {
+        const skg_mesh *mesh = meshes->meshes[i].mesh;
+        if (mesh->first_bad < 0) continue;
+        int64_t part = 0;
+        while (meshes->of_part[part] != i) part++;
+        return skg_fail(SKG_ERR_MESH,
+                        "part %s: vertex %" PRId64 " of mesh %s is not finite; no image was made",
+                        scene->parts[part].label, mesh->first_bad, mesh->name);
+    }
+    return SKG_OK;
+}
+
+void skg_plan_mesh_offsets(const skg_mesh *mesh, int32_t is_double, void *offsets) {
+    if (!is_double) {
+        memcpy(offsets, mesh->offsets, (size_t)mesh->vertices * 3 * sizeof *mesh->offsets);
+        return;
+    }
+    double *to = offsets;
+    for (int64_t v = 0; v < mesh->vertices; v++) {
+        skg_mesh_vertex(mesh, v, to + 3 * v);
+        for (int k = 0; k < 3; k++) to[3 * v + k] -= mesh->origin[k];
+    }
+}

@@ -1,0 +1,33 @@
+/* How path lengths become an image: which planes parts add to, and with which coefficients and weights planes
+ * become exponents and channels. Private.
+ *
+ * Materials whose attenuation is proportional over the energies share a plane, each with its factor; so a
+ * beam of one energy has one plane for any number of materials (numerics.md 5). A part adds what it has more
+ * than the parent that it displaces (Vidal and Villard 2016, Eq. 9, for any depth). */
+#ifndef SKG_MODEL_H
+#define SKG_MODEL_H
+
+#include "plan/project.h"
+#include "scene/scene.h"
+
+#include <skiagraph/plan.h>
+
+#include <skiagraph/plan.h>
+
+typedef struct {
+    int32_t planes, nodes, channels, reserved;
+    int64_t *first_write;     /* [parts + 1] into writes */
+    skg_plane_weight *writes; /* what a mm of a part's path adds; a part without any does not show */
+    double *coefficients;     /* [nodes][planes] 1/mm per mm of a plane */
+    double *weights;     /* [nodes][channels]: of the quantity; per mm2 for fluence, of I/I0 for ratios */
+    double *open;        /* [channels] sum of the weights before they were made those of a ratio */
+    int64_t world_plane; /* that a mm of the world's path adds world_weight to; -1: vacuum */
+    double world_weight;
+} skg_model;
+
+/* options: quantity, response, world, bands. */
+skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum,
+                            const skg_plan_options *options, skg_model *model);
+void skg_model_release(skg_model *model);
+
+#endif

@@ -1,0 +1,93 @@
+/* The inside of a plan. Private to lib/plan. */
+#ifndef SKG_PLAN_PRIVATE_H
+#define SKG_PLAN_PRIVATE_H
+
+#include "plan/attenuate.h"
+#include "plan/job.h"
+#include "plan/meshes.h"
+#include "plan/model.h"
+#include "plan/overlap.h"
+#include "plan/scale.h"
+
+/* Effects that a plan knows, in the order in which they are reported. */
+#define SKG_EFFECT_LIST(X)                                                                                   \
+    X(SKG_EFFECT_ENERGIES, "several energies")                                                               \
+    X(SKG_EFFECT_NESTING, "nesting")                                                                         \
+    X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
+    X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
+    X(SKG_EFFECT_OVERLAPS, "overlap check")
+
+enum {
+#define SKG_EFFECT_ENUM(name, text) name,
+    SKG_EFFECT_LIST(SKG_EFFECT_ENUM)
+#undef SKG_EFFECT_ENUM
+        SKG_EFFECTS
+};
+
+typedef struct {
+    int32_t on;
+    char reason[256];
+} skg_effect_state;
+
+/* Time of a stage in the last job. */
+typedef struct {
+    const char *name; /* static storage */
+    double ns;
+} skg_stage_time;
+enum { SKG_MOST_STAGES = 32 };
+
+/* Rasterisers compiled so far, by what they can do: sums of 32 or 64 bits, point or parallel beam, ... */
+enum { SKG_MOST_RASTERS = 16 };
+
+struct skg_plan {
+    skg_refs refs;
+    skg_context *context;   /* retained */
+    skg_scene *scene;       /* retained */
+    skg_spectrum *spectrum; /* retained */
+    skg_plan_options options;
+    skg_view view;
+    int64_t structure; /* of the scene when the plan was made: another one is stale */
+
+    skg_plan_meshes meshes;
+    skg_geometry geometry;
+    skg_model model;
+    struct {
+        char text[64];
+    } * channel_names;           /* [channels] */
+    skg_attenuation attenuation; /* of images */
+    skg_attenuation lengths;     /* of path lengths: the plane itself */
+    skg_attenuator *attenuator;
+    int64_t open_count;
+    int64_t *open; /* [open_count] parts that are not closed */
+    skg_scale_grid grid;
+    int32_t strategy; /* decided */
+    const char *strategy_reason;
+    int32_t raster_count, next_raster;
+    skg_raster *rasters[SKG_MOST_RASTERS];
+    skg_raster_options raster_options[SKG_MOST_RASTERS];
+    skg_raster *main; /* of the last frame: that of the closed parts */
+    skg_buffer image, negative, bad;
+
+    int64_t overlap_count;
+    skg_overlap_pair *overlaps;
+    skg_effect_state effects[SKG_EFFECTS];
+    skg_plan_report report;
+    int64_t stage_count;
+    skg_stage_time stages[SKG_MOST_STAGES];
+    int32_t told_unseen; /* that nothing falls on the detector has been told */
+};
+
+/* Names the channels of the model, by the caller's bands (channel.c). */
+skg_status skg_plan_name_channels(skg_plan *plan);
+
+/* SKG_STALE where a view has another size than the plan's. */
+skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);
+
+/* Decides the strategy for the plan's view (rasters.c). */
+skg_status skg_plan_choose_strategy(skg_plan *plan);
+
+/* The rasteriser with these abilities, made on demand. more_sums: as in its options. */
+skg_status skg_plan_raster(skg_plan *plan, const skg_kernel_options *kernels, int32_t strategy,
+                           int64_t planes, int32_t more_sums, skg_raster **raster);
+
+#endif

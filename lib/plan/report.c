@@ -1,0 +1,197 @@
+#include "plan/report.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- overlaps
+ * ---------------------------------------------------------------------------------------------------- */
+
+static skg_status place_solid(const skg_scene_part_data *part, skg_solid *solid, double **positions) {
+    const skg_mesh *mesh = part->mesh;
+    *solid = (skg_solid){.inside = part->inside};
+    if (!mesh->closed) return SKG_OK;
+    SKG_TRY(skg_alloc(mesh->vertices * 3, sizeof **positions, "overlap check", positions));
+    for (int64_t v = 0; v < mesh->vertices; v++) {
+        double at[3];
+        skg_mesh_vertex(mesh, v, at);
+        for (int k = 0; k < 3; k++) {
+            const double *row = part->pose + 4 * k;
+            (*positions)[3 * v + k] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
+        }
+    }
+    *solid = (skg_solid){mesh->vertices, mesh->triangles, *positions, mesh->corners, part->inside};
+    return SKG_OK;
+}
+
+static void warn_of_overlaps(skg_plan *plan) {
+    const skg_overlap_pair *worst = &plan->overlaps[0];
+    const skg_scene *scene = plan->scene;
+    double volume = 0;
+    for (int64_t i = 0; i < plan->overlap_count; i++) volume += plan->overlaps[i].volume;
+    skg_log(
+        plan->context, SKG_LOG_WARNING,
+        "%" PRId64
+        " pairs of parts overlap or leave their parent, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
+        "%.3g mm along z at (%.1f, %.1f, %.1f) mm; their lengths add (or subtract the parent), nothing is clamped",
+        plan->overlap_count, volume / 1000, scene->parts[worst->part].label,
+        worst->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[worst->other].label,
+        worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
+}
+
+skg_status skg_report_overlaps(skg_plan *plan) {
+    const skg_scene *scene = plan->scene;
+    skg_solid *solids = NULL;
+    double **positions = NULL;
+    skg_status status = SKG_OK;
+    if (!plan->options.overlaps || scene->count < 2) return SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *solids, "overlap check", &solids));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *positions, "overlap check", &positions));
+    for (int64_t i = 0; i < scene->count; i++)
+        SKG_TRY_CLEANUP(place_solid(&scene->parts[i], &solids[i], &positions[i]));
+    SKG_TRY_CLEANUP(skg_overlaps_find(scene->count, solids, &plan->overlap_count, &plan->overlaps));
+    if (plan->overlap_count) warn_of_overlaps(plan);
+cleanup:
+    for (int64_t i = 0; positions && i < scene->count; i++) skg_free(&positions[i]);
+    skg_free(&positions);
+    skg_free(&solids);
+    return status;
+}
+
+void skg_overlap_init(skg_overlap *overlap) {
+    if (overlap) *overlap = (skg_overlap){.size = (int32_t)sizeof *overlap};
+}
+
+skg_status skg_plan_overlaps(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlaps: no plan or no result");
+    *count = plan->overlap_count;
+    return SKG_OK;
+}
+
+skg_status skg_plan_overlap(const skg_plan *plan, int64_t index, skg_overlap *overlap) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap: no plan");
+    if (index < 0 || index >= plan->overlap_count)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap: pair %" PRId64 " of %" PRId64, index,
+                        plan->overlap_count);
+    const skg_overlap_pair *pair = &plan->overlaps[index];
+    skg_overlap ours = {.size = sizeof ours,
+                        .protrudes = pair->kind == SKG_OVERLAP_PROTRUDES,
+                        .part = pair->part,
+                        .other = pair->other,
+                        .volume = pair->volume,
+                        .longest = pair->longest};
+    memcpy(ours.place, pair->place, sizeof ours.place);
+    return skg_struct_write(&ours, sizeof ours, "skg_overlap", overlap);
+}
+
+/* --- after a job
+ * ------------------------------------------------------------------------------------------------- */
+
+static void add_stage(skg_plan *plan, const char *name, double ns) {
+    int64_t i = 0;
+    while (i < plan->stage_count && strcmp(plan->stages[i].name, name) != 0) i++;
+    if (i == SKG_MOST_STAGES) return;
+    if (i == plan->stage_count) plan->stages[plan->stage_count++] = (skg_stage_time){.name = name};
+    plan->stages[i].ns += ns;
+}
+
+static skg_status add_stages(skg_job *job) {
+    if (!job->log.on) return SKG_OK;
+    job->plan->stage_count = 0;
+    for (int64_t i = 0; i < job->log.count; i++) {
+        const cl_event event = job->log.events[i];
+        cl_ulong start = 0, end = 0;
+        SKG_CL_TRY(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, NULL));
+        SKG_CL_TRY(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL));
+        add_stage(job->plan, job->log.names[i], (double)(end - start));
+    }
+    return SKG_OK;
+}
+
+static void tell_negative(skg_plan *plan, int32_t pixels) {
+    plan->report.negative_pixels = pixels;
+    if (pixels > 0)
+        skg_log(plan->context, SKG_LOG_WARNING,
+                "%" PRId32
+                " pixels have a negative exponent: more was subtracted for children than their parent "
+                "has there; see the overlaps that the plan lists",
+                pixels);
+}
+
+/* bad: of one open part, as skg_raster_bad_pixels leaves it. */
+static void tell_bad(skg_plan *plan, int64_t part, const int32_t *bad) {
+    const int64_t columns = plan->view.columns;
+    char places[32 * SKG_FIRST_BAD] = "";
+    size_t length = 0;
+    for (int32_t k = 0; k < bad[0] && k < SKG_FIRST_BAD; k++)
+        length += (size_t)snprintf(places + length, sizeof places - length, "%s(%" PRId64 ", %" PRId64 ")",
+                                   k ? ", " : "", bad[1 + k] % columns, bad[1 + k] / columns);
+    skg_log(plan->context, SKG_LOG_WARNING,
+            "part %s is open: at %" PRId32
+            " pixels as many rays enter it as do not leave it, and it is left out "
+            "there; first at (column, row) %s; close its mesh",
+            plan->scene->parts[part].label, bad[0], places);
+}
+
+static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
+    int64_t part = 0, of_mesh = 0;
+    if (vertex == INT32_MAX) return SKG_OK;
+    skg_geometry_find(&plan->geometry, vertex, &part, &of_mesh);
+    return skg_fail(SKG_ERR_MESH,
+                    "part %s: vertex %" PRId64 " cannot be projected: it is not finite in this pose",
+                    plan->scene->parts[part].label, of_mesh);
+}
+
+skg_status skg_report_job(skg_job *job) {
+    skg_plan *plan = job->plan;
+    SKG_TRY(add_stages(job));
+    SKG_TRY(tell_broken(plan, *job->broken));
+    tell_negative(plan, *job->negative);
+    const double listings = (double)job->listed[0] + (double)job->listed[1] * (double)plan->report.tiles;
+    plan->report.triangles_per_tile = plan->strategy == SKG_STRATEGY_TILES
+                                          ? listings / (double)plan->report.tiles
+                                          : (double)plan->report.triangles;
+    plan->report.bad_pixels = 0;
+    for (int64_t k = 0; k < plan->open_count; k++) {
+        const int32_t *bad = job->bad + k * (1 + SKG_FIRST_BAD);
+        plan->report.bad_pixels += bad[0];
+        if (bad[0] > 0) tell_bad(plan, plan->open[k], bad);
+    }
+    return SKG_OK;
+}
+
+void skg_plan_report_init(skg_plan_report *report) {
+    if (report) *report = (skg_plan_report){.size = (int32_t)sizeof *report};
+}
+
+skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_get_report: no plan");
+    skg_plan_report ours = plan->report;
+    ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
+                        plan->bad.bytes + plan->attenuation.coefficients.bytes +
+                        plan->attenuation.weights.bytes + plan->lengths.coefficients.bytes +
+                        plan->lengths.weights.bytes;
+    for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);
+    return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
+}
+
+void skg_stage_init(skg_stage *stage) {
+    if (stage) *stage = (skg_stage){.size = (int32_t)sizeof *stage};
+}
+
+skg_status skg_plan_stages(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stages: no plan or no result");
+    *count = plan->stage_count;
+    return SKG_OK;
+}
+
+skg_status skg_plan_stage(const skg_plan *plan, int64_t index, skg_stage *stage) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage: no plan");
+    if (index < 0 || index >= plan->stage_count)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage: stage %" PRId64 " of %" PRId64, index,
+                        plan->stage_count);
+    skg_stage ours = {.size = sizeof ours, .name = plan->stages[index].name, .ns = plan->stages[index].ns};
+    return skg_struct_write(&ours, sizeof ours, "skg_stage", stage);
+}

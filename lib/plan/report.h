@@ -1,0 +1,17 @@
+/* What a plan tells: effects with reasons, overlaps, and after a job its stages and its bad pixels. Private.
+ */
+#ifndef SKG_REPORT_H
+#define SKG_REPORT_H
+
+#include "plan/plan.h"
+
+/* Fills the effects of a new plan. */
+skg_status skg_report_effects(skg_plan *plan);
+
+/* Finds overlaps and warns of them, where asked for. */
+skg_status skg_report_overlaps(skg_plan *plan);
+
+/* A finished job: stage times, bad and negative pixels, with their warnings. */
+skg_status skg_report_job(skg_job *job);
+
+#endif

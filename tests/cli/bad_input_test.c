@@ -1,0 +1,153 @@
+/* Bad input: each gets its exit status and one clear sentence, and nothing is left behind. */
+#include "cli/command.h"
+#include "cli/scene.h"
+
+#include <sys/stat.h>
+
+static void set_up_scene(void) {
+    set_up();
+    write_text("scene.json", scene);
+}
+
+/* Nothing but the scene's files may be there. */
+static void tear_down_scene(void) {
+    ck_assert(!has_file("a.mha") && !has_file("a.png") && !has_file("a.tif"));
+    tear_down();
+}
+
+/* `image` with this setting fails so. */
+#define ck_setting_fails(expected, text, setting)                                                            \
+    do {                                                                                                     \
+        ck_run_fails(expected, text, "image scene.json -o a.mha --set '%s'", setting);                       \
+        ck_assert_int_eq(look_at_folder(0), 1);                                                              \
+    } while (0)
+
+START_TEST(usage) {
+    ck_run_fails(2, "unknown flag --presicion; did you mean --precision?",
+                 "image scene.json --presicion double");
+    ck_run_fails(2, "--precision singel is not known; did you mean single; known: single, double",
+                 "image scene.json -o a.mha --precision singel");
+    ck_run_fails(2, "--quantity dose is not known; known: energy, fluence, photons",
+                 "image scene.json -o a.mha --quantity dose");
+    ck_run_fails(2, "--strategy", "plan scene.json --strategy fastest");
+    ck_run_fails(2, "--display", "image scene.json -o a.png --display negative");
+    ck_run_fails(2, "--repeat 0 is not a whole number from 1", "image scene.json --repeat 0");
+    ck_run_fails(2, "--repeat 2x", "image scene.json --repeat 2x");
+    ck_run_fails(2, "--range 3:1 is not two numbers LOW:HIGH", "image scene.json -o a.png --range 3:1");
+    ck_run_fails(2, "--range 3 ", "image scene.json -o a.png --range 3");
+    ck_run_fails(2, "--tolerance 1 is not a relative error", "image scene.json -o a.mha --tolerance 1");
+    ck_run_fails(2, "nowhere to write to; add -o FILE", "image scene.json");
+    ck_run_fails(2, "--set", "image scene.json -o a.mha --set");
+    ck_run_fails(2, "Detector", "image scene.json -o a.mha --set Detector");
+    ck_run_fails(2, "the extension .jpg is no image format; use .png, .tif or .mha",
+                 "image scene.json -o a.jpg");
+    ck_run_fails(2, "what is missing is SCENE", "image -o a.mha");
+}
+END_TEST
+
+START_TEST(outputs_that_cannot_be_written) {
+    char path[512];
+    ck_run_fails(5, "none/a.mha: cannot be written: No such file or directory; make its folder first",
+                 "image scene.json -o a.png -o none/a.mha");
+    ck_assert_int_eq(look_at_folder(0), 1); /* not the other one either: told before any work */
+    ck_run_fails(5, "scene.json/a.mha: cannot be written: Not a directory",
+                 "image scene.json -o scene.json/a.mha");
+    ck_run_fails(5, "/dev/null/a.png", "lbuffer scene.json --part skin -o /dev/null/a.png");
+    snprintf(path, sizeof path, "%s/d.mha", folder);
+    ck_assert_int_eq(mkdir(path, 0777), 0);
+    ck_run_fails(5, "it is a folder; add a file name", "image scene.json -o d.mha");
+    ck_assert_int_eq(rmdir(path), 0);
+    /* A limit of 2 or 4 MB (the unit is the shell's) to a file stands for a full disk: more than the kernel
+     * cache needs, less than the image. */
+    char line[1024];
+    snprintf(line, sizeof line,
+             "cd %s && (trap '' XFSZ; ulimit -f 4000; %s image scene.json -o a.mha "
+             "--set 'Detector.NumberOfPixels=[2048,1024]' >.said 2>.complained)",
+             folder, SKG_COMMAND);
+    int status = system(line);
+    read_back(".said", said, sizeof said);
+    read_back(".complained", complained, sizeof complained);
+    ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 5, "%s", complained);
+    ck_assert_ptr_nonnull(strstr(complained, "a.mha: cannot be written: File too large"));
+    ck_assert_int_eq(look_at_folder(0), 1);
+    /* A skewed detector is no MetaImage; what can be written is. */
+    ck_run(5, "image scene.json -o b.mha -o b.tif --set 'Detector.RightVector=[1,0,0.5]'");
+    ck_assert_ptr_nonnull(strstr(complained, "write .tif instead"));
+    ck_assert(has_file("b.tif") && !has_file("b.mha"));
+}
+END_TEST
+
+START_TEST(no_device) {
+    ck_run_fails(4, "no OpenCL device fits device=quantum", "image scene.json -o a.mha --device quantum");
+    ck_run_fails(4, "no OpenCL device", "OCL_ICD_VENDORS=/dev/null |plan scene.json");
+    ck_run_fails(4, "no OpenCL device fits", "SKG_DEVICE=quantum |lbuffer scene.json --part skin -o a.mha");
+}
+END_TEST
+
+START_TEST(scene_files) {
+    ck_run_fails(3, "missing.json: cannot be read: No such file or directory", "plan missing.json");
+    write_text("empty.json", "");
+    ck_run_fails(3, "empty.json", "plan empty.json");
+    write_text("cut.json", "{ \"Source\": {\n \"Position\": [0, ");
+    ck_run_fails(3, "cut.json: line 2, column", "plan cut.json");
+    ck_run_fails(3, "cannot be read", "plan .");
+    look_at_folder(1);
+    write_text("scene.json", scene);
+    ck_setting_fails(3, "did you mean NumberOfPixels", "Detector.NumberOfPixel=[3,3]");
+    ck_setting_fails(3, "not", "Noise=true"); /* not yet */
+    ck_setting_fails(3, "Tolerance", "Tolerance=2");
+}
+END_TEST
+
+START_TEST(detectors_and_sources) {
+    ck_setting_fails(3, "has 0 columns", "Detector.NumberOfPixels=[0,49]");
+    ck_setting_fails(3, "1 to 32768 of each", "Detector.NumberOfPixels=[65,4000000]");
+    ck_setting_fails(3, "Spacing", "Detector.Spacing=[0,1,\"mm\"]");
+    ck_setting_fails(3, "parallel", "Detector.RightVector=[0,0,2]");
+    ck_setting_fails(3, "UpVector: points along the beam", "Detector.UpVector=[0,1,0]");
+    ck_run_fails(
+        3, "source",
+        "image scene.json -o a.mha --set Source.Shape=Point --set 'Source.Position=[5,100,3,\"mm\"]' "
+        "--set Detector.RightVector=[1,0,0]");
+    ck_setting_fails(3, "Beam[0]: a photon energy of -60 keV", "Source.Beam.0.Energy=-60");
+}
+END_TEST
+
+START_TEST(parts) {
+    ck_setting_fails(3, "itself", "Samples.bone.Parent=bone");
+    ck_setting_fails(3, "skim", "Samples.bone.Parent=skim");
+    ck_setting_fails(3, "two parts have the label skin", "Samples.bone.Label=skin");
+    ck_setting_fails(3, "a scaling by 0 flattens", "Samples.bone.Transform=[[\"Scaling\",1,0,1]]");
+    ck_setting_fails(3, "its pose is singular",
+                     "Samples.bone.Transform=[[\"Matrix\",[1,0,0,0,1,0,0,0,0,0,1,0,0,0,0,1]]]");
+    ck_setting_fails(3, "Cube", "Samples.skin.Cube=[-1,\"mm\"]");
+    ck_setting_fails(3, "Material", "Samples.skin.Material=[\"mu\",-1]");
+    ck_setting_fails(3, "Samples", "Samples=[]");
+}
+END_TEST
+
+START_TEST(meshes_of_a_scene) {
+    write_text("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    write_text("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+    write_text("empty.stl", "");
+    static const char *const names[] = {"nan.obj", "index.obj", "empty.stl", "missing.stl"};
+    for (int i = 0; i < 4; i++)
+        ck_run_fails(3, names[i],
+                     "image scene.json -o a.mha --set 'Samples.1={\"Label\":\"bone\",\"Path\":\"%s\","
+                     "\"Unit\":\"mm\",\"Material\":[\"mu\",0.5]}'",
+                     names[i]);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scene, tear_down_scene);
+    tcase_add_test(tests, usage);
+    tcase_add_test(tests, outputs_that_cannot_be_written);
+    tcase_add_test(tests, no_device);
+    tcase_add_test(tests, scene_files);
+    tcase_add_test(tests, detectors_and_sources);
+    tcase_add_test(tests, parts);
+    tcase_add_test(tests, meshes_of_a_scene);
+}
+
+SKG_SUITE_MAIN("bad_input", add_tests)

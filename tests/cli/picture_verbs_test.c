@@ -1,0 +1,215 @@
+/* The verbs image, lbuffer and plan: what they write and what they print. */
+#include "cli/command.h"
+#include "cli/scene.h"
+
+#include <math.h>
+
+enum { COLUMNS = 65, ROWS = 49, PIXELS = COLUMNS * ROWS, MIDDLE = ROWS / 2 * COLUMNS + COLUMNS / 2 };
+
+static void set_up_scene(void) {
+    set_up();
+    write_text("scene.json", scene);
+}
+
+/* The values of a .mha file of one channel, which its header says are floats or doubles. */
+static void read_mha(const char *name, int is_double, double values[PIXELS]) {
+    static char bytes[PIXELS * 8 + 4096];
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    size_t count = fread(bytes, 1, sizeof bytes - 1, stream);
+    fclose(stream);
+    bytes[count] = '\0';
+    const char *type = is_double ? "ElementType = MET_DOUBLE\n" : "ElementType = MET_FLOAT\n";
+    const char *data = strstr(bytes, "ElementDataFile = LOCAL\n");
+    ck_assert_ptr_nonnull(strstr(bytes, type));
+    ck_assert_ptr_nonnull(strstr(bytes, "DimSize = 65 49 1\n"));
+    ck_assert_ptr_nonnull(strstr(bytes, "TransformMatrix = "));
+    ck_assert_ptr_nonnull(data);
+    data += strlen("ElementDataFile = LOCAL\n");
+    size_t element = is_double ? 8 : 4;
+    ck_assert_uint_eq(count - (size_t)(data - bytes), PIXELS * element);
+    for (size_t i = 0; i < PIXELS; i++) {
+        float single;
+        memcpy(&single, data + i * element, sizeof single);
+        values[i] = (double)single;
+        if (is_double) memcpy(&values[i], data + i * element, sizeof values[i]);
+    }
+}
+
+/* 60 keV x 1000 photons behind 20.5 mm of skin and 20 mm of bone; bars are those of single and double path
+ * lengths, 3e-6 and 1e-11 of the largest, times the exponent. */
+START_TEST(quantities_have_their_values) {
+    static const struct {
+        const char *flags, *title;
+        int relative;
+        double open;
+    } cases[] = {
+        {"", "energy (keV per pixel)", 0, 60000},
+        {"--quantity photons", "photons (per pixel)", 0, 1000},
+        {"--quantity fluence", "fluence (keV/mm2)", 0, 30000}, /* pixels of 1 x 2 mm */
+        {"--quantity=transmission", "transmission (I/I0)", 0, 1},
+        {"--quantity attenuation", "attenuation (-ln(I/I0))", 1, 0},
+    };
+    double values[PIXELS], exponent = 0.02 * 20.5 + 0.05 * 20;
+    for (int twice = 0; twice < 2; twice++) {
+        double bar = twice ? 1e-10 : 1e-5;
+        for (size_t i = 0; i < (twice ? 1 : sizeof cases / sizeof *cases); i++) {
+            double expected = cases[i].relative ? exponent : cases[i].open * exp(-exponent);
+            ck_run(0, "image scene.json -o a.mha %s %s", cases[i].flags, twice ? "--precision double" : "");
+            ck_assert_str_eq(complained, "");
+            ck_assert_ptr_nonnull(strstr(said, "65 x 49 pixels"));
+            ck_assert_ptr_nonnull(strstr(said, "wrote a.mha"));
+            read_mha("a.mha", twice, values);
+            ck_assert_double_eq_tol(values[MIDDLE], expected, bar * expected);
+            ck_assert(values[0] == cases[i].open); /* beside both: the open beam */
+        }
+    }
+}
+END_TEST
+
+START_TEST(lengths_are_net_or_of_the_surface) {
+    double values[PIXELS];
+    ck_run(0, "lbuffer scene.json --part skin -o a.mha --precision double");
+    read_mha("a.mha", 1, values);
+    ck_assert_double_eq_tol(values[MIDDLE], 20.5, 1e-10);
+    ck_run(0, "lbuffer scene.json --part SKIN --surface -o a.mha");
+    read_mha("a.mha", 0, values);
+    ck_assert_double_eq_tol(values[MIDDLE], 40.5, 1e-4);
+    ck_run(0, "lbuffer scene.json --part bone -o a.mha --quiet --set Samples.bone.Cuboid='[9,8,7,\"mm\"]'");
+    ck_assert_str_eq(said, "");
+    read_mha("a.mha", 0, values);
+    ck_assert_double_eq_tol(values[MIDDLE], 8, 1e-4);
+    ck_run_fails(3, "no part has the label bon; did you mean bone", "lbuffer scene.json --part bon -o a.mha");
+    ck_run_fails(2, "of which part? add --part LABEL", "lbuffer scene.json -o a.mha");
+}
+END_TEST
+
+START_TEST(every_output_is_written) {
+    ck_run(0, "image scene.json -o a.png -o a.tif -o=a.mha --range 0:2 --display transmission");
+    ck_assert(has_file("a.png") && has_file("a.tif") && has_file("a.mha"));
+    ck_assert_int_eq(look_at_folder(0), 4);
+}
+END_TEST
+
+START_TEST(strategies_give_the_same_bits) {
+    double one[PIXELS], other[PIXELS];
+    ck_run(0, "image scene.json -o a.mha --strategy copies");
+    read_mha("a.mha", 0, one);
+    ck_run(0, "image scene.json -o a.mha --strategy tiles --device 'cpu threads=1'");
+    read_mha("a.mha", 0, other);
+    ck_assert_int_eq(memcmp(one, other, sizeof one), 0);
+    ck_run(0, "image scene.json -o a.mha --strategy atomics");
+    read_mha("a.mha", 0, other);
+    ck_assert_int_eq(memcmp(one, other, sizeof one), 0);
+}
+END_TEST
+
+static void check_summary(json_t *summary) {
+    double least = json_number_value(member(summary, "min"));
+    double median = json_number_value(member(summary, "median"));
+    ck_assert(least >= 0 && median >= least);
+}
+
+static void check_plan(json_t *plan) {
+    json_t *effects = member(plan, "effects"), *nodes = member(plan, "nodes");
+    ck_assert_uint_ge(json_array_size(effects), 1);
+    for (size_t i = 0; i < json_array_size(effects); i++) {
+        json_t *effect = json_array_get(effects, i);
+        ck_assert(json_is_boolean(member(effect, "on")));
+        ck_assert_uint_gt(json_string_length(member(effect, "name")), 0);
+        ck_assert_uint_gt(json_string_length(member(effect, "reason")), 0);
+    }
+    ck_assert_uint_eq(json_array_size(nodes), 1);
+    ck_assert(json_real_value(json_array_get(json_array_get(nodes, 0), 0)) == 60);
+    ck_assert(json_real_value(json_array_get(json_array_get(nodes, 0), 1)) == 1000);
+    ck_assert_int_eq(json_integer_value(member(plan, "planes")), 1);
+    ck_assert(json_is_string(member(plan, "strategy")));
+    ck_assert_int_ge(json_integer_value(member(member(plan, "tiles"), "count")), 1);
+    ck_assert(json_number_value(member(plan, "bound")) == 0);
+    ck_assert_int_eq(json_integer_value(member(plan, "parts")), 2);
+    ck_assert_int_eq(json_integer_value(member(plan, "triangles")), 24);
+    ck_assert_int_eq(json_integer_value(member(plan, "bad_pixels")), 0);
+}
+
+START_TEST(json_has_its_shape) {
+    ck_run(0, "image scene.json -o a.mha --repeat 4 --json");
+    json_t *object = said_json();
+    check_summary(member(object, "frame_ms"));
+    ck_assert(json_number_value(member(object, "first_ms")) > 0);
+    json_t *stages = member(object, "stages"), *stage;
+    const char *name;
+    ck_assert_uint_ge(json_object_size(stages), 3);
+    json_object_foreach(stages, name, stage) check_summary(stage);
+    check_plan(member(object, "plan"));
+    json_decref(object);
+    ck_run(0, "lbuffer scene.json --part bone --repeat 1 --json");
+    object = said_json();
+    check_summary(member(object, "frame_ms"));
+    json_decref(object);
+    ck_run(0, "image scene.json -o a.mha --json");
+    object = said_json();
+    ck_assert(json_is_null(member(object, "frame_ms")) && json_is_null(member(object, "stages")));
+    json_decref(object);
+    ck_run(0, "plan scene.json --json --strategy tiles --precision double");
+    object = said_json();
+    check_plan(object);
+    ck_assert_str_eq(json_string_value(member(object, "strategy")), "tiles");
+    ck_assert_str_eq(json_string_value(member(object, "precision")), "double");
+    json_decref(object);
+}
+END_TEST
+
+START_TEST(plan_says_what_and_why) {
+    ck_run(0, "plan scene.json");
+    ck_assert_ptr_nonnull(strstr(said, "scene.json: 2 parts (0 open), 24 triangles"));
+    ck_assert_ptr_nonnull(strstr(said, "60 keV, 1000 photons per pixel"));
+    ck_assert_ptr_nonnull(strstr(said, "\n  on  nesting "));
+    ck_assert_ptr_nonnull(strstr(said, "Directly transmitted photons only."));
+    ck_run(0, "plan scene.json --set Samples.bone.Cuboid='[10,60,30,\"mm\"]'");
+    ck_assert_ptr_nonnull(strstr(said, "bone leaves its parent skin: "));
+}
+END_TEST
+
+/* What the plan has to say reaches standard error, and the picture is made all the same. */
+START_TEST(warnings_are_told_unless_quiet) {
+    write_text("open.obj",
+               "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 4 3\nf 2 3 4\n"); /* without y = 0 */
+    static const char open_part[] =
+        "--set 'Samples.1={\"Label\":\"bone\",\"Path\":\"open.obj\",\"Unit\":\"mm\","
+        "\"Material\":[\"mu\",0.5]}'";
+    ck_run(0, "image scene.json -o a.mha %s", open_part);
+    ck_assert_msg(strstr(complained, "skiagraph: warning: ") && strstr(complained, "open"), "%s", complained);
+    ck_run(0, "plan scene.json --json --quiet %s", open_part);
+    ck_assert_str_eq(complained, "");
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "open_parts")), 1);
+    ck_assert_int_gt(json_integer_value(member(object, "bad_pixels")), 0);
+    json_decref(object);
+    ck_run(0, "image scene.json -o a.mha --set 'Detector.Position=[1000,100,0,\"mm\"]' "
+              "--set 'Source.Position=[1000,-400,0,\"mm\"]'");
+    ck_assert_ptr_nonnull(strstr(complained, "skiagraph: warning: nothing falls on the detector"));
+}
+END_TEST
+
+START_TEST(times_are_printed) {
+    ck_run(0, "image scene.json --repeat 3");
+    ck_assert_ptr_nonnull(strstr(said, "(3 frames)\n"));
+    ck_assert_ptr_nonnull(strstr(said, "\n  frame "));
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scene, tear_down);
+    tcase_add_test(tests, quantities_have_their_values);
+    tcase_add_test(tests, lengths_are_net_or_of_the_surface);
+    tcase_add_test(tests, every_output_is_written);
+    tcase_add_test(tests, strategies_give_the_same_bits);
+    tcase_add_test(tests, json_has_its_shape);
+    tcase_add_test(tests, plan_says_what_and_why);
+    tcase_add_test(tests, warnings_are_told_unless_quiet);
+    tcase_add_test(tests, times_are_printed);
+}
+
+SKG_SUITE_MAIN("picture_verbs", add_tests)
