@@ -21,7 +21,7 @@ void skg_carried_vertex(const skg_body *body, const skg_body_organ *o, int64_t i
     for (int n = 0; o->carrier >= 0 && n < CARRIERS; n++)
         skg_add_scaled(displacement, o->near_weight[CARRIERS * i + n],
                        body->organ[o->carrier].moved + 3 * o->near[CARRIERS * i + n], displacement);
-    if (o->share) skg_scale(o->share[i], displacement, displacement);
+    if (o->share) skg_scale_vector(o->share[i], displacement, displacement);
 }
 
 static void pose_rigid(skg_body_organ *o) {
@@ -31,7 +31,7 @@ static void pose_rigid(skg_body_organ *o) {
 
 static void pose_rib(skg_body_organ *o, double angle) {
     double vector[3];
-    skg_scale(angle, o->axis, vector);
+    skg_scale_vector(angle, o->axis, vector);
     skg_rotation(vector, o->rigid.rotation);
     memcpy(o->rigid.centre, o->head, sizeof o->head);
     memset(o->rigid.shift, 0, sizeof o->rigid.shift);
@@ -98,14 +98,14 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
     skg_carried_vertex(body, o, nearest, tip);
     skg_add_scaled(o->pivot, -1, o->tip, rest);
     for (int k = 0; k < 3; k++) now[k] = rest[k] + skin[k] - tip[k];
-    skg_scale(1 / skg_length(rest), rest, rest);
-    skg_scale(1 / skg_length(now), now, now);
+    skg_scale_vector(1 / skg_length(rest), rest, rest);
+    skg_scale_vector(1 / skg_length(now), now, now);
     skg_cross(rest, now, turn);
     double sine = skg_length(turn);
-    if (sine > 0) skg_scale(atan2(sine, skg_dot(rest, now)) / sine, turn, turn);
+    if (sine > 0) skg_scale_vector(atan2(sine, skg_dot(rest, now)) / sine, turn, turn);
     skg_rotation(turn, o->rigid.rotation);
     memcpy(o->rigid.centre, o->tip, sizeof o->tip);
-    skg_scale(body->withdrawn, now, at);
+    skg_scale_vector(body->withdrawn, now, at);
     for (int k = 0; k < 3; k++) o->rigid.shift[k] = tip[k] + at[k];
     pose_rigid(o);
 }
@@ -173,7 +173,7 @@ static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic
     const skg_body_options *options = &body->options;
     double angle = skg_rib_fraction(thoracic) - skg_rib_fraction(options->reference_thoracic);
     double descent = diaphragmatic - options->reference_diaphragmatic;
-    skg_scale(descent, options->tendon_mm, body->tendon);
+    skg_scale_vector(descent, options->tendon_mm, body->tendon);
     skg_rigid sternum;
     for (int64_t i = 0; i < body->organs; i++)
         if (body->organ[i].role == ROLE_RIB) pose_rib(body->organ + i, angle);

@@ -39,7 +39,7 @@ static void plane_normal(const skg_body_organ *rib, const double *displacements,
             }
         }
     skg_eigen(3, scatter, values, vectors);
-    skg_scale(vectors[8] < 0 ? -1 : 1, vectors + 6, normal);
+    skg_scale_vector(vectors[8] < 0 ? -1 : 1, vectors + 6, normal);
 }
 
 static void angles(const double n[3], double *pump, double *bucket) {
@@ -76,7 +76,7 @@ static void find_head(skg_body_organ *rib) {
             skg_add_scaled(rib->head, 1, rib->rest + 3 * i, rib->head);
             count++;
         }
-    skg_scale(1 / count, rib->head, rib->head);
+    skg_scale_vector(1 / count, rib->head, rib->head);
 }
 
 /* The horizontal rotation vector that gives the table's falls: Newton from the small-angle answer, in which

@@ -80,7 +80,7 @@ static skg_status cartilages(const skg_thorax_plan *plan, int64_t skin, skg_thor
         const double *end = rib->line[RIB_POINTS - 1], *before = rib->line[RIB_POINTS - 3];
         double along[3], p[3][3], curve[17][3], r = radius[k];
         skg_add_scaled(end, -1, before, along);
-        skg_scale(1 / skg_length(along), along, along);
+        skg_scale_vector(1 / skg_length(along), along, along);
         skg_add_scaled(end, 0.5 * rib->width + 0.5 * r + 1.5, along, p[0]);
         if (k < 7) {
             p[2][2] = joint[k];

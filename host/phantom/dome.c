@@ -73,9 +73,9 @@ double skg_dome_steepness(const skg_thorax_plan *plan, double x, double y) {
 double skg_ellipsoid_inside(const skg_ellipsoid *e, const double point[3], double larger) {
     double p[3], x[3], y[3], z[3], up[3] = {0, 0, 1};
     skg_add_scaled(point, -1, e->centre, p);
-    skg_scale(1 / skg_length(e->turned), e->turned, x);
+    skg_scale_vector(1 / skg_length(e->turned), e->turned, x);
     skg_cross(up, x, y);
-    skg_scale(1 / skg_length(y), y, y);
+    skg_scale_vector(1 / skg_length(y), y, y);
     skg_cross(x, y, z);
     double u = skg_dot(p, x) / (e->axis[0] + larger), v = skg_dot(p, y) / (e->axis[1] + larger);
     double w = skg_dot(p, z) / (e->axis[2] + larger);

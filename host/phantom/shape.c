@@ -50,7 +50,7 @@ skg_status skg_shape_rings(const char *name, int64_t rings, const int64_t *count
 }
 
 static void unit(double *v) {
-    skg_scale(1 / skg_length(v), v, v);
+    skg_scale_vector(1 / skg_length(v), v, v);
 }
 
 typedef struct {
