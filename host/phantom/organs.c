@@ -154,12 +154,12 @@ static skg_status ducts(const skg_thorax_plan *plan, int64_t liver, int64_t skin
             status = skg_shape_cord("bile ducts", (const double(*)[3])curve, 17, duct[i].radius,
                                     duct[i].radius, 1, rings, around, &arrays);
     }
-    if (status == SKG_OK) status = skg_thorax_add(thorax, "bile ducts", 2000, liver, &arrays);
+    if (status == SKG_OK) status = skg_thorax_add(thorax, "bile ducts", 1000, liver, &arrays);
     if (status == SKG_OK) status = skg_shape_spline(common, 4, 17, curve);
     if (status == SKG_OK)
         status = skg_shape_cord("common bile duct", (const double(*)[3])curve, 17, 3, 3, 1,
                                 skg_shape_count(plan->resolution, 12, 5), around, &arrays);
-    if (status == SKG_OK) status = skg_thorax_add(thorax, "common bile duct", 2000, skin, &arrays);
+    if (status == SKG_OK) status = skg_thorax_add(thorax, "common bile duct", 1000, skin, &arrays);
     skg_mesh_arrays_free(&arrays);
     return status;
 }
