@@ -50,8 +50,8 @@ skg_status skg_body_create(skg_context *context, const skg_body_options *options
 static void free_organ(skg_body_organ *o) {
     skg_mesh_release(&o->mesh);
     skg_chain_free(&o->chain);
-    void *block[] = {&o->label,  &o->rest,  &o->corner, &o->node_of, &o->moved,       &o->link,
-                     &o->target, &o->state, &o->memory, &o->near,    &o->near_weight, &o->share};
+    void *block[] = {&o->label, &o->rest,  &o->corner, &o->node_of, &o->moved,       &o->link, &o->target,
+                     &o->block, &o->state, &o->memory, &o->near,    &o->near_weight, &o->share};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 
@@ -84,6 +84,7 @@ static skg_status fill_organ(const skg_organ *given, skg_body_organ *o) {
             return skg_fail(SKG_ERR_BREATHING, "%s: vertex %" PRId64 " is not finite", o->label, i);
         o->node_of[i] = o->mesh->weld ? o->mesh->weld[i] : (int32_t)i;
     }
+    SKG_TRY(skg_near_prepare(o));
     skg_mesh_health health;
     skg_mesh_health_init(&health);
     SKG_TRY(skg_mesh_get_health(o->mesh, &health));

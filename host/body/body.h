@@ -29,7 +29,7 @@ typedef struct {
     double part; /* of that displacement, 0 to 1 */
 } skg_link;
 
-enum { CARRIERS = 12 };
+enum { CARRIERS = 12, BLOCK = 32 };
 
 typedef struct {
     skg_mesh *mesh;
@@ -40,6 +40,7 @@ typedef struct {
     int64_t vertices, triangles;
     double *rest; /* rows of x, y, z, mm */
     int32_t *corner;
+    double *block;    /* bounds of each BLOCK triangles in a row: low, high */
     int32_t *node_of; /* welded vertex: the first one there */
     double *moved;    /* displacements, rows of x, y, z, mm */
     int changed;      /* by the last pose */
@@ -83,8 +84,12 @@ enum { LOOP_STEPS = 24, LINK_STAYS = -1, LINK_TENDON = -2 };
 skg_role skg_role_of(const char *label, int *number, int *side);
 skg_tissue skg_tissue_of(const char *label);
 int skg_label_begins(const char *label, const char *word);
+int skg_label_stays(const char *label); /* a bone that does not move */
 
-/* near.c: nearest point of an organ's triangles within reach of a point; distance, or INFINITY. */
+/* near.c */
+skg_status skg_near_prepare(skg_body_organ *organ);
+/* The nearest point of an organ's triangles within reach of a point; the distance, or
+ * HUGE_VAL. */
 double skg_nearest(const skg_body_organ *organ, const double point[3], double reach, skg_link *link);
 
 /* ribs.c */

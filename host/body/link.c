@@ -43,10 +43,13 @@ static int diaphragm_rule(const skg_body *body, const skg_body_organ *organ, con
     if (plane_value(body, p) > 0) return 1;
     if (p[2] > bounds[2] + 0.1 * (bounds[5] - bounds[2])) return 0;
     if (nearest_of(body, ROLE_RIB, 6, 12, p, 16, link) < HUGE_VAL) return 1;
-    skg_link spine;
-    int32_t beside = find_organ(body, "spine");
     *link = (skg_link){.organ = LINK_STAYS};
-    return beside >= 0 && skg_nearest(body->organ + beside, p, 12, &spine) < HUGE_VAL;
+    for (int64_t o = 0; o < body->organs; o++) {
+        skg_link spine;
+        if (skg_label_stays(body->organ[o].label) && skg_nearest(body->organ + o, p, 12, &spine) < HUGE_VAL)
+            return 1;
+    }
+    return 0;
 }
 
 /* The base goes with the diaphragm, the upper wall with the ribs; between them the lung slides. */
@@ -200,7 +203,7 @@ static skg_status adopt(skg_body *body, skg_body_organ *o) {
         o->role = ROLE_CARRIED;
         return carry(body, o, (int32_t)o->inside);
     }
-    if (!skg_label_begins(o->label, "spine") && !skg_label_begins(o->label, "clavicle"))
+    if (!skg_label_stays(o->label))
         skg_log(body->context, SKG_LOG_WARNING,
                 "%s: no rule for this label; it stays where it is (rename it, or put it inside an organ that "
                 "moves)",

@@ -32,32 +32,50 @@ static void nearest_weights(const double *a, const double *b, const double *c, c
         w[1] = vb / (va + vb + vc), w[2] = vc / (va + vb + vc), w[0] = 1 - w[1] - w[2];
 }
 
-double skg_nearest(const skg_body_organ *organ, const double p[3], double reach, skg_link *link) {
-    double least = reach * reach, away = 0;
-    int found = 0;
-    for (int k = 0; k < 3; k++) { /* the whole organ out of reach: most are */
-        const double *bounds = organ->mesh->health.bounds;
+skg_status skg_near_prepare(skg_body_organ *o) {
+    int64_t blocks = (o->triangles + BLOCK - 1) / BLOCK;
+    SKG_TRY(skg_alloc(6 * blocks, sizeof *o->block, o->label, &o->block));
+    for (int64_t i = 0; i < 6 * blocks; i++) o->block[i] = i % 6 < 3 ? HUGE_VAL : -HUGE_VAL;
+    for (int64_t c = 0; c < 3 * o->triangles; c++)
+        for (int k = 0; k < 3; k++) {
+            double *bounds = o->block + 6 * (c / (3 * BLOCK)), x = o->rest[3 * (int64_t)o->corner[c] + k];
+            bounds[k] = fmin(bounds[k], x), bounds[3 + k] = fmax(bounds[3 + k], x);
+        }
+    return SKG_OK;
+}
+
+/* Square of the distance from a point to a box. */
+static double box_distance(const double *bounds, const double p[3]) {
+    double away = 0;
+    for (int k = 0; k < 3; k++) {
         double d = fmax(0, fmax(bounds[k] - p[k], p[k] - bounds[3 + k]));
         away += d * d;
     }
-    if (away > least) return HUGE_VAL;
-    for (int64_t t = 0; t < organ->triangles; t++) {
-        const int32_t *corner = organ->corner + 3 * t;
-        const double *a = organ->rest + 3 * corner[0], *b = organ->rest + 3 * corner[1];
-        const double *c = organ->rest + 3 * corner[2];
-        double bound = sqrt(least);
-        int apart = 0;
-        for (int k = 0; k < 3; k++)
-            apart |=
-                fmin(a[k], fmin(b[k], c[k])) > p[k] + bound || fmax(a[k], fmax(b[k], c[k])) < p[k] - bound;
-        if (apart) continue;
+    return away;
+}
+
+static void nearest_of_block(const skg_body_organ *o, int64_t block, const double p[3], double *least,
+                             int *found, skg_link *link) {
+    int64_t end = (block + 1) * BLOCK < o->triangles ? (block + 1) * BLOCK : o->triangles;
+    for (int64_t t = block * BLOCK; t < end; t++) {
+        const int32_t *corner = o->corner + 3 * t;
+        const double *a = o->rest + 3 * corner[0], *b = o->rest + 3 * corner[1], *c = o->rest + 3 * corner[2];
         double w[3], d[3];
         nearest_weights(a, b, c, p, w);
         for (int k = 0; k < 3; k++) d[k] = w[0] * a[k] + w[1] * b[k] + w[2] * c[k] - p[k];
         double square = skg_dot(d, d);
-        if (square > least || (found && square == least)) continue;
-        found = 1, least = square;
+        if (square > *least || (*found && square == *least)) continue;
+        *found = 1, *least = square;
         for (int k = 0; k < 3; k++) link->corner[k] = corner[k], link->weight[k] = w[k];
     }
+}
+
+double skg_nearest(const skg_body_organ *organ, const double p[3], double reach, skg_link *link) {
+    double least = reach * reach;
+    int found = 0;
+    if (box_distance(organ->mesh->health.bounds, p) > least) return HUGE_VAL;
+    for (int64_t block = 0; block * BLOCK < organ->triangles; block++)
+        if (box_distance(organ->block + 6 * block, p) <= least)
+            nearest_of_block(organ, block, p, &least, &found, link);
     return found ? sqrt(least) : HUGE_VAL;
 }

@@ -41,12 +41,13 @@ skg_role skg_role_of(const char *label, int *number, int *side) {
                 {"bronchus", ROLE_CARRIED},
                 {"common bile duct", ROLE_SPANNED},
                 {"needle", ROLE_NEEDLE}};
-    *side = has_word(label, "left") ? 1 : has_word(label, "right") ? -1 : 0;
+    *side = has_word(label, "left") || has_word(label, "l") ? 1 : 0;
+    if (has_word(label, "right") || has_word(label, "r")) *side = -1;
     *number = 0;
     for (size_t i = 0; i < sizeof rule / sizeof *rule; i++) {
         if (!skg_label_begins(label, rule[i].word)) continue;
         if (rule[i].role == ROLE_RIB || rule[i].role == ROLE_CARTILAGE) {
-            const char *digits = label + strlen(rule[i].word);
+            const char *digits = label + strcspn(label, "0123456789");
             long value = strtol(digits, NULL, 10);
             if (value < 1 || value > 12 || *side == 0) return ROLE_STATIC;
             *number = (int)value;
@@ -54,6 +55,13 @@ skg_role skg_role_of(const char *label, int *number, int *side) {
         return rule[i].role;
     }
     return ROLE_STATIC;
+}
+
+int skg_label_stays(const char *label) {
+    static const char *const word[] = {"spine", "vertebra", "clavicle", "scapula"};
+    for (size_t i = 0; i < sizeof word / sizeof *word; i++)
+        if (skg_label_begins(label, word[i])) return 1;
+    return 0;
 }
 
 /* Muscle is the paper's; the others are chosen softer the softer the organ (an assumption). */

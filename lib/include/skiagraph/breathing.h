@@ -123,18 +123,20 @@ SKG_API skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number,
 SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder);
 
 /* A body: organs that move with the breath. Each has a rule, found by its label (without regard to case):
- *     rib N left/right              turns about an axis through its head: Wilson et al., J. Appl. Physiol. 62
- *                                   (1987) 1872, ribs 3 to 7; others extrapolated (an assumption)
- *     sternum ...                   rigid, fitted to the anterior ends of ribs 1 to 7
- *     cartilage N left/right        between its rib and the sternum
- *     diaphragm                     tendon rigid above a plane, muscle below it deformable, rim with the ribs
- *     lung ..., liver, heart, skin  deformable; linked to ribs, diaphragm or both
- *     gallbladder; stomach, spleen, kidney ...; trachea, bronchus ..., common bile duct
- *                                   with the liver; the diaphragm (kidneys 0.65 of it); between their ends
- *     needle                        rigid: pivots where it enters the skin, tip with the liver
- *     spine ..., clavicle ...       stay
- * Any other part moves with the one that it lies inside, if that is deformable; else it stays, and a warning
- * says so. Links are found once, at rest. */
+ * - "rib N left" (or right; or rib_l05): turns about an axis through its head, by the angles of Wilson et
+ * al., J. Appl. Physiol. 62 (1987) 1872 for ribs 3 to 7; the others are extrapolated (an assumption);
+ * - "sternum ...": rigid, fitted to the anterior ends of ribs 1 to 7;
+ * - "cartilage N left": between its rib and the sternum or the next rib above;
+ * - "diaphragm": tendon rigid above a plane, muscle below it deformable, rim with the ribs;
+ * - "lung ...", "liver", "heart", "skin": deformable, linked to the diaphragm, the ribs or both;
+ * - "gallbladder": with the liver; "common bile duct": its upper end with the liver;
+ * - "stomach", "spleen", "kidney ...": with the tendon, kidneys 0.65 of it;
+ * - "trachea", "bronchus ...": with the lungs, the trachea's upper end stays;
+ * - "needle": rigid, pivots where it enters the skin, tip with the liver;
+ * - "spine", "vertebra ...", "clavicle ...", "scapula ...": stay.
+ * Any other part moves with the one that it lies inside, if that is deformable and not the skin; else it
+ * stays, and a warning says so. Links are found once, at rest. x has to point to the patient's left, y to
+ * the back, z to the head. */
 typedef struct skg_body skg_body;
 
 /* Prepare with skg_body_options_init. */
