@@ -120,13 +120,14 @@ skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
 }
 
 skg_status skg_body_link(skg_body *body) {
-    if (!body || body->linked) return skg_fail(SKG_ERR_BREATHING, "body: is linked once");
-    SKG_TRY(skg_body_find_links(body));
+    if (!body || body->tried) return skg_fail(SKG_ERR_BREATHING, "body: is linked once");
     int moves = 0;
     for (int64_t i = 0; i < body->organs; i++) moves |= body->organ[i].role != ROLE_STATIC;
     if (!moves)
         return skg_fail(SKG_ERR_BREATHING,
                         "body: no organ that moves; labels are as \"rib 5 left\", \"liver\"");
+    body->tried = 1;
+    SKG_TRY(skg_body_find_links(body));
     body->linked = 1;
     return SKG_OK;
 }

@@ -70,7 +70,7 @@ struct skg_body {
     skg_body_options options;
     int64_t organs, room;
     skg_body_organ *organ;
-    int linked;
+    int tried, linked;  /* skg_body_link was called; succeeded */
     double tendon[3];   /* mm, now */
     double withdrawn;   /* the needle, mm */
     int loop;           /* steps of the loop that are kept: 0 or LOOP_STEPS */

@@ -87,7 +87,7 @@ skg_status skg_chain_unreached(const skg_chain *chain, int64_t *count);
 skg_status skg_chain_links(int64_t triangles, const int32_t *corners, const int32_t *node_of, int64_t *links,
                            int32_t **ends);
 
-/* The bounds of every node from the drivers alone: gain of the front becomes direction * bound, -INFINITY
+/* The bounds of every node from the drivers alone: gain of the front becomes direction * bound, -HUGE_VAL
  * where no driver reaches; or, with sources given (one per node, mm), from every node. */
 void skg_chain_bounds(const skg_chain *chain, int axis, int direction, const double *sources,
                       skg_chain_front *front);

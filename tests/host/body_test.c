@@ -247,7 +247,7 @@ START_TEST(parts_stay_in_place) { /* over a quiet breath */
             }
         /* the needle's tip keeps its place in the liver */
         const skg_body_organ *n = body->organ + needle;
-        double tissue[3], least = INFINITY;
+        double tissue[3], least = HUGE_VAL;
         for (int64_t v = 0; v < n->vertices; v++)
             if (memcmp(n->rest + 3 * v, n->tip, sizeof n->tip) == 0) {
                 skg_carried_vertex(body, n, v, tissue);
@@ -263,7 +263,77 @@ START_TEST(parts_stay_in_place) { /* over a quiet breath */
 }
 END_TEST
 
+START_TEST(reference_in_the_middle) { /* meshes made at half a breath: motion goes both ways from there */
+    skg_body_options options;
+    skg_body_options_init(&options);
+    options.reference_thoracic = options.reference_diaphragmatic = 0.5;
+    make(&options);
+    ck_assert_double_eq_tol(pose(0.5, 0.5).tidal_ml, 0, 1e-9);
+    ck_assert_double_eq_tol(pose(0, 0).diaphragm_mm[0], -7.5, 1e-12);
+    ck_assert_double_lt(pose(0, 0).tidal_ml, -50);
+    ck_assert_double_gt(pose(1, 1).tidal_ml, 50);
+    drop();
+}
+END_TEST
+
+START_TEST(the_needle_is_rigid_and_slides) {
+    make(NULL);
+    int64_t n, needle = find("needle");
+    double *rest = positions(part[needle].mesh, &n);
+    ck_skg(skg_body_set_needle(body, 110));
+    pose(0.7, 0.7);
+    double *now = positions(part[needle].mesh, &n), along = 0;
+    for (int64_t i = 1; i < n; i++) {
+        double a = 0, b = 0;
+        for (int k = 0; k < 3; k++)
+            a += pow(rest[3 * i + k] - rest[k], 2), b += pow(now[3 * i + k] - now[k], 2);
+        ck_assert_double_eq_tol(sqrt(a), sqrt(b), 1e-4); /* floats of 250 mm */
+    }
+    for (int k = 0; k < 3; k++) along += pow(now[k] - rest[k], 2);
+    ck_assert_double_eq_tol(sqrt(along), 110, 15); /* and the tissue moved by up to 11 mm */
+    free(rest);
+    free(now);
+    drop();
+}
+END_TEST
+
+START_TEST(bad_bodies_are_refused) {
+    skg_body_options options;
+    skg_body_options_init(&options);
+    options.hysteresis = 1.5;
+    ck_skg_fails(skg_body_create(NULL, &options, &body), SKG_ERR_BREATHING, "hysteresis");
+    ck_skg(skg_body_create(NULL, NULL, &body));
+    skg_breath_state state;
+    skg_breath_state_init(&state);
+    ck_skg_fails(skg_body_pose(body, &state), SKG_ERR_BREATHING, "skg_body_link");
+    skg_organ organ;
+    skg_organ_init(&organ);
+    ck_skg_fails(skg_body_add(body, &organ, NULL), SKG_ERR_ARGUMENT, "mesh");
+    ck_skg(skg_mesh_cube(10, &organ.mesh));
+    organ.label = "table";
+    organ.inside = 0;
+    ck_skg_fails(skg_body_add(body, &organ, NULL), SKG_ERR_BREATHING, "inside organ 0");
+    organ.inside = -1;
+    ck_skg(skg_body_add(body, &organ, NULL));
+    ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "no organ that moves");
+    organ.label = "liver", organ.tissue.alpha_min = 2;
+    ck_skg(skg_body_add(body, &organ, NULL));
+    ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "alpha_min <= 1");
+    skg_mesh_release(&organ.mesh);
+    skg_body_release(&body);
+    make(NULL);
+    state.thoracic = (double)NAN;
+    ck_skg_fails(skg_body_pose(body, &state), SKG_ERR_BREATHING, "weights");
+    ck_skg_fails(skg_body_set_needle(body, HUGE_VAL), SKG_ERR_BREATHING, "needle");
+    ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "once");
+    drop();
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, reference_in_the_middle);
+    tcase_add_test(tests, the_needle_is_rigid_and_slides);
+    tcase_add_test(tests, bad_bodies_are_refused);
     tcase_add_test(tests, rotations_and_fits);
     tcase_add_test(tests, ribs_turn_as_wilson_measured);
     tcase_add_test(tests, the_reference_is_the_file);

@@ -103,7 +103,7 @@ START_TEST(bad_fields_are_named) {
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "waveform");
     b = of_kind(0), b.period_s = 0;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "period_s");
-    b = of_kind(0), b.thoracic = NAN;
+    b = of_kind(0), b.thoracic = (double)NAN;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "thoracic");
     b = of_kind(SKG_BREATH_SAMPLED), b.samples = high, b.sample_count = 3;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "begin at end-inspiration");
@@ -112,8 +112,8 @@ START_TEST(bad_fields_are_named) {
     b = of_kind(0), b.holds = crossed, b.hold_count = 2;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "hold 1");
     b = of_kind(0);
-    ck_skg_fails(skg_breath_at_time(&b, INFINITY, &s), SKG_ERR_BREATHING, "not finite");
-    ck_skg_fails(skg_breath_at_phase(&b, NAN, &s), SKG_ERR_BREATHING, "not finite");
+    ck_skg_fails(skg_breath_at_time(&b, HUGE_VAL, &s), SKG_ERR_BREATHING, "not finite");
+    ck_skg_fails(skg_breath_at_phase(&b, (double)NAN, &s), SKG_ERR_BREATHING, "not finite");
     ck_skg_fails(skg_breath_check(NULL), SKG_ERR_ARGUMENT, "NULL");
 }
 END_TEST

@@ -53,7 +53,7 @@ START_TEST(closed_form_on_random_graphs) { /* P1, P2, P6: every trial has its ow
             const double *D = distance[axis];
             double x[4], most = 0;
             for (int64_t d = 0; d < count; d++) { /* midpoints of the bounds where drivers contradict */
-                double low = -INFINITY, high = INFINITY;
+                double low = -HUGE_VAL, high = HUGE_VAL;
                 for (int64_t e = 0; e < count; e++) {
                     low = fmax(low, target[3 * e + axis] - D[node[d] * n + node[e]]);
                     high = fmin(high, target[3 * e + axis] + D[node[e] * n + node[d]]);
@@ -63,7 +63,7 @@ START_TEST(closed_form_on_random_graphs) { /* P1, P2, P6: every trial has its ow
             }
             conflict = fmax(conflict, most);
             for (int64_t i = 0; i < n; i++) {
-                double low = -INFINITY, high = INFINITY;
+                double low = -HUGE_VAL, high = HUGE_VAL;
                 for (int64_t d = 0; d < count; d++) {
                     low = fmax(low, x[d] - D[i * n + node[d]]);
                     high = fmin(high, x[d] + D[node[d] * n + i]);
@@ -347,7 +347,7 @@ START_TEST(relaxation_keeps_links_and_drivers) {
     double moved = 0;
     for (int64_t i = 0; i < 3 * g.nodes; i++) moved = fmax(moved, fabs(u[i] - v[i]));
     ck_assert_double_gt(moved, 1e-3);
-    ck_skg_fails(skg_chain_relax(chain, 1, NAN, v), SKG_ERR_BREATHING, "relaxation");
+    ck_skg_fails(skg_chain_relax(chain, 1, (double)NAN, v), SKG_ERR_BREATHING, "relaxation");
     skg_chain_free(&chain);
 }
 END_TEST
@@ -356,8 +356,8 @@ START_TEST(hard_cases) {
     double rest[9] = {0, 0, 0, 1, 0, 0, 1, 0, 0}, u[9] = {0};
     int32_t ends[2] = {0, 1}, zero[2] = {1, 2};
     skg_chain *chain;
-    const skg_tissue bad[] = {{1.1, 1.2, 0}, {0.9, 0.95, 0}, {-0.1, 1, 0},
-                              {0.9, 1, -1},  {NAN, 1, 0},    {0.9, INFINITY, 0}};
+    const skg_tissue bad[] = {{1.1, 1.2, 0}, {0.9, 0.95, 0},      {-0.1, 1, 0},
+                              {0.9, 1, -1},  {(double)NAN, 1, 0}, {0.9, HUGE_VAL, 0}};
     for (int t = 0; t < 6; t++)
         ck_skg_fails(skg_chain_create("bad", 3, rest, 1, ends, bad + t, 1, NULL, &chain), SKG_ERR_BREATHING,
                      "alpha_min <= 1");
@@ -370,7 +370,8 @@ START_TEST(hard_cases) {
     ck_skg_fails(skg_chain_drive(chain, 2, (int32_t[2]){1, 1}), SKG_ERR_BREATHING, "one node");
     ck_skg_fails(skg_chain_drive(chain, 1, (int32_t[1]){-1}), SKG_ERR_BREATHING, "nodes are");
     ck_skg(skg_chain_drive(chain, 2, (int32_t[2]){0, 1}));
-    ck_skg_fails(skg_chain_move(chain, (double[6]){0, NAN, 0}, u, NULL), SKG_ERR_BREATHING, "not finite");
+    ck_skg_fails(skg_chain_move(chain, (double[6]){0, (double)NAN, 0}, u, NULL), SKG_ERR_BREATHING,
+                 "not finite");
     ck_assert_double_eq(u[3], 0);
     ck_skg(skg_chain_move(chain, (double[6]){1, 2, 3, 4, 5, 6}, u, NULL)); /* node 0 has no links */
     for (int k = 0; k < 3; k++) {

@@ -31,7 +31,7 @@ skg_chain *graph_chain(const graph *g) {
 
 void graph_distances(const graph *g, int axis, double *distance) {
     int64_t n = g->nodes;
-    for (int64_t i = 0; i < n * n; i++) distance[i] = i / n == i % n ? 0 : INFINITY;
+    for (int64_t i = 0; i < n * n; i++) distance[i] = i / n == i % n ? 0 : HUGE_VAL;
     for (int64_t l = 0; l < g->links; l++)
         for (int way = 0; way < 2; way++) {
             int32_t a = g->ends[2 * l + way], b = g->ends[2 * l + 1 - way];

@@ -11,7 +11,7 @@ static int column(const solid *s, double value, int axis) {
 }
 
 static void cells(const solid *s, int64_t t, int range[4]) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 2; k++) {
             double v = s->position[3 * s->corner[3 * t + c] + k];
@@ -90,7 +90,7 @@ static double segment_distance(const double *a, const double *b, const double *p
 }
 
 static double triangle_distance(const double *const v[3], const double *p) {
-    double e[3], f[3], n[3], q[3], least = INFINITY;
+    double e[3], f[3], n[3], q[3], least = HUGE_VAL;
     for (int k = 0; k < 3; k++) e[k] = v[1][k] - v[0][k], f[k] = v[2][k] - v[0][k], q[k] = p[k] - v[0][k];
     for (int k = 0; k < 3; k++) n[k] = e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3];
     double nn = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
@@ -106,7 +106,7 @@ static double triangle_distance(const double *const v[3], const double *p) {
 }
 
 double solid_distance(const solid *s, const double p[3]) {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int64_t t = 0; t < s->triangles; t++) {
         const double *v[3];
         for (int c = 0; c < 3; c++) v[c] = s->position + 3 * s->corner[3 * t + c];
