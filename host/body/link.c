@@ -72,14 +72,17 @@ static int tendon_rule(const skg_body *body, const skg_body_organ *organ, const 
     return tendon;
 }
 
-/* The threshold is about the fat's thickness and half a space between two ribs. */
+/* Skin over the ribs' fat goes with them; the farther away, the less (mm: a choice). */
 static int skin_rule(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link) {
+    const double near = 22, far = 60;
     skg_link sternum;
     (void)organ;
-    double to_rib = nearest_of(body, ROLE_RIB, 1, 10, p, 42, link);
-    double to_sternum = nearest_of(body, ROLE_STERNUM, 0, 0, p, fmin(to_rib, 42), &sternum);
+    double to_rib = nearest_of(body, ROLE_RIB, 1, 10, p, far, link);
+    double to_sternum = nearest_of(body, ROLE_STERNUM, 0, 0, p, fmin(to_rib, far), &sternum);
     if (to_sternum < to_rib) *link = sternum;
-    return fmin(to_rib, to_sternum) < HUGE_VAL;
+    double least = fmin(to_rib, to_sternum);
+    link->part = fmin(1, (far - least) / (far - near));
+    return least < far;
 }
 
 static link_rule rule_of(const skg_body_organ *organ) {

@@ -6,6 +6,7 @@
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -263,6 +264,26 @@ START_TEST(parts_stay_in_place) { /* over a quiet breath */
 }
 END_TEST
 
+START_TEST(same_bits_for_any_number_of_threads) {
+    double *first[MOST_PARTS];
+    int64_t n;
+    for (int threads = 1; threads <= 4; threads++) {
+        omp_set_num_threads(threads);
+        make(NULL);
+        pose(0.8, 1.2);
+        for (int64_t i = 0; i < parts; i++) {
+            double *now = positions(part[i].mesh, &n);
+            if (threads == 1) first[i] = now;
+            if (threads == 1) continue;
+            ck_assert_msg(memcmp(now, first[i], (size_t)n * 3 * sizeof *now) == 0, "%s", part[i].label);
+            free(now);
+        }
+        drop();
+    }
+    for (int64_t i = 0; i < parts; i++) free(first[i]);
+}
+END_TEST
+
 START_TEST(reference_in_the_middle) { /* meshes made at half a breath: motion goes both ways from there */
     skg_body_options options;
     skg_body_options_init(&options);
@@ -331,6 +352,7 @@ START_TEST(bad_bodies_are_refused) {
 END_TEST
 
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, same_bits_for_any_number_of_threads);
     tcase_add_test(tests, reference_in_the_middle);
     tcase_add_test(tests, the_needle_is_rigid_and_slides);
     tcase_add_test(tests, bad_bodies_are_refused);
