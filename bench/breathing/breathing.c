@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char usage[] = "bench_breathing [--quick] [--triangles N] [--csv FILE]\n"
-                            "  --triangles N   of the generated thorax; 42000\n";
+static const char usage[] = "[--quick] [--triangles N] [--csv FILE]";
 
 static const double push[3] = {3, -5, -20}; /* mm */
 
@@ -139,11 +138,11 @@ int main(int count, char **words) {
     long triangles = 42000;
     const char *value = NULL, *path = NULL;
     while (arguments.next < count) {
-        if (bench_flag(&arguments, "quick"))
+        if (bench_flag(&arguments, "--quick"))
             quick = 1;
-        else if (bench_option(&arguments, "triangles", &value))
+        else if (bench_option(&arguments, "--triangles", &value))
             bench_numbers(value, 10000, 20000000, 1, &triangles);
-        else if (!bench_option(&arguments, "csv", &path))
+        else if (!bench_option(&arguments, "--csv", &path))
             bench_usage(&arguments, usage);
     }
     FILE *csv = path ? bench_open(path) : NULL;
