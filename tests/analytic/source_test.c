@@ -1,4 +1,5 @@
-/* Extended sources and supersampled pixels: against explicit means over point sources, and the penumbra of an edge. */
+/* Extended sources and supersampled pixels: against explicit means over point sources, and the penumbra of an
+ * edge. */
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -50,7 +51,8 @@ static skg_plan_options options_of(const skg_spot *spot, int32_t quantity) {
     return options;
 }
 
-static void take(const skg_plan_options *options, const skg_view *from, double *image, skg_plan_report *report) {
+static void take(const skg_plan_options *options, const skg_view *from, double *image,
+                 skg_plan_report *report) {
     skg_plan *plan = NULL;
     skg_output output;
     skg_output_init(&output);
@@ -205,7 +207,7 @@ START_TEST(bad_spots_are_refused) {
     skg_spot_init(&spot);
     spot.shape = 7;
     skg_plan_options options = options_of(&spot, SKG_ENERGY);
-#define REFUSED(code, what)                                                                                            \
+#define REFUSED(code, what)                                                                                  \
     ck_skg_fails(skg_plan_create(context, scene, &view, beam, &options, &plan), code, what)
     REFUSED(SKG_ERR_ARGUMENT, "shape 7");
     spot.shape = SKG_SPOT_DISC, spot.extent[0] = -1;
