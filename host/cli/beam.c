@@ -9,7 +9,7 @@
 
 enum { MOST_FILTERS = 32 };
 
-static const char *const models[] = {"ebel", "birch"};
+static const char *const models[] = {"ebel", "birch"}, *const authors[] = {"Ebel", "Birch and Marshall"};
 static const char *const energy_units[] = {"eV", "keV", "MeV"};
 
 static const cli_flag flag_kvp = {"--kvp", "KV", "tube voltage, 10 to 450 kV (validated from 20 to 150)"};
@@ -149,7 +149,7 @@ static int make_beam(const cli_arguments *arguments, beam *b) {
 
 /* --- what is said --------------------------------------------------------------------------------------- */
 
-/* "90 kV, W, 12 degrees, ebel; 0.1 mm Copper" */
+/* "90 kV, W, 12 degrees, Ebel; 0.1 mm Cu" */
 static void describe(const beam *b, char *text, size_t size) {
     const char *symbol = "", *name = "";
     int used;
@@ -158,7 +158,7 @@ static void describe(const beam *b, char *text, size_t size) {
     } else {
         skg_element_symbol(b->tube.anode, &symbol);
         used = snprintf(text, size, "%g kV, %s, %g degrees, %s", b->tube.kvp, symbol, b->tube.angle_deg,
-                        models[b->tube.model]);
+                        authors[b->tube.model]);
     }
     for (int64_t i = 0; i < b->filter_count && used >= 0 && (size_t)used < size; i++) {
         skg_material_name(b->materials[i], &name);
@@ -285,11 +285,12 @@ static int run(const cli_arguments *arguments) {
     skg_quality_init(&b.quality);
     int exit_status = cli_check_plots(arguments, &plots);
     if (exit_status == CLI_DONE) exit_status = make_beam(arguments, &b);
+    if (exit_status == CLI_DONE) exit_status = write_outputs(arguments, &b);
     if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json))
         exit_status = cli_json_print(beam_json(&b));
     else if (exit_status == CLI_DONE && !cli_is_quiet())
         print_beam(&b);
-    if (exit_status == CLI_DONE) exit_status = write_outputs(arguments, &b);
+    if (exit_status == CLI_DONE) cli_tell_plots(arguments);
     skg_spectrum_release(&b.spectrum);
     for (int64_t i = 0; i < b.filter_count; i++) skg_material_release(&b.materials[i]);
     return exit_status;

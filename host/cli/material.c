@@ -363,11 +363,12 @@ static int look_up(const cli_arguments *arguments, matter *m) {
     skg_status status = find_matter(name, density, m);
     for (int64_t i = 0; status == SKG_OK && i < m->count; i++) status = fill_row(m, &m->rows[i]);
     if (status != SKG_OK) return cli_fail(status);
-    if (cli_given(arguments, &cli_flag_json))
-        exit_status = cli_json_print(matter_json(m));
-    else if (!cli_is_quiet())
-        print_table(m);
-    return exit_status == CLI_DONE ? write_outputs(arguments, m, plots) : exit_status;
+    exit_status = write_outputs(arguments, m, plots);
+    if (exit_status != CLI_DONE) return exit_status;
+    if (cli_given(arguments, &cli_flag_json)) return cli_json_print(matter_json(m));
+    if (!cli_is_quiet()) print_table(m);
+    cli_tell_plots(arguments);
+    return CLI_DONE;
 }
 
 static int run(const cli_arguments *arguments) {

@@ -261,8 +261,12 @@ int cli_write_plots(const cli_arguments *arguments, const cli_plot *plot, const 
             exit_status = cli_write_file(path, csv, strlen(csv));
         else
             exit_status = write_picture(plot, has_extension(path, ".svg"), path);
-        if (exit_status == CLI_DONE && !cli_is_quiet() && !cli_given(arguments, &cli_flag_json))
-            printf("wrote %s\n", path);
     }
     return exit_status;
+}
+
+void cli_tell_plots(const cli_arguments *arguments) {
+    const char *path;
+    if (cli_is_quiet() || cli_given(arguments, &cli_flag_json)) return;
+    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_plot, i)); i++) printf("wrote %s\n", path);
 }

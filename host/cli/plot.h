@@ -29,6 +29,9 @@ int cli_check_plots(const cli_arguments *arguments, int *plots);
 /* Writes every -o: pictures of the plot, and the text `csv`. A file appears whole or not at all. */
 int cli_write_plots(const cli_arguments *arguments, const cli_plot *plot, const char *csv);
 
+/* "wrote FILE" for every -o, unless --quiet or --json. */
+void cli_tell_plots(const cli_arguments *arguments);
+
 /* Writes bytes to a file that appears whole or not at all. */
 int cli_write_file(const char *path, const void *bytes, size_t count);
 
