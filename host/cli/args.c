@@ -172,6 +172,18 @@ int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t le
     return CLI_DONE;
 }
 
+int cli_number(const cli_arguments *arguments, const cli_flag *flag, double least, double most,
+               double *place) {
+    const char *value = cli_value(arguments, flag);
+    if (!value) return CLI_DONE;
+    char *end = NULL;
+    double number = strtod(value, &end);
+    if (end == value || *end || !(number >= least && number <= most))
+        return cli_error(CLI_USAGE, "%s %s is not a number from %g to %g", flag->name, value, least, most);
+    *place = number;
+    return CLI_DONE;
+}
+
 int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high) {
     const char *value = cli_value(arguments, flag);
     if (!value) return CLI_DONE;
