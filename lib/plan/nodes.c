@@ -215,7 +215,7 @@ static skg_status find_fewest(search *s) {
     }
     find_first(s);
     s->best_count = 0;
-    for (int misses = 0; s->count >= 2 && misses < 2;) {
+    for (int misses = 0; s->count >= 1 && misses < 2;) {
         double error = 0;
         SKG_TRY(fit_weights(s, &error));
         if (error > s->aim && s->beam->sets * s->count <= SHIFTED) {

@@ -12,6 +12,7 @@
 /* Effects that a plan knows, in the order in which they are reported. */
 #define SKG_EFFECT_LIST(X)                                                                                   \
     X(SKG_EFFECT_ENERGIES, "several energies")                                                               \
+    X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
