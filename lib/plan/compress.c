@@ -139,11 +139,16 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     const skg_nodes *nodes = &c->found.nodes;
     const int32_t sets = model->channels, bins = c->beam.bins, planes = c->basis.planes;
     for (int32_t n = 0; n < nodes->count; n++) {
-        model->node_kev[n] = model->node_kev[nodes->bin[n]]; /* rising: never overwritten before it is read */
-        for (int32_t s = 0; s < sets; s++)
-            model->weights[n * sets + s] = nodes->shares[n * sets + s] * c->sums[s];
+        const int32_t bin = nodes->bin[n]; /* n or above: nothing is overwritten before it is read */
+        double before = 0, after = 0;
+        for (int32_t s = 0; s < sets; s++) {
+            before += c->shares[bin * sets + s] * c->sums[s];
+            after += model->weights[n * sets + s] = nodes->shares[n * sets + s] * c->sums[s];
+        }
+        model->node_kev[n] = model->node_kev[bin];
+        model->node_photons[n] = before > 0 ? model->node_photons[bin] * (after / before) : 0;
         for (int32_t k = 0; k < planes; k++)
-            model->coefficients[n * planes + k] = c->mu[(int64_t)c->basis.material[k] * bins + nodes->bin[n]];
+            model->coefficients[n * planes + k] = c->mu[(int64_t)c->basis.material[k] * bins + bin];
     }
     model->nodes = nodes->count;
     model->bound = c->found.bound;

@@ -29,7 +29,11 @@ static skg_status choose_nodes(making *m, skg_model *model) {
         if (m->spectrum->photons[i] > 0) m->bins[model->nodes++] = i;
     model->bins = model->nodes;
     SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_kev, "nodes", &model->node_kev));
-    for (int32_t n = 0; n < model->nodes; n++) model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_photons, "nodes", &model->node_photons));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+        model->node_photons[n] = m->spectrum->photons[m->bins[n]];
+    }
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
@@ -221,4 +225,5 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->weights);
     skg_free(&model->open);
     skg_free(&model->node_kev);
+    skg_free(&model->node_photons);
 }

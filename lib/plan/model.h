@@ -21,11 +21,12 @@ typedef struct {
     double *open;        /* [channels] sum of the weights before they were made those of a ratio */
     int64_t world_plane; /* that a mm of the world's path adds world_weight to; -1: vacuum */
     double world_weight;
-    double *node_kev;  /* [nodes] */
-    int32_t bins;      /* of the spectrum that have photons */
-    int32_t materials; /* that differ: planes without compression */
-    double bound;      /* of the error that fewer nodes and planes make, stated; 0: every bin is used */
-    int64_t verified;  /* points of the range of lengths on which it was found */
+    double *node_photons; /* [nodes] of an open beam that would weigh as much */
+    double *node_kev;     /* [nodes] */
+    int32_t bins;         /* of the spectrum that have photons */
+    int32_t materials;    /* that differ: planes without compression */
+    double bound;         /* of the error that fewer nodes and planes make, stated; 0: every bin is used */
+    int64_t verified;     /* points of the range of lengths on which it was found */
 } skg_model;
 
 /* options: quantity, response, world, bands, tolerance. view: whose lengths a compression has to hold for. */

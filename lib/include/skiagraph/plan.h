@@ -155,9 +155,11 @@ typedef struct {
 SKG_API void skg_plan_report_init(skg_plan_report *report);
 SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report);
 
-/* An energy that is used: keV, and what it counts for in each channel: weights[channels], photons or keV per
- * pixel of the open beam, shares of them for ratios. Either may be NULL. */
-SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *weights);
+/* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
+ * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
+ * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. */
+SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                                 double *weights);
 
 /* Each effect that a plan knows: on or off, and why. Text valid as long as the plan. */
 typedef struct {
