@@ -145,10 +145,6 @@ static int in_band(const making *m, int64_t channel, double energy) {
 
 static skg_status check_bands(const making *m) {
     const skg_plan_options *options = m->options;
-    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS ||
-        (options->bands > 0 && !options->band_kev))
-        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
-                        options->bands, SKG_MOST_CHANNELS);
     for (int64_t c = 0; c < options->bands; c++)
         if (!(options->band_kev[c] < options->band_kev[c + 1]))
             return skg_fail(SKG_ERR_BEAM, "band %" PRId64 " runs from %g to %g keV; edges have to rise", c,
@@ -213,7 +209,7 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
-    if (options->tolerance > 0 && model->nodes > 2 && model->materials > 0)
+    if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
         SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);

@@ -92,7 +92,6 @@ cleanup:
 }
 
 static skg_status make_attenuation(skg_plan *plan) {
-    const double one = 1;
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
     const int is_ratio =
@@ -112,10 +111,14 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .ratio = has_world && is_ratio,
                                    .falloff = plan->options.falloff && !is_ratio,
                                    .energies = plan->options.quantity == SKG_ENERGY};
+    return skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
+                                  model->weights, &plan->attenuation);
+}
+
+static skg_status make_lengths(skg_plan *plan) {
+    const double one = 1;
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
-    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                   model->weights, &plan->attenuation));
     SKG_TRY(
         skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
@@ -130,6 +133,29 @@ static skg_status make_samples(skg_plan *plan) {
     SKG_TRY(
         skg_samples_make(parallel ? NULL : plan->options.spot, plan->options.supersampling, &plan->samples));
     plan->options.spot = NULL; /* the caller's, and copied */
+    return SKG_OK;
+}
+
+skg_status skg_plan_renew_model(skg_plan *plan) {
+    skg_model model;
+    if (plan->materials == plan->scene->materials) return SKG_OK;
+    if (plan->model.bound > 0)
+        return skg_fail(SKG_STALE,
+                        "a material has changed, and the plan's %d energies were chosen for the old ones; "
+                        "make a new plan",
+                        (int)plan->model.nodes);
+    skg_status status = skg_model_create(plan->scene, &plan->view, plan->spectrum, &plan->options, &model);
+    if (status != SKG_OK) {
+        skg_model_release(&model);
+        return status;
+    }
+    skg_model_release(&plan->model);
+    plan->model = model;
+    plan->report.planes = model.planes;
+    /* OpenCL keeps the old tables until what is enqueued is done. */
+    skg_attenuation_release(&plan->attenuation);
+    SKG_TRY(make_attenuation(plan));
+    plan->materials = plan->scene->materials;
     return SKG_OK;
 }
 
@@ -154,6 +180,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(make_attenuation(plan));
+    SKG_TRY(make_lengths(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
@@ -163,10 +190,20 @@ static skg_status make(skg_plan *plan) {
     return skg_report_effects(plan);
 }
 
-/* The caller's arrays are not kept, its handles are. */
-static void retain_parts_of_options(skg_plan_options *options) {
+/* The caller's handles are retained, its arrays copied. */
+static skg_status keep_options(skg_plan *plan) {
+    skg_plan_options *options = &plan->options;
+    const double *edges = options->band_kev;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
+    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS || (options->bands > 0 && !edges))
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
+                        options->bands, SKG_MOST_CHANNELS);
+    if (options->bands == 0) return SKG_OK;
+    SKG_TRY(skg_alloc(options->bands + 1, sizeof *plan->band_kev, "bands", &plan->band_kev));
+    for (int64_t c = 0; c <= options->bands; c++) plan->band_kev[c] = edges[c];
+    options->band_kev = plan->band_kev;
+    return SKG_OK;
 }
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
@@ -186,12 +223,13 @@ skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_vie
     made->scene = scene, skg_ref(&scene->refs);
     made->spectrum = spectrum, skg_ref(&spectrum->refs);
     made->structure = scene->structure;
+    made->materials = scene->materials;
     skg_plan_options_init(&made->options);
     skg_view_init(&made->view);
     if (options)
         SKG_TRY_CLEANUP(skg_struct_read(options, "skg_plan_options", &made->options, sizeof made->options));
     SKG_TRY_CLEANUP(skg_struct_read(view, "skg_view", &made->view, sizeof made->view));
-    retain_parts_of_options(&made->options);
+    SKG_TRY_CLEANUP(keep_options(made));
     SKG_TRY_CLEANUP(check_options(context, &made->options));
     SKG_TRY_CLEANUP(make(made));
     *plan = made;
@@ -228,6 +266,7 @@ void skg_plan_release(skg_plan **plan) {
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);
     skg_free(&last->channel_names);
+    skg_free(&last->band_kev);
     skg_model_release(&last->model);
     skg_plan_meshes_release(&last->meshes);
     skg_response_release(&last->options.response);
