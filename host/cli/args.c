@@ -14,7 +14,7 @@ enum { MOST_NAMES = 64 };
 const cli_flag cli_flag_device = {"--device", "NAME",
                                   "cpu, gpu, PLATFORM:DEVICE, or part of a device's name; \"cpu threads=4\"\n"
                                   "limits the threads. Default: SKG_DEVICE, then the best there is"};
-const cli_flag cli_flag_precision = {"--precision", "single|double",
+const cli_flag cli_flag_precision = {"--precision", "single|double|half",
                                      "of path lengths and image; default: the scene's, else single"};
 const cli_flag cli_flag_tolerance = {"--tolerance", "ERROR",
                                      "relative error allowed to the spectrum, 0 to below 1; default: the\n"

@@ -1,6 +1,7 @@
 #include "plan/model.h"
 
 #include "beam/spectrum.h"
+#include "plan/compress.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -26,6 +27,13 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     SKG_TRY(skg_alloc(m->spectrum->count, sizeof *m->bins, "nodes", &m->bins));
     for (int64_t i = 0; i < m->spectrum->count; i++)
         if (m->spectrum->photons[i] > 0) m->bins[model->nodes++] = i;
+    model->bins = model->nodes;
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_kev, "nodes", &model->node_kev));
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_photons, "nodes", &model->node_photons));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+        model->node_photons[n] = m->spectrum->photons[m->bins[n]];
+    }
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
@@ -51,18 +59,24 @@ static skg_status look_up(making *m, const skg_model *model) {
     return SKG_OK;
 }
 
+/* Half precision sums distances as they are: a plane a material, of which parts add 1 or -1 times theirs. */
+static int is_unweighted(const making *m) {
+    return m->options->precision == SKG_HALF;
+}
+
 /* The factor by which mu is a basis, or 0 where it is not proportional to it. */
-static double factor_of(const double *mu, const double *basis, int32_t nodes) {
+static double factor_of(const making *m, const double *mu, const double *basis, int32_t nodes) {
     const double factor = mu[0] / basis[0];
+    if (is_unweighted(m) && memcmp(mu, basis, (size_t)nodes * sizeof *mu) != 0) return 0;
     for (int32_t n = 1; n < nodes; n++)
         if (!(fabs(mu[n] - factor * basis[n]) <= PROPORTIONAL * mu[n])) return 0;
     return factor;
 }
 
 /* A new basis: with one energy 1/mm, so that plane and exponent are the same; else the material itself. */
-static void start_basis(const double *mu, int32_t nodes, double *basis) {
+static void start_basis(const making *m, const double *mu, int32_t nodes, double *basis) {
     memcpy(basis, mu, (size_t)nodes * sizeof *basis);
-    if (nodes == 1) basis[0] = 1;
+    if (nodes == 1 && !is_unweighted(m)) basis[0] = 1;
 }
 
 static skg_status choose_planes(making *m, skg_model *model) {
@@ -75,7 +89,7 @@ static skg_status choose_planes(making *m, skg_model *model) {
         m->plane[p] = -1;
         if (!(mu[0] > 0)) continue; /* no attenuation at one energy: none at any */
         for (int32_t k = 0; k < model->planes && m->plane[p] < 0; k++) {
-            m->factor[p] = factor_of(mu, m->bases + (int64_t)k * nodes, nodes);
+            m->factor[p] = factor_of(m, mu, m->bases + (int64_t)k * nodes, nodes);
             if (m->factor[p] > 0) m->plane[p] = k;
         }
         if (m->plane[p] >= 0) continue;
@@ -83,8 +97,8 @@ static skg_status choose_planes(making *m, skg_model *model) {
             room = 2 * room + 8;
             SKG_TRY(skg_realloc(room * nodes, sizeof *m->bases, "planes", &m->bases));
         }
-        start_basis(mu, nodes, m->bases + (int64_t)model->planes * nodes);
-        m->factor[p] = nodes == 1 ? mu[0] : 1;
+        start_basis(m, mu, nodes, m->bases + (int64_t)model->planes * nodes);
+        m->factor[p] = mu[0] / m->bases[(int64_t)model->planes * nodes];
         m->plane[p] = model->planes++;
     }
     return SKG_OK;
@@ -142,9 +156,12 @@ static skg_status check_bands(const making *m) {
     return SKG_OK;
 }
 
+static int shows_ratio(const making *m) {
+    return m->options->quantity == SKG_TRANSMISSION || m->options->quantity == SKG_ATTENUATION;
+}
+
 static skg_status weigh(const making *m, skg_model *model) {
-    const int32_t quantity = m->options->quantity;
-    const int is_ratio = quantity == SKG_TRANSMISSION || quantity == SKG_ATTENUATION;
+    const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
     const int32_t channels = model->channels;
@@ -178,13 +195,14 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
     for (int32_t n = 0; n < model->nodes; n++)
         for (int32_t k = 0; k < model->planes; k++)
             model->coefficients[n * planes + k] = m->bases[(int64_t)k * model->nodes + n];
+    model->materials = model->planes;
     model->planes = planes;
     model->world_plane = m->plane[m->scene->count];
     model->world_weight = m->factor[m->scene->count];
     return SKG_OK;
 }
 
-skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum,
+skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model) {
     making m = {.scene = scene, .spectrum = spectrum, .options = options, .matters = scene->count + 1};
     skg_status status = SKG_OK;
@@ -195,6 +213,8 @@ skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
+    if (options->tolerance > 0 && model->nodes > 2 && model->materials > 0)
+        SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);
@@ -210,4 +230,6 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->coefficients);
     skg_free(&model->weights);
     skg_free(&model->open);
+    skg_free(&model->node_kev);
+    skg_free(&model->node_photons);
 }

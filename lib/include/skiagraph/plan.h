@@ -16,7 +16,7 @@ extern "C" {
 typedef struct skg_plan skg_plan;
 typedef struct skg_job skg_job;
 
-enum { SKG_SINGLE = 0, SKG_DOUBLE = 1 };
+enum { SKG_SINGLE = 0, SKG_DOUBLE = 1, SKG_HALF = 2 };
 enum { SKG_STRATEGY_AUTO = 0, SKG_STRATEGY_COPIES = 1, SKG_STRATEGY_TILES = 2, SKG_STRATEGY_ATOMICS = 3 };
 
 /* What a pixel holds. I0 is the same chain without parts. */
@@ -62,14 +62,15 @@ SKG_API void skg_spot_init(skg_spot *spot);
 
 typedef struct {
     int32_t size;
-    int32_t
-        precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent */
-    int32_t strategy; /* SKG_STRATEGY_...; every one gives the same bits */
-    int32_t quantity; /* SKG_ENERGY, ... */
-    int32_t tile;     /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
-    int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
-                         looked for */
-    int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
+    int32_t precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent;
+                             SKG_HALF: distances and images in 16 bits as Vidal and Villard 2016, to compare
+                          with: a point source or samples of one, closed meshes */
+    int32_t strategy;  /* SKG_STRATEGY_...; every one gives the same bits */
+    int32_t quantity;  /* SKG_ENERGY, ... */
+    int32_t tile;      /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
+    int32_t overlaps;  /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
+                          looked for */
+    int32_t profile;   /* 1: stages are timed (a little slower); 0: not */
     int32_t
         falloff; /* 1: intensities fall with the cube of the distance from the source (inverse square and
                     obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
@@ -81,7 +82,11 @@ typedef struct {
     int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
     int32_t reserved;      /* 0 */
     const double
-        *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+        *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+    double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
+                         error that fewer energies and planes may make, relative where more than 1e-6 of the
+                         open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
+                         that the plan's view meets, and a quarter more */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -178,10 +183,20 @@ typedef struct {
                             out */
     int64_t bad_pixels;  /* of the last frame: signed hits of an open mesh do not cancel there */
     int64_t negative_pixels; /* of the last frame: negative exponent */
+    int64_t nodes, bins;     /* energies that are used, and that the spectrum has photons at */
+    double bound; /* of the error that fewer nodes and planes make, in the words of the tolerance: twice the
+                     worst that was found; 0 where every bin is used */
+    int64_t verified; /* number of points (lengths of all materials) on which it was looked for */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
 SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report);
+
+/* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
+ * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
+ * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. */
+SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                                 double *weights);
 
 /* Each effect that a plan knows: on or off, and why. Text valid as long as the plan. */
 typedef struct {
