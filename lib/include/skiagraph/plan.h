@@ -30,6 +30,21 @@ enum {
 
 enum { SKG_MOST_CHANNELS = 16 };
 
+/* What a line or a point becomes on the detector, sampled one pixel apart, the middle sample in place; scaled
+ * to sum 1. Either two line spread functions, whose product is the point spread function, or the latter.
+ * Sample k of n is what of a pixel's value is found k - n/2 pixels further on. Beyond its border the image
+ * goes on as at the border. Numbers of samples are odd, 1 to 4095. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;           /* 0 */
+    int64_t columns, rows;      /* samples along a row and along a column */
+    const double *along_row;    /* [columns] line spread function */
+    const double *along_column; /* [rows] line spread function */
+    const double *point;        /* [rows][columns] point spread function; NULL: the two above */
+} skg_detector_blur;
+
+SKG_API void skg_detector_blur_init(skg_detector_blur *blur);
+
 typedef struct {
     int32_t size;
     int32_t
@@ -49,6 +64,7 @@ typedef struct {
                       everything */
     const double
         *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+    const skg_detector_blur *blur; /* copied; NULL: none */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
