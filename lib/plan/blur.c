@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 
 /* As in blur.cl. */
 enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
@@ -19,8 +20,9 @@ struct skg_blur {
     skg_context *context;
     int64_t columns, rows; /* samples */
     int32_t separable, reserved;
-    double *down;      /* [rows]; of a point spread function: one sample of 1 */
-    double *across;    /* [columns]; of a point spread function: [rows][columns] */
+    double *down;   /* [rows]; of a point spread function: one sample of 1 */
+    double *across; /* [columns]; of a point spread function: [rows][columns] */
+    char kind[80];
     blur_type type[2]; /* of float, of double; made on demand */
     skg_buffer workspace;
 };
@@ -88,10 +90,21 @@ static skg_status read_shape(const skg_detector_blur *shape, skg_blur *blur) {
 
 skg_status skg_blur_create(skg_context *context, const skg_detector_blur *shape, skg_blur **blur) {
     SKG_TRY(skg_alloc(1, sizeof **blur, "blur", blur));
-    (*blur)->context = context;
-    skg_status status = read_shape(shape, *blur);
-    if (status != SKG_OK) skg_blur_release(blur);
-    return status;
+    skg_blur *made = *blur;
+    made->context = context;
+    skg_status status = read_shape(shape, made);
+    if (status != SKG_OK) {
+        skg_blur_release(blur);
+        return status;
+    }
+    snprintf(made->kind, sizeof made->kind, "a %s of %" PRId64 " x %" PRId64 " samples",
+             made->separable ? "pair of line spread functions" : "point spread function", made->columns,
+             made->rows);
+    return SKG_OK;
+}
+
+const char *skg_blur_kind(const skg_blur *blur) {
+    return blur->kind;
 }
 
 void skg_blur_release(skg_blur **blur) {

@@ -20,6 +20,9 @@ void skg_blur_release(skg_blur **blur);
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
                         int64_t channels, skg_stage_log *log);
 
+/* What was given: "a point spread function of 5 x 5 samples"; valid as long as the blur. */
+const char *skg_blur_kind(const skg_blur *blur);
+
 /* Bytes that it has on the device. */
 int64_t skg_blur_bytes(const skg_blur *blur);
 

@@ -17,6 +17,29 @@ static void set(skg_plan *plan, int effect, int on, const char *format, ...) {
     state->on = on;
 }
 
+static void set_detector(skg_plan *plan) {
+    const skg_plan_options *options = &plan->options;
+    if (options->noise)
+        set(plan, SKG_EFFECT_NOISE, 1,
+            "asked for; Swank factor %g; photon by photon where fewer than %g are detected in a pixel",
+            options->swank, SKG_FEW_PHOTONS);
+    else
+        set(plan, SKG_EFFECT_NOISE, 0, "not asked for");
+    if (plan->blur)
+        set(plan, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(plan->blur));
+    else
+        set(plan, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
+    if (options->electronic_kev > 0)
+        set(plan, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel",
+            options->electronic_kev);
+    else
+        set(plan, SKG_EFFECT_ELECTRONIC, 0, "not asked for");
+    if (options->quantum_step_kev > 0)
+        set(plan, SKG_EFFECT_QUANTISATION, 1, "steps of %g keV per pixel", options->quantum_step_kev);
+    else
+        set(plan, SKG_EFFECT_QUANTISATION, 0, "no step is given");
+}
+
 skg_status skg_report_effects(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     int64_t nested = 0;
@@ -53,6 +76,7 @@ skg_status skg_report_effects(skg_plan *plan) {
         set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
     else
         set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
+    set_detector(plan);
     return SKG_OK;
 }
 

@@ -105,14 +105,16 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
                           const skg_frame_parts *frame, const skg_raster *raster) {
     const int lengths = work->lengths_of >= 0, quantity = plan->options.quantity;
     const double factor = quantity == SKG_FLUENCE && !lengths ? 1 / skg_camera_pixel_area(&frame->camera) : 1;
+    const int late = !lengths && skg_plan_is_absolute(&plan->options); /* noise comes before the factor */
     /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
     const double least = -1e-6 * frame->scale.bound - 1e-6;
     const cl_int none = 0;
     SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
-    return skg_attenuate(plan->attenuator, raster, &frame->camera, frame->scale.scale,
-                         lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
-                         &work->place, &job->log);
+    SKG_TRY(skg_attenuate(plan->attenuator, raster, &frame->camera, frame->scale.scale,
+                          lengths ? &plan->lengths : &plan->attenuation, late ? 1 : factor, least,
+                          plan->negative.memory, &work->noise, &work->place, &job->log));
+    return lengths ? SKG_OK : skg_plan_detect(plan, &work->noise, late ? factor : 1, &work->place, &job->log);
 }
 
 /* Camera, parts, scale, and the rasteriser that they call for. */

@@ -12,6 +12,7 @@ typedef struct {
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t kind;               /* of lengths: SKG_NET or SKG_SURFACE */
     int32_t reserved;
+    skg_noise_args noise; /* its key */
     skg_image_place place;
 } skg_frame_work;
 

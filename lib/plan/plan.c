@@ -8,8 +8,8 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options =
-            (skg_plan_options){.size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1};
+        *options = (skg_plan_options){
+            .size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1, .swank = 1};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -33,7 +33,7 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
-    return SKG_OK;
+    return skg_plan_check_detector(options);
 }
 
 static void start_report(skg_plan *plan) {
@@ -86,10 +86,11 @@ static skg_status make_attenuation(skg_plan *plan) {
     const double one = 1;
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
-    const int32_t shown = plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
-                          : model->nodes == 1                       ? SKG_SHOWN_EXPONENT
-                                                                    : SKG_SHOWN_LOGARITHM;
-    const int is_ratio = plan->options.quantity == SKG_TRANSMISSION || shown != SKG_SHOWN_INTENSITY;
+    const int is_late = plan->detector || plan->blur; /* logarithms are taken after noise and blur */
+    const int32_t shown = is_late || plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
+                          : model->nodes == 1                                  ? SKG_SHOWN_EXPONENT
+                                                                               : SKG_SHOWN_LOGARITHM;
+    const int is_ratio = skg_plan_is_ratio(&plan->options) && !skg_plan_is_absolute(&plan->options);
     /* Over one energy's open beam the world cancels. */
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
     const skg_attenuation image = {.planes = model->planes,
@@ -99,13 +100,14 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .world_plane = has_world ? (int32_t)model->world_plane : -1,
                                    .world_weight = model->world_weight,
                                    .ratio = has_world && is_ratio,
-                                   .falloff = plan->options.falloff && !is_ratio};
+                                   .falloff = plan->options.falloff && !is_ratio,
+                                   .noise = plan->options.noise};
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
     SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                   model->weights, &plan->attenuation));
-    SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
+                                   model->weights, model->variances, &plan->attenuation));
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, NULL,
+                                   &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
     SKG_TRY(
         skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
@@ -120,6 +122,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(find_open(plan));
     SKG_TRY(make_geometry(plan));
+    SKG_TRY(skg_plan_make_detector(plan));
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
     SKG_TRY(skg_plan_choose_strategy(plan));
@@ -179,6 +182,8 @@ static void release_device_memory(skg_plan *plan) {
     skg_attenuation_release(&plan->attenuation);
     skg_attenuation_release(&plan->lengths);
     skg_attenuator_release(&plan->attenuator);
+    skg_blur_release(&plan->blur);
+    skg_detector_release(&plan->detector);
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);

@@ -65,6 +65,12 @@ typedef struct {
     const double
         *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
     const skg_detector_blur *blur; /* copied; NULL: none */
+    int32_t noise;    /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
+    int32_t reserved; /* 0 */
+    double swank;     /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
+                         variance by 1 / swank; 1 (default): every photon gives what the response says */
+    double electronic_kev;   /* standard deviation of the electronic noise, keV per pixel; 0: none */
+    double quantum_step_kev; /* values are whole multiples of it, keV per pixel; 0: any */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -89,7 +95,8 @@ typedef struct {
     int64_t posed;             /* how many parts have a pose of their own in this frame */
     const int64_t *posed_ids;  /* [posed] numbers of parts */
     const double *posed_poses; /* [posed][16] */
-    int64_t noise_seed;        /* with index: the key of the noise, where there is noise */
+    int64_t noise_seed;        /* with index: the key of the noise, where there is noise: frames of another
+                                  key are independent, those of the same have the same noise */
     int64_t index;
 } skg_frame;
 
