@@ -91,12 +91,13 @@ static skg_status read_frame(const submission *s, int64_t index, skg_view *view,
     skg_frame frame;
     skg_frame_init(&frame);
     *view = plan->view;
-    *noise = skg_noise_key(0, index);
+    *noise = skg_noise_key(plan->options.noise_seed, index);
     memset(poses, 0, (size_t)plan->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
     SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", &frame,
                             sizeof frame));
-    *noise = skg_noise_key(frame.noise_seed, frame.index);
+    *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame.noise_seed),
+                           frame.index);
     if (frame.view) {
         SKG_TRY(skg_view_check(frame.view));
         skg_view_init(view);

@@ -65,10 +65,11 @@ typedef struct {
     const double
         *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
     const skg_detector_blur *blur; /* copied; NULL: none */
-    int32_t noise;    /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
-    int32_t reserved; /* 0 */
-    double swank;     /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
-                         variance by 1 / swank; 1 (default): every photon gives what the response says */
+    int32_t noise;      /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
+    int32_t reserved;   /* 0 */
+    double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
+                           variance by 1 / swank; 1 (default): every photon gives what the response says */
+    int64_t noise_seed; /* added to that of each frame */
     double electronic_kev;   /* standard deviation of the electronic noise, keV per pixel; 0: none */
     double quantum_step_kev; /* values are whole multiples of it, keV per pixel; 0: any */
 } skg_plan_options;
