@@ -4,6 +4,9 @@
 
 /* Compilers that do not know the pragma skip it; bits do not depend on it. */
 #define SKG_UNROLL _Pragma("unroll")
+#ifndef SKG_HALF_UNIT
+#define SKG_HALF_UNIT 1.0f
+#endif
 #define SKG_LN2 0.693147180559945309417
 
 #if SKG_OUTPUT_DOUBLE
@@ -17,6 +20,7 @@ typedef float skg_out;
 #define SKG_TO_OUT_V SKG_CAT(convert_float, SKG_WIDE)
 #endif
 
+#define SKG_OUT_TO_REAL_V SKG_CAT(SKG_CAT(convert_, SKG_SCALAR), SKG_WIDE)
 #define SKG_AS_REAL_V SKG_CAT(SKG_CAT(as_, SKG_SCALAR), SKG_WIDE)
 #if SKG_DOUBLE
 #define SKG_SCALAR double
@@ -43,13 +47,27 @@ static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row)
 }
 
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
+#if SKG_HALF
+    /* The image, too, is kept in binary16; energies in MeV. */
+    float lanes[SKG_WIDE];
+    SKG_STORE_V(value, 0, lanes);
+    for (int k = 0; k < min(pixels, SKG_WIDE); k++) {
+        const float rounded = skg_to_half(lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT;
+        place[k] = (skg_out)rounded + (SKG_ADD ? place[k] : (skg_out)(0));
+    }
+    return;
+#endif
     if (pixels >= SKG_WIDE) {
+#if SKG_ADD
+        SKG_STORE_V(SKG_LOAD_V(0, place) + SKG_TO_OUT_V(value), 0, place);
+#else
         SKG_STORE_V(SKG_TO_OUT_V(value), 0, place);
+#endif
         return;
     }
     skg_out rest[SKG_WIDE];
     SKG_STORE_V(SKG_TO_OUT_V(value), 0, rest);
-    for (int k = 0; k < pixels; k++) place[k] = rest[k];
+    for (int k = 0; k < pixels; k++) place[k] = SKG_ADD ? place[k] + rest[k] : rest[k];
 }
 
 /* Sums of coefficient times mm over the planes, for each run. */
@@ -104,7 +122,7 @@ static skg_realv skg_photons_v(int nodes, __constant const skg_real *coefficient
     for (int n = 0; n < nodes; n++) {
         const skg_real weight = weights[n * SKG_CHANNELS], variance = variances[n * SKG_CHANNELS];
         if ((n & 3) == 0)
-            skg_draw_v(key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2, key->sample), draw);
+            skg_draw_v(key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2), draw);
         if (!(weight > 0)) continue;
         skg_realv power = coefficients[n * SKG_PLANES] * x[0][r];
         SKG_UNROLL for (int p = 1; p < SKG_PLANES; p++)
@@ -157,7 +175,8 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #endif
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
         const int at = min(column + r * SKG_WIDE, frame.columns - 1); /* runs past the end stay in the row */
-        const skg_realv length = skg_ray_lengths_v(&ray, at, row), scaled = length * ray.unit;
+        const skg_realv length = skg_ray_lengths_v(&ray, at, row);
+        const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * ray.unit;
         SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++)
             x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * scaled;
 #if SKG_WORLD
@@ -229,7 +248,7 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
             const int at = column + r * SKG_WIDE, pixel = row * frame.columns + at;
             const skg_intv few = SKG_TO_INT_V(mean * mean < photons * variance);
             skg_uintv draw[4];
-            skg_draw_v(&key, pixel, SKG_DRAW_WORD(SKG_DRAW_QUANTUM, c, 0, key.sample), draw);
+            skg_draw_v(&key, pixel, SKG_DRAW_WORD(SKG_DRAW_QUANTUM, c, 0), draw);
             const skg_floatv deviate = skg_root_v(SKG_TO_FLOAT_V(variance)) * skg_normal_v(draw[0]);
             shown[c][r] += SKG_TO_REAL_V(deviate);
             if (skg_any(few)) {
@@ -250,5 +269,22 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
         SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
             skg_show(shown[c][r], output + offset + row * row_stride + c * channel_stride + at, pixels);
         skg_count(highest[r], limit, pixels, negative);
+    }
+}
+
+/* Means of several passes as attenuation: -ln, of at least the smallest normal float. One work-item a run. */
+__kernel void skg_logarithm(int columns, int rows, int channels, __global skg_out *output, long offset,
+                            long row_stride, long channel_stride) {
+    const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
+    if (column >= columns || row >= rows) return;
+    for (int c = 0; c < channels; c++) {
+        __global skg_out *place = output + offset + row * row_stride + c * channel_stride + column;
+        skg_out mean[SKG_WIDE];
+        for (int k = 0; k < SKG_WIDE; k++) mean[k] = place[min(k, columns - column - 1)];
+        const skg_realv value = SKG_OUT_TO_REAL_V(SKG_LOAD_V(0, mean));
+        const skg_realv least = (skg_realv)(0x1p-126f);
+        const skg_realv result = -skg_log_v(value > least ? value : least);
+        SKG_STORE_V(SKG_TO_OUT_V(result), 0, mean);
+        for (int k = 0; k < min(SKG_WIDE, columns - column); k++) place[k] = mean[k];
     }
 }

@@ -1,18 +1,7 @@
 /* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
  * shown. In place, in the type of skg_real. */
-#if SKG_DOUBLE
-SKG_DEFINE_LOG_DOUBLE(skg_log_v, skg_realv, skg_maskv, SKG_CAT(as_double, SKG_WIDE), SKG_CAT(as_long, SKG_WIDE),
-                      SKG_TO_REAL_V)
-#define SKG_LEAST_SIGNAL 0x1p-1022
-#else
-SKG_DEFINE_LOG_FLOAT(skg_log_v, skg_realv, skg_maskv, SKG_CAT(as_float, SKG_WIDE), SKG_CAT(as_int, SKG_WIDE),
-                     SKG_TO_REAL_V)
-#define SKG_LEAST_SIGNAL 0x1p-126f
-#endif
-
 /* electronic: standard deviation in keV; step in keV; factor of the channel times `all`: from keV or photons per pixel to
- * what is shown, or to what -ln is shown of; where that is not positive, of the least normal number. One work-item SKG_WIDE pixels
- * of a row of a channel. */
+ * what is shown. One work-item SKG_WIDE pixels of a row of a channel. */
 __kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
                          int rows, skg_noise_args key, skg_real electronic, skg_real step,
                          __constant const skg_real *factor, skg_real all) {
@@ -30,16 +19,13 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     }
 #if SKG_ELECTRONIC
     skg_uintv draw[4];
-    skg_draw_v(&key, row * columns + column, SKG_DRAW_WORD(SKG_DRAW_ELECTRONIC, channel, 0, 0), draw);
+    skg_draw_v(&key, row * columns + column, SKG_DRAW_WORD(SKG_DRAW_ELECTRONIC, channel, 0), draw);
     value = fma((skg_realv)(electronic), SKG_TO_REAL_V(skg_normal_v(draw[0])), value);
 #endif
 #if SKG_QUANTISED
     value = rint(value / step) * step;
 #endif
     value *= factor[channel] * all;
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-    value = -skg_log_v(fmax(value, (skg_realv)(SKG_LEAST_SIGNAL)));
-#endif
     if (pixels >= SKG_WIDE) {
         SKG_STORE_V(value, 0, image);
         return;

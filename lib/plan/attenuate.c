@@ -15,7 +15,7 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, runs;
+    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, runs, energies;
 } kernel_key;
 
 struct skg_attenuator {
@@ -75,24 +75,29 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
     skg_free(attenuator);
 }
 
-static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
+static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     static const char *const quiet[] = {"exponential.clh", "attenuate.cl"};
     static const char *const noisy[] = {"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"};
-    cl_program program = NULL;
     char more[256];
+    snprintf(
+        more, sizeof more,
+        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
+        "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d%s",
+        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
+        (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->add, (int)key->runs,
+        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+    return skg_kernels_get(attenuator->context, &key->options, key->noise ? 4 : 2, key->noise ? noisy : quiet,
+                           more, program);
+}
+
+static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
+    cl_program program = NULL;
     for (int32_t i = 0; i < attenuator->count; i++)
         if (memcmp(&attenuator->keys[i], key, sizeof *key) == 0) {
             *kernel = attenuator->kernels[i];
             return SKG_OK;
         }
-    snprintf(
-        more, sizeof more,
-        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_RUNS=%d",
-        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->runs);
-    SKG_TRY(skg_kernels_get(attenuator->context, &key->options, key->noise ? 4 : 2,
-                            key->noise ? noisy : quiet, more, &program));
+    SKG_TRY(get_program(attenuator, key, &program));
     SKG_TRY(skg_kernel_create(program, "skg_attenuate", kernel));
     /* Full: the oldest goes; its program stays with the context. */
     const int32_t slot = attenuator->count < MOST_KERNELS ? attenuator->count++ : attenuator->next;
@@ -101,17 +106,6 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     attenuator->keys[slot] = *key;
     attenuator->kernels[slot] = *kernel;
     return SKG_OK;
-}
-
-static void round_rays(const skg_ray_double *from, skg_ray_float *to) {
-    for (int k = 0; k < 3; k++) {
-        to->centre[k] = (float)from->centre[k];
-        to->column[k] = (float)from->column[k];
-        to->row[k] = (float)from->row[k];
-    }
-    to->middle_i = (float)from->middle_i;
-    to->middle_j = (float)from->middle_j;
-    to->unit = (float)from->unit;
 }
 
 static size_t padded(int64_t items, int64_t group) {
@@ -130,7 +124,7 @@ static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
 /* Arguments from `first` on of effects that are there: world, falloff and noise. */
 static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key *key,
                               const skg_camera *camera, const skg_attenuation *attenuation,
-                              const skg_noise_args *noise) {
+                              const skg_noise_args *noise, double photons) {
     const int single = key->options.precision == SKG_SINGLE;
     if (key->world) {
         /* |ray| times path: the whole ray of a point source; with a parallel beam, whose |ray| is 1 mm, from
@@ -151,7 +145,6 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
                                single ? (const void *)&nearest_single : (const void *)&nearest));
     }
     if (key->noise) {
-        const double photons = SKG_FEW_PHOTONS;
         const float photons_single = (float)photons;
         SKG_TRY(skg_kernel_set_memory(kernel, first++, 1, &attenuation->variances.memory));
         SKG_TRY(skg_kernel_set(kernel, first++, sizeof *noise, noise));
@@ -161,22 +154,31 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
     return SKG_OK;
 }
 
+static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
+                         const skg_attenuation *attenuation, const skg_image_place *place) {
+    /* Of the raster's abilities only the type of its sums is of interest here. */
+    return (kernel_key){.options = {.precision = raster->options.kernels.precision,
+                                    .bits = raster->options.kernels.bits,
+                                    .half = raster->options.kernels.half},
+                        .planes = attenuation->planes,
+                        .channels = attenuation->channels,
+                        .shown = attenuation->shown,
+                        .world = attenuation->world_plane >= 0,
+                        .ratio = attenuation->ratio,
+                        .falloff = attenuation->falloff && !camera->parallel,
+                        .noise = attenuation->noise,
+                        .output_double = place->output_double,
+                        .energies = raster->options.kernels.half && attenuation->energies,
+                        .add = place->add,
+                        .runs = attenuation->nodes > 1 ? RUNS : 1};
+}
+
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
                          cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
                          skg_stage_log *log) {
     const skg_kernel_options *sums = &raster->options.kernels;
-    /* Of the raster's abilities only the type of its sums is of interest here. */
-    const kernel_key key = {.options = {.precision = sums->precision, .bits = sums->bits},
-                            .planes = attenuation->planes,
-                            .channels = attenuation->channels,
-                            .shown = attenuation->shown,
-                            .world = attenuation->world_plane >= 0,
-                            .ratio = attenuation->ratio,
-                            .falloff = attenuation->falloff && !camera->parallel,
-                            .noise = attenuation->noise,
-                            .output_double = place->output_double,
-                            .runs = attenuation->nodes > 1 ? RUNS : 1};
+    const kernel_key key = key_of(raster, camera, attenuation, place);
     const int single = sums->precision == SKG_SINGLE;
     /* As the kernel counts: powers of two above a limit. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : 1.4426950408889634);
@@ -186,7 +188,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
     skg_ray_float ray_single;
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
     skg_camera_rays(camera, scale, &ray);
-    round_rays(&ray, &ray_single);
+    skg_rays_round(&ray, &ray_single);
     SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
     SKG_TRY(skg_kernel_set(kernel, 1, single ? sizeof ray_single : sizeof ray,
                            single ? (const void *)&ray_single : (const void *)&ray));
@@ -200,10 +202,36 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
                            single ? (const void *)&limit_single : (const void *)&limit));
     SKG_TRY(skg_kernel_set(kernel, 9, sizeof negative, &negative));
     SKG_TRY(set_place(kernel, place));
-    SKG_TRY(set_effects(kernel, 14, &key, camera, attenuation, noise));
+    SKG_TRY(set_effects(kernel, 14, &key, camera, attenuation, noise, SKG_FEW_PHOTONS * factor));
     const int64_t lanes = skg_kernel_lanes(raster->context, sums->precision) * key.runs;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
                               padded(raster->frame.rows, 16)};
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
+}
+
+skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
+                                   const skg_attenuation *attenuation, const skg_image_place *place,
+                                   skg_stage_log *log) {
+    const cl_int size[3] = {raster->frame.columns, raster->frame.rows, attenuation->channels};
+    const cl_long offset = place->offset, row = place->row_stride, channel = place->channel_stride;
+    const skg_camera no_camera = {0};
+    const kernel_key key = key_of(raster, &no_camera, attenuation, place);
+    cl_program program = NULL;
+    cl_kernel kernel = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(get_program(attenuator, &key, &program));
+    SKG_TRY(skg_kernel_create(program, "skg_logarithm", &kernel));
+    for (cl_uint k = 0; k < 3; k++) SKG_TRY_CLEANUP(skg_kernel_set(kernel, k, sizeof size[k], &size[k]));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 3, sizeof place->memory, &place->memory));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 4, sizeof offset, &offset));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 5, sizeof row, &row));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 6, sizeof channel, &channel));
+    const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision);
+    const size_t local[2] = {8, 16};
+    const size_t global[2] = {padded((size[0] + lanes - 1) / lanes, 8), padded(size[1], 16)};
+    status = skg_kernel_run(raster->context, kernel, "logarithm", 2, global, local, log);
+cleanup:
+    clReleaseKernel(kernel);
+    return status;
 }

@@ -15,6 +15,7 @@ typedef struct {
     int32_t world_plane; /* that the world's path adds to; -1: vacuum */
     int32_t ratio;       /* 1: over what the world alone lets pass */
     int32_t falloff;     /* 1: intensities fall with the distance */
+    int32_t energies;    /* 1: shows keV, which half precision keeps in MeV */
     int32_t noise;       /* 1: quantum noise, of intensities that are no ratio */
     double world_weight; /* of a mm of the world's path in its plane */
     skg_buffer coefficients, weights, variances;
@@ -34,18 +35,25 @@ void skg_attenuator_release(skg_attenuator **attenuator);
 /* Where an image goes, in elements of float, or double where output_double. */
 typedef struct {
     cl_mem memory;
-    int32_t output_double, reserved;
+    int32_t output_double;
+    int32_t add; /* 1: intensities are added to what is there */
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
 /* Below so many detected photons in a pixel, quantum noise is drawn photon by photon. */
 #define SKG_FEW_PHOTONS 50.0
 
-/* Enqueues one image. scale: of the sums; factor: of intensities (noise takes it for a factor of photons);
+/* Enqueues one image. scale: of the sums; factor: of intensities; with noise,
+ * of photons: the share of a sample of the source, whose draws add up to one of all photons;
  * least: exponents below it are counted into negative (one int). noise: its key, where there is noise. */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
                          cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
                          skg_stage_log *log);
+
+/* Enqueues -ln of a finished mean, in place. */
+skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
+                                   const skg_attenuation *attenuation, const skg_image_place *place,
+                                   skg_stage_log *log);
 
 #endif

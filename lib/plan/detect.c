@@ -1,5 +1,5 @@
 /* What the detector makes of intensities: which stages of noise and blur there are, and in which order. */
-#include "plan/plan.h"
+#include "plan/frame.h"
 
 #include <math.h>
 
@@ -32,19 +32,21 @@ skg_status skg_plan_check_detector(const skg_plan_options *options) {
 /* The stage after the blur, where anything is left to do there. */
 static skg_status make_last_stage(skg_plan *plan) {
     const skg_plan_options *options = &plan->options;
-    const int absolute = skg_plan_is_absolute(options);
     const skg_detection detection = {.electronic = options->electronic_kev,
                                      .step = options->quantum_step_kev,
-                                     .logarithm =
-                                         options->quantity == SKG_ATTENUATION && (absolute || plan->blur),
                                      .channels = plan->model.channels};
-    const int scaled = absolute && (skg_plan_is_ratio(options) || options->quantity == SKG_FLUENCE);
-    double factor[SKG_MOST_CHANNELS];
-    if (!scaled && !detection.logarithm && !(detection.electronic > 0) && !(detection.step > 0))
-        return SKG_OK;
-    for (int32_t c = 0; c < plan->model.channels; c++)
-        factor[c] = absolute && skg_plan_is_ratio(options) ? 1 / plan->model.open[c] : 1;
-    return skg_detector_create(plan->context, &detection, factor, &plan->detector);
+    const int ratio = skg_plan_is_ratio(options), areas = options->quantity == SKG_FLUENCE;
+    double factors[SKG_MOST_CHANNELS];
+    if (!skg_plan_is_absolute(options)) return SKG_OK;
+    if (!ratio && !areas && !(detection.electronic > 0) && !(detection.step > 0)) return SKG_OK;
+    for (int32_t c = 0; c < plan->model.channels; c++) {
+        if (ratio && !(plan->model.open[c] > 0))
+            return skg_fail(SKG_ERR_BEAM,
+                            "channel %d records nothing of the open beam, so there is no ratio to it",
+                            (int)c);
+        factors[c] = ratio ? 1 / plan->model.open[c] : 1;
+    }
+    return skg_detector_create(plan->context, &detection, factors, &plan->detector);
 }
 
 skg_status skg_plan_make_detector(skg_plan *plan) {
@@ -53,10 +55,17 @@ skg_status skg_plan_make_detector(skg_plan *plan) {
     return make_last_stage(plan);
 }
 
-skg_status skg_plan_detect(skg_plan *plan, const skg_noise_args *key, double factor,
-                           const skg_image_place *image, skg_stage_log *log) {
+int skg_plan_is_late(const skg_plan *plan) {
+    return skg_plan_averages(plan) || plan->blur || skg_plan_is_absolute(&plan->options);
+}
+
+skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
     const int64_t columns = plan->view.columns, rows = plan->view.rows;
-    if (plan->blur) SKG_TRY(skg_blur_run(plan->blur, image, columns, rows, plan->model.channels, log));
+    const skg_image_place *image = &work->place;
+    skg_camera camera;
+    if (plan->blur) SKG_TRY(skg_blur_run(plan->blur, image, columns, rows, plan->model.channels, &job->log));
     if (!plan->detector) return SKG_OK;
-    return skg_detector_run(plan->detector, key, factor, image, columns, rows, log);
+    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
+    const double factor = plan->options.quantity == SKG_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
+    return skg_detector_run(plan->detector, &work->noise, factor, image, columns, rows, &job->log);
 }

@@ -42,4 +42,7 @@ skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_part
 /* Warns once that nothing falls on the detector: which way, how far (unseen.c). */
 void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame);
 
+/* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps (detect.c). */
+skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *work);
+
 #endif

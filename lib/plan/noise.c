@@ -71,9 +71,8 @@ static skg_status get_type(skg_detector *detector, int is_double, detector_type 
     for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
     SKG_TRY(skg_buffer_write(detector->context, &type->factor, detection->channels * (int64_t)element,
                              is_double ? (const void *)detector->factor : rounded, "detector"));
-    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d -D SKG_SHOW=%d",
-             detection->electronic > 0, detection->step > 0,
-             detection->logarithm ? SKG_SHOWN_LOGARITHM : SKG_SHOWN_INTENSITY);
+    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d", detection->electronic > 0,
+             detection->step > 0);
     SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, more, &program));
     return skg_kernel_create(program, "skg_detect", &type->kernel);
 }

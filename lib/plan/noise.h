@@ -20,13 +20,12 @@ int skg_plan_is_ratio(const skg_plan_options *options);
 typedef struct {
     double electronic; /* standard deviation, keV per pixel; 0: none */
     double step;       /* keV per pixel; 0: any value */
-    int32_t logarithm; /* 1: -ln is shown */
-    int32_t channels;
+    int32_t channels, reserved;
 } skg_detection;
 
 typedef struct skg_detector skg_detector;
 
-/* factors: [channels] of values, after quantisation and before the logarithm; copied. */
+/* factors: [channels] of values, after quantisation; copied. */
 skg_status skg_detector_create(skg_context *context, const skg_detection *detection, const double *factors,
                                skg_detector **detector);
 void skg_detector_release(skg_detector **detector);

@@ -8,13 +8,17 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options = (skg_plan_options){
-            .size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1, .swank = 1};
+        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
+                                      .precision = SKG_SINGLE,
+                                      .overlaps = 1,
+                                      .supersampling = 1,
+                                      .swank = 1};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
-    if (options->precision != SKG_SINGLE && options->precision != SKG_DOUBLE)
-        return skg_fail(SKG_ERR_ARGUMENT, "precision %" PRId32 " is unknown; SKG_SINGLE or SKG_DOUBLE",
+    if (options->precision < SKG_SINGLE || options->precision > SKG_HALF)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "precision %" PRId32 " is unknown; SKG_SINGLE, SKG_DOUBLE or SKG_HALF",
                         options->precision);
     if (options->precision == SKG_DOUBLE && !context->device->info.has_double)
         return skg_fail(SKG_ERR_UNSUPPORTED,
@@ -73,8 +77,9 @@ static skg_status make_geometry(skg_plan *plan) {
         SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, sorted[i], &reordered));
         list[i] = (skg_geometry_mesh){mesh->vertices, mesh->triangles, sorted[i]};
     }
-    SKG_TRY_CLEANUP(skg_geometry_create(plan->context, plan->options.precision, meshes->count, list,
-                                        plan->scene->count, meshes->of_part, &plan->geometry));
+    SKG_TRY_CLEANUP(
+        skg_geometry_create(plan->context, plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE,
+                            meshes->count, list, plan->scene->count, meshes->of_part, &plan->geometry));
 cleanup:
     for (int64_t i = 0; sorted && i < meshes->count; i++) skg_free(&sorted[i]);
     skg_free(&sorted);
@@ -86,11 +91,11 @@ static skg_status make_attenuation(skg_plan *plan) {
     const double one = 1;
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
-    const int is_late = plan->detector || plan->blur; /* logarithms are taken after noise and blur */
-    const int32_t shown = is_late || plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
-                          : model->nodes == 1                                  ? SKG_SHOWN_EXPONENT
-                                                                               : SKG_SHOWN_LOGARITHM;
     const int is_ratio = skg_plan_is_ratio(&plan->options) && !skg_plan_is_absolute(&plan->options);
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_is_late(plan)
+                              ? SKG_SHOWN_INTENSITY
+                          : model->nodes == 1 ? SKG_SHOWN_EXPONENT
+                                              : SKG_SHOWN_LOGARITHM;
     /* Over one energy's open beam the world cancels. */
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
     const skg_attenuation image = {.planes = model->planes,
@@ -101,7 +106,8 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .world_weight = model->world_weight,
                                    .ratio = has_world && is_ratio,
                                    .falloff = plan->options.falloff && !is_ratio,
-                                   .noise = plan->options.noise};
+                                   .noise = plan->options.noise,
+                                   .energies = plan->options.quantity == SKG_ENERGY};
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
     SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
@@ -115,12 +121,34 @@ static skg_status make_attenuation(skg_plan *plan) {
                               CL_MEM_READ_WRITE, "bad pixels");
 }
 
+static skg_status make_samples(skg_plan *plan) {
+    const int parallel = plan->view.projection != SKG_POINT;
+    SKG_TRY(
+        skg_samples_make(parallel ? NULL : plan->options.spot, plan->options.supersampling, &plan->samples));
+    plan->options.spot = NULL; /* the caller's, and copied */
+    return SKG_OK;
+}
+
+/* What the paper's buffers could not hold is not offered in them. */
+static skg_status check_half(const skg_plan *plan) {
+    if (plan->options.precision != SKG_HALF) return SKG_OK;
+    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
+        plan->options.blur || skg_plan_is_absolute(&plan->options))
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "precision half is for comparison: a point source or samples of one, closed meshes, vacuum "
+            "around them, no noise or blur; take single");
+    return SKG_OK;
+}
+
 static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_meshes_create(plan->scene, &plan->meshes));
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
     SKG_TRY(skg_model_create(plan->scene, plan->spectrum, &plan->options, &plan->model));
     SKG_TRY(skg_plan_name_channels(plan));
+    SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
+    SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(skg_plan_make_detector(plan));
     SKG_TRY(make_attenuation(plan));
@@ -128,8 +156,9 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
     SKG_TRY(skg_report_overlaps(plan));
-    SKG_TRY(skg_report_effects(plan));
-    return skg_frame_prepare(plan);
+    SKG_TRY(skg_frame_prepare(plan));
+    SKG_TRY(skg_plan_find_samples(plan));
+    return skg_report_effects(plan);
 }
 
 /* The caller's arrays are not kept, its handles are. */

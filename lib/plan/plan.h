@@ -9,11 +9,17 @@
 #include "plan/model.h"
 #include "plan/noise.h"
 #include "plan/overlap.h"
+#include "plan/samples.h"
 #include "plan/scale.h"
 
 /* Effects that a plan knows, in the order in which they are reported. */
 #define SKG_EFFECT_LIST(X)                                                                                   \
     X(SKG_EFFECT_ENERGIES, "several energies")                                                               \
+    X(SKG_EFFECT_SOURCE, "extended source")                                                                  \
+    X(SKG_EFFECT_SUPERSAMPLING, "supersampling")                                                             \
+    X(SKG_EFFECT_WORLD, "world material")                                                                    \
+    X(SKG_EFFECT_RESPONSE, "energy response")                                                                \
+    X(SKG_EFFECT_FALLOFF, "falloff")                                                                         \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
@@ -59,7 +65,8 @@ struct skg_plan {
     skg_model model;
     struct {
         char text[64];
-    } * channel_names;           /* [channels] */
+    } * channel_names; /* [channels] */
+    skg_samples samples;
     skg_attenuation attenuation; /* of images */
     skg_attenuation lengths;     /* of path lengths: the plane itself */
     skg_attenuator *attenuator;
@@ -88,6 +95,13 @@ struct skg_plan {
 /* Names the channels of the model, by the caller's bands (channel.c). */
 skg_status skg_plan_name_channels(skg_plan *plan);
 
+/* Whether images are means over several passes: of samples of the source or of pixels. */
+int skg_plan_averages(const skg_plan *plan);
+
+/* Doubles the samples of the source until its tolerance is met at the plan's view, where they are not given
+ * (doubling.c). */
+skg_status skg_plan_find_samples(skg_plan *plan);
+
 /* SKG_STALE where a view has another size than the plan's. */
 skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);
 
@@ -98,9 +112,8 @@ skg_status skg_plan_choose_strategy(skg_plan *plan);
 skg_status skg_plan_check_detector(const skg_plan_options *options);
 skg_status skg_plan_make_detector(skg_plan *plan);
 
-/* Enqueues what comes after attenuation. factor: of intensities, where it is still to be applied. */
-skg_status skg_plan_detect(skg_plan *plan, const skg_noise_args *key, double factor,
-                           const skg_image_place *image, skg_stage_log *log);
+/* Whether logarithms are taken of finished means, after noise and blur. */
+int skg_plan_is_late(const skg_plan *plan);
 
 /* The rasteriser with these abilities, made on demand. more_sums: as in its options. */
 skg_status skg_plan_raster(skg_plan *plan, const skg_kernel_options *kernels, int32_t strategy,

@@ -40,14 +40,13 @@ static skg_status read_version(const skg_json_object *top) {
 
 static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     static const char *const names[] = {"single", "double", "half"};
+    static const int32_t values[] = {SKG_SINGLE, SKG_DOUBLE, SKG_HALF};
     skg_json_node node = skg_json_member(top, "Precision");
     if (!node.value) return SKG_OK;
     int64_t choice = 0;
     SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
-    if (choice == 2)
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "half is not simulated yet; use single or double");
     setup->has_precision = 1;
-    setup->precision = choice == 0 ? SKG_SINGLE : SKG_DOUBLE;
+    setup->precision = values[choice];
     return SKG_OK;
 }
 
@@ -151,6 +150,8 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
+    if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
     if (setup->blur.columns > 0) ours.blur = &setup->blur;

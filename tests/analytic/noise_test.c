@@ -204,6 +204,28 @@ START_TEST(detective_quantum_efficiency) {
 }
 END_TEST
 
+/* Samples of a source draw shares that add up to a draw of all photons: a slab is as thick for each of them,
+ * to the obliquity of a spot that is small beside the distance. */
+START_TEST(shares_of_an_extended_source) {
+    const double many[2] = {9000, 4000}, few[2] = {30, 10};
+    const skg_view parallel = view;
+    skg_plan_options options = noisy();
+    skg_spot spot;
+    skg_spot_init(&spot);
+    spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 8;
+    options.spot = &spot;
+    options.supersampling = 2;
+    view.projection = SKG_POINT;
+    view.source[2] = -1e5;
+    check_two_energies(many, &options);
+    check_two_energies(few, &options);
+    spot.samples = 0; /* found without noise: doublings that differ by noise alone would never end */
+    spot.most = 64;
+    check_two_energies(few, &options);
+    view = parallel;
+}
+END_TEST
+
 static double correlation(const double *a, const double *b) {
     const moments of_a = moments_of(PIXELS, a), of_b = moments_of(PIXELS, b);
     double sum = 0;
@@ -348,6 +370,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, two_energies_in_iodide);
     tcase_add_test(tests, few_photons_are_exact);
     tcase_add_test(tests, detective_quantum_efficiency);
+    tcase_add_test(tests, shares_of_an_extended_source);
     tcase_add_test(tests, keys);
     tcase_add_test(tests, noise_power_follows_the_transfer_function);
     tcase_add_test(tests, electronics);
