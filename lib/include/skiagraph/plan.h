@@ -95,12 +95,10 @@ typedef struct {
                               everything */
     const skg_spot *spot;  /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
     int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
-    int32_t reserved;      /* 0 */
+    int32_t noise; /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
     const double
         *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
     const skg_detector_blur *blur; /* copied; NULL: none */
-    int32_t noise; /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
-    int32_t reserved_too; /* 0 */
     double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
                            variance by 1 / swank; 1 (default): every photon gives what the response says */
     int64_t noise_seed; /* added to that of each frame */
