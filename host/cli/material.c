@@ -372,7 +372,7 @@ static int look_up(const cli_arguments *arguments, matter *m) {
 }
 
 static int run(const cli_arguments *arguments) {
-    matter m = {NULL};
+    matter m = {.material = NULL};
     if (cli_given(arguments, &flag_list)) return list_names(cli_given(arguments, &cli_flag_json));
     if (arguments->operand_count == 0)
         return cli_error(CLI_USAGE, "material: of which material? give a NAME, or --list");

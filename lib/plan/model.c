@@ -1,6 +1,7 @@
 #include "plan/model.h"
 
 #include "beam/spectrum.h"
+#include "plan/compress.h"
 #include "plan/noise.h"
 
 #include <inttypes.h>
@@ -27,6 +28,13 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     SKG_TRY(skg_alloc(m->spectrum->count, sizeof *m->bins, "nodes", &m->bins));
     for (int64_t i = 0; i < m->spectrum->count; i++)
         if (m->spectrum->photons[i] > 0) m->bins[model->nodes++] = i;
+    model->bins = model->nodes;
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_kev, "nodes", &model->node_kev));
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_photons, "nodes", &model->node_photons));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+        model->node_photons[n] = m->spectrum->photons[m->bins[n]];
+    }
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
@@ -149,10 +157,6 @@ static int in_band(const making *m, int64_t channel, double energy) {
 
 static skg_status check_bands(const making *m) {
     const skg_plan_options *options = m->options;
-    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS ||
-        (options->bands > 0 && !options->band_kev))
-        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
-                        options->bands, SKG_MOST_CHANNELS);
     for (int64_t c = 0; c < options->bands; c++)
         if (!(options->band_kev[c] < options->band_kev[c + 1]))
             return skg_fail(SKG_ERR_BEAM, "band %" PRId64 " runs from %g to %g keV; edges have to rise", c,
@@ -160,9 +164,13 @@ static skg_status check_bands(const making *m) {
     return SKG_OK;
 }
 
+static int shows_ratio(const making *m) {
+    return skg_plan_is_ratio(m->options) && !skg_plan_is_absolute(m->options);
+}
+
 static skg_status weigh(const making *m, skg_model *model) {
     const int noise = m->options->noise;
-    const int is_ratio = skg_plan_is_ratio(m->options) && !skg_plan_is_absolute(m->options);
+    const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
     const int32_t channels = model->channels;
@@ -201,13 +209,14 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
     for (int32_t n = 0; n < model->nodes; n++)
         for (int32_t k = 0; k < model->planes; k++)
             model->coefficients[n * planes + k] = m->bases[(int64_t)k * model->nodes + n];
+    model->materials = model->planes;
     model->planes = planes;
     model->world_plane = m->plane[m->scene->count];
     model->world_weight = m->factor[m->scene->count];
     return SKG_OK;
 }
 
-skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum,
+skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model) {
     making m = {.scene = scene, .spectrum = spectrum, .options = options, .matters = scene->count + 1};
     skg_status status = SKG_OK;
@@ -218,6 +227,10 @@ skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
+    /* Photons of every bin count by themselves for the variance. */
+    if (options->tolerance > 0 && !options->noise && !is_unweighted(&m) && model->nodes > 2 &&
+        model->materials > 0)
+        SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);
@@ -234,4 +247,6 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->weights);
     skg_free(&model->variances);
     skg_free(&model->open);
+    skg_free(&model->node_kev);
+    skg_free(&model->node_photons);
 }
