@@ -17,6 +17,29 @@ static void set(skg_plan *plan, int effect, int on, const char *format, ...) {
     state->on = on;
 }
 
+static void tell_noise(skg_plan *plan) {
+    const skg_plan_options *options = &plan->options;
+    if (options->noise)
+        set(plan, SKG_EFFECT_NOISE, 1,
+            "asked for; Swank factor %g; photon by photon where fewer than %g are detected in a pixel",
+            options->swank, SKG_FEW_PHOTONS);
+    else
+        set(plan, SKG_EFFECT_NOISE, 0, "not asked for");
+    if (plan->blur)
+        set(plan, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(plan->blur));
+    else
+        set(plan, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
+    if (options->electronic_kev > 0)
+        set(plan, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel",
+            options->electronic_kev);
+    else
+        set(plan, SKG_EFFECT_ELECTRONIC, 0, "not asked for");
+    if (options->quantum_step_kev > 0)
+        set(plan, SKG_EFFECT_QUANTISATION, 1, "steps of %g keV per pixel", options->quantum_step_kev);
+    else
+        set(plan, SKG_EFFECT_QUANTISATION, 0, "no step is given");
+}
+
 static void tell_samples(skg_plan *plan) {
     const skg_samples *samples = &plan->samples;
     static const char *const shapes[] = {"point", "line",   "rectangle",    "cube",
@@ -70,6 +93,8 @@ static void tell_compression(skg_plan *plan) {
             model->nodes, model->bins, model->planes, model->materials, model->bound, model->verified);
     else if (model->bins == 1)
         set(plan, effect, 0, "the beam has one energy");
+    else if (plan->options.noise)
+        set(plan, effect, 0, "noise counts the photons of every energy");
     else if (plan->options.tolerance > 0)
         set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
             plan->options.tolerance);
@@ -116,6 +141,7 @@ skg_status skg_report_effects(skg_plan *plan) {
         set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
     else
         set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
+    tell_noise(plan);
     return SKG_OK;
 }
 

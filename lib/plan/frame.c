@@ -95,7 +95,9 @@ static skg_status upload(skg_plan *plan, skg_job *job) {
 static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work, int64_t sample,
                           const skg_frame_parts *frame) {
     const int lengths = work->lengths_of >= 0;
-    const double area = plan->options.quantity == SKG_FLUENCE ? skg_camera_pixel_area(&frame->camera) : 1;
+    /* Noise is that of photons in a pixel: the area comes later. */
+    const int areas = plan->options.quantity == SKG_FLUENCE && !skg_plan_is_absolute(&plan->options);
+    const double area = areas ? skg_camera_pixel_area(&frame->camera) : 1;
     const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&plan->samples));
     /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
     const double least = -1e-6 * frame->scale.bound - 1e-6;
@@ -104,9 +106,11 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
     place.add = sample > 0;
     SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
+    skg_noise_args noise = work->noise;
+    noise.sample = sample > 0 ? (cl_int)sample : 0;
     return skg_attenuate(plan->attenuator, plan->main, &frame->camera, frame->scale.scale,
                          lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
-                         &place, &job->log);
+                         &noise, &place, &job->log);
 }
 
 /* Camera of a sample (below 0: the point source and the pixels' centres), parts, scale, and the rasteriser
@@ -162,9 +166,11 @@ int skg_plan_averages(const skg_plan *plan) {
 }
 
 skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
-    if (work->lengths_of >= 0 || !skg_plan_averages(plan)) return enqueue_pass(plan, job, work, -1);
-    const int64_t count = skg_samples_count(&plan->samples);
-    for (int64_t s = 0; s < count; s++) SKG_TRY(enqueue_pass(plan, job, work, s));
-    if (plan->options.quantity != SKG_ATTENUATION) return SKG_OK;
+    if (work->lengths_of >= 0) return enqueue_pass(plan, job, work, -1);
+    const int64_t first = skg_plan_averages(plan) ? 0 : -1;
+    const int64_t end = first < 0 ? 0 : skg_samples_count(&plan->samples);
+    for (int64_t s = first; s < end; s++) SKG_TRY(enqueue_pass(plan, job, work, s));
+    SKG_TRY(skg_plan_detect(plan, job, work));
+    if (plan->options.quantity != SKG_ATTENUATION || !skg_plan_is_late(plan)) return SKG_OK;
     return skg_attenuate_logarithm(plan->attenuator, plan->main, &plan->attenuation, &work->place, &job->log);
 }

@@ -12,6 +12,7 @@ typedef struct {
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t kind;               /* of lengths: SKG_NET or SKG_SURFACE */
     int32_t reserved;
+    skg_noise_args noise; /* its key */
     skg_image_place place;
 } skg_frame_work;
 
@@ -40,5 +41,8 @@ skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_part
 
 /* Warns once that nothing falls on the detector: which way, how far (unseen.c). */
 void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame);
+
+/* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps (detect.c). */
+skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *work);
 
 #endif

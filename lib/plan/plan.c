@@ -8,8 +8,11 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options = (skg_plan_options){
-            .size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1, .supersampling = 1};
+        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
+                                      .precision = SKG_SINGLE,
+                                      .overlaps = 1,
+                                      .supersampling = 1,
+                                      .swank = 1};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -37,7 +40,7 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
-    return SKG_OK;
+    return skg_plan_check_detector(options);
 }
 
 static void start_report(skg_plan *plan) {
@@ -94,9 +97,8 @@ cleanup:
 static skg_status make_attenuation(skg_plan *plan) {
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
-    const int is_ratio =
-        plan->options.quantity == SKG_TRANSMISSION || plan->options.quantity == SKG_ATTENUATION;
-    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_averages(plan)
+    const int is_ratio = skg_plan_is_ratio(&plan->options) && !skg_plan_is_absolute(&plan->options);
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_is_late(plan)
                               ? SKG_SHOWN_INTENSITY
                           : model->nodes == 1 ? SKG_SHOWN_EXPONENT
                                               : SKG_SHOWN_LOGARITHM;
@@ -110,17 +112,18 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .world_weight = model->world_weight,
                                    .ratio = has_world && is_ratio,
                                    .falloff = plan->options.falloff && !is_ratio,
+                                   .noise = plan->options.noise,
                                    .energies = plan->options.quantity == SKG_ENERGY};
     return skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                  model->weights, &plan->attenuation);
+                                  model->weights, model->variances, &plan->attenuation);
 }
 
 static skg_status make_lengths(skg_plan *plan) {
     const double one = 1;
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
-    SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, NULL,
+                                   &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
     SKG_TRY(
         skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
@@ -162,11 +165,12 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
 /* What the paper's buffers could not hold is not offered in them. */
 static skg_status check_half(const skg_plan *plan) {
     if (plan->options.precision != SKG_HALF) return SKG_OK;
-    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world)
+    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
+        plan->options.blur || skg_plan_is_absolute(&plan->options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
             "precision half is for comparison: a point source or samples of one, closed meshes, vacuum "
-            "around them; take single");
+            "around them, no noise or blur; take single");
     return SKG_OK;
 }
 
@@ -179,6 +183,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(find_open(plan));
     SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
+    SKG_TRY(skg_plan_make_detector(plan));
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(make_lengths(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
@@ -251,6 +256,8 @@ static void release_device_memory(skg_plan *plan) {
     skg_attenuation_release(&plan->attenuation);
     skg_attenuation_release(&plan->lengths);
     skg_attenuator_release(&plan->attenuator);
+    skg_blur_release(&plan->blur);
+    skg_detector_release(&plan->detector);
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);

@@ -171,8 +171,10 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
                         plan->bad.bytes + plan->attenuation.coefficients.bytes +
-                        plan->attenuation.weights.bytes + plan->lengths.coefficients.bytes +
-                        plan->lengths.weights.bytes;
+                        plan->attenuation.weights.bytes + plan->attenuation.variances.bytes +
+                        plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;
+    if (plan->blur) ours.device_bytes += skg_blur_bytes(plan->blur);
+    if (plan->detector) ours.device_bytes += skg_detector_bytes(plan->detector);
     for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }

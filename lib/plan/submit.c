@@ -91,16 +91,20 @@ static skg_status check_submission(submission *s, const skg_output *output) {
     return check_stale(s->plan);
 }
 
-/* A frame's view into `view`, and its poses into poses ([parts], NULL: the scene's). */
-static skg_status read_frame(const submission *s, int64_t index, skg_view *view, const double **poses) {
+/* A frame's view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise. */
+static skg_status read_frame(const submission *s, int64_t index, skg_view *view, const double **poses,
+                             skg_noise_args *noise) {
     const skg_plan *plan = s->plan;
     skg_frame frame;
     skg_frame_init(&frame);
     *view = plan->view;
+    *noise = skg_noise_key(plan->options.noise_seed, index);
     memset(poses, 0, (size_t)plan->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
     SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", &frame,
                             sizeof frame));
+    *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame.noise_seed),
+                           frame.index);
     if (frame.view) {
         SKG_TRY(skg_view_check(frame.view));
         skg_view_init(view);
@@ -175,7 +179,7 @@ static skg_status read_back(const submission *s, int64_t index, skg_job *job) {
 static skg_status enqueue_frame(submission *s, int64_t index, const double **poses, skg_job *job) {
     skg_view view;
     skg_frame_work work = {.view = &view, .poses = poses, .lengths_of = s->lengths_of, .kind = s->kind};
-    SKG_TRY(read_frame(s, index, &view, poses));
+    SKG_TRY(read_frame(s, index, &view, poses, &work.noise));
     SKG_TRY(place_image(s, index, &work.place));
     SKG_TRY(skg_frame_enqueue(s->plan, job, &work));
     return s->buffer ? SKG_OK : read_back(s, index, job);

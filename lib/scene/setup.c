@@ -15,7 +15,7 @@ static const skg_json_key top_keys[] = {
     {"Tolerance", NULL, SKG_KEY_READ},
     {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
     {"Breathing", "breathing", SKG_KEY_NOT_YET},
-    {"Noise", "noise", SKG_KEY_NOT_YET},
+    {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
     {"World", NULL, SKG_KEY_READ},
 };
@@ -85,6 +85,8 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
     SKG_TRY(read_world(reader, &top));
+    skg_json_node noise = skg_json_member(&top, "Noise");
+    SKG_TRY(skg_setup_read_noise(reader, &noise));
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
     return skg_setup_read_samples(reader, &samples);
@@ -120,6 +122,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_spectrum_release(&(*setup)->spectrum);
     skg_response_release(&(*setup)->response);
     skg_material_release(&(*setup)->world);
+    skg_free(&(*setup)->blur_samples);
     skg_free(&(*setup)->scan.folder);
     skg_free(setup);
 }
@@ -152,5 +155,13 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
+    if (setup->blur.columns > 0) ours.blur = &setup->blur;
+    if (setup->noise.quantum || setup->noise.electronic_kev > 0 || setup->noise.step_kev > 0) {
+        ours.noise = setup->noise.quantum;
+        ours.swank = setup->noise.swank;
+        ours.noise_seed = setup->noise.seed;
+        ours.electronic_kev = setup->noise.electronic_kev;
+        ours.quantum_step_kev = setup->noise.step_kev;
+    }
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
 }

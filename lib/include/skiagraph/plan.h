@@ -30,6 +30,21 @@ enum {
 
 enum { SKG_MOST_CHANNELS = 16 };
 
+/* What a line or a point becomes on the detector, sampled one pixel apart, the middle sample in place; scaled
+ * to sum 1. Either two line spread functions, whose product is the point spread function, or the latter.
+ * Sample k of n is what of a pixel's value is found k - n/2 pixels further on. Beyond its border the image
+ * goes on as at the border. Numbers of samples are odd, 1 to 4095. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;           /* 0 */
+    int64_t columns, rows;      /* samples along a row and along a column */
+    const double *along_row;    /* [columns] line spread function */
+    const double *along_column; /* [rows] line spread function */
+    const double *point;        /* [rows][columns] point spread function; NULL: the two above */
+} skg_detector_blur;
+
+SKG_API void skg_detector_blur_init(skg_detector_blur *blur);
+
 /* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
  * centre, their width along the projected column step. */
 enum {
@@ -80,13 +95,19 @@ typedef struct {
                               everything */
     const skg_spot *spot;  /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
     int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
-    int32_t reserved;      /* 0 */
+    int32_t noise; /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
     const double
         *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
     double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
                          error that fewer energies and planes may make, relative where more than 1e-6 of the
                          open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
                          that the plan's view meets, and a quarter more */
+    const skg_detector_blur *blur; /* copied; NULL: none */
+    double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
+                           variance by 1 / swank; 1 (default): every photon gives what the response says */
+    int64_t noise_seed; /* added to that of each frame */
+    double electronic_kev;   /* standard deviation of the electronic noise, keV per pixel; 0: none */
+    double quantum_step_kev; /* values are whole multiples of it, keV per pixel; 0: any */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -111,7 +132,8 @@ typedef struct {
     int64_t posed;             /* how many parts have a pose of their own in this frame */
     const int64_t *posed_ids;  /* [posed] numbers of parts */
     const double *posed_poses; /* [posed][16] */
-    int64_t noise_seed;        /* with index: the key of the noise, where there is noise */
+    int64_t noise_seed;        /* with index: the key of the noise, where there is noise: frames of another
+                                  key are independent, those of the same have the same noise */
     int64_t index;
 } skg_frame;
 
