@@ -36,6 +36,17 @@ skg_status skg_report_effects(skg_plan *plan) {
             "%" PRId64 " parts are not closed: each has a plane and a count of its own", plan->open_count);
     else
         set(plan, SKG_EFFECT_OPEN, 0, "every mesh is closed: signed hits cancel exactly");
+    static const char *const repairs[] = {
+        [SKG_REPAIR_NONE] = "not asked for: bad pixels are left out",
+        [SKG_REPAIR_NEIGHBOURS] = "bad pixels of a part get the mean of its nearest valid ones",
+        [SKG_REPAIR_EXACT] =
+            "rays of bad pixels are cast anew on the host, through meshes with their holes capped",
+    };
+    if (plan->open_count)
+        set(plan, SKG_EFFECT_REPAIR, plan->options.repair != SKG_REPAIR_NONE, "%s",
+            repairs[plan->options.repair]);
+    else
+        set(plan, SKG_EFFECT_REPAIR, 0, "every mesh is closed");
     if (!plan->options.overlaps)
         set(plan, SKG_EFFECT_OVERLAPS, 0, "not asked for");
     else

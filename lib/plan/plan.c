@@ -8,8 +8,10 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options =
-            (skg_plan_options){.size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1};
+        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
+                                      .precision = SKG_SINGLE,
+                                      .overlaps = 1,
+                                      .repair = SKG_REPAIR_NEIGHBOURS};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -30,6 +32,12 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
                         options->quantity);
     if (options->falloff != 0 && options->falloff != 1)
         return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
+    if (options->repair < SKG_REPAIR_NONE || options->repair > SKG_REPAIR_EXACT)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
+                        options->repair);
+    if (options->clip != 0 && options->clip != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "clip is %" PRId32 "; 1 or 0", options->clip);
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
@@ -182,6 +190,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
+    skg_buffer_release(&plan->gaps);
 }
 
 void skg_plan_release(skg_plan **plan) {
@@ -190,6 +199,8 @@ void skg_plan_release(skg_plan **plan) {
     *plan = NULL;
     if (!skg_unref(&last->refs)) return;
     release_device_memory(last);
+    for (int64_t k = 0; last->caps && k < last->open_count; k++) skg_caps_release(&last->caps[k]);
+    skg_free(&last->caps);
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);

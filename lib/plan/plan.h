@@ -3,6 +3,7 @@
 #define SKG_PLAN_PRIVATE_H
 
 #include "plan/attenuate.h"
+#include "plan/caps.h"
 #include "plan/job.h"
 #include "plan/meshes.h"
 #include "plan/model.h"
@@ -14,6 +15,7 @@
     X(SKG_EFFECT_ENERGIES, "several energies")                                                               \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
+    X(SKG_EFFECT_REPAIR, "repair")                                                                           \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
     X(SKG_EFFECT_OVERLAPS, "overlap check")
 
@@ -58,7 +60,8 @@ struct skg_plan {
     skg_attenuation lengths;     /* of path lengths: the plane itself */
     skg_attenuator *attenuator;
     int64_t open_count;
-    int64_t *open; /* [open_count] parts that are not closed */
+    int64_t *open;  /* [open_count] parts that are not closed */
+    skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
     skg_scale_grid grid;
     int32_t strategy; /* decided */
     const char *strategy_reason;
@@ -67,6 +70,7 @@ struct skg_plan {
     skg_raster_options raster_options[SKG_MOST_RASTERS];
     skg_raster *main; /* of the last frame: that of the closed parts */
     skg_buffer image, negative, bad;
+    skg_buffer gaps; /* of the open part at hand: int [rows][columns], as skg_open_gaps leaves them */
 
     int64_t overlap_count;
     skg_overlap_pair *overlaps;

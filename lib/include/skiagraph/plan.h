@@ -30,6 +30,18 @@ enum {
 
 enum { SKG_MOST_CHANNELS = 16 };
 
+/* What becomes of an open mesh's bad pixels, where as many rays enter it as do not leave it. */
+enum {
+    SKG_REPAIR_NONE = 0, /* the part is left out there */
+    SKG_REPAIR_NEIGHBOURS =
+        1,               /* mean of the part's path parameters over its neighbourhood, which is grown until it
+                            holds valid pixels (Vidal and Villard 2016, 3.2.7); no valid one: left out */
+    SKG_REPAIR_EXACT = 2 /* cast anew on the host, in double, through the mesh with each loop of open edges
+                            capped by a fan about its mean: exact where loops are plane (any missing triangle,
+                            plane holes, cracks at T-junctions, single flipped triangles), one of many
+                            surfaces where not. Submitting waits for the raster of open parts. */
+};
+
 typedef struct {
     int32_t size;
     int32_t
@@ -48,7 +60,10 @@ typedef struct {
     int64_t bands; /* photon-counting bands, 0 to SKG_MOST_CHANNELS: a channel each; 0: one channel of
                       everything */
     const double
-        *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+        *band_kev;  /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+    int32_t repair; /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
+    int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
+                     it */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -142,6 +157,7 @@ typedef struct {
     int64_t device_bytes;      /* allocated on the device by this plan */
     int64_t bad_pixels;        /* of the last frame: signed hits of an open mesh do not cancel there */
     int64_t negative_pixels;   /* of the last frame: negative exponent */
+    int64_t repaired_pixels;   /* of the last frame: of the bad ones; the others are without their part */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
