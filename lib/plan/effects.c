@@ -17,6 +17,44 @@ static void set(skg_plan *plan, int effect, int on, const char *format, ...) {
     state->on = on;
 }
 
+static void report_contest(skg_plan *plan, int64_t competing) {
+    if (!plan->contest_possible)
+        set(plan, SKG_EFFECT_PRIORITY, 0,
+            "no two parts of one parent differ in priority, and none is clipped");
+    else if (competing == 0)
+        set(plan, SKG_EFFECT_PRIORITY, 0, "parts of different priority keep apart in the plan's view");
+    else
+        set(plan, SKG_EFFECT_PRIORITY, 1, "hits of %" PRId64 " parts are listed: they may compete%s",
+            competing, plan->options.clip ? ", or leave their parents" : "");
+}
+
+/* Effects that follow from where the parts lie. */
+static skg_status report_places(skg_plan *plan) {
+    const skg_scene *scene = plan->scene;
+    skg_camera camera;
+    skg_extent *extents = NULL;
+    skg_contest contest = {0};
+    int64_t near = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_camera_make(&plan->view, NULL, 0, 0, &camera));
+    SKG_TRY(skg_alloc(scene->count, sizeof *extents, "effects", &extents));
+    for (int64_t i = 0; i < scene->count; i++) {
+        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, &extents[i]);
+        near += extents[i].near_source && extents[i].on_detector;
+    }
+    if (near)
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
+    else
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
+    if (plan->contest_possible)
+        SKG_TRY_CLEANUP(skg_contest_find(scene, plan->options.clip, extents, &contest));
+    report_contest(plan, contest.count);
+cleanup:
+    skg_contest_release(&contest);
+    skg_free(&extents);
+    return status;
+}
+
 skg_status skg_report_effects(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     int64_t nested = 0;
@@ -52,19 +90,7 @@ skg_status skg_report_effects(skg_plan *plan) {
     else
         set(plan, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " pairs of parts overlap or leave their parent",
             plan->overlap_count);
-    skg_camera camera;
-    int64_t near = 0;
-    SKG_TRY(skg_camera_make(&plan->view, NULL, 0, 0, &camera));
-    for (int64_t i = 0; i < scene->count; i++) {
-        skg_extent extent;
-        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, &extent);
-        near += extent.near_source && extent.on_detector;
-    }
-    if (near)
-        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
-    else
-        set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
-    return SKG_OK;
+    return report_places(plan);
 }
 
 void skg_effect_init(skg_effect *effect) {

@@ -10,6 +10,7 @@ static void release_parts(skg_frame_parts *frame) {
     skg_free(&frame->writes);
     skg_free(&frame->first_write);
     skg_free(&frame->extents);
+    skg_contest_release(&frame->contest);
 }
 
 /* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
@@ -115,17 +116,27 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
                          &work->place, &job->log);
 }
 
+/* Who competes for intervals in this frame; a mesh's own lengths know nothing of others. */
+static skg_status find_contest(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    if (!plan->contest_possible || (work->lengths_of >= 0 && work->kind == SKG_SURFACE)) return SKG_OK;
+    SKG_TRY(skg_contest_find(plan->scene, plan->options.clip, frame->extents, &frame->contest));
+    for (int64_t s = 0; s < frame->contest.count; s++)
+        frame->kernels.source_plane |= frame->extents[frame->contest.parts[s]].near_source;
+    return SKG_OK;
+}
+
 /* Camera, parts, scale, and the rasteriser that they call for. */
 static skg_status prepare(skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
     SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &frame->camera));
     SKG_TRY(list_writes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
+    SKG_TRY(find_contest(plan, work, frame));
     frame->kernels.precision = plan->options.precision;
     frame->kernels.bits = frame->scale.bits;
     frame->kernels.parallel = frame->camera.parallel;
     frame->kernels.listed_writes = frame->planes > 1;
-    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes, plan->open_count > 0,
-                            &plan->main));
+    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes,
+                            plan->open_count > 0 || plan->contest_possible, &plan->main));
     plan->report.plane_bits = frame->scale.bits;
     skg_raster_tiles(plan->main, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
     return SKG_OK;
@@ -148,6 +159,7 @@ skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work 
     SKG_TRY_CLEANUP(skg_geometry_project(plan->context, &plan->geometry, &frame.kernels, &frame.camera,
                                          frame.parts, frame.scale.scale, &job->log));
     SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
+    if (frame.contest.count) SKG_TRY_CLEANUP(skg_contest_run(plan, job, &frame, plan->main));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
     SKG_TRY_CLEANUP(resolve(plan, job, work, &frame, plan->main));
 cleanup:

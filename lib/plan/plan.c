@@ -127,6 +127,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_model_create(plan->scene, plan->spectrum, &plan->options, &plan->model));
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(find_open(plan));
+    plan->contest_possible = skg_contest_possible(plan->scene, plan->options.clip);
     SKG_TRY(make_geometry(plan));
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
@@ -191,6 +192,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
     skg_buffer_release(&plan->gaps);
+    skg_contest_memory_release(&plan->contest_memory);
 }
 
 void skg_plan_release(skg_plan **plan) {

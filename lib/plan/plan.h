@@ -8,6 +8,7 @@
 #include "plan/meshes.h"
 #include "plan/model.h"
 #include "plan/overlap.h"
+#include "plan/priority.h"
 #include "plan/scale.h"
 
 /* Effects that a plan knows, in the order in which they are reported. */
@@ -17,7 +18,8 @@
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
     X(SKG_EFFECT_REPAIR, "repair")                                                                           \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
-    X(SKG_EFFECT_OVERLAPS, "overlap check")
+    X(SKG_EFFECT_OVERLAPS, "overlap check")                                                                  \
+    X(SKG_EFFECT_PRIORITY, "priority")
 
 enum {
 #define SKG_EFFECT_ENUM(name, text) name,
@@ -71,6 +73,9 @@ struct skg_plan {
     skg_raster *main; /* of the last frame: that of the closed parts */
     skg_buffer image, negative, bad;
     skg_buffer gaps; /* of the open part at hand: int [rows][columns], as skg_open_gaps leaves them */
+
+    int32_t contest_possible; /* priorities differ, or children are clipped */
+    skg_contest_memory contest_memory;
 
     int64_t overlap_count;
     skg_overlap_pair *overlaps;

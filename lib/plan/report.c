@@ -26,17 +26,26 @@ static skg_status place_solid(const skg_scene_part_data *part, skg_solid *solid,
     return SKG_OK;
 }
 
+/* Of the pairs that nothing settles. */
 static void warn_of_overlaps(skg_plan *plan) {
-    const skg_overlap_pair *worst = &plan->overlaps[0];
+    const skg_overlap_pair *worst = NULL;
     const skg_scene *scene = plan->scene;
     double volume = 0;
-    for (int64_t i = 0; i < plan->overlap_count; i++) volume += plan->overlaps[i].volume;
+    int64_t count = 0;
+    for (int64_t i = 0; i < plan->overlap_count; i++) {
+        const skg_overlap_pair *pair = &plan->overlaps[i];
+        if (skg_contest_settles(scene, plan->options.clip, pair)) continue;
+        if (!worst) worst = pair;
+        volume += pair->volume;
+        count++;
+    }
+    if (!worst) return;
     skg_log(
         plan->context, SKG_LOG_WARNING,
         "%" PRId64
         " pairs of parts overlap or leave their parent, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
         "%.3g mm along z at (%.1f, %.1f, %.1f) mm; their lengths add (or subtract the parent), nothing is clamped",
-        plan->overlap_count, volume / 1000, scene->parts[worst->part].label,
+        count, volume / 1000, scene->parts[worst->part].label,
         worst->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[worst->other].label,
         worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
 }
@@ -52,7 +61,7 @@ skg_status skg_report_overlaps(skg_plan *plan) {
     for (int64_t i = 0; i < scene->count; i++)
         SKG_TRY_CLEANUP(place_solid(&scene->parts[i], &solids[i], &positions[i]));
     SKG_TRY_CLEANUP(skg_overlaps_find(scene->count, solids, &plan->overlap_count, &plan->overlaps));
-    if (plan->overlap_count) warn_of_overlaps(plan);
+    warn_of_overlaps(plan);
 cleanup:
     for (int64_t i = 0; positions && i < scene->count; i++) skg_free(&positions[i]);
     skg_free(&positions);
@@ -179,9 +188,9 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_get_report: no plan");
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
-                        plan->bad.bytes + plan->gaps.bytes + plan->attenuation.coefficients.bytes +
-                        plan->attenuation.weights.bytes + plan->lengths.coefficients.bytes +
-                        plan->lengths.weights.bytes;
+                        plan->bad.bytes + plan->gaps.bytes + skg_contest_memory_bytes(&plan->contest_memory) +
+                        plan->attenuation.coefficients.bytes + plan->attenuation.weights.bytes +
+                        plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;
     for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
