@@ -55,7 +55,7 @@ static skg_status upload_shifts(contest_run *run) {
     for (int64_t s = 0; s < contest->count; s++) {
         const skg_geometry_part *part = &run->frame->parts[contest->parts[s]];
         skg_part_double seen;
-        skg_camera_part(&run->frame->camera, part->pose, part->origin, part->radius, part->flipped, &seen);
+        skg_camera_part(&run->frame->camera, part->pose, part->origin, part->reference, part->flipped, &seen);
         if (s == 0) common = seen.reference;
         if (is_double)
             ((double *)shifts)[s] = seen.reference - common;

@@ -148,6 +148,8 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
+    if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
