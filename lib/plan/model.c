@@ -51,18 +51,24 @@ static skg_status look_up(making *m, const skg_model *model) {
     return SKG_OK;
 }
 
+/* Half precision sums distances as they are: a plane a material, of which parts add 1 or -1 times theirs. */
+static int is_unweighted(const making *m) {
+    return m->options->precision == SKG_HALF;
+}
+
 /* The factor by which mu is a basis, or 0 where it is not proportional to it. */
-static double factor_of(const double *mu, const double *basis, int32_t nodes) {
+static double factor_of(const making *m, const double *mu, const double *basis, int32_t nodes) {
     const double factor = mu[0] / basis[0];
+    if (is_unweighted(m) && memcmp(mu, basis, (size_t)nodes * sizeof *mu) != 0) return 0;
     for (int32_t n = 1; n < nodes; n++)
         if (!(fabs(mu[n] - factor * basis[n]) <= PROPORTIONAL * mu[n])) return 0;
     return factor;
 }
 
 /* A new basis: with one energy 1/mm, so that plane and exponent are the same; else the material itself. */
-static void start_basis(const double *mu, int32_t nodes, double *basis) {
+static void start_basis(const making *m, const double *mu, int32_t nodes, double *basis) {
     memcpy(basis, mu, (size_t)nodes * sizeof *basis);
-    if (nodes == 1) basis[0] = 1;
+    if (nodes == 1 && !is_unweighted(m)) basis[0] = 1;
 }
 
 static skg_status choose_planes(making *m, skg_model *model) {
@@ -75,7 +81,7 @@ static skg_status choose_planes(making *m, skg_model *model) {
         m->plane[p] = -1;
         if (!(mu[0] > 0)) continue; /* no attenuation at one energy: none at any */
         for (int32_t k = 0; k < model->planes && m->plane[p] < 0; k++) {
-            m->factor[p] = factor_of(mu, m->bases + (int64_t)k * nodes, nodes);
+            m->factor[p] = factor_of(m, mu, m->bases + (int64_t)k * nodes, nodes);
             if (m->factor[p] > 0) m->plane[p] = k;
         }
         if (m->plane[p] >= 0) continue;
@@ -83,8 +89,8 @@ static skg_status choose_planes(making *m, skg_model *model) {
             room = 2 * room + 8;
             SKG_TRY(skg_realloc(room * nodes, sizeof *m->bases, "planes", &m->bases));
         }
-        start_basis(mu, nodes, m->bases + (int64_t)model->planes * nodes);
-        m->factor[p] = nodes == 1 ? mu[0] : 1;
+        start_basis(m, mu, nodes, m->bases + (int64_t)model->planes * nodes);
+        m->factor[p] = mu[0] / m->bases[(int64_t)model->planes * nodes];
         m->plane[p] = model->planes++;
     }
     return SKG_OK;

@@ -16,8 +16,9 @@ void skg_plan_options_init(skg_plan_options *options) {
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
-    if (options->precision != SKG_SINGLE && options->precision != SKG_DOUBLE)
-        return skg_fail(SKG_ERR_ARGUMENT, "precision %" PRId32 " is unknown; SKG_SINGLE or SKG_DOUBLE",
+    if (options->precision < SKG_SINGLE || options->precision > SKG_HALF)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "precision %" PRId32 " is unknown; SKG_SINGLE, SKG_DOUBLE or SKG_HALF",
                         options->precision);
     if (options->precision == SKG_DOUBLE && !context->device->info.has_double)
         return skg_fail(SKG_ERR_UNSUPPORTED,
@@ -82,8 +83,9 @@ static skg_status make_geometry(skg_plan *plan) {
         SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, sorted[i], &reordered));
         list[i] = (skg_geometry_mesh){mesh->vertices, mesh->triangles, sorted[i]};
     }
-    SKG_TRY_CLEANUP(skg_geometry_create(plan->context, plan->options.precision, meshes->count, list,
-                                        plan->scene->count, meshes->of_part, &plan->geometry));
+    SKG_TRY_CLEANUP(
+        skg_geometry_create(plan->context, plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE,
+                            meshes->count, list, plan->scene->count, meshes->of_part, &plan->geometry));
 cleanup:
     for (int64_t i = 0; sorted && i < meshes->count; i++) skg_free(&sorted[i]);
     skg_free(&sorted);
@@ -110,7 +112,8 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .world_plane = has_world ? (int32_t)model->world_plane : -1,
                                    .world_weight = model->world_weight,
                                    .ratio = has_world && is_ratio,
-                                   .falloff = plan->options.falloff && !is_ratio};
+                                   .falloff = plan->options.falloff && !is_ratio,
+                                   .energies = plan->options.quantity == SKG_ENERGY};
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
     SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
@@ -132,6 +135,18 @@ static skg_status make_samples(skg_plan *plan) {
     return SKG_OK;
 }
 
+/* What the paper's buffers could not hold is not offered in them. */
+static skg_status check_half(const skg_plan *plan) {
+    if (plan->options.precision != SKG_HALF) return SKG_OK;
+    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
+        plan->contest_possible)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "precision half is for comparison: a point source or samples of one, closed meshes without "
+            "priorities, vacuum around them; take single");
+    return SKG_OK;
+}
+
 static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_meshes_create(plan->scene, &plan->meshes));
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
@@ -140,6 +155,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
     plan->contest_possible = skg_contest_possible(plan->scene, plan->options.clip);
+    SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
