@@ -5,6 +5,7 @@
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { SIDE = 200, MOST = 4000 };
@@ -338,6 +339,40 @@ START_TEST(no_valid_pixel) {
 }
 END_TEST
 
+static char told[2000];
+
+static void keep_warning(int32_t level, const char *message, void *user) {
+    (void)user;
+    if (level == SKG_LOG_WARNING && strstr(message, "is open")) snprintf(told, sizeof told, "%s", message);
+}
+
+/* The warning names the part, how many pixels, where, and what was done. */
+START_TEST(what_is_told) {
+    static soup broken;
+    static picture image, left_out;
+    static const char *const done[] = {"left out", "mean of its nearest valid pixels", "cast anew"};
+    char expected[100];
+    int row = -1, column = -1;
+    fill_sphere(&broken);
+    take(&broken, NULL, &(wish){.precision = SKG_DOUBLE}, &image);
+    remove_triangle(&broken, triangle_at(&broken, 5, 3, -40));
+    ck_skg(skg_context_set_log(context, keep_warning, NULL));
+    for (int32_t repair = SKG_REPAIR_NONE; repair <= SKG_REPAIR_EXACT; repair++) {
+        take(&broken, NULL, &(wish){.precision = SKG_DOUBLE, .repair = repair}, &left_out);
+        if (repair == SKG_REPAIR_NONE)
+            for (int k = SIDE * SIDE; k-- > 0;)
+                if (fabs(left_out.mm[k / SIDE][k % SIDE] - image.mm[k / SIDE][k % SIDE]) > 1e-6)
+                    row = k / SIDE, column = k % SIDE;
+        snprintf(expected, sizeof expected, "part first is open: at %d pixels",
+                 (int)left_out.report.bad_pixels);
+        ck_assert_msg(strstr(told, expected) != NULL, "%s", told);
+        snprintf(expected, sizeof expected, "first at (column, row) (%d, %d), (", column, row);
+        ck_assert_msg(strstr(told, expected) != NULL, "%s", told);
+        ck_assert_msg(strstr(told, done[repair]) != NULL, "%s", told);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
     tcase_add_test(tests, a_missing_triangle);
@@ -348,6 +383,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, neighbours_are_the_means_of_squares);
     tcase_add_test(tests, strategies_agree);
     tcase_add_test(tests, no_valid_pixel);
+    tcase_add_test(tests, what_is_told);
 }
 
 SKG_SUITE_MAIN("repair", add_tests)
