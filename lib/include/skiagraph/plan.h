@@ -30,17 +30,15 @@ enum {
 
 enum { SKG_MOST_CHANNELS = 16 };
 
-/* What becomes of an open mesh's bad pixels, where as many rays enter it as do not leave it. */
-enum {
-    SKG_REPAIR_NONE = 0, /* the part is left out there */
-    SKG_REPAIR_NEIGHBOURS =
-        1,               /* mean of the part's path parameters over its neighbourhood, which is grown until it
-                            holds valid pixels (Vidal and Villard 2016, 3.2.7); no valid one: left out */
-    SKG_REPAIR_EXACT = 2 /* cast anew on the host, in double, through the mesh with each loop of open edges
-                            capped by a fan about its mean: exact where loops are plane (any missing triangle,
-                            plane holes, cracks at T-junctions, single flipped triangles), one of many
-                            surfaces where not. Submitting waits for the raster of open parts. */
-};
+/* What becomes of an open mesh's bad pixels, where a ray does not leave it as often as it enters it. A ray
+ * that goes in by one hole and out by another is not found out by this, and stays without the part. NONE: the
+ * part is left out there. NEIGHBOURS: the mean of the part's path parameters over the pixel's neighbourhood,
+ * which is grown until it holds valid pixels (Vidal and Villard 2016, 3.2.7); left out where there is no
+ * valid one at all. EXACT: cast anew on the host, in double, through the mesh with each loop of open edges
+ * capped by a fan about its mean. Exact where loops are plane: any missing triangle, plane holes, cracks at
+ * T-junctions, single flipped triangles; one of many surfaces where not. Submitting waits for the raster of
+ * open parts. */
+enum { SKG_REPAIR_NONE = 0, SKG_REPAIR_NEIGHBOURS = 1, SKG_REPAIR_EXACT = 2 };
 
 /* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
  * centre, their width along the projected column step. */

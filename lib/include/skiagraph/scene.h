@@ -17,15 +17,17 @@ extern "C" {
 
 typedef struct skg_scene skg_scene;
 
-/* One part. Prepare with skg_part_init: identity pose, no parent. */
+/* One part. Prepare with skg_part_init: identity pose, no parent.
+ * Priority: where closed parts with one parent (or in the world) overlap, those of the highest priority have
+ * the interval of the ray to themselves; the others fall, and with them what lies inside them. Equal ones
+ * add. Open parts neither win nor lose. Submitting a frame in which such parts may meet waits until their
+ * hits are counted. */
 typedef struct {
     int32_t size;
-    int32_t
-        priority;   /* where closed parts with one parent overlap, the one of higher priority has the interval
-                       of   the ray to itself, with what lies inside it; equal ones (default: all 0) add */
-    int64_t inside; /* number of the part that this one displaces, or -1: it stands in the world. In a scene
-                       from a file it may be larger than the part's own. */
-    skg_mesh *mesh; /* retained by the scene */
+    int32_t priority; /* 0 by default; see above */
+    int64_t inside;   /* number of the part that this one displaces, or -1: it stands in the world. In a scene
+                         from a file it may be larger than the part's own. */
+    skg_mesh *mesh;   /* retained by the scene */
     skg_material *material; /* retained by the scene */
     const char *label;      /* unique in the scene; NULL: the mesh's name; copied */
     double pose[16];
