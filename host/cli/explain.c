@@ -32,15 +32,12 @@ static json_t *effects_json(const skg_plan *plan) {
     return list;
 }
 
-/* The energies at which attenuation is computed, with their photons per pixel. Without compression (which
- * this version has not) they are the spectrum's own, and the error bound is zero. */
-static json_t *nodes_json(const cli_session *session) {
+/* The energies at which attenuation is computed, with the photons per pixel that they stand for. */
+static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
     json_t *list = json_array();
-    int64_t bins = 0;
-    skg_spectrum_size(session->spectrum, &bins);
-    for (int64_t i = 0; i < bins; i++) {
+    for (int64_t i = 0; i < nodes; i++) {
         double node[2];
-        if (skg_spectrum_bin(session->spectrum, i, &node[0], &node[1]) == SKG_OK)
+        if (skg_plan_node(plan, i, &node[0], &node[1], NULL) == SKG_OK)
             json_array_append_new(list, cli_json_numbers(node, 2));
     }
     return list;
@@ -87,12 +84,13 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     skg_plan_report_init(&report);
     skg_plan_get_report(plan, &report);
     json_object_set_new(object, "effects", effects_json(plan));
-    json_object_set_new(object, "nodes", nodes_json(session));
+    json_object_set_new(object, "nodes", nodes_json(plan, report.nodes));
     json_object_set_new(object, "planes", json_integer(report.planes));
     json_object_set_new(object, "plane_bits", json_integer(report.plane_bits));
     json_object_set_new(object, "strategy", cli_json_text(cli_strategy_names[report.strategy]));
     json_object_set_new(object, "tiles", tiles_json(&report));
-    json_object_set_new(object, "bound", json_real(0));
+    json_object_set_new(object, "bound", cli_json_number(report.bound));
+    json_object_set_new(object, "verified", json_integer(report.verified));
     json_object_set_new(object, "precision", cli_json_text(cli_precision_names[report.precision]));
     json_object_set_new(object, "device", cli_json_text(session->device.name));
     json_object_set_new(object, "device_bytes", json_integer(report.device_bytes));

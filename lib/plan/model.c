@@ -1,6 +1,7 @@
 #include "plan/model.h"
 
 #include "beam/spectrum.h"
+#include "plan/compress.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -26,6 +27,13 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     SKG_TRY(skg_alloc(m->spectrum->count, sizeof *m->bins, "nodes", &m->bins));
     for (int64_t i = 0; i < m->spectrum->count; i++)
         if (m->spectrum->photons[i] > 0) m->bins[model->nodes++] = i;
+    model->bins = model->nodes;
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_kev, "nodes", &model->node_kev));
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_photons, "nodes", &model->node_photons));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+        model->node_photons[n] = m->spectrum->photons[m->bins[n]];
+    }
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
@@ -148,9 +156,12 @@ static skg_status check_bands(const making *m) {
     return SKG_OK;
 }
 
+static int shows_ratio(const making *m) {
+    return m->options->quantity == SKG_TRANSMISSION || m->options->quantity == SKG_ATTENUATION;
+}
+
 static skg_status weigh(const making *m, skg_model *model) {
-    const int32_t quantity = m->options->quantity;
-    const int is_ratio = quantity == SKG_TRANSMISSION || quantity == SKG_ATTENUATION;
+    const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
     const int32_t channels = model->channels;
@@ -184,13 +195,14 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
     for (int32_t n = 0; n < model->nodes; n++)
         for (int32_t k = 0; k < model->planes; k++)
             model->coefficients[n * planes + k] = m->bases[(int64_t)k * model->nodes + n];
+    model->materials = model->planes;
     model->planes = planes;
     model->world_plane = m->plane[m->scene->count];
     model->world_weight = m->factor[m->scene->count];
     return SKG_OK;
 }
 
-skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum,
+skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model) {
     making m = {.scene = scene, .spectrum = spectrum, .options = options, .matters = scene->count + 1};
     skg_status status = SKG_OK;
@@ -201,6 +213,8 @@ skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
+    if (options->tolerance > 0 && model->nodes > 2 && model->materials > 0)
+        SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);
@@ -216,4 +230,6 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->coefficients);
     skg_free(&model->weights);
     skg_free(&model->open);
+    skg_free(&model->node_kev);
+    skg_free(&model->node_photons);
 }

@@ -34,6 +34,9 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
                         options->quantity);
     if (options->falloff != 0 && options->falloff != 1)
         return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
+    if (!(options->tolerance >= 0 && options->tolerance < 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
+                        options->tolerance);
     if (options->repair < SKG_REPAIR_NONE || options->repair > SKG_REPAIR_EXACT)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
@@ -58,6 +61,10 @@ static void start_report(skg_plan *plan) {
         report->vertices += plan->meshes.meshes[i].mesh->vertices;
     report->open_parts = plan->open_count;
     report->planes = plan->model.planes;
+    report->nodes = plan->model.nodes;
+    report->bins = plan->model.bins;
+    report->bound = plan->model.bound;
+    report->verified = plan->model.verified;
     report->strategy = plan->strategy;
 }
 
@@ -150,7 +157,7 @@ static skg_status check_half(const skg_plan *plan) {
 static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_meshes_create(plan->scene, &plan->meshes));
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
-    SKG_TRY(skg_model_create(plan->scene, plan->spectrum, &plan->options, &plan->model));
+    SKG_TRY(skg_model_create(plan->scene, &plan->view, plan->spectrum, &plan->options, &plan->model));
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));

@@ -20,6 +20,7 @@
     X(SKG_EFFECT_WORLD, "world material")                                                                    \
     X(SKG_EFFECT_RESPONSE, "energy response")                                                                \
     X(SKG_EFFECT_FALLOFF, "falloff")                                                                         \
+    X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
     X(SKG_EFFECT_REPAIR, "repair")                                                                           \

@@ -195,6 +195,19 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 
+skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                         double *weights) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node: no plan");
+    const skg_model *model = &plan->model;
+    if (index < 0 || index >= model->nodes)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node: node %" PRId64 " of %" PRId32, index, model->nodes);
+    if (energy_kev) *energy_kev = model->node_kev[index];
+    if (photons) *photons = model->node_photons[index];
+    if (weights)
+        memcpy(weights, model->weights + index * model->channels, (size_t)model->channels * sizeof *weights);
+    return SKG_OK;
+}
+
 void skg_stage_init(skg_stage *stage) {
     if (stage) *stage = (skg_stage){.size = (int32_t)sizeof *stage};
 }

@@ -163,6 +163,7 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
+    if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
     if (setup->absolute) ours.falloff = 1;
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;

@@ -92,8 +92,12 @@ typedef struct {
     int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
     int32_t reserved;      /* 0 */
     const double
-        *band_kev;  /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
-    int32_t repair; /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
+        *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+    double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
+                         error that fewer energies and planes may make, relative where more than 1e-6 of the
+                         open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
+                         that the plan's view meets, and a quarter more */
+    int32_t repair;   /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
     int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
                      it */
 } skg_plan_options;
@@ -192,11 +196,21 @@ typedef struct {
                             out */
     int64_t bad_pixels;  /* of the last frame: signed hits of an open mesh do not cancel there */
     int64_t negative_pixels; /* of the last frame: negative exponent */
+    int64_t nodes, bins;     /* energies that are used, and that the spectrum has photons at */
+    double bound; /* of the error that fewer nodes and planes make, in the words of the tolerance: twice the
+                     worst that was found; 0 where every bin is used */
+    int64_t verified;        /* number of points (lengths of all materials) on which it was looked for */
     int64_t repaired_pixels; /* of the last frame: of the bad ones; the others are without their part */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
 SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report);
+
+/* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
+ * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
+ * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. */
+SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                                 double *weights);
 
 /* Each effect that a plan knows: on or off, and why. Text valid as long as the plan. */
 typedef struct {
