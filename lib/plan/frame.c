@@ -8,6 +8,7 @@ static void release_parts(skg_frame_parts *frame) {
     skg_free(&frame->writes);
     skg_free(&frame->first_write);
     skg_free(&frame->extents);
+    skg_contest_release(&frame->contest);
 }
 
 /* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
@@ -113,6 +114,15 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
                          &noise, &place, &job->log);
 }
 
+/* Who competes for intervals in this frame; a mesh's own lengths know nothing of others. */
+static skg_status find_contest(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    if (!plan->contest_possible || (work->lengths_of >= 0 && work->kind == SKG_SURFACE)) return SKG_OK;
+    SKG_TRY(skg_contest_find(plan->scene, plan->options.clip, frame->extents, &frame->contest));
+    for (int64_t s = 0; s < frame->contest.count; s++)
+        frame->kernels.source_plane |= frame->extents[frame->contest.parts[s]].near_source;
+    return SKG_OK;
+}
+
 /* Camera of a sample (below 0: the point source and the pixels' centres), parts, scale, and the rasteriser
  * that they call for. */
 static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sample,
@@ -122,14 +132,15 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &frame->camera));
     SKG_TRY(list_writes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
+    SKG_TRY(find_contest(plan, work, frame));
     frame->kernels.precision = plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE;
     frame->kernels.half = plan->options.precision == SKG_HALF;
     frame->kernels.bits =
         frame->kernels.half ? 32 : frame->scale.bits; /* half: 2^-24 m, whatever the scene */
     frame->kernels.parallel = frame->camera.parallel;
     frame->kernels.listed_writes = frame->planes > 1 || frame->kernels.half;
-    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes, plan->open_count > 0,
-                            &plan->main));
+    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes,
+                            plan->open_count > 0 || plan->contest_possible, &plan->main));
     plan->report.plane_bits = frame->scale.bits;
     skg_raster_tiles(plan->main, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
     return SKG_OK;
@@ -154,6 +165,7 @@ static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_wor
                                          frame.parts, frame.scale.scale, &job->log));
     if (frame.kernels.half) skg_raster_set_rays(plan->main, &frame.camera);
     SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
+    if (frame.contest.count) SKG_TRY_CLEANUP(skg_contest_run(plan, job, &frame, plan->main));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
     SKG_TRY_CLEANUP(resolve(plan, job, work, sample, &frame));
 cleanup:

@@ -12,7 +12,8 @@ void skg_plan_options_init(skg_plan_options *options) {
                                       .precision = SKG_SINGLE,
                                       .overlaps = 1,
                                       .supersampling = 1,
-                                      .swank = 1};
+                                      .swank = 1,
+                                      .repair = SKG_REPAIR_NEIGHBOURS};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -37,6 +38,12 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
     if (!(options->tolerance >= 0 && options->tolerance < 1))
         return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
                         options->tolerance);
+    if (options->repair < SKG_REPAIR_NONE || options->repair > SKG_REPAIR_EXACT)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
+                        options->repair);
+    if (options->clip != 0 && options->clip != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "clip is %" PRId32 "; 1 or 0", options->clip);
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
@@ -166,11 +173,11 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
 static skg_status check_half(const skg_plan *plan) {
     if (plan->options.precision != SKG_HALF) return SKG_OK;
     if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
-        plan->options.blur || skg_plan_is_absolute(&plan->options))
+        plan->contest_possible || plan->options.blur || skg_plan_is_absolute(&plan->options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
-            "precision half is for comparison: a point source or samples of one, closed meshes, vacuum "
-            "around them, no noise or blur; take single");
+            "precision half is for comparison: a point source or samples of one, closed meshes without "
+            "priorities, vacuum around them, no noise or blur; take single");
     return SKG_OK;
 }
 
@@ -181,6 +188,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
+    plan->contest_possible = skg_contest_possible(plan->scene, plan->options.clip);
     SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(skg_plan_make_detector(plan));
@@ -261,6 +269,8 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
+    skg_buffer_release(&plan->gaps);
+    skg_contest_memory_release(&plan->contest_memory);
 }
 
 void skg_plan_release(skg_plan **plan) {
@@ -269,6 +279,8 @@ void skg_plan_release(skg_plan **plan) {
     *plan = NULL;
     if (!skg_unref(&last->refs)) return;
     release_device_memory(last);
+    for (int64_t k = 0; last->caps && k < last->open_count; k++) skg_caps_release(&last->caps[k]);
+    skg_free(&last->caps);
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);

@@ -4,11 +4,13 @@
 
 #include "plan/attenuate.h"
 #include "plan/blur.h"
+#include "plan/caps.h"
 #include "plan/job.h"
 #include "plan/meshes.h"
 #include "plan/model.h"
 #include "plan/noise.h"
 #include "plan/overlap.h"
+#include "plan/priority.h"
 #include "plan/samples.h"
 #include "plan/scale.h"
 
@@ -23,12 +25,14 @@
     X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
+    X(SKG_EFFECT_REPAIR, "repair")                                                                           \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
     X(SKG_EFFECT_OVERLAPS, "overlap check")                                                                  \
     X(SKG_EFFECT_NOISE, "quantum noise")                                                                     \
     X(SKG_EFFECT_BLUR, "blur")                                                                               \
     X(SKG_EFFECT_ELECTRONIC, "electronic noise")                                                             \
-    X(SKG_EFFECT_QUANTISATION, "quantisation")
+    X(SKG_EFFECT_QUANTISATION, "quantisation")                                                               \
+    X(SKG_EFFECT_PRIORITY, "priority")
 
 enum {
 #define SKG_EFFECT_ENUM(name, text) name,
@@ -76,7 +80,8 @@ struct skg_plan {
     skg_blur *blur;         /* NULL: none */
     skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
     int64_t open_count;
-    int64_t *open; /* [open_count] parts that are not closed */
+    int64_t *open;  /* [open_count] parts that are not closed */
+    skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
     skg_scale_grid grid;
     int32_t strategy; /* decided */
     const char *strategy_reason;
@@ -85,6 +90,10 @@ struct skg_plan {
     skg_raster_options raster_options[SKG_MOST_RASTERS];
     skg_raster *main; /* of the last frame: that of the closed parts */
     skg_buffer image, negative, bad;
+    skg_buffer gaps; /* of the open part at hand: int [rows][columns], as skg_open_gaps leaves them */
+
+    int32_t contest_possible; /* priorities differ, or children are clipped */
+    skg_contest_memory contest_memory;
 
     int64_t overlap_count;
     skg_overlap_pair *overlaps;

@@ -126,7 +126,7 @@ skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
         SKG_TRY(skg_realloc(capacity, sizeof *scene->parts, "parts", &scene->parts));
         scene->capacity = capacity;
     }
-    skg_scene_part_data made = {.inside = ours.inside};
+    skg_scene_part_data made = {.inside = ours.inside, .priority = ours.priority};
     memcpy(made.pose, ours.pose, sizeof made.pose);
     SKG_TRY(skg_copy_text(label, &made.label));
     skg_mesh_retain(ours.mesh);
@@ -176,6 +176,7 @@ skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part) {
     SKG_TRY(check_id(scene, id, "skg_scene_part"));
     const skg_scene_part_data *data = &scene->parts[id];
     skg_part ours = {.size = sizeof ours,
+                     .priority = data->priority,
                      .inside = data->inside,
                      .mesh = data->mesh,
                      .material = data->material,

@@ -12,6 +12,7 @@ typedef struct {
     char *label;
     int64_t inside; /* -1: in the world. From a scene file it may be a later part, never in a circle. */
     double pose[16];
+    int32_t priority, reserved;
 } skg_scene_part_data;
 
 struct skg_scene {

@@ -18,6 +18,8 @@ static const skg_json_key top_keys[] = {
     {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
     {"World", NULL, SKG_KEY_READ},
+    {"Repair", NULL, SKG_KEY_READ},
+    {"Clip", NULL, SKG_KEY_READ},
 };
 
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
@@ -47,6 +49,20 @@ static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
     setup->has_precision = 1;
     setup->precision = values[choice];
+    return SKG_OK;
+}
+
+/* What becomes of open meshes, and of what leaves its parent. */
+static skg_status read_mends(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {
+        [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
+    const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
+    if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
+    if (!repair.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&repair, "repair", names, 3, &choice));
+    setup->has_repair = 1;
+    setup->repair = (int32_t)choice;
     return SKG_OK;
 }
 
@@ -81,6 +97,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
+    SKG_TRY(read_mends(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
@@ -151,6 +168,8 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->has_repair) ours.repair = setup->repair;
+    if (setup->clip) ours.clip = 1;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;

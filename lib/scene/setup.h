@@ -49,6 +49,7 @@ struct skg_setup {
     skg_view view;         /* of the first projection */
     skg_scan_section scan;
     int32_t precision, has_precision;
+    int32_t repair, has_repair, clip;
     double tolerance; /* negative: not given */
 };
 

@@ -63,7 +63,8 @@ static const struct {
     {"\"PointSource\"", "[\"Disc\", -1, \"mm\"]", SKG_ERR_FORMAT, "no size"},
     {"\"PointSource\"", "[\"Disc\", 1, \"mn\"]", SKG_ERR_FORMAT, "mn"},
     {"\"UpVector\"", "\"Oversampling\": 17, \"UpVector\"", SKG_ERR_FORMAT, "17"},
-    {"\"Opacity\": 0.4", "\"Priority\": 3", SKG_ERR_UNSUPPORTED, "priority"},
+    {"\"Opacity\": 0.4", "\"Priority\": 0.5", SKG_ERR_FORMAT, "Priority"},
+    {"\"Samples\"", "\"Repair\": \"neighbors\", \"Samples\"", SKG_ERR_FORMAT, "did you mean neighbours"},
     /* missing */
     {"\"Samples\": [", "\"Scan\": {}, \"Window_Size\": [", SKG_ERR_FORMAT, "Samples is missing"},
     {"\"Shape\": \"PointSource\",", "", SKG_ERR_FORMAT, "line 3: Source: Shape is missing"},

@@ -45,6 +45,16 @@ typedef struct {
 
 SKG_API void skg_detector_blur_init(skg_detector_blur *blur);
 
+/* What becomes of an open mesh's bad pixels, where a ray does not leave it as often as it enters it. A ray
+ * that goes in by one hole and out by another is not found out by this, and stays without the part. NONE: the
+ * part is left out there. NEIGHBOURS: the mean of the part's path parameters over the pixel's neighbourhood,
+ * which is grown until it holds valid pixels (Vidal and Villard 2016, 3.2.7); left out where there is no
+ * valid one at all. EXACT: cast anew on the host, in double, through the mesh with each loop of open edges
+ * capped by a fan about its mean. Exact where loops are plane: any missing triangle, plane holes, cracks at
+ * T-junctions, single flipped triangles; one of many surfaces where not. Submitting waits for the raster of
+ * open parts. */
+enum { SKG_REPAIR_NONE = 0, SKG_REPAIR_NEIGHBOURS = 1, SKG_REPAIR_EXACT = 2 };
+
 /* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
  * centre, their width along the projected column step. */
 enum {
@@ -108,6 +118,9 @@ typedef struct {
     int64_t noise_seed; /* added to that of each frame */
     double electronic_kev;   /* standard deviation of the electronic noise, keV per pixel; 0: none */
     double quantum_step_kev; /* values are whole multiples of it, keV per pixel; 0: any */
+    int32_t repair;          /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
+    int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
+                     it */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -208,7 +221,8 @@ typedef struct {
     int64_t nodes, bins;     /* energies that are used, and that the spectrum has photons at */
     double bound; /* of the error that fewer nodes and planes make, in the words of the tolerance: twice the
                      worst that was found; 0 where every bin is used */
-    int64_t verified; /* number of points (lengths of all materials) on which it was looked for */
+    int64_t verified;        /* number of points (lengths of all materials) on which it was looked for */
+    int64_t repaired_pixels; /* of the last frame: of the bad ones; the others are without their part */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
