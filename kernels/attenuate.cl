@@ -17,6 +17,7 @@ typedef float skg_out;
 #define SKG_TO_OUT_V SKG_CAT(convert_float, SKG_WIDE)
 #endif
 
+#define SKG_OUT_TO_REAL_V SKG_CAT(SKG_CAT(convert_, SKG_SCALAR), SKG_WIDE)
 #define SKG_AS_REAL_V SKG_CAT(SKG_CAT(as_, SKG_SCALAR), SKG_WIDE)
 #if SKG_DOUBLE
 #define SKG_SCALAR double
@@ -42,12 +43,16 @@ static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row)
 
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
     if (pixels >= SKG_WIDE) {
+#if SKG_ADD
+        SKG_STORE_V(SKG_LOAD_V(0, place) + SKG_TO_OUT_V(value), 0, place);
+#else
         SKG_STORE_V(SKG_TO_OUT_V(value), 0, place);
+#endif
         return;
     }
     skg_out rest[SKG_WIDE];
     SKG_STORE_V(SKG_TO_OUT_V(value), 0, rest);
-    for (int k = 0; k < pixels; k++) place[k] = rest[k];
+    for (int k = 0; k < pixels; k++) place[k] = SKG_ADD ? place[k] + rest[k] : rest[k];
 }
 
 /* Sums of coefficient times mm over the planes, for each run. */
@@ -194,5 +199,22 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
         SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
             skg_show(shown[c][r], output + offset + row * row_stride + c * channel_stride + at, pixels);
         skg_count(highest[r], limit, pixels, negative);
+    }
+}
+
+/* Means of several passes as attenuation: -ln, of at least the smallest normal float. One work-item a run. */
+__kernel void skg_logarithm(int columns, int rows, int channels, __global skg_out *output, long offset,
+                            long row_stride, long channel_stride) {
+    const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
+    if (column >= columns || row >= rows) return;
+    for (int c = 0; c < channels; c++) {
+        __global skg_out *place = output + offset + row * row_stride + c * channel_stride + column;
+        skg_out mean[SKG_WIDE];
+        for (int k = 0; k < SKG_WIDE; k++) mean[k] = place[min(k, columns - column - 1)];
+        const skg_realv value = SKG_OUT_TO_REAL_V(SKG_LOAD_V(0, mean));
+        const skg_realv least = (skg_realv)(0x1p-126f);
+        const skg_realv result = -skg_log_v(value > least ? value : least);
+        SKG_STORE_V(SKG_TO_OUT_V(result), 0, mean);
+        for (int k = 0; k < min(SKG_WIDE, columns - column); k++) place[k] = mean[k];
     }
 }

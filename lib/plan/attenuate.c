@@ -15,7 +15,7 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, output_double, runs;
+    int32_t planes, channels, shown, world, ratio, falloff, output_double, add, runs;
 } kernel_key;
 
 struct skg_attenuator {
@@ -73,22 +73,26 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
     skg_free(attenuator);
 }
 
-static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
+static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     static const char *const files[] = {"exponential.clh", "attenuate.cl"};
-    cl_program program = NULL;
     char more[256];
+    snprintf(
+        more, sizeof more,
+        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
+        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d",
+        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
+        (int)key->falloff, (int)key->output_double, (int)key->add, (int)key->runs);
+    return skg_kernels_get(attenuator->context, &key->options, 2, files, more, program);
+}
+
+static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
+    cl_program program = NULL;
     for (int32_t i = 0; i < attenuator->count; i++)
         if (memcmp(&attenuator->keys[i], key, sizeof *key) == 0) {
             *kernel = attenuator->kernels[i];
             return SKG_OK;
         }
-    snprintf(
-        more, sizeof more,
-        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_RUNS=%d",
-        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->output_double, (int)key->runs);
-    SKG_TRY(skg_kernels_get(attenuator->context, &key->options, 2, files, more, &program));
+    SKG_TRY(get_program(attenuator, key, &program));
     SKG_TRY(skg_kernel_create(program, "skg_attenuate", kernel));
     /* Full: the oldest goes; its program stays with the context. */
     const int32_t slot = attenuator->count < MOST_KERNELS ? attenuator->count++ : attenuator->next;
@@ -148,20 +152,27 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
     return SKG_OK;
 }
 
+static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
+                         const skg_attenuation *attenuation, const skg_image_place *place) {
+    /* Of the raster's abilities only the type of its sums is of interest here. */
+    return (kernel_key){
+        .options = {.precision = raster->options.kernels.precision, .bits = raster->options.kernels.bits},
+        .planes = attenuation->planes,
+        .channels = attenuation->channels,
+        .shown = attenuation->shown,
+        .world = attenuation->world_plane >= 0,
+        .ratio = attenuation->ratio,
+        .falloff = attenuation->falloff && !camera->parallel,
+        .output_double = place->output_double,
+        .add = place->add,
+        .runs = attenuation->nodes > 1 ? RUNS : 1};
+}
+
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
                          cl_mem negative, const skg_image_place *place, skg_stage_log *log) {
     const skg_kernel_options *sums = &raster->options.kernels;
-    /* Of the raster's abilities only the type of its sums is of interest here. */
-    const kernel_key key = {.options = {.precision = sums->precision, .bits = sums->bits},
-                            .planes = attenuation->planes,
-                            .channels = attenuation->channels,
-                            .shown = attenuation->shown,
-                            .world = attenuation->world_plane >= 0,
-                            .ratio = attenuation->ratio,
-                            .falloff = attenuation->falloff && !camera->parallel,
-                            .output_double = place->output_double,
-                            .runs = attenuation->nodes > 1 ? RUNS : 1};
+    const kernel_key key = key_of(raster, camera, attenuation, place);
     const int single = sums->precision == SKG_SINGLE;
     /* As the kernel counts: powers of two above a limit. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : 1.4426950408889634);
@@ -191,4 +202,30 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
                               padded(raster->frame.rows, 16)};
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
+}
+
+skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
+                                   const skg_attenuation *attenuation, const skg_image_place *place,
+                                   skg_stage_log *log) {
+    const cl_int size[3] = {raster->frame.columns, raster->frame.rows, attenuation->channels};
+    const cl_long offset = place->offset, row = place->row_stride, channel = place->channel_stride;
+    const skg_camera no_camera = {0};
+    const kernel_key key = key_of(raster, &no_camera, attenuation, place);
+    cl_program program = NULL;
+    cl_kernel kernel = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(get_program(attenuator, &key, &program));
+    SKG_TRY(skg_kernel_create(program, "skg_logarithm", &kernel));
+    for (cl_uint k = 0; k < 3; k++) SKG_TRY_CLEANUP(skg_kernel_set(kernel, k, sizeof size[k], &size[k]));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 3, sizeof place->memory, &place->memory));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 4, sizeof offset, &offset));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 5, sizeof row, &row));
+    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 6, sizeof channel, &channel));
+    const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision);
+    const size_t local[2] = {8, 16};
+    const size_t global[2] = {padded((size[0] + lanes - 1) / lanes, 8), padded(size[1], 16)};
+    status = skg_kernel_run(raster->context, kernel, "logarithm", 2, global, local, log);
+cleanup:
+    clReleaseKernel(kernel);
+    return status;
 }

@@ -34,7 +34,8 @@ void skg_attenuator_release(skg_attenuator **attenuator);
 /* Where an image goes, in elements of float, or double where output_double. */
 typedef struct {
     cl_mem memory;
-    int32_t output_double, reserved;
+    int32_t output_double;
+    int32_t add; /* 1: intensities are added to what is there */
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
@@ -43,5 +44,10 @@ typedef struct {
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
                          cl_mem negative, const skg_image_place *place, skg_stage_log *log);
+
+/* Enqueues -ln of a finished mean, in place. */
+skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
+                                   const skg_attenuation *attenuation, const skg_image_place *place,
+                                   skg_stage_log *log);
 
 #endif

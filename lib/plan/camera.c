@@ -1,7 +1,6 @@
 #include "plan/camera.h"
 
 #include "scene/vector.h"
-#include "scene/view.h"
 
 #include <math.h>
 
@@ -31,6 +30,17 @@ static void parallel_start(const skg_view *view, const double pixel[3], skg_came
     camera->start[2] = -skg_dot(view->row_step, d) / square;
 }
 
+/* Nothing is rounded: from infinity, the direction is only brought to a length near 1 by a power of two. */
+static void parallel_direction(const skg_view *view, double direction[3]) {
+    int exponent = 0;
+    if (view->projection == SKG_PARALLEL) {
+        skg_add_scaled(view->centre, -1, view->source, direction);
+        return;
+    }
+    frexp(fmax(fabs(view->source[0]), fmax(fabs(view->source[1]), fabs(view->source[2]))), &exponent);
+    for (int k = 0; k < 3; k++) direction[k] = ldexp(view->source[k], -exponent);
+}
+
 skg_status skg_camera_make(const skg_view *view, const double *source, double shift_column, double shift_row,
                            skg_camera *camera) {
     *camera = (skg_camera){.columns = view->columns, .rows = view->rows};
@@ -48,7 +58,7 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
         camera->origin[k] = camera->parallel ? pixel[k] : seen_from[k];
         camera->first[k] = pixel[k] - seen_from[k];
     }
-    if (camera->parallel) skg_view_direction(view, camera->first);
+    if (camera->parallel) parallel_direction(view, camera->first);
     camera->determinant = invert(camera->column, camera->row, camera->first, camera->matrix);
     if (!(fabs(camera->determinant) > 0) || !isfinite(camera->determinant))
         return skg_fail(SKG_ERR_SCENE,
@@ -99,19 +109,7 @@ static void parallel_axis(double h, const double linear[3], int64_t count, doubl
     for (int k = 0; k < 3; k++) row[k] = linear[k];
 }
 
-/* What depths of a part are measured from: its origin's own, so that r is exact relative to the part. It must
- * be positive, and where a part reaches the source, of the part's own size: terms are bounded by its extent,
- * and 1 - z = reference / t keeps its digits. */
-static double reference_of(double depth, double reach) {
-    if (reach > 0 && isfinite(reach)) {
-        const double half = 0.5 * (depth + reach);
-        if (half > depth) return half;
-        return depth;
-    }
-    return depth > (double)SKG_NEAR ? depth : 1;
-}
-
-void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double radius,
+void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double reference,
                      int32_t flipped, skg_part_double *part) {
     double pose_linear[3][3], linear[3][3], world[3], h[3];
     for (int r = 0; r < 3; r++) {
@@ -136,8 +134,7 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
                    &part->anchor_y, &part->pixel_j);
     }
     for (int k = 0; k < 3; k++) part->row2[k] = linear[2][k];
-    part->reference =
-        camera->parallel ? depth : reference_of(depth, radius * sqrt(skg_dot(linear[2], linear[2])));
+    part->reference = camera->parallel || reference > 0 ? reference : 1;
     part->offset_r = depth - part->reference;
     part->highest = 1 - part->reference;
     part->start[0] = camera->start[0] + camera->start[1] * part->pixel_i + camera->start[2] * part->pixel_j -

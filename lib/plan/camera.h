@@ -17,7 +17,7 @@ typedef struct {
     double origin[3];    /* S, or D0 with a parallel beam */
     double matrix[3][3]; /* of h */
     double determinant;  /* of its inverse: its sign is the handedness of the picture */
-    double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d, 1 mm long */
+    double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d */
     double column[3], row[3];
     double start[3]; /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
 } skg_camera;
@@ -32,10 +32,9 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
 void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]);
 
 /* Fills what a part's entry knows of the picture (not its place in the tables, not its writes). pose: 4x4,
- * row by row; origin: of the mesh's offsets, mm; radius: of a sphere about it that holds the mesh, 0:
- * unknown; flipped: the mesh is drawn with its triangles turned round.
- */
-void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double radius,
+ * row by row; origin: of the mesh's offsets, mm; reference: as of skg_geometry_part; flipped: the mesh is
+ * drawn with its triangles turned round. */
+void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double reference,
                      int32_t flipped, skg_part_double *part);
 
 /* mm2 of a pixel. */

@@ -34,6 +34,49 @@ static void tell_compression(skg_plan *plan) {
         set(plan, effect, 0, "tolerance 0: every energy is used");
 }
 
+static void tell_samples(skg_plan *plan) {
+    const skg_samples *samples = &plan->samples;
+    static const char *const shapes[] = {"point", "line",   "rectangle",    "cube",
+                                         "disc",  "sphere", "Gaussian spot"};
+    const char *shape = shapes[samples->spot.shape];
+    if (samples->spot.shape == SKG_SPOT_POINT)
+        set(plan, SKG_EFFECT_SOURCE, 0, "%s",
+            plan->view.projection == SKG_POINT ? "the source is a point: one pass"
+                                               : "the beam is parallel: one pass");
+    else if (plan->report.sample_error > 0)
+        set(plan, SKG_EFFECT_SOURCE, 1,
+            "%s: %" PRId64
+            " samples; the last doubling changed 99.9 %% of the pixels by less than %.2g of the open "
+            "beam",
+            shape, samples->spot_count, plan->report.sample_error);
+    else
+        set(plan, SKG_EFFECT_SOURCE, 1, "%s: %" PRId64 " samples, as asked for", shape, samples->spot_count);
+    if (samples->shifts > 1)
+        set(plan, SKG_EFFECT_SUPERSAMPLING, 1, "%" PRId64 " x %" PRId64 " rays a pixel", samples->shifts,
+            samples->shifts);
+    else
+        set(plan, SKG_EFFECT_SUPERSAMPLING, 0, "one ray a pixel, at its centre");
+}
+
+static void tell_detector(skg_plan *plan) {
+    const skg_plan_options *options = &plan->options;
+    const char *world = "";
+    if (options->world && skg_material_name(options->world, &world) == SKG_OK)
+        set(plan, SKG_EFFECT_WORLD, 1, "the parts stand in %s", world);
+    else
+        set(plan, SKG_EFFECT_WORLD, 0, "the parts stand in vacuum");
+    if (options->response)
+        set(plan, SKG_EFFECT_RESPONSE, 1, "photons count by what the detector records of their energy");
+    else
+        set(plan, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: all photons, all their energy");
+    if (plan->attenuation.falloff)
+        set(plan, SKG_EFFECT_FALLOFF, 1,
+            "inverse square and obliquity, from the pixel nearest the perpendicular on");
+    else
+        set(plan, SKG_EFFECT_FALLOFF, 0,
+            options->falloff ? "ratios to the open beam do not show it" : "photons are counted per pixel");
+}
+
 skg_status skg_report_effects(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     int64_t nested = 0;
@@ -44,6 +87,8 @@ skg_status skg_report_effects(skg_plan *plan) {
     else
         set(plan, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
     tell_compression(plan);
+    tell_samples(plan);
+    tell_detector(plan);
     if (nested)
         set(plan, SKG_EFFECT_NESTING, 1, "%" PRId64 " parts displace a parent: differences of mu, no pass",
             nested);

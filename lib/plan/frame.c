@@ -1,7 +1,5 @@
 #include "plan/frame.h"
 
-#include "scene/vector.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -39,14 +37,6 @@ static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, 
     return SKG_OK;
 }
 
-/* Of a sphere about the mesh's origin, mm. */
-static double radius_of(const skg_mesh *mesh) {
-    double corner[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = fmax(fabs((double)mesh->lowest[k]), fabs((double)mesh->highest[k]));
-    return skg_length(corner);
-}
-
 static double largest_weight(const skg_frame_parts *frame, int64_t part) {
     double largest = 0;
     for (int64_t w = frame->firsts[part]; w < frame->firsts[part + 1]; w++)
@@ -69,10 +59,11 @@ static skg_status place_parts(const skg_plan *plan, const skg_frame_work *work, 
         frame->parts[p] = (skg_geometry_part){.pose = pose,
                                               .origin = mesh->origin,
                                               .flipped = mesh->orientation < 0,
-                                              .radius = radius_of(mesh),
                                               .weights = mesh->closed ? (int32_t)writes : 0,
                                               .weight = frame->all_writes + frame->firsts[p]};
         skg_extent_find(&frame->camera, mesh, pose, &frame->extents[p]);
+        const skg_scale_part *reach = &frame->extents[p].scale;
+        frame->parts[p].reference = 0.5 * (reach->low_depth + reach->high_depth);
         if (writes == 0) continue;
         frame->extents[p].scale.weight = largest_weight(frame, p);
         scales[adding++] = frame->extents[p].scale;
@@ -101,23 +92,30 @@ static skg_status upload(skg_plan *plan, skg_job *job) {
     return SKG_OK;
 }
 
-static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work,
-                          const skg_frame_parts *frame, const skg_raster *raster) {
-    const int lengths = work->lengths_of >= 0, quantity = plan->options.quantity;
-    const double factor = quantity == SKG_FLUENCE && !lengths ? 1 / skg_camera_pixel_area(&frame->camera) : 1;
+static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work, int64_t sample,
+                          const skg_frame_parts *frame) {
+    const int lengths = work->lengths_of >= 0;
+    const double area = plan->options.quantity == SKG_FLUENCE ? skg_camera_pixel_area(&frame->camera) : 1;
+    const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&plan->samples));
     /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
     const double least = -1e-6 * frame->scale.bound - 1e-6;
     const cl_int none = 0;
+    skg_image_place place = work->place;
+    place.add = sample > 0;
     SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
-    return skg_attenuate(plan->attenuator, raster, &frame->camera, frame->scale.scale,
+    return skg_attenuate(plan->attenuator, plan->main, &frame->camera, frame->scale.scale,
                          lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
-                         &work->place, &job->log);
+                         &place, &job->log);
 }
 
-/* Camera, parts, scale, and the rasteriser that they call for. */
-static skg_status prepare(skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
-    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &frame->camera));
+/* Camera of a sample (below 0: the point source and the pixels' centres), parts, scale, and the rasteriser
+ * that they call for. */
+static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sample,
+                          skg_frame_parts *frame) {
+    double source[3], shift[2] = {0, 0};
+    if (sample >= 0) skg_samples_at(&plan->samples, work->view, sample, source, shift);
+    SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &frame->camera));
     SKG_TRY(list_writes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
     frame->kernels.precision = plan->options.precision;
@@ -134,23 +132,36 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, skg_frame_
 skg_status skg_frame_prepare(skg_plan *plan) {
     const skg_frame_work work = {.view = &plan->view, .lengths_of = -1};
     skg_frame_parts frame = {0};
-    skg_status status = prepare(plan, &work, &frame);
+    skg_status status = prepare(plan, &work, -1, &frame);
     release_parts(&frame);
     return status;
 }
 
-skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
+/* One pass: from the vertices to the image of one sample. */
+static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_work *work, int64_t sample) {
     skg_frame_parts frame = {0};
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(prepare(plan, work, &frame));
+    SKG_TRY_CLEANUP(prepare(plan, work, sample, &frame));
     skg_warn_unseen(plan, &frame);
     SKG_TRY_CLEANUP(upload(plan, job));
     SKG_TRY_CLEANUP(skg_geometry_project(plan->context, &plan->geometry, &frame.kernels, &frame.camera,
                                          frame.parts, frame.scale.scale, &job->log));
     SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
-    SKG_TRY_CLEANUP(resolve(plan, job, work, &frame, plan->main));
+    SKG_TRY_CLEANUP(resolve(plan, job, work, sample, &frame));
 cleanup:
     release_parts(&frame);
     return status;
+}
+
+int skg_plan_averages(const skg_plan *plan) {
+    return plan->samples.spot.shape != SKG_SPOT_POINT || plan->samples.shifts > 1;
+}
+
+skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
+    if (work->lengths_of >= 0 || !skg_plan_averages(plan)) return enqueue_pass(plan, job, work, -1);
+    const int64_t count = skg_samples_count(&plan->samples);
+    for (int64_t s = 0; s < count; s++) SKG_TRY(enqueue_pass(plan, job, work, s));
+    if (plan->options.quantity != SKG_ATTENUATION) return SKG_OK;
+    return skg_attenuate_logarithm(plan->attenuator, plan->main, &plan->attenuation, &work->place, &job->log);
 }

@@ -8,8 +8,8 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options =
-            (skg_plan_options){.size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1};
+        *options = (skg_plan_options){
+            .size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1, .supersampling = 1};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -93,10 +93,12 @@ static skg_status make_attenuation(skg_plan *plan) {
     const double one = 1;
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
-    const int32_t shown = plan->options.quantity != SKG_ATTENUATION ? SKG_SHOWN_INTENSITY
-                          : model->nodes == 1                       ? SKG_SHOWN_EXPONENT
-                                                                    : SKG_SHOWN_LOGARITHM;
-    const int is_ratio = plan->options.quantity == SKG_TRANSMISSION || shown != SKG_SHOWN_INTENSITY;
+    const int is_ratio =
+        plan->options.quantity == SKG_TRANSMISSION || plan->options.quantity == SKG_ATTENUATION;
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_averages(plan)
+                              ? SKG_SHOWN_INTENSITY
+                          : model->nodes == 1 ? SKG_SHOWN_EXPONENT
+                                              : SKG_SHOWN_LOGARITHM;
     /* Over one energy's open beam the world cancels. */
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
     const skg_attenuation image = {.planes = model->planes,
@@ -120,11 +122,20 @@ static skg_status make_attenuation(skg_plan *plan) {
                               CL_MEM_READ_WRITE, "bad pixels");
 }
 
+static skg_status make_samples(skg_plan *plan) {
+    const int parallel = plan->view.projection != SKG_POINT;
+    SKG_TRY(
+        skg_samples_make(parallel ? NULL : plan->options.spot, plan->options.supersampling, &plan->samples));
+    plan->options.spot = NULL; /* the caller's, and copied */
+    return SKG_OK;
+}
+
 static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_meshes_create(plan->scene, &plan->meshes));
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
     SKG_TRY(skg_model_create(plan->scene, &plan->view, plan->spectrum, &plan->options, &plan->model));
     SKG_TRY(skg_plan_name_channels(plan));
+    SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(make_attenuation(plan));
@@ -132,8 +143,9 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
     SKG_TRY(skg_report_overlaps(plan));
-    SKG_TRY(skg_report_effects(plan));
-    return skg_frame_prepare(plan);
+    SKG_TRY(skg_frame_prepare(plan));
+    SKG_TRY(skg_plan_find_samples(plan));
+    return skg_report_effects(plan);
 }
 
 /* The caller's arrays are not kept, its handles are. */

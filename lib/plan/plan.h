@@ -7,12 +7,18 @@
 #include "plan/meshes.h"
 #include "plan/model.h"
 #include "plan/overlap.h"
+#include "plan/samples.h"
 #include "plan/scale.h"
 
 /* Effects that a plan knows, in the order in which they are reported. */
 #define SKG_EFFECT_LIST(X)                                                                                   \
     X(SKG_EFFECT_ENERGIES, "several energies")                                                               \
     X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
+    X(SKG_EFFECT_SOURCE, "extended source")                                                                  \
+    X(SKG_EFFECT_SUPERSAMPLING, "supersampling")                                                             \
+    X(SKG_EFFECT_WORLD, "world material")                                                                    \
+    X(SKG_EFFECT_RESPONSE, "energy response")                                                                \
+    X(SKG_EFFECT_FALLOFF, "falloff")                                                                         \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
@@ -54,7 +60,8 @@ struct skg_plan {
     skg_model model;
     struct {
         char text[64];
-    } * channel_names;           /* [channels] */
+    } * channel_names; /* [channels] */
+    skg_samples samples;
     skg_attenuation attenuation; /* of images */
     skg_attenuation lengths;     /* of path lengths: the plane itself */
     skg_attenuator *attenuator;
@@ -80,6 +87,13 @@ struct skg_plan {
 
 /* Names the channels of the model, by the caller's bands (channel.c). */
 skg_status skg_plan_name_channels(skg_plan *plan);
+
+/* Whether images are means over several passes: of samples of the source or of pixels. */
+int skg_plan_averages(const skg_plan *plan);
+
+/* Doubles the samples of the source until its tolerance is met at the plan's view, where they are not given
+ * (doubling.c). */
+skg_status skg_plan_find_samples(skg_plan *plan);
 
 /* SKG_STALE where a view has another size than the plan's. */
 skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);

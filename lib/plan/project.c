@@ -228,7 +228,7 @@ static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *ca
     slot->write_count = 0;
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
-        skg_camera_part(camera, part[p].pose, part[p].origin, part[p].radius, part[p].flipped, entry);
+        skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
         entry->first_write = (SKG_INT)slot->write_count;
         entry->writes = (SKG_INT)part[p].weights;
         if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);

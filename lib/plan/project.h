@@ -24,8 +24,9 @@ typedef struct {
     const double *pose;   /* 4x4, row by row */
     const double *origin; /* of its mesh's offsets, mm */
     int32_t flipped;      /* its mesh is drawn with triangles turned round */
-    double radius;   /* of a sphere about that origin that holds the mesh as it is, mm; 0: unknown (worse when
-                        the part reaches the source) */
+    double
+        reference;   /* path parameter that its depths are measured from: the middle of those that lie on
+                        paths, so     that no term is larger than their extent. Above 0 with a point source */
     int32_t weights; /* how many planes; 0: the part is not drawn, but keeps its place */
     const skg_plane_weight *weight;
 } skg_geometry_part;

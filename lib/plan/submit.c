@@ -32,9 +32,17 @@ static int64_t element_size(const skg_output *output) {
     return output->type == SKG_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
 }
 
+/* So large that products of strides and counts stay numbers. */
+static const int64_t LARGEST_STRIDE = (int64_t)1 << 40;
+
 static skg_status check_strides(submission *s) {
     skg_output *output = &s->output;
     const int64_t columns = s->plan->view.columns, rows = s->plan->view.rows;
+    if (output->row_stride > LARGEST_STRIDE || output->channel_stride > LARGEST_STRIDE ||
+        output->frame_stride > LARGEST_STRIDE)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "strides of %" PRId64 ", %" PRId64 " and %" PRId64 " elements; at most 2^40",
+                        output->row_stride, output->channel_stride, output->frame_stride);
     if (!output->row_stride) output->row_stride = columns;
     if (output->row_stride < columns)
         return skg_fail(SKG_ERR_ARGUMENT,
@@ -135,23 +143,33 @@ static skg_status place_image(submission *s, int64_t index, skg_image_place *pla
     return SKG_OK;
 }
 
+/* One channel with a row stride of its own. OpenCL wants strides of channels to be multiples of those of
+ * rows: each channel is read by itself. */
+static skg_status read_channel(const submission *s, int64_t channel, char *to, skg_job *job) {
+    const skg_plan *plan = s->plan;
+    const size_t element = (size_t)element_size(&s->output), rows = (size_t)plan->view.rows;
+    const size_t columns = (size_t)plan->view.columns * element,
+                 stride = (size_t)s->output.row_stride * element;
+    const size_t from[3] = {0, (size_t)channel * rows, 0}, at[3] = {0, 0, 0}, region[3] = {columns, rows, 1};
+    cl_event event = NULL, *wanted = skg_stage_event(&job->log, &event);
+    to += (size_t)(channel * s->output.channel_stride) * element;
+    SKG_CL_TRY(clEnqueueReadBufferRect(plan->context->device->queue, plan->image.memory, CL_FALSE, from, at,
+                                       region, columns, 0, stride, 0, to, 0, NULL, wanted));
+    return skg_stage_log_add(&job->log, "read back", event);
+}
+
 static skg_status read_back(const submission *s, int64_t index, skg_job *job) {
     const skg_plan *plan = s->plan;
     const skg_output *output = &s->output;
-    const size_t element = (size_t)element_size(output), origin[3] = {0, 0, 0};
-    const size_t columns = (size_t)plan->view.columns * element, rows = (size_t)plan->view.rows;
-    const size_t region[3] = {columns, rows, (size_t)s->channels};
-    const size_t row = (size_t)output->row_stride * element,
-                 channel = (size_t)output->channel_stride * element;
-    void *to = (char *)output->data + (size_t)(index * output->frame_stride) * element;
+    const int64_t size = plan->view.rows * plan->view.columns, element = element_size(output);
+    char *to = (char *)output->data + index * output->frame_stride * element;
     cl_event event = NULL, *wanted = skg_stage_event(&job->log, &event);
-    cl_command_queue queue = plan->context->device->queue;
-    if (row == columns && channel == rows * columns)
-        SKG_CL_TRY(clEnqueueReadBuffer(queue, plan->image.memory, CL_FALSE, 0, channel * (size_t)s->channels,
-                                       to, 0, NULL, wanted));
-    else
-        SKG_CL_TRY(clEnqueueReadBufferRect(queue, plan->image.memory, CL_FALSE, origin, origin, region,
-                                           columns, rows * columns, row, channel, to, 0, NULL, wanted));
+    if (output->row_stride != plan->view.columns || (s->channels > 1 && output->channel_stride != size)) {
+        for (int64_t c = 0; c < s->channels; c++) SKG_TRY(read_channel(s, c, to, job));
+        return SKG_OK;
+    }
+    SKG_CL_TRY(clEnqueueReadBuffer(plan->context->device->queue, plan->image.memory, CL_FALSE, 0,
+                                   (size_t)(s->channels * size * element), to, 0, NULL, wanted));
     return skg_stage_log_add(&job->log, "read back", event);
 }
 

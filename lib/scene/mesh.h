@@ -25,7 +25,7 @@ struct skg_mesh {
     float lowest[3];     /* bounds of the finite offsets, mm from origin */
     float highest[3];
     int64_t first_bad;      /* first vertex that is not finite; -1: none */
-    int32_t layers;         /* as many components may lie over each other, by their boxes in version 1 */
+    int32_t layers;         /* how many times a ray may be inside at once, in version 1 */
     skg_mesh_health health; /* volume, area, bounds and degenerate_triangles of version 1 */
 };
 
@@ -46,9 +46,10 @@ void skg_mesh_arrays_free(skg_mesh_arrays *arrays);
 /* Fills health and orientation of a new mesh, and its weld map. */
 skg_status skg_mesh_examine(skg_mesh *mesh);
 
-/* Sets mesh->layers from the components; root: for each welded vertex one of its component, -1 where no
- * triangle uses it. */
-skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root);
+/* Sets mesh->layers: as many components, by edges, as may lie over each other by their boxes, times how often
+ * an edge runs one way (coincident copies weld into one component). root: [triangles] one of its component.
+ */
+skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root, int32_t multiplicity);
 
 /* Volume (times orientation), area, bounds and degenerate triangles of the mesh as it lies now. */
 void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health);

@@ -65,21 +65,23 @@ typedef struct {
 } groups;
 
 /* Gives the items (at most 3) of a triangle with their vertices; returns how many. */
-typedef int (*items_of)(const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]);
+typedef int (*items_of)(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]);
 
-/* Its edges, each with the lower of its vertices: the other one, and the direction in the lowest bit. */
-static int edges_of(const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
+/* Its edges, each with the lower of its vertices: the other one, then the triangle, and the direction in the
+ * lowest bit. Triangles are fewer than 2^30. */
+static int edges_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
     for (int k = 0; k < 3; k++) {
         uint32_t a = corner[k], b = corner[(k + 1) % 3];
         vertex[k] = a < b ? a : b;
-        key[k] = (uint64_t)(a < b ? b : a) << 1 | (a < b);
+        key[k] = (uint64_t)(a < b ? b : a) << 32 | (uint64_t)triangle << 1 | (a < b);
     }
     return 3;
 }
 
 /* Itself, with the lowest of its vertices: the two others in order. */
-static int triangle_of(const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
+static int triangle_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
     uint32_t a = corner[0], b = corner[1], c = corner[2], swap;
+    (void)triangle;
     if (a > b) swap = a, a = b, b = swap;
     if (b > c) swap = b, b = c, c = swap;
     if (a > b) swap = a, a = b, b = swap;
@@ -122,12 +124,12 @@ static skg_status group(const skg_mesh *mesh, items_of items, groups *found) {
     SKG_TRY_CLEANUP(skg_alloc(mesh->vertices + 2, sizeof *found->start, mesh->name, &found->start));
     /* Shifted by two, so that after the filling start[v] is where group v begins. */
     for (int64_t t = 0; t < mesh->triangles; t++)
-        for (int k = welded(mesh, t, corner) ? items(corner, vertex, key) : 0; k-- > 0;)
+        for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
             found->start[vertex[k] + 2]++;
     for (int64_t v = 0; v < mesh->vertices; v++) found->start[v + 2] += found->start[v + 1];
     SKG_TRY_CLEANUP(skg_alloc(found->start[mesh->vertices + 1], sizeof *found->key, mesh->name, &found->key));
     for (int64_t t = 0; t < mesh->triangles; t++)
-        for (int k = welded(mesh, t, corner) ? items(corner, vertex, key) : 0; k-- > 0;)
+        for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
             found->key[found->start[vertex[k] + 1]++] = key[k];
     for (int64_t v = 0; v < mesh->vertices; v++)
         sort_keys(found->key + found->start[v], found->start[v + 1] - found->start[v]);
@@ -137,26 +139,56 @@ cleanup:
     return status;
 }
 
+static int32_t root_of(int32_t *parent, int32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+static void join(int32_t *parent, int32_t a, int32_t b) {
+    a = root_of(parent, a), b = root_of(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+/* One edge: how often each way, and its triangles joined. */
+static void examine_edge(skg_mesh_health *health, const uint64_t *key, int64_t count, int64_t vertex,
+                         int32_t *parent, int32_t *multiplicity) {
+    int64_t up = 0;
+    for (int64_t i = 0; i < count; i++) {
+        up += (int64_t)(key[i] & 1);
+        if (i > 0) join(parent, (int32_t)(key[0] >> 1 & 0x3fffffff), (int32_t)(key[i] >> 1 & 0x3fffffff));
+    }
+    const int64_t down = count - up, most = up > down ? up : down;
+    if (most > 1) health->consistent = 0;
+    if (most > *multiplicity) *multiplicity = (int32_t)most;
+    health->nonmanifold_edges += count > 2;
+    health->open_edges += up > down ? up - down : down - up;
+    if (up != down && health->first_open_vertex < 0) health->first_open_vertex = vertex;
+}
+
 static skg_status examine_edges(skg_mesh *mesh) {
     skg_mesh_health *health = &mesh->health;
     groups edges;
+    int32_t *parent = NULL, multiplicity = 1; /* of the triangles, joined by edges */
     SKG_TRY(group(mesh, edges_of, &edges));
+    skg_status status = skg_alloc(mesh->triangles, sizeof *parent, mesh->name, &parent);
+    if (status != SKG_OK) {
+        groups_free(&edges);
+        return status;
+    }
+    for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = t;
     health->consistent = 1;
     health->first_open_vertex = -1;
     for (int64_t v = 0; v < mesh->vertices; v++)
         for (int64_t i = edges.start[v], end; i < edges.start[v + 1]; i = end) {
-            int64_t up = 0;
-            for (end = i; end < edges.start[v + 1] && edges.key[end] >> 1 == edges.key[i] >> 1; end++)
-                up += (int64_t)(edges.key[end] & 1);
-            int64_t down = end - i - up;
-            if (up > 1 || down > 1) health->consistent = 0;
-            health->nonmanifold_edges += end - i > 2;
-            health->open_edges += up > down ? up - down : down - up;
-            if (up != down && health->first_open_vertex < 0) health->first_open_vertex = v;
+            for (end = i + 1; end < edges.start[v + 1] && edges.key[end] >> 32 == edges.key[i] >> 32;) end++;
+            examine_edge(health, edges.key + i, end - i, v, parent, &multiplicity);
         }
     health->closed = health->open_edges == 0;
     groups_free(&edges);
-    return SKG_OK;
+    for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = root_of(parent, t);
+    status = skg_mesh_count_layers(mesh, parent, multiplicity);
+    skg_free(&parent);
+    return status;
 }
 
 static skg_status count_duplicates(skg_mesh *mesh) {
@@ -167,11 +199,6 @@ static skg_status count_duplicates(skg_mesh *mesh) {
             mesh->health.duplicate_triangles += triangles.key[i] == triangles.key[i - 1];
     groups_free(&triangles);
     return SKG_OK;
-}
-
-static int32_t root_of(int32_t *parent, int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
 }
 
 /* Union-find over the welded vertices that triangles use. */
@@ -189,17 +216,12 @@ static skg_status count_components(skg_mesh *mesh) {
             root[k] = root_of(parent, v);
         }
         for (int k = 1; k < 3; k++) {
-            int32_t a = root_of(parent, root[0]), b = root_of(parent, root[k]);
-            if (a == b) continue;
-            parent[a > b ? a : b] = a > b ? b : a;
-            mesh->health.components--;
+            mesh->health.components -= root_of(parent, root[0]) != root_of(parent, root[k]);
+            join(parent, root[0], root[k]);
         }
     }
-    for (int32_t v = 0; v < mesh->vertices; v++)
-        if (parent[v] >= 0) parent[v] = root_of(parent, v);
-    skg_status status = skg_mesh_count_layers(mesh, parent);
     skg_free(&parent);
-    return status;
+    return SKG_OK;
 }
 
 /* Rounding leaves a cross product of parallel edges at a few units of |u| |v| epsilon. */

@@ -48,45 +48,42 @@ static int32_t largest(cell_grid *grid) {
     return most;
 }
 
-/* The box of each component, by the number that its root vertex gets; *count: how many. */
+/* The box of each component, by the number that its root triangle gets; *count: how many. */
 static skg_status find_boxes(const skg_mesh *mesh, const int32_t *root, float **boxes, int64_t *count) {
     int32_t *number = NULL;
     *count = 0;
-    SKG_TRY(skg_alloc(mesh->vertices, sizeof *number, mesh->name, &number));
-    skg_status status = skg_alloc(mesh->health.components * 6, sizeof **boxes, mesh->name, boxes);
-    for (int64_t v = 0; status == SKG_OK && v < mesh->vertices; v++) {
-        if (root[v] < 0) continue;
-        int32_t *named = &number[root[v]];
-        if (*named == 0) {
-            *named = (int32_t)++ * count;
-            for (int k = 0; k < 3; k++)
-                (*boxes)[6 * (*named - 1) + k] = FLT_MAX, (*boxes)[6 * *named - 3 + k] = -FLT_MAX;
-        }
-        float *box = *boxes + 6 * (int64_t)(*named - 1);
+    SKG_TRY(skg_alloc(mesh->triangles, sizeof *number, mesh->name, &number));
+    for (int64_t t = 0; t < mesh->triangles; t++)
+        if (root[t] == t) number[t] = (int32_t)(*count)++;
+    skg_status status = skg_alloc(*count * 6, sizeof **boxes, mesh->name, boxes);
+    for (int64_t i = 0; status == SKG_OK && i < *count * 6; i++) (*boxes)[i] = i % 6 < 3 ? FLT_MAX : -FLT_MAX;
+    for (int64_t c = 0; status == SKG_OK && c < 3 * mesh->triangles; c++) {
+        float *box = *boxes + 6 * (int64_t)number[root[c / 3]];
+        const float *at = mesh->offsets + 3 * (int64_t)mesh->corners[c];
         for (int k = 0; k < 3; k++) {
-            box[k] = fminf(box[k], mesh->offsets[3 * v + k]);
-            box[3 + k] = fmaxf(box[3 + k], mesh->offsets[3 * v + k]);
+            box[k] = fminf(box[k], at[k]);
+            box[3 + k] = fmaxf(box[3 + k], at[k]);
         }
     }
     skg_free(&number);
     return status;
 }
 
-skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root) {
-    mesh->layers = 1;
-    if (mesh->health.components < 2) return SKG_OK;
+skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root, int32_t multiplicity) {
     cell_grid grid = {0};
     float *boxes = NULL;
     int64_t count = 0;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc((int64_t)EDGES * EDGES * EDGES, sizeof *grid.counts, mesh->name, &grid.counts));
     SKG_TRY_CLEANUP(find_boxes(mesh, root, &boxes, &count));
+    mesh->layers = multiplicity;
+    if (count < 2) goto cleanup;
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)EDGES * EDGES * EDGES, sizeof *grid.counts, mesh->name, &grid.counts));
     for (int k = 0; k < 3; k++) {
         grid.low[k] = (double)mesh->lowest[k];
         grid.step[k] = ((double)mesh->highest[k] - (double)mesh->lowest[k]) / CELLS;
     }
     for (int64_t i = 0; i < count; i++) add_box(&grid, boxes + 6 * i);
-    mesh->layers = largest(&grid);
+    mesh->layers = multiplicity * largest(&grid);
 cleanup:
     skg_free(&boxes);
     skg_free(&grid.counts);

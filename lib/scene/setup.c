@@ -149,6 +149,8 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
+    if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);

@@ -34,7 +34,9 @@ struct skg_setup {
     int32_t absolute;       /* 1: photons come from mAs; the beam falls off with distance */
     skg_response *response; /* NULL: ideal */
     skg_material *world;    /* around the parts; NULL: vacuum */
-    skg_view view;          /* of the first projection */
+    skg_spot spot;
+    int32_t supersampling; /* rays a side of a pixel */
+    skg_view view;         /* of the first projection */
     skg_scan_section scan;
     int32_t precision, has_precision;
     double tolerance; /* negative: not given */
@@ -54,6 +56,10 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
+
+/* Shape of a source and how it is sampled (setup_spot.c). */
+skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
+                                       int32_t *parallel);
 
 /* The key Beam; with mAs in photons per mm2 at 1 m until the detector is known and skg_setup_place_beam was
  * called. node: of the beam or what it lies in, for messages. */

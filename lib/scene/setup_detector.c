@@ -68,13 +68,11 @@ static skg_status read_axes(const skg_json_object *detector, const skg_view *vie
     return SKG_OK;
 }
 
-static skg_status read_oversampling(const skg_json_object *detector) {
+static skg_status read_oversampling(const skg_json_object *detector, int32_t *rays) {
     skg_json_node node = skg_json_member(detector, "Oversampling");
-    int64_t samples = 1;
-    if (node.value) SKG_TRY(skg_json_integer(&node, 1, 8, &samples));
-    if (samples > 1)
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED,
-                             "several samples per pixel are not simulated yet; give 1");
+    int64_t side = 1;
+    if (node.value) SKG_TRY(skg_json_integer(&node, 1, 16, &side));
+    *rays = (int32_t)side;
     return SKG_OK;
 }
 
@@ -94,7 +92,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     }
     SKG_TRY(read_spacing(&detector, view, spacing));
     SKG_TRY(read_axes(&detector, view, right, up));
-    SKG_TRY(read_oversampling(&detector));
+    SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
     SKG_TRY(skg_setup_read_response(reader, &detector));
     skg_scale_vector(spacing[0], right, view->column_step);
     skg_scale_vector(spacing[1], up, view->row_step);

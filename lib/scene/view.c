@@ -1,4 +1,4 @@
-#include "scene/view.h"
+#include "core/core.h"
 
 #include "scene/vector.h"
 
@@ -104,7 +104,8 @@ static skg_status check_point(const skg_view *view, const detector_plane *plane)
     return SKG_OK;
 }
 
-int skg_view_direction(const skg_view *view, double *direction) {
+/* Direction of a parallel beam, length 1; 0 where it has none. */
+static int find_direction(const skg_view *view, double *direction) {
     if (view->projection == SKG_PARALLEL_FROM_INFINITY)
         memcpy(direction, view->source, 3 * sizeof *direction);
     else
@@ -119,7 +120,7 @@ int skg_view_direction(const skg_view *view, double *direction) {
 
 static skg_status check_parallel(const skg_view *view, const detector_plane *plane) {
     double direction[3];
-    if (!skg_view_direction(view, direction))
+    if (!find_direction(view, direction))
         return skg_fail(SKG_ERR_SCENE,
                         view->projection == SKG_PARALLEL_FROM_INFINITY
                             ? "the beam's direction is (0, 0, 0); give it a length"

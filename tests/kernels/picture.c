@@ -2,6 +2,7 @@
 
 #include "plan/attenuate.h"
 #include "plan/raster_private.h"
+#include "scene/pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -175,13 +176,18 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
     return status;
 }
 
-static double radius_of(const shape *s) {
-    double square = 0;
-    for (int64_t k = 0; k < s->vertices; k++) {
-        const double *v = s->positions + 3 * k;
-        square = fmax(square, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+/* The middle of the depths at which a shape stands, of those on paths. */
+static double middle_depth(const skg_camera *camera, const body *of) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int64_t v = 0; v < of->shape->vertices; v++) {
+        double world[3], h[3];
+        skg_pose_point(of->pose, of->shape->positions + 3 * v, world);
+        skg_camera_see(camera, world, h);
+        const double depth = camera->parallel ? h[2] + 1 : h[2];
+        low = fmin(low, depth), high = fmax(high, depth);
     }
-    return sqrt(square);
+    if (!camera->parallel) low = fmin(fmax(low, 0), 1), high = fmin(fmax(high, 0), 1);
+    return isfinite(low) ? 0.5 * (low + high) : 1;
 }
 
 static skg_status project(skg_context *context, skg_geometry *geometry, const skg_raster_options *options,
@@ -191,7 +197,7 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
     skg_plane_weight *weights = calloc((size_t)bodies, sizeof *weights);
     for (int b = 0; b < bodies; b++) {
         weights[b] = (skg_plane_weight){of[b].plane, of[b].weight, of[b].bias};
-        parts[b] = (skg_geometry_part){of[b].pose, origin, 0, radius_of(of[b].shape), 1, &weights[b]};
+        parts[b] = (skg_geometry_part){of[b].pose, origin, 0, middle_depth(camera, &of[b]), 1, &weights[b]};
     }
     skg_status status =
         skg_geometry_project(context, geometry, &options->kernels, camera, parts, scale, NULL);

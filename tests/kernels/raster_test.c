@@ -25,8 +25,7 @@ static skg_raster_options options_of(int32_t precision, int32_t strategy) {
 }
 
 static double scale_of(const skg_raster_options *options) {
-    const double most = options->kernels.parallel ? 256 : 1; /* a parallel beam counts in mm */
-    return (options->kernels.bits == 64 ? 0x1p48 : 0x1p28) / most;
+    return options->kernels.bits == 64 ? 0x1p48 : 0x1p28;
 }
 
 static picture take(const skg_raster_options *options, const skg_view *view, int bodies, const body *of) {
@@ -290,7 +289,7 @@ START_TEST(lengths_are_those_of_the_referee) {
             options.kernels.parallel = n % 3 != SKG_POINT;
             options.kernels.source_plane = n >= 3;
             picture result;
-            const double scale = scale_of(&options);
+            const double scale = scale_of(&options) / (n % 3 == SKG_PARALLEL_FROM_INFINITY ? 256 : 1); /* mm */
             ck_skg(picture_take(context, &options, &view, THREE, bodies, scale, &result));
             const errors e = compare(&view, &result, truth);
             /* Single: the bars of the contract. Double: a hundred times its epsilon, and the scale's own

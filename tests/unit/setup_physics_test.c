@@ -187,6 +187,24 @@ START_TEST(responses) {
 }
 END_TEST
 
+START_TEST(focal_spots) {
+    write_file("scene.json", good);
+    ck_skg(load());
+    ck_assert_ptr_null(options().spot);
+    ck_assert_int_eq(options().supersampling, 1);
+    ck_skg(load_with("Source.Shape=[\"FocalSpot\", 0.5, \"cm\", 4]", NULL));
+    ck_assert_int_eq(options().spot->shape, SKG_SPOT_CUBE);
+    ck_assert_int_eq(options().spot->grid, 4);
+    for (int k = 0; k < 3; k++) ck_assert_double_eq(options().spot->extent[k], 5);
+    ck_skg(load_with("Source.Shape=[\"Gaussian\", 1, 0.6, \"mm\"]", "Source.Samples=128"));
+    ck_assert_int_eq(options().spot->shape, SKG_SPOT_GAUSSIAN);
+    ck_assert_int_eq(options().spot->samples, 128);
+    ck_assert_double_eq(options().spot->extent[1], 0.6);
+    ck_skg(load_with("Detector.Oversampling=3", NULL));
+    ck_assert_int_eq(options().supersampling, 3);
+}
+END_TEST
+
 START_TEST(worlds) {
     const skg_material *world = NULL;
     double mu = 0;
@@ -263,6 +281,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, beams_of_many_energies);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
+    tcase_add_test(tests, focal_spots);
     tcase_add_test(tests, worlds);
     tcase_add_loop_test(tests, what_is_refused, 0, sizeof bad / sizeof *bad);
     tcase_add_test(tests, parallel_beams_have_no_mas);

@@ -46,7 +46,7 @@ static skg_camera camera_of(const skg_view *view) {
 
 /* mm before the pixel at which the path of a parallel ray starts. */
 static double start_of(const skg_camera *camera, double i, double j) {
-    return 1 - (camera->start[0] + i * camera->start[1] + j * camera->start[2]);
+    return (1 - (camera->start[0] + i * camera->start[1] + j * camera->start[2])) * skg_length(camera->first);
 }
 
 /* A point on the ray of pixel (i, j) must project there, at the depth where it was put. */
@@ -60,12 +60,12 @@ static void check_projection(const skg_view *view) {
             memcpy(start, view->source, sizeof start);
         } else if (view->projection == SKG_PARALLEL_FROM_INFINITY) {
             ck_assert_double_gt(start_of(&camera, i, j), 1e29);
-            skg_add_scaled(pixel, -400, camera.first, start);
+            skg_add_scaled(pixel, -400 / skg_length(camera.first), camera.first, start);
         } else { /* the start lies in the plane through the source across the beam */
             double way[3];
-            skg_add_scaled(pixel, -start_of(&camera, i, j), camera.first, start);
+            skg_add_scaled(pixel, -start_of(&camera, i, j) / skg_length(camera.first), camera.first, start);
             skg_add_scaled(start, -1, view->source, way);
-            ck_assert_double_eq_tol(skg_dot(way, camera.first), 0, 1e-11);
+            ck_assert_double_eq_tol(skg_dot(way, camera.first) / skg_length(camera.first), 0, 1e-11);
         }
         for (int c = 0; c < 3; c++) x[c] = start[c] + depth * (pixel[c] - start[c]);
         skg_camera_see(&camera, x, h);
@@ -74,7 +74,7 @@ static void check_projection(const skg_view *view) {
         ck_assert_double_eq_tol(h[1] / w, j, 64 * TOLERANCE / depth);
         skg_add_scaled(x, -1, pixel, length);
         if (camera.parallel)
-            ck_assert_double_eq_tol(h[2], -skg_length(length), 1e-11);
+            ck_assert_double_eq_tol(h[2] * skg_length(camera.first), -skg_length(length), 1e-11);
         else
             ck_assert_double_eq_tol(h[2], depth, TOLERANCE);
     }
@@ -95,8 +95,8 @@ START_TEST(parallel_direction_and_start) {
     view.source[0] = -300; /* 45 degrees... */
     view.centre[0] = 200;
     const skg_camera camera = camera_of(&view);
-    ck_assert_double_eq_tol(camera.first[0], sqrt(0.5), 1e-15);
-    ck_assert_double_eq_tol(camera.first[1], sqrt(0.5), 1e-15);
+    ck_assert_double_eq_tol(camera.first[0] / skg_length(camera.first), sqrt(0.5), 1e-15);
+    ck_assert_double_eq_tol(camera.first[1] / skg_length(camera.first), sqrt(0.5), 1e-15);
     /* ...so the rays of columns one step apart differ by half a mm times cos 45 in length */
     ck_assert_double_eq_tol(start_of(&camera, 11, 0) - start_of(&camera, 10, 0), 0.5 * sqrt(0.5), 1e-12);
     ck_assert_double_eq_tol(start_of(&camera, 31.5, 23.5), 500 * sqrt(2), 1e-10);
@@ -202,8 +202,8 @@ START_TEST(directions_of_any_length) {
         skg_view view = good_view(SKG_PARALLEL_FROM_INFINITY);
         view.source[0] = view.source[1] = lengths[k];
         const skg_camera camera = camera_of(&view);
-        ck_assert_double_eq_tol(camera.first[0], sqrt(0.5), 1e-15);
-        ck_assert_double_eq_tol(camera.first[1], sqrt(0.5), 1e-15);
+        ck_assert_double_eq_tol(camera.first[0] / skg_length(camera.first), sqrt(0.5), 1e-15);
+        ck_assert_double_eq_tol(camera.first[1] / skg_length(camera.first), sqrt(0.5), 1e-15);
     }
 }
 END_TEST

@@ -30,6 +30,36 @@ enum {
 
 enum { SKG_MOST_CHANNELS = 16 };
 
+/* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
+ * centre, their width along the projected column step. */
+enum {
+    SKG_SPOT_POINT = 0,
+    SKG_SPOT_LINE = 1,      /* extent[0] along the width */
+    SKG_SPOT_RECTANGLE = 2, /* extent[0] x extent[1] */
+    SKG_SPOT_CUBE = 3,      /* extent[0] x extent[1] x extent[2], the last along the line to the detector */
+    SKG_SPOT_DISC = 4,      /* diameter extent[0] */
+    SKG_SPOT_SPHERE = 5,    /* filled, diameter extent[0] */
+    SKG_SPOT_GAUSSIAN =
+        6 /* full widths at half maximum extent[0] x extent[1] (IEC 60336's effective sizes) */
+};
+
+/* The focal spot. Prepare with skg_spot_init. Samples have equal weights, so that the open field does not
+ * depend on shape or number; they follow Sobol's sequence, of which more samples continue fewer. */
+typedef struct {
+    int32_t size;
+    int32_t shape;    /* SKG_SPOT_... */
+    double extent[3]; /* mm, full widths */
+    double axis[3];   /* what flat spots lie across; all 0: the line to the detector's centre */
+    int64_t samples;  /* 1 to 65536; 0: doubled until two doublings in a row change 99.9 % of the pixels by
+                         less than  `tolerance` of the open beam, when the plan is made for its view */
+    int64_t grid; /* n > 0: instead, the middles of n (line), n x n (rectangle) or n^3 (cube) equal pieces, as
+                     Vidal and Villard 2016 */
+    double tolerance; /* default 5e-3 */
+    int64_t most;     /* samples at which doubling stops; default 1024 */
+} skg_spot;
+
+SKG_API void skg_spot_init(skg_spot *spot);
+
 typedef struct {
     int32_t size;
     int32_t
@@ -45,8 +75,11 @@ typedef struct {
                     obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
     skg_response *response; /* of the detector; NULL: ideal. Retained by the plan */
     skg_material *world;    /* around the parts; NULL: vacuum. Retained by the plan */
-    int64_t bands; /* photon-counting bands, 0 to SKG_MOST_CHANNELS: a channel each; 0: one channel of
-                      everything */
+    int64_t bands;         /* photon-counting bands, 0 to SKG_MOST_CHANNELS: a channel each; 0: one channel of
+                              everything */
+    const skg_spot *spot;  /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
+    int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
+    int32_t reserved;      /* 0 */
     const double
         *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
     double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
@@ -144,9 +177,12 @@ typedef struct {
     int64_t tiles;
     double triangles_per_tile; /* mean, of the last frame; 0 before the first */
     int64_t device_bytes;      /* allocated on the device by this plan */
-    int64_t bad_pixels;        /* of the last frame: signed hits of an open mesh do not cancel there */
-    int64_t negative_pixels;   /* of the last frame: negative exponent */
-    int64_t nodes, bins;       /* energies that are used, and that the spectrum has photons at */
+    int64_t samples;           /* passes a frame: of the source times those of a pixel */
+    double sample_error; /* what the last doubling of source samples changed, of the open beam; 0: not found
+                            out */
+    int64_t bad_pixels;  /* of the last frame: signed hits of an open mesh do not cancel there */
+    int64_t negative_pixels; /* of the last frame: negative exponent */
+    int64_t nodes, bins;     /* energies that are used, and that the spectrum has photons at */
     double bound; /* of the error that fewer nodes and planes make, in the words of the tolerance: twice the
                      worst that was found; 0 where every bin is used */
     int64_t verified; /* number of points (lengths of all materials) on which it was looked for */

@@ -4,6 +4,7 @@
 #define SKIAGRAPH_H
 
 #include <skiagraph/beam.h>
+#include <skiagraph/breathing.h>
 #include <skiagraph/context.h>
 #include <skiagraph/error.h>
 #include <skiagraph/image.h>

@@ -1,0 +1,179 @@
+/* Breathing: the exact solution of Chain Mail against the published queue, and steps of a whole body. */
+#include "breathing/queue.h"
+#include "common/bench.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] = "[--quick] [--triangles N] [--csv FILE]";
+
+static const double push[3] = {3, -5, -20}; /* mm */
+
+/* One way to solve, and its last answer. */
+typedef struct {
+    const char *name;
+    skg_chain *chain;
+    int32_t driver;
+    int64_t most; /* 0: exact */
+    queue scratch;
+    double *u;
+} solver;
+
+static void solve(void *what) {
+    solver *s = what;
+    memset(s->u, 0, (size_t)(3 * s->chain->nodes) * sizeof *s->u);
+    if (s->most == 0)
+        bench_try(skg_chain_move(s->chain, push, s->u, NULL), "chain");
+    else
+        queue_move(s->chain, s->driver, push, s->most, &s->scratch, s->u);
+}
+
+static skg_chain *chain_of(skg_mesh *mesh, const char *label, skg_tissue tissue, int32_t *driver) {
+    int64_t vertices, triangles, links;
+    bench_try(skg_mesh_size(mesh, &vertices, &triangles), label);
+    double *rest = bench_alloc((size_t)vertices * 3, sizeof *rest);
+    int32_t *corners = bench_alloc((size_t)triangles * 3, sizeof *corners), *ends;
+    bench_try(skg_mesh_read_positions(mesh, rest, 0), label);
+    bench_try(skg_mesh_read_triangles(mesh, corners, 0), label);
+    bench_try(skg_chain_links(triangles, corners, NULL, &links, &ends), label);
+    *driver = 0;
+    for (int64_t i = 0; i < vertices; i++)
+        if (rest[3 * i + 2] > rest[3 * *driver + 2]) *driver = (int32_t)i;
+    skg_chain *chain;
+    bench_try(skg_chain_create(label, vertices, rest, links, ends, &tissue, 1, NULL, &chain), label);
+    bench_try(skg_chain_drive(chain, 1, driver), label);
+    free(ends);
+    free(corners);
+    free(rest);
+    return chain;
+}
+
+/* The exact one first: the others are compared with it. */
+static void compare(const char *label, const char *tissue, skg_chain *chain, int32_t driver, int turns,
+                    FILE *csv) {
+    enum { SOLVERS = 3 };
+    solver s[SOLVERS] = {
+        {.name = "exact"}, {.name = "queue, once", .most = 1}, {.name = "queue, again", .most = 200}};
+    bench_frame frames[SOLVERS];
+    void *what[SOLVERS];
+    static bench_times times[SOLVERS];
+    memset(times, 0, sizeof times);
+    for (int i = 0; i < SOLVERS; i++) {
+        s[i].chain = chain, s[i].driver = driver;
+        queue_make(chain, &s[i].scratch);
+        s[i].u = bench_alloc((size_t)chain->nodes * 3, sizeof(double));
+        frames[i] = solve, what[i] = s + i;
+    }
+    bench_interleave(SOLVERS, frames, what, turns, 3, times);
+    for (int i = 0; i < SOLVERS; i++) {
+        int64_t broken;
+        double worst, apart = 0;
+        skg_chain_check(chain, s[i].u, 1e-9, &broken, &worst);
+        for (int64_t n = 0; n < 3 * chain->nodes; n++) apart = fmax(apart, fabs(s[i].u[n] - s[0].u[n]));
+        double share = 100 * (double)broken / (double)(chain->first[chain->nodes] / 2);
+        printf("| %-10s | %-13s | %-12s | %6d %5.1f %% | %9.2g | %9.2g | %9.3f | %9.3f |\n", label, tissue,
+               s[i].name, (int)broken, share, worst, apart, bench_least(times + i), bench_median(times + i));
+        if (csv)
+            fprintf(csv, "%s,%s,%s,%d,%g,%g,%g,%g\n", label, tissue, s[i].name, (int)broken, worst, apart,
+                    bench_least(times + i), bench_median(times + i));
+        if (i == 0 && broken > 0) bench_die("the exact solution breaks %d links", (int)broken);
+        queue_free(&s[i].scratch);
+        free(s[i].u);
+    }
+}
+
+typedef struct {
+    skg_body *body;
+    int64_t step;
+} breather;
+
+static void breathe(void *what) {
+    breather *b = what;
+    skg_breath breath;
+    skg_breath_init(&breath);
+    skg_breath_state state;
+    skg_breath_state_init(&state);
+    bench_try(skg_breath_at_phase(&breath, (double)(b->step++ % 120) / 120, &state), "breath");
+    bench_try(skg_body_pose(b->body, &state), "body");
+}
+
+static skg_body *body_of(skg_thorax *thorax, int64_t parts) {
+    skg_body *body;
+    bench_try(skg_body_create(NULL, NULL, &body), "body");
+    for (int64_t i = 0; i < parts; i++) {
+        skg_thorax_part part;
+        skg_organ organ;
+        skg_thorax_part_init(&part);
+        skg_organ_init(&organ);
+        bench_try(skg_thorax_get_part(thorax, i, &part), "thorax");
+        organ.mesh = part.mesh, organ.label = part.label, organ.inside = part.inside;
+        bench_try(skg_body_add(body, &organ, NULL), part.label);
+    }
+    bench_try(skg_body_link(body), "body");
+    return body;
+}
+
+static void steps(skg_thorax *thorax, int64_t parts, int turns, FILE *csv) {
+    int most = omp_get_max_threads();
+    for (int threads = 1; threads <= most;
+         threads = threads < most && 2 * threads > most ? most : 2 * threads) {
+        omp_set_num_threads(threads);
+        breather b = {body_of(thorax, parts), 0};
+        bench_times times = {0};
+        for (int turn = 0; turn < turns; turn++) bench_turn(breathe, &b, 60, &times);
+        printf("%d threads: a step of the body %.3f ms (median; least %.3f): %.0f steps/s\n", threads,
+               bench_median(&times), bench_least(&times), 1000 / bench_median(&times));
+        if (csv)
+            fprintf(csv, "body,,%d threads,,,,%g,%g\n", threads, bench_least(&times), bench_median(&times));
+        skg_body_release(&b.body);
+        if (threads == most) break;
+    }
+}
+
+int main(int count, char **words) {
+    bench_arguments arguments = {count, words, 1};
+    int quick = 0;
+    long triangles = 42000;
+    const char *value = NULL, *path = NULL;
+    while (arguments.next < count) {
+        if (bench_flag(&arguments, "--quick"))
+            quick = 1;
+        else if (bench_option(&arguments, "--triangles", &value))
+            bench_numbers(value, 10000, 20000000, 1, &triangles);
+        else if (!bench_option(&arguments, "--csv", &path))
+            bench_usage(&arguments, usage);
+    }
+    FILE *csv = path ? bench_open(path) : NULL;
+    if (csv) fprintf(csv, "organ,tissue,solver,broken_links,worst_mm,from_exact_mm,least_ms,median_ms\n");
+    skg_thorax_options options;
+    skg_thorax_options_init(&options);
+    options.triangles = triangles;
+    skg_thorax *thorax;
+    int64_t parts;
+    bench_try(skg_thorax_create(&options, &thorax), "thorax");
+    bench_try(skg_thorax_size(thorax, &parts), "thorax");
+    printf(
+        "Top vertex driven by (3, -5, -20) mm; links broken by more than 1e-9 mm.\n\n"
+        "| organ      | tissue        | solver       | links broken   | worst, mm | off, mm   | least, ms | median    |\n"
+        "|---|---|---|---|---|---|---|---|\n");
+    for (int64_t i = 0; i < parts; i++) {
+        skg_thorax_part part;
+        skg_thorax_part_init(&part);
+        bench_try(skg_thorax_get_part(thorax, i, &part), "thorax");
+        if (strcmp(part.label, "liver") != 0 && strcmp(part.label, "diaphragm") != 0) continue;
+        for (int t = 0; t < 2; t++) {
+            const skg_tissue tissue[2] = {{0.7, 1.1, 0.1}, {0.9, 1.02, 0}};
+            int32_t driver;
+            skg_chain *chain = chain_of(part.mesh, part.label, tissue[t], &driver);
+            compare(part.label, t == 0 ? "0.7/1.1/0.1" : "0.9/1.02/0", chain, driver, quick ? 2 : 8, csv);
+            skg_chain_free(&chain);
+        }
+    }
+    printf("\nThe generated thorax, %ld triangles, a breath of 120 steps.\n", triangles);
+    steps(thorax, parts, quick ? 2 : 6, csv);
+    skg_thorax_release(&thorax);
+    if (csv && fclose(csv) != 0) bench_die("%s: not written", path);
+    return 0;
+}

@@ -1,0 +1,140 @@
+/* A body as a handle. */
+#include "body/body.h"
+
+#include "scene/vector.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+void skg_body_options_init(skg_body_options *options) {
+    *options = (skg_body_options){.size = (int32_t)sizeof *options, .tendon_mm = {0, 0, -15}};
+}
+
+void skg_organ_init(skg_organ *organ) {
+    *organ = (skg_organ){.size = (int32_t)sizeof *organ, .inside = -1};
+}
+
+static skg_status check_options(const skg_body_options *o) {
+    if (o->relaxation < 0 || o->relaxation > 20)
+        return skg_fail(SKG_ERR_BREATHING, "body: %" PRId32 " relaxation passes; 0 to 20", o->relaxation);
+    if (!skg_all_finite(o->tendon_mm, 3) || skg_length(o->tendon_mm) > 100)
+        return skg_fail(SKG_ERR_BREATHING, "body: tendon_mm (%g, %g, %g); at most 100 mm", o->tendon_mm[0],
+                        o->tendon_mm[1], o->tendon_mm[2]);
+    if (!skg_all_finite(o->tendon_plane, 4))
+        return skg_fail(SKG_ERR_BREATHING, "body: tendon_plane not finite");
+    if (!(o->reference_thoracic >= 0 && o->reference_thoracic <= 4 && o->reference_diaphragmatic >= 0 &&
+          o->reference_diaphragmatic <= 4))
+        return skg_fail(SKG_ERR_BREATHING, "body: reference weights %g and %g; 0 to 4", o->reference_thoracic,
+                        o->reference_diaphragmatic);
+    if (!(o->hysteresis >= 0 && o->hysteresis <= 1))
+        return skg_fail(SKG_ERR_BREATHING, "body: hysteresis %g; 0 to 1", o->hysteresis);
+    return SKG_OK;
+}
+
+skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **result) {
+    if (!result) return skg_fail(SKG_ERR_ARGUMENT, "body: no place for the result");
+    *result = NULL;
+    skg_body_options ours;
+    skg_body_options_init(&ours);
+    if (options) SKG_TRY(skg_struct_read(options, "skg_body_options", &ours, sizeof ours));
+    SKG_TRY(check_options(&ours));
+    skg_body *body;
+    SKG_TRY(skg_alloc(1, sizeof *body, "body", &body));
+    if (context) SKG_TRY(skg_context_retain(context));
+    body->context = context;
+    body->options = ours;
+    *result = body;
+    return SKG_OK;
+}
+
+static void free_organ(skg_body_organ *o) {
+    skg_mesh_release(&o->mesh);
+    skg_chain_free(&o->chain);
+    void *block[] = {&o->label, &o->rest,  &o->corner, &o->node_of, &o->moved,       &o->link, &o->target,
+                     &o->block, &o->state, &o->memory, &o->near,    &o->near_weight, &o->share};
+    for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
+}
+
+void skg_body_release(skg_body **body) {
+    if (!body || !*body) return;
+    for (int64_t i = 0; i < (*body)->organs; i++) free_organ((*body)->organ + i);
+    skg_free(&(*body)->organ);
+    skg_free(&(*body)->loop_state);
+    skg_context_release(&(*body)->context);
+    skg_free(body);
+}
+
+static skg_status fill_organ(const skg_organ *given, skg_body_organ *o) {
+    SKG_TRY(skg_mesh_retain(given->mesh));
+    o->mesh = given->mesh;
+    SKG_TRY(skg_copy_text(given->label, &o->label));
+    o->inside = given->inside;
+    o->role = skg_role_of(o->label, &o->number, &o->side);
+    const skg_tissue *t = &given->tissue;
+    o->tissue = t->alpha_min == 0 && t->alpha_max == 0 && t->beta == 0 ? skg_tissue_of(o->label) : *t;
+    SKG_TRY(skg_mesh_size(o->mesh, &o->vertices, &o->triangles));
+    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->rest));
+    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->moved));
+    SKG_TRY(skg_alloc(3 * o->triangles, sizeof(int32_t), o->label, &o->corner));
+    SKG_TRY(skg_alloc(o->vertices, sizeof(int32_t), o->label, &o->node_of));
+    SKG_TRY(skg_mesh_read_positions(o->mesh, o->rest, 0));
+    SKG_TRY(skg_mesh_read_triangles(o->mesh, o->corner, 0));
+    for (int64_t i = 0; i < o->vertices; i++) {
+        if (!skg_all_finite(o->rest + 3 * i, 3))
+            return skg_fail(SKG_ERR_BREATHING, "%s: vertex %" PRId64 " is not finite", o->label, i);
+        o->node_of[i] = o->mesh->weld ? o->mesh->weld[i] : (int32_t)i;
+    }
+    SKG_TRY(skg_near_prepare(o));
+    skg_mesh_health health;
+    skg_mesh_health_init(&health);
+    SKG_TRY(skg_mesh_get_health(o->mesh, &health));
+    o->volume = health.volume;
+    return SKG_OK;
+}
+
+skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
+    skg_organ ours;
+    skg_organ_init(&ours);
+    if (!body || body->linked)
+        return skg_fail(SKG_ERR_BREATHING, "body: organs are added before skg_body_link");
+    SKG_TRY(skg_struct_read(organ, "skg_organ", &ours, sizeof ours));
+    if (!ours.mesh || !ours.label) return skg_fail(SKG_ERR_ARGUMENT, "organ: needs a mesh and a label");
+    if (ours.inside < -1 || ours.inside >= body->organs)
+        return skg_fail(SKG_ERR_BREATHING, "%s: inside organ %" PRId64 ", which was not added before it",
+                        ours.label, ours.inside);
+    if (body->organs == body->room) {
+        int64_t room = 2 * body->room + 16;
+        SKG_TRY(skg_realloc(room, sizeof *body->organ, "body", &body->organ));
+        body->room = room;
+    }
+    skg_body_organ *o = body->organ + body->organs;
+    memset(o, 0, sizeof *o);
+    skg_status status = fill_organ(&ours, o);
+    if (status != SKG_OK) {
+        free_organ(o);
+        return status;
+    }
+    if (id) *id = body->organs;
+    body->organs++;
+    return SKG_OK;
+}
+
+skg_status skg_body_link(skg_body *body) {
+    if (!body || body->tried) return skg_fail(SKG_ERR_BREATHING, "body: is linked once");
+    int moves = 0;
+    for (int64_t i = 0; i < body->organs; i++) moves |= body->organ[i].role != ROLE_STATIC;
+    if (!moves)
+        return skg_fail(SKG_ERR_BREATHING,
+                        "body: no organ that moves; labels are as \"rib 5 left\", \"liver\"");
+    body->tried = 1;
+    SKG_TRY(skg_body_find_links(body));
+    body->linked = 1;
+    return SKG_OK;
+}
+
+skg_status skg_body_set_needle(skg_body *body, double withdrawn_mm) {
+    if (!body || !isfinite(withdrawn_mm) || fabs(withdrawn_mm) > 1000)
+        return skg_fail(SKG_ERR_BREATHING, "body: needle withdrawn by %g mm; at most 1000", withdrawn_mm);
+    body->withdrawn = withdrawn_mm;
+    return SKG_OK;
+}

@@ -1,0 +1,108 @@
+/* What a body is inside. Private. */
+#ifndef SKG_BODY_H
+#define SKG_BODY_H
+
+#include "body/rigid.h"
+#include "chainmail/chainmail.h"
+#include "core/context.h"
+#include "scene/mesh.h"
+
+#include <skiagraph/breathing.h>
+
+/* How an organ moves. */
+typedef enum {
+    ROLE_STATIC,
+    ROLE_RIB,
+    ROLE_STERNUM,
+    ROLE_CARTILAGE,
+    ROLE_DIAPHRAGM,
+    ROLE_LINKED,  /* deformable, driven through links: lungs, liver, heart, skin */
+    ROLE_CARRIED, /* every vertex goes with the nearest ones of a carrier */
+    ROLE_SPANNED, /* between a carrier at one end and rest at the other */
+    ROLE_NEEDLE
+} skg_role;
+
+/* A vertex that follows a point on another organ's triangle. */
+typedef struct {
+    int32_t organ, corner[3]; /* corner: vertices of that organ */
+    double weight[3];
+    double part; /* of that displacement, 0 to 1 */
+} skg_link;
+
+enum { CARRIERS = 12, BLOCK = 32 };
+
+typedef struct {
+    skg_mesh *mesh;
+    char *label;
+    int64_t inside;
+    skg_tissue tissue;
+    skg_role role;
+    int64_t vertices, triangles;
+    double *rest; /* rows of x, y, z, mm */
+    int32_t *corner;
+    double *block;    /* bounds of each BLOCK triangles in a row: low, high */
+    int32_t *node_of; /* welded vertex: the first one there */
+    double *moved;    /* displacements, rows of x, y, z, mm */
+    int changed;      /* by the last pose */
+    int number, side; /* of ribs and cartilage: 1 to 12; 1 left, -1 right */
+    /* rigid */
+    double head[3], axis[3]; /* of a rib: rotation vector at full inspiration, rad */
+    skg_rigid rigid;         /* now, of ribs and sternum */
+    /* deformable: links[d] moves driver d; those of organ -1 stay (anchors) or are tendon (-2) */
+    skg_chain *chain;
+    int64_t links;
+    skg_link *link;
+    double *target; /* per driver */
+    double *state;  /* axis by axis, as the chain has it */
+    double *memory; /* with hysteresis: the state that remembers */
+    skg_chain_report report;
+    /* carried: CARRIERS vertices of an organ and their weights, per vertex */
+    int32_t carrier;
+    int32_t *near;
+    double *near_weight, *share; /* share: 0 to 1 per vertex */
+    double tip[3], pivot[3];     /* of the needle: its end in the tissue, where it enters the skin */
+    skg_link skin;               /* that place */
+    double volume;               /* at rest, mm3 */
+} skg_body_organ;
+
+struct skg_body {
+    skg_context *context;
+    skg_body_options options;
+    int64_t organs, room;
+    skg_body_organ *organ;
+    int tried, linked;  /* skg_body_link was called; succeeded */
+    double tendon[3];   /* mm, now */
+    double withdrawn;   /* the needle, mm */
+    int loop;           /* steps of the loop that are kept: 0 or LOOP_STEPS */
+    int64_t loop_size;  /* doubles of one step */
+    double *loop_state; /* every chain's state after each step */
+};
+
+enum { LOOP_STEPS = 24, LINK_STAYS = -1, LINK_TENDON = -2 };
+
+/* roles.c */
+skg_role skg_role_of(const char *label, int *number, int *side);
+skg_tissue skg_tissue_of(const char *label);
+int skg_label_begins(const char *label, const char *word);
+int skg_label_stays(const char *label); /* a bone that does not move */
+
+/* near.c */
+skg_status skg_near_prepare(skg_body_organ *organ);
+/* The nearest point of an organ's triangles within reach of a point; the distance, or
+ * HUGE_VAL. */
+double skg_nearest(const skg_body_organ *organ, const double point[3], double reach, skg_link *link);
+
+/* ribs.c */
+skg_status skg_rib_prepare(skg_body_organ *rib);
+double skg_rib_fraction(double weight); /* of the rotation at full inspiration */
+void skg_rib_plane(const skg_body_organ *rib, const double *displacements, double *pump, double *bucket);
+
+/* link.c */
+skg_status skg_body_find_links(skg_body *body);
+
+/* pose.c */
+void skg_link_follow(const skg_body *body, const skg_link *link, double displacement[3]);
+void skg_carried_vertex(const skg_body *body, const skg_body_organ *organ, int64_t vertex,
+                        double displacement[3]);
+
+#endif

@@ -1,0 +1,87 @@
+/* What a pose is like. */
+#include "body/body.h"
+
+#include "scene/vector.h"
+
+void skg_body_measure_init(skg_body_measure *measure) {
+    *measure = (skg_body_measure){.size = (int32_t)sizeof *measure};
+}
+
+double skg_lung_hounsfield(double hounsfield, double density_ratio) {
+    return (hounsfield + 1000) * density_ratio - 1000;
+}
+
+/* Volume by the divergence theorem, from the double displacements; mm3, of the mesh as it was turned. */
+static double volume_now(const skg_body_organ *o) {
+    double volume = 0;
+    for (int64_t t = 0; t < o->triangles; t++) {
+        double p[3][3], n[3];
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 3; k++) {
+                int64_t at = 3 * (int64_t)o->corner[3 * t + c] + k;
+                p[c][k] = o->rest[at] + o->moved[at] - o->rest[k];
+            }
+        skg_cross(p[0], p[1], n);
+        volume += skg_dot(n, p[2]) / 6;
+    }
+    return o->mesh->orientation < 0 ? -volume : volume;
+}
+
+static void normal_of(const skg_body_organ *o, int64_t t, int now, double n[3]) {
+    double p[3][3];
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 3; k++) {
+            int64_t at = 3 * (int64_t)o->corner[3 * t + c] + k;
+            p[c][k] = o->rest[at] + (now ? o->moved[at] : 0);
+        }
+    skg_add_scaled(p[1], -1, p[0], p[1]);
+    skg_add_scaled(p[2], -1, p[0], p[2]);
+    skg_cross(p[1], p[2], n);
+}
+
+static void measure_diaphragm(const skg_body_organ *o, skg_body_measure *m) {
+    double top[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int64_t i = 0; i < o->vertices; i++) {
+        int half = o->rest[3 * i] < 0;
+        if (o->rest[3 * i + 2] <= top[half]) continue;
+        top[half] = o->rest[3 * i + 2];
+        m->diaphragm_mm[half] = -o->moved[3 * i + 2];
+    }
+}
+
+static void measure_organ(const skg_body_organ *o, skg_body_measure *m, double *lung_rest) {
+    for (int64_t t = 0; t < o->triangles; t++) {
+        double before[3], after[3];
+        normal_of(o, t, 0, before);
+        normal_of(o, t, 1, after);
+        m->flipped_triangles += skg_dot(before, after) < 0;
+    }
+    if (skg_label_begins(o->label, "lung")) {
+        m->lung_ml += 1e-3 * volume_now(o);
+        *lung_rest += 1e-3 * o->volume;
+    }
+    if (skg_label_begins(o->label, "liver")) {
+        for (int64_t i = 0; i < o->vertices; i++)
+            skg_add_scaled(m->liver_mm, 1 / (double)o->vertices, o->moved + 3 * i, m->liver_mm);
+        m->liver_volume_ratio = volume_now(o) / o->volume;
+    }
+    if (o->role == ROLE_DIAPHRAGM) measure_diaphragm(o, m);
+    if (!o->chain) return;
+    m->conflict_mm = fmax(m->conflict_mm, o->report.conflict_mm);
+    int64_t broken;
+    double worst;
+    skg_chain_check(o->chain, o->state, 1e-9, &broken, &worst);
+    m->broken_links += broken;
+}
+
+skg_status skg_body_get_measure(const skg_body *body, skg_body_measure *theirs) {
+    if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
+    skg_body_measure m;
+    skg_body_measure_init(&m);
+    double lung_rest = 0;
+    m.lung_density_ratio = m.liver_volume_ratio = 1;
+    for (int64_t i = 0; i < body->organs; i++) measure_organ(body->organ + i, &m, &lung_rest);
+    if (lung_rest > 0) m.lung_density_ratio = lung_rest / m.lung_ml;
+    m.tidal_ml = m.lung_ml - lung_rest;
+    return skg_struct_write(&m, sizeof m, "skg_body_measure", theirs);
+}

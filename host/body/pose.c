@@ -1,0 +1,244 @@
+/* Posing: each organ after those that it follows. */
+#include "body/body.h"
+
+#include "scene/vector.h"
+
+#include <string.h>
+
+void skg_link_follow(const skg_body *body, const skg_link *link, double displacement[3]) {
+    memset(displacement, 0, 3 * sizeof *displacement);
+    if (link->organ == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
+    if (link->organ < 0) return;
+    const skg_body_organ *o = body->organ + link->organ;
+    for (int c = 0; c < 3; c++)
+        skg_add_scaled(displacement, link->part * link->weight[c], o->moved + 3 * link->corner[c],
+                       displacement);
+}
+
+void skg_carried_vertex(const skg_body *body, const skg_body_organ *o, int64_t i, double displacement[3]) {
+    memset(displacement, 0, 3 * sizeof *displacement);
+    if (o->carrier == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
+    for (int n = 0; o->carrier >= 0 && n < CARRIERS; n++)
+        skg_add_scaled(displacement, o->near_weight[CARRIERS * i + n],
+                       body->organ[o->carrier].moved + 3 * o->near[CARRIERS * i + n], displacement);
+    if (o->share) skg_scale_vector(o->share[i], displacement, displacement);
+}
+
+static void pose_rigid(skg_body_organ *o) {
+    for (int64_t i = 0; i < o->vertices; i++)
+        skg_rigid_displace(&o->rigid, o->rest + 3 * i, o->moved + 3 * i);
+}
+
+static void pose_rib(skg_body_organ *o, double angle) {
+    double vector[3];
+    skg_scale_vector(angle, o->axis, vector);
+    skg_rotation(vector, o->rigid.rotation);
+    memcpy(o->rigid.centre, o->head, sizeof o->head);
+    memset(o->rigid.shift, 0, sizeof o->rigid.shift);
+    pose_rigid(o);
+}
+
+/* The sternum follows the anterior ends of ribs 1 to 7: their vertices farthest from the head. */
+static void fit_sternum(const skg_body *body, skg_rigid *rigid) {
+    double points[14][3], displacements[14][3];
+    int64_t count = 0;
+    for (int64_t r = 0; r < body->organs && count < 14; r++) {
+        const skg_body_organ *o = body->organ + r;
+        if (o->role != ROLE_RIB || o->number > 7) continue;
+        double most = -1, d[3];
+        for (int64_t i = 0; i < o->vertices; i++) {
+            skg_add_scaled(o->rest + 3 * i, -1, o->head, d);
+            if (skg_dot(d, d) <= most) continue;
+            most = skg_dot(d, d);
+            memcpy(points[count], o->rest + 3 * i, sizeof points[0]);
+            memcpy(displacements[count], o->moved + 3 * i, sizeof displacements[0]);
+        }
+        count++;
+    }
+    memset(rigid, 0, sizeof *rigid);
+    for (int k = 0; k < 3; k++) rigid->rotation[4 * k] = 1;
+    if (count >= 3) skg_rigid_fit(count, points[0], displacements[0], rigid);
+}
+
+static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
+    const skg_rigid *from = &body->organ[o->near[0]].rigid, *to = &body->organ[o->near[1]].rigid;
+    for (int64_t i = 0; i < o->vertices; i++) {
+        double a[3], b[3];
+        skg_rigid_displace(from, o->rest + 3 * i, a);
+        skg_rigid_displace(to, o->rest + 3 * i, b);
+        for (int k = 0; k < 3; k++) o->moved[3 * i + k] = (1 - o->share[i]) * a[k] + o->share[i] * b[k];
+    }
+}
+
+static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
+    double blend = body->options.hysteresis;
+    for (int64_t d = 0; d < o->links; d++) skg_link_follow(body, o->link + d, o->target + 3 * d);
+    memset(o->state, 0, (size_t)(3 * o->vertices) * sizeof(double));
+    SKG_TRY(skg_chain_move(o->chain, o->target, o->state, &o->report));
+    if (body->options.relaxation > 0)
+        SKG_TRY(skg_chain_relax(o->chain, body->options.relaxation, 0.5, o->state));
+    if (blend > 0) SKG_TRY(skg_chain_move(o->chain, o->target, o->memory, &o->report));
+    for (int64_t i = 0; i < o->vertices; i++)
+        for (int k = 0; k < 3; k++) {
+            int64_t at = k * o->vertices + o->node_of[i];
+            double u = o->state[at];
+            if (blend > 0) u += blend * (o->memory[at] - u);
+            o->moved[3 * i + k] = u;
+        }
+    return SKG_OK;
+}
+
+/* Tip where its tissue is, axis through the place where the skin is entered, then drawn back. */
+static void pose_needle(const skg_body *body, skg_body_organ *o) {
+    double tip[3], skin[3], rest[3], now[3], turn[3], at[3];
+    skg_link_follow(body, &o->skin, skin);
+    int64_t nearest = 0;
+    for (int64_t i = 0; i < o->vertices; i++)
+        if (memcmp(o->rest + 3 * i, o->tip, sizeof o->tip) == 0) nearest = i;
+    skg_carried_vertex(body, o, nearest, tip);
+    skg_add_scaled(o->pivot, -1, o->tip, rest);
+    for (int k = 0; k < 3; k++) now[k] = rest[k] + skin[k] - tip[k];
+    skg_scale_vector(1 / skg_length(rest), rest, rest);
+    skg_scale_vector(1 / skg_length(now), now, now);
+    skg_cross(rest, now, turn);
+    double sine = skg_length(turn);
+    if (sine > 0) skg_scale_vector(atan2(sine, skg_dot(rest, now)) / sine, turn, turn);
+    skg_rotation(turn, o->rigid.rotation);
+    memcpy(o->rigid.centre, o->tip, sizeof o->tip);
+    skg_scale_vector(body->withdrawn, now, at);
+    for (int k = 0; k < 3; k++) o->rigid.shift[k] = tip[k] + at[k];
+    pose_rigid(o);
+}
+
+static skg_status pose_one(skg_body *body, skg_body_organ *o) {
+    switch (o->role) {
+    case ROLE_CARTILAGE:
+        pose_cartilage(body, o);
+        return SKG_OK;
+    case ROLE_DIAPHRAGM:
+    case ROLE_LINKED:
+        return pose_chain(body, o);
+    case ROLE_CARRIED:
+    case ROLE_SPANNED:
+        for (int64_t i = 0; i < o->vertices; i++) skg_carried_vertex(body, o, i, o->moved + 3 * i);
+        return SKG_OK;
+    case ROLE_NEEDLE:
+        pose_needle(body, o);
+        return SKG_OK;
+    default:
+        return SKG_OK;
+    }
+}
+
+/* Writes the float offsets where the upload reads them. At rest the file's own positions come back. */
+static skg_status write_mesh(skg_body_organ *o) {
+    int rests = 1, differs = 0;
+    for (int64_t i = 0; i < 3 * o->vertices; i++) rests = rests && o->moved[i] == 0;
+    if (rests) {
+        if (!o->changed) return SKG_OK;
+        o->changed = 0;
+        return skg_mesh_write_positions(o->mesh, o->rest, 0);
+    }
+    float *offsets;
+    const double *origin;
+    SKG_TRY(skg_mesh_positions(o->mesh, &offsets, &origin));
+    for (int64_t i = 0; i < o->vertices; i++)
+        for (int k = 0; k < 3; k++) {
+            float offset = (float)(o->rest[3 * i + k] - origin[k] + o->moved[3 * i + k]);
+            differs |= offset != offsets[3 * i + k];
+            offsets[3 * i + k] = offset;
+        }
+    o->changed = 1;
+    return differs ? skg_mesh_moved(o->mesh) : SKG_OK;
+}
+
+/* Organs of one role do not follow each other. */
+static skg_status pose_role(skg_body *body, skg_role role) {
+    skg_status status = SKG_OK;
+#pragma omp parallel for schedule(dynamic, 1) if (role == ROLE_LINKED)
+    for (int64_t i = 0; i < body->organs; i++) {
+        if (body->organ[i].role != role) continue;
+        skg_status one = pose_one(body, body->organ + i);
+#pragma omp critical(skg_body_status)
+        if (one != SKG_OK) status = one;
+    }
+    if (status == SKG_ERR_BREATHING)
+        return skg_fail(status,
+                        "body: a driven point of an organ is not finite; check the meshes and the breath");
+    return status;
+}
+
+/* All organs in memory; meshes are written by the caller. */
+static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic) {
+    const skg_body_options *options = &body->options;
+    double angle = skg_rib_fraction(thoracic) - skg_rib_fraction(options->reference_thoracic);
+    double descent = diaphragmatic - options->reference_diaphragmatic;
+    skg_scale_vector(descent, options->tendon_mm, body->tendon);
+    skg_rigid sternum;
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].role == ROLE_RIB) pose_rib(body->organ + i, angle);
+    fit_sternum(body, &sternum);
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].role == ROLE_STERNUM) {
+            body->organ[i].rigid = sternum;
+            if (angle != 0) pose_rigid(body->organ + i);
+            if (angle == 0)
+                memset(body->organ[i].moved, 0, (size_t)(3 * body->organ[i].vertices) * sizeof(double));
+        }
+    static const skg_role order[] = {ROLE_CARTILAGE, ROLE_DIAPHRAGM, ROLE_LINKED,
+                                     ROLE_CARRIED,   ROLE_SPANNED,   ROLE_NEEDLE};
+    for (size_t r = 0; r < sizeof order / sizeof *order; r++) SKG_TRY(pose_role(body, order[r]));
+    return SKG_OK;
+}
+
+/* The memories of all chains, in or out of one step of the loop. */
+static void copy_memories(skg_body *body, int step, int out) {
+    double *at = body->loop_state + step * body->loop_size;
+    for (int64_t i = 0; i < body->organs; i++) {
+        skg_body_organ *o = body->organ + i;
+        if (!o->chain) continue;
+        size_t size = (size_t)(3 * o->vertices) * sizeof(double);
+        memcpy(out ? at : o->memory, out ? o->memory : at, size);
+        at += 3 * o->vertices;
+    }
+}
+
+skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
+    if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
+    SKG_TRY(skg_breath_check(breath));
+    body->loop = 0, body->loop_size = 0;
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].chain) {
+            body->loop_size += 3 * body->organ[i].vertices;
+            memset(body->organ[i].memory, 0, (size_t)(3 * body->organ[i].vertices) * sizeof(double));
+        }
+    SKG_TRY(skg_realloc(LOOP_STEPS * body->loop_size, sizeof(double), "breathing loop", &body->loop_state));
+    for (int cycle = 0; cycle < 2; cycle++) /* periodic from the second cycle on */
+        for (int step = 0; step < LOOP_STEPS; step++) {
+            skg_breath_state state;
+            skg_breath_state_init(&state);
+            SKG_TRY(skg_breath_at_phase(breath, (double)step / LOOP_STEPS, &state));
+            SKG_TRY(pose_all(body, state.thoracic, state.diaphragmatic));
+            copy_memories(body, step, 1);
+        }
+    body->loop = LOOP_STEPS;
+    return SKG_OK;
+}
+
+skg_status skg_body_pose(skg_body *body, const skg_breath_state *theirs) {
+    skg_breath_state state;
+    skg_breath_state_init(&state);
+    if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
+    SKG_TRY(skg_struct_read(theirs, "skg_breath_state", &state, sizeof state));
+    if (!(state.thoracic >= 0 && state.thoracic <= 4 && state.diaphragmatic >= 0 &&
+          state.diaphragmatic <= 4 && state.phase >= 0 && state.phase < 1))
+        return skg_fail(SKG_ERR_BREATHING, "body: phase %g with weights %g and %g: 0 to below 1, 0 to 4",
+                        state.phase, state.thoracic, state.diaphragmatic);
+    if (body->options.hysteresis > 0) {
+        if (!body->loop) return skg_fail(SKG_ERR_BREATHING, "body: hysteresis needs skg_body_breathe first");
+        copy_memories(body, (int)(state.phase * LOOP_STEPS) % LOOP_STEPS, 0);
+    }
+    SKG_TRY(pose_all(body, state.thoracic, state.diaphragmatic));
+    for (int64_t i = 0; i < body->organs; i++) SKG_TRY(write_mesh(body->organ + i));
+    return SKG_OK;
+}

@@ -1,0 +1,80 @@
+/* What a label says. */
+#include "body/body.h"
+
+#include "core/names.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Whether label begins with word, without regard to case, and no letter follows. */
+int skg_label_begins(const char *label, const char *word) {
+    size_t i = 0;
+    for (; word[i]; i++)
+        if (tolower((unsigned char)label[i]) != tolower((unsigned char)word[i])) return 0;
+    return !isalpha((unsigned char)label[i]);
+}
+
+static int has_word(const char *label, const char *word) {
+    for (const char *c = label; *c; c++)
+        if ((c == label || !isalpha((unsigned char)c[-1])) && skg_label_begins(c, word)) return 1;
+    return 0;
+}
+
+skg_role skg_role_of(const char *label, int *number, int *side) {
+    static const struct {
+        const char *word;
+        skg_role role;
+    } rule[] = {{"rib", ROLE_RIB},
+                {"sternum", ROLE_STERNUM},
+                {"cartilage", ROLE_CARTILAGE},
+                {"diaphragm", ROLE_DIAPHRAGM},
+                {"lung", ROLE_LINKED},
+                {"liver", ROLE_LINKED},
+                {"heart", ROLE_LINKED},
+                {"skin", ROLE_LINKED},
+                {"gallbladder", ROLE_CARRIED},
+                {"stomach", ROLE_CARRIED},
+                {"spleen", ROLE_CARRIED},
+                {"kidney", ROLE_CARRIED},
+                {"trachea", ROLE_SPANNED},
+                {"bronchus", ROLE_CARRIED},
+                {"common bile duct", ROLE_SPANNED},
+                {"needle", ROLE_NEEDLE}};
+    *side = has_word(label, "left") || has_word(label, "l") ? 1 : 0;
+    if (has_word(label, "right") || has_word(label, "r")) *side = -1;
+    *number = 0;
+    for (size_t i = 0; i < sizeof rule / sizeof *rule; i++) {
+        if (!skg_label_begins(label, rule[i].word)) continue;
+        if (rule[i].role == ROLE_RIB || rule[i].role == ROLE_CARTILAGE) {
+            const char *digits = label + strcspn(label, "0123456789");
+            long value = strtol(digits, NULL, 10);
+            if (value < 1 || value > 12 || *side == 0) return ROLE_STATIC;
+            *number = (int)value;
+        }
+        return rule[i].role;
+    }
+    return ROLE_STATIC;
+}
+
+int skg_label_stays(const char *label) {
+    static const char *const word[] = {"spine", "vertebra", "clavicle", "scapula"};
+    for (size_t i = 0; i < sizeof word / sizeof *word; i++)
+        if (skg_label_begins(label, word[i])) return 1;
+    return 0;
+}
+
+/* Muscle is the paper's; the others are chosen softer the softer the organ (an assumption). */
+skg_tissue skg_tissue_of(const char *label) {
+    static const struct {
+        const char *word;
+        skg_tissue tissue;
+    } known[] = {{"diaphragm", {0.7, 1.1, 0.1}},
+                 {"lung", {0.5, 1.6, 0.3}},
+                 {"liver", {0.97, 1.05, 0.03}},
+                 {"heart", {0.7, 1.3, 0.1}},
+                 {"skin", {0.75, 1.3, 0.25}}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (skg_label_begins(label, known[i].word)) return known[i].tissue;
+    return (skg_tissue){0.8, 1.2, 0.1};
+}

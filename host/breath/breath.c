@@ -1,0 +1,173 @@
+/* Waveforms and phase. */
+#include "core/core.h"
+#include "core/names.h"
+
+#include <skiagraph/breathing.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+void skg_breath_init(skg_breath *breath) {
+    *breath = (skg_breath){.size = (int32_t)sizeof *breath,
+                           .waveform = SKG_BREATH_SINE,
+                           .exponent = 2,
+                           .period_s = 4,
+                           .expiration_ratio = 1.5,
+                           .thoracic = 1,
+                           .diaphragmatic = 1};
+}
+
+void skg_breath_state_init(skg_breath_state *state) {
+    *state = (skg_breath_state){.size = (int32_t)sizeof *state, .phase = 0.5};
+}
+
+skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
+    static const struct {
+        double period_s, thoracic, diaphragmatic;
+    } value[] = {{4, 1, 1}, {4, 0, 1}, {4, 1, 0}, {3, 0.3, 0.3}, {6, 2.5, 2.5}, {1.5, 2, 2}};
+    static const char *const names[] = {"quiet",   "diaphragmatic", "thoracic",
+                                        "shallow", "deep",          "hyperventilation"};
+    enum { COUNT = sizeof names / sizeof *names };
+    for (int i = 0; i < COUNT; i++) {
+        if (!skg_same_name(name ? name : "", names[i])) continue;
+        skg_breath_init(breath);
+        breath->waveform = SKG_BREATH_ASYMMETRIC;
+        breath->period_s = value[i].period_s;
+        breath->thoracic = value[i].thoracic;
+        breath->diaphragmatic = value[i].diaphragmatic;
+        return SKG_OK;
+    }
+    const char *near = skg_nearest_name(name ? name : "", names, COUNT);
+    return skg_fail(SKG_ERR_BREATHING, "no breathing pattern \"%s\"; the nearest is \"%s\"", name ? name : "",
+                    near ? near : names[0]);
+}
+
+static skg_status check_range(const char *field, double value, double low, double high) {
+    if (value >= low && value <= high) return SKG_OK;
+    return skg_fail(SKG_ERR_BREATHING, "breath: %s is %g; from %g to %g", field, value, low, high);
+}
+
+static skg_status check_samples(const skg_breath *b) {
+    if (!b->samples || b->sample_count < 3)
+        return skg_fail(SKG_ERR_BREATHING,
+                        "breath: a sampled waveform needs at least 3 samples over one cycle");
+    for (int64_t i = 0; i < b->sample_count; i++) {
+        SKG_TRY(check_range("a sample", b->samples[i], 0, 1));
+        if (b->samples[i] > b->samples[0])
+            return skg_fail(SKG_ERR_BREATHING,
+                            "breath: sample %" PRId64
+                            " (%g) is above the first (%g); begin at end-inspiration",
+                            i, b->samples[i], b->samples[0]);
+    }
+    return SKG_OK;
+}
+
+static skg_status check_holds(const skg_breath *b) {
+    if (b->hold_count < 0 || (b->hold_count > 0 && !b->holds))
+        return skg_fail(SKG_ERR_BREATHING, "breath: %" PRId64 " holds without a list", b->hold_count);
+    double last = -HUGE_VAL;
+    for (int64_t i = 0; i < b->hold_count; i++) {
+        const skg_breath_hold *h = b->holds + i;
+        if (!(h->from >= last && h->to >= h->from && isfinite(h->from) && isfinite(h->to)))
+            return skg_fail(SKG_ERR_BREATHING,
+                            "breath: hold %" PRId64 " is from %g to %g s; in order of time, not overlapping",
+                            i, h->from, h->to);
+        last = h->to;
+    }
+    return SKG_OK;
+}
+
+static skg_status check(const skg_breath *b) {
+    SKG_TRY(check_range("waveform", b->waveform, SKG_BREATH_SINE, SKG_BREATH_SAMPLED));
+    SKG_TRY(check_range("exponent", b->exponent, 1, 8));
+    SKG_TRY(check_range("period_s", b->period_s, 0.2, 60));
+    SKG_TRY(check_range("start_phase", b->start_phase, 0, 1));
+    SKG_TRY(check_range("expiration_ratio", b->expiration_ratio, 0.2, 5));
+    SKG_TRY(check_range("thoracic", b->thoracic, 0, 4));
+    SKG_TRY(check_range("diaphragmatic", b->diaphragmatic, 0, 4));
+    SKG_TRY(check_range("thoracic_lag", b->thoracic_lag, -0.5, 0.5));
+    if (b->waveform == SKG_BREATH_SAMPLED) SKG_TRY(check_samples(b));
+    return check_holds(b);
+}
+
+skg_status skg_breath_check(const skg_breath *breath) {
+    skg_breath ours;
+    skg_breath_init(&ours);
+    SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
+    return check(&ours);
+}
+
+/* Phase modulo 1; rounding may give 1, which is 0. */
+static double wrap(double phase) {
+    double p = phase - floor(phase);
+    return p < 1 ? p : 0;
+}
+
+/* Slope at sample i of a monotone cubic through evenly spaced samples (Fritsch and Butland: harmonic mean of
+ * the slopes on both sides, 0 at a turn). */
+static double sample_slope(const skg_breath *b, int64_t i) {
+    int64_t n = b->sample_count;
+    double before = b->samples[i] - b->samples[(i + n - 1) % n];
+    double after = b->samples[(i + 1) % n] - b->samples[i];
+    return before * after > 0 ? 2 * before * after / (before + after) : 0;
+}
+
+static double sampled(const skg_breath *b, double p) {
+    double at = p * (double)b->sample_count;
+    int64_t i = (int64_t)at < b->sample_count ? (int64_t)at : b->sample_count - 1;
+    int64_t j = (i + 1) % b->sample_count;
+    double t = at - (double)i, s = 1 - t;
+    double f = b->samples[i] * s * s * (1 + 2 * t) + b->samples[j] * t * t * (3 - 2 * t) +
+               sample_slope(b, i) * t * s * s - sample_slope(b, j) * t * t * s;
+    return fmin(fmax(f, 0), b->samples[0]); /* monotone between samples but for rounding */
+}
+
+/* Amplitude of the waveform at a phase from 0 to below 1. */
+static double waveform(const skg_breath *b, double p) {
+    if (b->waveform == SKG_BREATH_SINE) return 0.5 * (1 + cos(2 * pi * p));
+    if (b->waveform == SKG_BREATH_LUJAN) return pow(cos(pi * p), 2 * b->exponent);
+    if (b->waveform == SKG_BREATH_SAMPLED) return sampled(b, p);
+    double expiration = b->expiration_ratio / (1 + b->expiration_ratio);
+    return p < expiration ? 0.5 * (1 + cos(pi * p / expiration))
+                          : 0.5 * (1 - cos(pi * (p - expiration) / (1 - expiration)));
+}
+
+static skg_status fill(const skg_breath *b, double phase, skg_breath_state *theirs) {
+    skg_breath_state state = {.size = (int32_t)sizeof state};
+    state.phase = wrap(phase);
+    state.amplitude = waveform(b, state.phase);
+    state.thoracic = b->thoracic * waveform(b, wrap(state.phase - b->thoracic_lag));
+    state.diaphragmatic = b->diaphragmatic * state.amplitude;
+    return skg_struct_write(&state, sizeof state, "skg_breath_state", theirs);
+}
+
+skg_status skg_breath_at_phase(const skg_breath *breath, double phase, skg_breath_state *state) {
+    skg_breath ours;
+    skg_breath_init(&ours);
+    SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
+    SKG_TRY(check(&ours));
+    if (!isfinite(phase)) return skg_fail(SKG_ERR_BREATHING, "breath: phase %g is not finite", phase);
+    return fill(&ours, phase, state);
+}
+
+/* Time spent breathing between 0 and time: what was not held. */
+static double breathing_time(const skg_breath *b, double time) {
+    double spent = time;
+    for (int64_t i = 0; i < b->hold_count; i++) {
+        double from = b->holds[i].from, to = b->holds[i].to;
+        spent -= fmin(fmax(time, from), to) - fmin(fmax(0, from), to);
+    }
+    return spent;
+}
+
+skg_status skg_breath_at_time(const skg_breath *breath, double time_s, skg_breath_state *state) {
+    skg_breath ours;
+    skg_breath_init(&ours);
+    SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
+    SKG_TRY(check(&ours));
+    if (!isfinite(time_s)) return skg_fail(SKG_ERR_BREATHING, "breath: time %g s is not finite", time_s);
+    return fill(&ours, ours.start_phase + breathing_time(&ours, time_s) / ours.period_s, state);
+}

@@ -1,0 +1,78 @@
+/* The thorax as files. */
+#include "phantom/thorax.h"
+
+#include "core/output.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static skg_status path_of(const char *folder, const char *label, const char *extension, char **path) {
+    size_t room = strlen(folder) + strlen(label) + strlen(extension) + 2;
+    SKG_TRY(skg_alloc((int64_t)room, 1, "path", path));
+    snprintf(*path, room, "%s/%s%s", folder, label, extension);
+    for (char *c = *path + strlen(folder) + 1; *c; c++)
+        if (*c == ' ') *c = '-';
+    return SKG_OK;
+}
+
+static void write_sample(const skg_thorax *thorax, int64_t i, FILE *f) {
+    char file[48];
+    snprintf(file, sizeof file, "%s.ply", thorax->part[i].label);
+    for (char *c = file; *c; c++)
+        if (*c == ' ') *c = '-';
+    fprintf(f, "        {\"Label\": \"%s\", \"Path\": \"%s\", \"Unit\": \"mm\", ", thorax->part[i].label,
+            file);
+    int64_t inside = thorax->part[i].inside;
+    if (inside >= 0)
+        fprintf(f, "\"Parent\": \"%s\", ", thorax->part[inside].label);
+    else
+        fprintf(f, "\"Parent\": null, ");
+    if (thorax->part[i].material)
+        fprintf(f, "\"Material\": [\"Element\", \"%s\"], \"Density\": %g", thorax->part[i].material,
+                thorax->part[i].density);
+    else
+        fprintf(f, "\"Material\": [\"HU\", %g]", thorax->part[i].hounsfield);
+    fprintf(f, i + 1 < thorax->parts ? "},\n" : "}\n");
+}
+
+/* The source in front of the patient, the detector behind the back, rows from head to foot: the patient's
+ * right is on the viewer's left. */
+static void write_scene(const skg_thorax *thorax, FILE *f) {
+    fprintf(f, "{\n"
+               "    \"Source\": {\n"
+               "        \"Position\": [0, -860, -20, \"mm\"],\n"
+               "        \"Shape\": \"PointSource\",\n"
+               "        \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 10000}]\n"
+               "    },\n"
+               "    \"Detector\": {\n"
+               "        \"Position\": [0, 140, -20, \"mm\"],\n"
+               "        \"UpVector\": [0, 0, -1],\n"
+               "        \"RightVector\": [1, 0, 0],\n"
+               "        \"NumberOfPixels\": [512, 512],\n"
+               "        \"Size\": [480, 480, \"mm\"]\n"
+               "    },\n"
+               "    \"Samples\": [\n");
+    for (int64_t i = 0; i < thorax->parts; i++) write_sample(thorax, i, f);
+    fprintf(f, "    ]\n}\n");
+}
+
+skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {
+    if (!thorax || !folder) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
+    for (int64_t i = 0; i < thorax->parts; i++) {
+        char *path;
+        SKG_TRY(path_of(folder, thorax->part[i].label, ".ply", &path));
+        skg_status status = skg_mesh_save(thorax->part[i].mesh, path);
+        skg_free(&path);
+        SKG_TRY(status);
+    }
+    char *path;
+    SKG_TRY(path_of(folder, "thorax", ".json", &path));
+    skg_output_file file;
+    skg_status status = skg_output_open(path, &file);
+    if (status == SKG_OK) {
+        write_scene(thorax, file.stream);
+        status = skg_output_commit(&file);
+    }
+    skg_free(&path);
+    return status;
+}

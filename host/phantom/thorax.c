@@ -1,0 +1,93 @@
+/* The generated thorax as a handle. */
+#include "phantom/thorax.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+void skg_thorax_options_init(skg_thorax_options *options) {
+    *options = (skg_thorax_options){.size = (int32_t)sizeof *options, .triangles = 42000};
+}
+
+void skg_thorax_part_init(skg_thorax_part *part) {
+    *part = (skg_thorax_part){.size = (int32_t)sizeof *part, .inside = -1};
+}
+
+skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
+                          skg_mesh_arrays *arrays) {
+    if (thorax->parts == thorax->room) {
+        int64_t room = 2 * thorax->room + 16;
+        SKG_TRY(skg_realloc(room, sizeof *thorax->part, "thorax", &thorax->part));
+        thorax->room = room;
+    }
+    skg_mesh *mesh;
+    SKG_TRY(skg_mesh_adopt(NULL, label, arrays, &mesh));
+    memset(thorax->part + thorax->parts, 0, sizeof *thorax->part);
+    strncpy(thorax->part[thorax->parts].label, label, sizeof thorax->part->label - 1);
+    thorax->part[thorax->parts].hounsfield = hounsfield;
+    thorax->part[thorax->parts].inside = inside;
+    thorax->part[thorax->parts++].mesh = mesh;
+    return SKG_OK;
+}
+
+static skg_status fill(double resolution, skg_thorax *thorax) {
+    skg_thorax_plan *plan;
+    SKG_TRY(skg_alloc(1, sizeof *plan, "thorax", &plan));
+    skg_status status = skg_cage_plan(resolution, plan);
+    if (status == SKG_OK) status = skg_thorax_skin(plan, thorax);
+    if (status == SKG_OK) status = skg_thorax_lungs(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_airways(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_organs(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_bones(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_needle(plan, thorax);
+    skg_free(&plan);
+    return status;
+}
+
+skg_status skg_thorax_create(const skg_thorax_options *options, skg_thorax **result) {
+    skg_thorax_options ours;
+    skg_thorax_options_init(&ours);
+    if (!result) return skg_fail(SKG_ERR_ARGUMENT, "thorax: no place for the result");
+    *result = NULL;
+    if (options) SKG_TRY(skg_struct_read(options, "skg_thorax_options", &ours, sizeof ours));
+    if (ours.triangles < 10000 || ours.triangles > 20000000)
+        return skg_fail(SKG_ERR_ARGUMENT, "thorax: %" PRId64 " triangles; 10000 to 20000000", ours.triangles);
+    skg_thorax *thorax;
+    SKG_TRY(skg_alloc(1, sizeof *thorax, "thorax", &thorax));
+    skg_status status = fill(sqrt((double)ours.triangles / 42000), thorax);
+    if (status != SKG_OK) {
+        skg_thorax_release(&thorax);
+        return status;
+    }
+    *result = thorax;
+    return SKG_OK;
+}
+
+void skg_thorax_release(skg_thorax **thorax) {
+    if (!thorax || !*thorax) return;
+    for (int64_t i = 0; i < (*thorax)->parts; i++) skg_mesh_release(&(*thorax)->part[i].mesh);
+    skg_free(&(*thorax)->part);
+    skg_free(thorax);
+}
+
+skg_status skg_thorax_size(const skg_thorax *thorax, int64_t *parts) {
+    if (!thorax || !parts) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
+    *parts = thorax->parts;
+    return SKG_OK;
+}
+
+skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number, skg_thorax_part *part) {
+    if (!thorax) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
+    if (number < 0 || number >= thorax->parts)
+        return skg_fail(SKG_ERR_ARGUMENT, "thorax: no part %" PRId64 "; 0 to %" PRId64, number,
+                        thorax->parts - 1);
+    skg_thorax_part ours;
+    skg_thorax_part_init(&ours);
+    ours.inside = thorax->part[number].inside;
+    ours.mesh = thorax->part[number].mesh;
+    ours.label = thorax->part[number].label;
+    ours.material = thorax->part[number].material;
+    ours.hounsfield = thorax->part[number].hounsfield;
+    ours.density_g_cm3 = thorax->part[number].density;
+    return skg_struct_write(&ours, sizeof ours, "skg_thorax_part", part);
+}

@@ -1,0 +1,13 @@
+# cmake -DPROGRAM=... -DFOLDER=... -P threads.cmake: images by one thread and by two have the same bits.
+foreach(threads 1 2)
+  set(ENV{POCL_MAX_PTHREAD_COUNT} ${threads})
+  set(ENV{SKG_BITS_FILE} ${FOLDER}/bits_${threads}.txt)
+  execute_process(COMMAND ${PROGRAM} RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${threads} threads: status ${result}")
+  endif()
+  file(READ ${FOLDER}/bits_${threads}.txt bits_${threads})
+endforeach()
+if(NOT bits_1 STREQUAL bits_2 OR bits_1 STREQUAL "")
+  message(FATAL_ERROR "One thread:\n${bits_1}\nTwo:\n${bits_2}")
+endif()
