@@ -15,7 +15,7 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, output_double, add, runs;
+    int32_t planes, channels, shown, world, ratio, falloff, output_double, add, ranged, runs;
 } kernel_key;
 
 struct skg_attenuator {
@@ -39,7 +39,7 @@ static skg_status upload(skg_context *context, int32_t is_double, int64_t count,
 }
 
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
-                                  const double *coefficients, const double *weights,
+                                  const double *coefficients, const double *weights, const double *range,
                                   skg_attenuation *attenuation) {
     const int32_t is_double = precision == SKG_DOUBLE;
     const int64_t count = (int64_t)shape->nodes * shape->planes;
@@ -52,6 +52,7 @@ skg_status skg_attenuation_create(skg_context *context, int32_t precision, const
     skg_status status = upload(context, is_double, count, scaled, &attenuation->coefficients);
     skg_free(&scaled);
     SKG_TRY(status);
+    if (range) SKG_TRY(upload(context, is_double, 2 * (int64_t)shape->planes, range, &attenuation->range));
     return upload(context, is_double, (int64_t)shape->nodes * shape->channels, weights,
                   &attenuation->weights);
 }
@@ -59,6 +60,7 @@ skg_status skg_attenuation_create(skg_context *context, int32_t precision, const
 void skg_attenuation_release(skg_attenuation *attenuation) {
     skg_buffer_release(&attenuation->coefficients);
     skg_buffer_release(&attenuation->weights);
+    skg_buffer_release(&attenuation->range);
 }
 
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator) {
@@ -79,9 +81,9 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d",
+        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->output_double, (int)key->add, (int)key->runs);
+        (int)key->falloff, (int)key->output_double, (int)key->add, (int)key->runs, (int)key->ranged);
     return skg_kernels_get(attenuator->context, &key->options, 2, files, more, program);
 }
 
@@ -127,7 +129,7 @@ static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
     return skg_kernel_set(kernel, 13, sizeof channel, &channel);
 }
 
-/* Arguments from `first` on of effects that are there: world and falloff. */
+/* Arguments from `first` on of effects that are there: world, falloff, range. */
 static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key *key,
                               const skg_camera *camera, const skg_attenuation *attenuation) {
     const int single = key->options.precision == SKG_SINGLE;
@@ -149,6 +151,8 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
         SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof nearest_single : sizeof nearest,
                                single ? (const void *)&nearest_single : (const void *)&nearest));
     }
+    if (key->ranged)
+        return skg_kernel_set(kernel, first, sizeof attenuation->range.memory, &attenuation->range.memory);
     return SKG_OK;
 }
 
@@ -165,6 +169,7 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
         .falloff = attenuation->falloff && !camera->parallel,
         .output_double = place->output_double,
         .add = place->add,
+        .ranged = attenuation->range.memory != NULL,
         .runs = attenuation->nodes > 1 ? RUNS : 1};
 }
 

@@ -18,12 +18,14 @@ typedef struct {
     int32_t reserved;
     double world_weight; /* of a mm of the world's path in its plane */
     skg_buffer coefficients, weights;
+    skg_buffer
+        range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not looked at */
 } skg_attenuation;
 
 /* shape: planes, nodes, channels and what is shown. coefficients: [nodes][planes]; weights:
- * [nodes][channels]; copied. */
+ * [nodes][channels]; range: [planes][2], or NULL; copied. */
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
-                                  const double *coefficients, const double *weights,
+                                  const double *coefficients, const double *weights, const double *range,
                                   skg_attenuation *attenuation);
 void skg_attenuation_release(skg_attenuation *attenuation);
 
@@ -40,7 +42,7 @@ typedef struct {
 } skg_image_place;
 
 /* Enqueues one image. scale: of the sums; factor: of intensities; least: exponents below it are counted into
- * negative (one int). */
+ * negative[0], pixels outside the attenuation's range into negative[1]. */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
                          cl_mem negative, const skg_image_place *place, skg_stage_log *log);

@@ -112,12 +112,12 @@ static skg_status make_attenuation(skg_plan *plan) {
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
     SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                   model->weights, &plan->attenuation));
-    SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
+                                   model->weights, model->range, &plan->attenuation));
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, NULL,
+                                   &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
-    SKG_TRY(
-        skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+    SKG_TRY(skg_buffer_reserve(plan->context, &plan->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE,
+                               "counters"));
     return skg_buffer_reserve(plan->context, &plan->bad, (1 + SKG_FIRST_BAD) * (int64_t)sizeof(cl_int),
                               CL_MEM_READ_WRITE, "bad pixels");
 }

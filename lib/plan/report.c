@@ -144,6 +144,16 @@ static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
                     plan->scene->parts[part].label, of_mesh);
 }
 
+static skg_status tell_outside(skg_plan *plan, int32_t pixels) {
+    plan->report.outside_pixels = pixels;
+    if (pixels == 0) return SKG_OK;
+    return skg_fail(
+        SKG_RANGE,
+        "at %" PRId32 " pixels the lengths leave the range that the error bound of %.2g was verified "
+        "for; the image is valid, the bound is not stated there; plan for this view and these poses",
+        pixels, plan->model.bound);
+}
+
 skg_status skg_report_job(skg_job *job) {
     skg_plan *plan = job->plan;
     SKG_TRY(add_stages(job));
@@ -159,7 +169,7 @@ skg_status skg_report_job(skg_job *job) {
         plan->report.bad_pixels += bad[0];
         if (bad[0] > 0) tell_bad(plan, plan->open[k], bad);
     }
-    return SKG_OK;
+    return tell_outside(plan, job->negative[1]);
 }
 
 void skg_plan_report_init(skg_plan_report *report) {
@@ -171,8 +181,8 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
                         plan->bad.bytes + plan->attenuation.coefficients.bytes +
-                        plan->attenuation.weights.bytes + plan->lengths.coefficients.bytes +
-                        plan->lengths.weights.bytes;
+                        plan->attenuation.weights.bytes + plan->attenuation.range.bytes +
+                        plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;
     for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
