@@ -4,6 +4,9 @@
 
 /* Compilers that do not know the pragma skip it; bits do not depend on it. */
 #define SKG_UNROLL _Pragma("unroll")
+#ifndef SKG_HALF_UNIT
+#define SKG_HALF_UNIT 1.0f
+#endif
 #define SKG_LN2 0.693147180559945309417
 
 #if SKG_OUTPUT_DOUBLE
@@ -42,6 +45,16 @@ static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row)
 }
 
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
+#if SKG_HALF
+    /* The image, too, is kept in binary16; energies in MeV. */
+    float lanes[SKG_WIDE];
+    SKG_STORE_V(value, 0, lanes);
+    for (int k = 0; k < min(pixels, SKG_WIDE); k++) {
+        const float rounded = skg_to_half(lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT;
+        place[k] = (skg_out)rounded + (SKG_ADD ? place[k] : (skg_out)(0));
+    }
+    return;
+#endif
     if (pixels >= SKG_WIDE) {
 #if SKG_ADD
         SKG_STORE_V(SKG_LOAD_V(0, place) + SKG_TO_OUT_V(value), 0, place);
@@ -129,7 +142,8 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #endif
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
         const int at = min(column + r * SKG_WIDE, frame.columns - 1); /* runs past the end stay in the row */
-        const skg_realv length = skg_ray_lengths_v(&ray, at, row), scaled = length * ray.unit;
+        const skg_realv length = skg_ray_lengths_v(&ray, at, row);
+        const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * ray.unit;
         SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++)
             x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * scaled;
 #if SKG_WORLD

@@ -3,7 +3,6 @@
 #include "frames.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 
 int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) {
@@ -14,31 +13,6 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
     if (status == SKG_OK) return CLI_DONE;
     int exit_status = cli_fail(status);
     return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
-}
-
-/* |a x b| */
-static double area_of(const double a[3], const double b[3]) {
-    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-    return sqrt(x * x + y * y + z * z);
-}
-
-int cli_open_beam(const cli_session *session, double *open) {
-    int32_t quantity = session->options.quantity;
-    int64_t bins = 0;
-    double energy = 0, photons = 0;
-    skg_status status = skg_spectrum_size(session->spectrum, &bins);
-    for (int64_t i = 0; status == SKG_OK && i < bins; i++) {
-        double kev, count;
-        status = skg_spectrum_bin(session->spectrum, i, &kev, &count);
-        if (status != SKG_OK) break;
-        energy += kev * count;
-        photons += count;
-    }
-    *open = quantity == SKG_ENERGY    ? energy
-            : quantity == SKG_PHOTONS ? photons
-            : quantity == SKG_FLUENCE ? energy / area_of(session->view.column_step, session->view.row_step)
-                                      : 0;
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
 static json_t *effects_json(const skg_plan *plan) {
@@ -173,21 +147,25 @@ static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
 
 static void print_beam(const cli_session *session) {
     int64_t bins = 0;
-    double kev, photons;
+    skg_quality quality;
+    skg_quality_init(&quality);
     skg_spectrum_size(session->spectrum, &bins);
-    if (bins == 1 && skg_spectrum_bin(session->spectrum, 0, &kev, &photons) == SKG_OK)
-        printf("beam       %g keV, %g photons per pixel of the open beam\n", kev, photons);
+    printf("beam       ");
+    if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
+    if (skg_spectrum_quality(session->spectrum, &quality) == SKG_OK)
+        printf("%g keV, %g photons per pixel of the open beam\n", quality.mean_kev, quality.photons);
     else
-        printf("beam       %" PRId64 " energies\n", bins);
+        printf("not to be judged: %s\n", skg_last_error());
 }
 
 static void print_strategy(const skg_plan_report *report) {
     printf("strategy   %s: ", cli_strategy_names[report->strategy]);
-    if (report->tiles == 1)
-        printf("the detector is one tile\n");
+    if (report->strategy != SKG_STRATEGY_TILES)
+        printf("the whole detector, %" PRId64 " triangles\n", report->triangles);
     else
-        printf("%" PRId64 " tiles of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
-               report->tiles, report->tile_columns, report->tile_rows, report->triangles_per_tile);
+        printf("%" PRId64 " tile%s of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
+               report->tiles, report->tiles == 1 ? "" : "s", report->tile_columns, report->tile_rows,
+               report->triangles_per_tile);
 }
 
 void cli_explain_print(const skg_plan *plan, const cli_session *session) {

@@ -15,7 +15,7 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, output_double, add, ranged, runs;
+    int32_t planes, channels, shown, world, ratio, falloff, output_double, add, ranged, runs, energies;
 } kernel_key;
 
 struct skg_attenuator {
@@ -81,9 +81,10 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d",
+        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->output_double, (int)key->add, (int)key->runs, (int)key->ranged);
+        (int)key->falloff, (int)key->output_double, (int)key->add, (int)key->runs, (int)key->ranged,
+        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
     return skg_kernels_get(attenuator->context, &key->options, 2, files, more, program);
 }
 
@@ -103,17 +104,6 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     attenuator->keys[slot] = *key;
     attenuator->kernels[slot] = *kernel;
     return SKG_OK;
-}
-
-static void round_rays(const skg_ray_double *from, skg_ray_float *to) {
-    for (int k = 0; k < 3; k++) {
-        to->centre[k] = (float)from->centre[k];
-        to->column[k] = (float)from->column[k];
-        to->row[k] = (float)from->row[k];
-    }
-    to->middle_i = (float)from->middle_i;
-    to->middle_j = (float)from->middle_j;
-    to->unit = (float)from->unit;
 }
 
 static size_t padded(int64_t items, int64_t group) {
@@ -159,18 +149,20 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
 static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                          const skg_attenuation *attenuation, const skg_image_place *place) {
     /* Of the raster's abilities only the type of its sums is of interest here. */
-    return (kernel_key){
-        .options = {.precision = raster->options.kernels.precision, .bits = raster->options.kernels.bits},
-        .planes = attenuation->planes,
-        .channels = attenuation->channels,
-        .shown = attenuation->shown,
-        .world = attenuation->world_plane >= 0,
-        .ratio = attenuation->ratio,
-        .falloff = attenuation->falloff && !camera->parallel,
-        .output_double = place->output_double,
-        .add = place->add,
-        .ranged = attenuation->range.memory != NULL,
-        .runs = attenuation->nodes > 1 ? RUNS : 1};
+    return (kernel_key){.options = {.precision = raster->options.kernels.precision,
+                                    .bits = raster->options.kernels.bits,
+                                    .half = raster->options.kernels.half},
+                        .planes = attenuation->planes,
+                        .channels = attenuation->channels,
+                        .shown = attenuation->shown,
+                        .world = attenuation->world_plane >= 0,
+                        .ratio = attenuation->ratio,
+                        .falloff = attenuation->falloff && !camera->parallel,
+                        .output_double = place->output_double,
+                        .energies = raster->options.kernels.half && attenuation->energies,
+                        .add = place->add,
+                        .ranged = attenuation->range.memory != NULL,
+                        .runs = attenuation->nodes > 1 ? RUNS : 1};
 }
 
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
@@ -187,7 +179,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
     skg_ray_float ray_single;
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
     skg_camera_rays(camera, scale, &ray);
-    round_rays(&ray, &ray_single);
+    skg_rays_round(&ray, &ray_single);
     SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
     SKG_TRY(skg_kernel_set(kernel, 1, single ? sizeof ray_single : sizeof ray,
                            single ? (const void *)&ray_single : (const void *)&ray));

@@ -15,7 +15,7 @@ typedef struct {
     int32_t world_plane; /* that the world's path adds to; -1: vacuum */
     int32_t ratio;       /* 1: over what the world alone lets pass */
     int32_t falloff;     /* 1: intensities fall with the distance */
-    int32_t reserved;
+    int32_t energies;    /* 1: shows keV, which half precision keeps in MeV */
     double world_weight; /* of a mm of the world's path in its plane */
     skg_buffer coefficients, weights;
     skg_buffer

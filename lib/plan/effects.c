@@ -17,23 +17,6 @@ static void set(skg_plan *plan, int effect, int on, const char *format, ...) {
     state->on = on;
 }
 
-static void tell_compression(skg_plan *plan) {
-    const skg_model *model = &plan->model;
-    const int effect = SKG_EFFECT_COMPRESSION;
-    if (model->verified > 0)
-        set(plan, effect, 1,
-            "%" PRId32 " of %" PRId32 " energies and %" PRId32 " planes for %" PRId32
-            " materials; error of transmissions at most %.2g, verified on %" PRId64 " points",
-            model->nodes, model->bins, model->planes, model->materials, model->bound, model->verified);
-    else if (model->bins == 1)
-        set(plan, effect, 0, "the beam has one energy");
-    else if (plan->options.tolerance > 0)
-        set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
-            plan->options.tolerance);
-    else
-        set(plan, effect, 0, "tolerance 0: every energy is used");
-}
-
 static void tell_samples(skg_plan *plan) {
     const skg_samples *samples = &plan->samples;
     static const char *const shapes[] = {"point", "line",   "rectangle",    "cube",
@@ -77,6 +60,23 @@ static void tell_detector(skg_plan *plan) {
             options->falloff ? "ratios to the open beam do not show it" : "photons are counted per pixel");
 }
 
+static void tell_compression(skg_plan *plan) {
+    const skg_model *model = &plan->model;
+    const int effect = SKG_EFFECT_COMPRESSION;
+    if (model->verified > 0)
+        set(plan, effect, 1,
+            "%" PRId32 " of %" PRId32 " energies and %" PRId32 " planes for %" PRId32
+            " materials; error of transmissions at most %.2g, verified on %" PRId64 " points",
+            model->nodes, model->bins, model->planes, model->materials, model->bound, model->verified);
+    else if (model->bins == 1)
+        set(plan, effect, 0, "the beam has one energy");
+    else if (plan->options.tolerance > 0)
+        set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
+            plan->options.tolerance);
+    else
+        set(plan, effect, 0, "tolerance 0: every energy is used");
+}
+
 skg_status skg_report_effects(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     int64_t nested = 0;
@@ -87,9 +87,9 @@ skg_status skg_report_effects(skg_plan *plan) {
             plan->model.nodes, plan->model.planes, plan->model.materials);
     else
         set(plan, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
-    tell_compression(plan);
     tell_samples(plan);
     tell_detector(plan);
+    tell_compression(plan);
     if (nested)
         set(plan, SKG_EFFECT_NESTING, 1, "%" PRId64 " parts displace a parent: differences of mu, no pass",
             nested);

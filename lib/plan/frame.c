@@ -118,10 +118,12 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &frame->camera));
     SKG_TRY(list_writes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
-    frame->kernels.precision = plan->options.precision;
-    frame->kernels.bits = frame->scale.bits;
+    frame->kernels.precision = plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE;
+    frame->kernels.half = plan->options.precision == SKG_HALF;
+    frame->kernels.bits =
+        frame->kernels.half ? 32 : frame->scale.bits; /* half: 2^-24 m, whatever the scene */
     frame->kernels.parallel = frame->camera.parallel;
-    frame->kernels.listed_writes = frame->planes > 1;
+    frame->kernels.listed_writes = frame->planes > 1 || frame->kernels.half;
     SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes, plan->open_count > 0,
                             &plan->main));
     plan->report.plane_bits = frame->scale.bits;
@@ -146,6 +148,7 @@ static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_wor
     SKG_TRY_CLEANUP(upload(plan, job));
     SKG_TRY_CLEANUP(skg_geometry_project(plan->context, &plan->geometry, &frame.kernels, &frame.camera,
                                          frame.parts, frame.scale.scale, &job->log));
+    if (frame.kernels.half) skg_raster_set_rays(plan->main, &frame.camera);
     SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
     SKG_TRY_CLEANUP(resolve(plan, job, work, sample, &frame));

@@ -59,18 +59,24 @@ static skg_status look_up(making *m, const skg_model *model) {
     return SKG_OK;
 }
 
+/* Half precision sums distances as they are: a plane a material, of which parts add 1 or -1 times theirs. */
+static int is_unweighted(const making *m) {
+    return m->options->precision == SKG_HALF;
+}
+
 /* The factor by which mu is a basis, or 0 where it is not proportional to it. */
-static double factor_of(const double *mu, const double *basis, int32_t nodes) {
+static double factor_of(const making *m, const double *mu, const double *basis, int32_t nodes) {
     const double factor = mu[0] / basis[0];
+    if (is_unweighted(m) && memcmp(mu, basis, (size_t)nodes * sizeof *mu) != 0) return 0;
     for (int32_t n = 1; n < nodes; n++)
         if (!(fabs(mu[n] - factor * basis[n]) <= PROPORTIONAL * mu[n])) return 0;
     return factor;
 }
 
 /* A new basis: with one energy 1/mm, so that plane and exponent are the same; else the material itself. */
-static void start_basis(const double *mu, int32_t nodes, double *basis) {
+static void start_basis(const making *m, const double *mu, int32_t nodes, double *basis) {
     memcpy(basis, mu, (size_t)nodes * sizeof *basis);
-    if (nodes == 1) basis[0] = 1;
+    if (nodes == 1 && !is_unweighted(m)) basis[0] = 1;
 }
 
 static skg_status choose_planes(making *m, skg_model *model) {
@@ -83,7 +89,7 @@ static skg_status choose_planes(making *m, skg_model *model) {
         m->plane[p] = -1;
         if (!(mu[0] > 0)) continue; /* no attenuation at one energy: none at any */
         for (int32_t k = 0; k < model->planes && m->plane[p] < 0; k++) {
-            m->factor[p] = factor_of(mu, m->bases + (int64_t)k * nodes, nodes);
+            m->factor[p] = factor_of(m, mu, m->bases + (int64_t)k * nodes, nodes);
             if (m->factor[p] > 0) m->plane[p] = k;
         }
         if (m->plane[p] >= 0) continue;
@@ -91,8 +97,8 @@ static skg_status choose_planes(making *m, skg_model *model) {
             room = 2 * room + 8;
             SKG_TRY(skg_realloc(room * nodes, sizeof *m->bases, "planes", &m->bases));
         }
-        start_basis(mu, nodes, m->bases + (int64_t)model->planes * nodes);
-        m->factor[p] = nodes == 1 ? mu[0] : 1;
+        start_basis(m, mu, nodes, m->bases + (int64_t)model->planes * nodes);
+        m->factor[p] = mu[0] / m->bases[(int64_t)model->planes * nodes];
         m->plane[p] = model->planes++;
     }
     return SKG_OK;
@@ -139,10 +145,6 @@ static int in_band(const making *m, int64_t channel, double energy) {
 
 static skg_status check_bands(const making *m) {
     const skg_plan_options *options = m->options;
-    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS ||
-        (options->bands > 0 && !options->band_kev))
-        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
-                        options->bands, SKG_MOST_CHANNELS);
     for (int64_t c = 0; c < options->bands; c++)
         if (!(options->band_kev[c] < options->band_kev[c + 1]))
             return skg_fail(SKG_ERR_BEAM, "band %" PRId64 " runs from %g to %g keV; edges have to rise", c,
@@ -207,7 +209,7 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
-    if (options->tolerance > 0 && model->nodes > 2 && model->materials > 0)
+    if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
         SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);

@@ -13,12 +13,12 @@
 /* Effects that a plan knows, in the order in which they are reported. */
 #define SKG_EFFECT_LIST(X)                                                                                   \
     X(SKG_EFFECT_ENERGIES, "several energies")                                                               \
-    X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
     X(SKG_EFFECT_SOURCE, "extended source")                                                                  \
     X(SKG_EFFECT_SUPERSAMPLING, "supersampling")                                                             \
     X(SKG_EFFECT_WORLD, "world material")                                                                    \
     X(SKG_EFFECT_RESPONSE, "energy response")                                                                \
     X(SKG_EFFECT_FALLOFF, "falloff")                                                                         \
+    X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
@@ -54,6 +54,8 @@ struct skg_plan {
     skg_plan_options options;
     skg_view view;
     int64_t structure; /* of the scene when the plan was made: another one is stale */
+    int64_t materials; /* of the scene that the model is of */
+    double *band_kev;  /* [bands + 1] */
 
     skg_plan_meshes meshes;
     skg_geometry geometry;
@@ -94,6 +96,9 @@ int skg_plan_averages(const skg_plan *plan);
 /* Doubles the samples of the source until its tolerance is met at the plan's view, where they are not given
  * (doubling.c). */
 skg_status skg_plan_find_samples(skg_plan *plan);
+
+/* Takes over materials that have changed since; SKG_STALE where the model cannot. */
+skg_status skg_plan_renew_model(skg_plan *plan);
 
 /* SKG_STALE where a view has another size than the plan's. */
 skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);

@@ -76,12 +76,11 @@ static skg_status check_output(submission *s, const skg_output *output) {
     return check_strides(s);
 }
 
-/* Same structure, and every mesh as many triangles, as when the plan was made. */
-static skg_status check_stale(const skg_plan *plan) {
-    if (plan->scene->structure == plan->structure) return SKG_OK;
-    skg_fail(SKG_STALE,
-             "parts of the scene were added or put elsewhere since the plan was made; make a new plan");
-    return SKG_STALE;
+/* Same parts in the same places as when the plan was made; materials may have changed. */
+static skg_status check_stale(skg_plan *plan) {
+    if (plan->scene->structure == plan->structure) return skg_plan_renew_model(plan);
+    return skg_fail(
+        SKG_STALE, "parts of the scene were added or put elsewhere since the plan was made; make a new plan");
 }
 
 static skg_status check_submission(submission *s, const skg_output *output) {

@@ -21,6 +21,7 @@ struct skg_scene {
     int64_t count, capacity;
     int64_t structure; /* grows with every part added or put inside another: a plan of an older one is stale
                         */
+    int64_t materials; /* grows with every material that changes */
     int64_t poses;     /* grows with every pose that changes */
 };
 

@@ -40,14 +40,13 @@ static skg_status read_version(const skg_json_object *top) {
 
 static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     static const char *const names[] = {"single", "double", "half"};
+    static const int32_t values[] = {SKG_SINGLE, SKG_DOUBLE, SKG_HALF};
     skg_json_node node = skg_json_member(top, "Precision");
     if (!node.value) return SKG_OK;
     int64_t choice = 0;
     SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
-    if (choice == 2)
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "half is not simulated yet; use single or double");
     setup->has_precision = 1;
-    setup->precision = choice == 0 ? SKG_SINGLE : SKG_DOUBLE;
+    setup->precision = values[choice];
     return SKG_OK;
 }
 

@@ -52,7 +52,6 @@ static const struct {
      "SceneGraph: a scene graph file is not simulated yet"},
     {"\"Samples\"", "\"Breathing\": {\"Frequency\": 0.25}, \"Samples\"", SKG_ERR_UNSUPPORTED, "Breathing: "},
     {"\"Samples\"", "\"Noise\": true, \"Samples\"", SKG_ERR_UNSUPPORTED, "Noise: noise is not simulated yet"},
-    {"\"Samples\"", "\"Precision\": \"half\", \"Samples\"", SKG_ERR_UNSUPPORTED, "half"},
     {"\"PointSource\"", "[\"FocalSpot\", 1, \"mm\"]", SKG_ERR_FORMAT, "write it like"},
     {"\"PointSource\"", "[\"Dics\", 1, \"mm\"]", SKG_ERR_FORMAT, "Disc"},
     {"\"PointSource\"", "[\"Disc\", -1, \"mm\"]", SKG_ERR_FORMAT, "no size"},

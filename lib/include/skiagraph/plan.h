@@ -16,7 +16,7 @@ extern "C" {
 typedef struct skg_plan skg_plan;
 typedef struct skg_job skg_job;
 
-enum { SKG_SINGLE = 0, SKG_DOUBLE = 1 };
+enum { SKG_SINGLE = 0, SKG_DOUBLE = 1, SKG_HALF = 2 };
 enum { SKG_STRATEGY_AUTO = 0, SKG_STRATEGY_COPIES = 1, SKG_STRATEGY_TILES = 2, SKG_STRATEGY_ATOMICS = 3 };
 
 /* What a pixel holds. I0 is the same chain without parts. */
@@ -62,14 +62,15 @@ SKG_API void skg_spot_init(skg_spot *spot);
 
 typedef struct {
     int32_t size;
-    int32_t
-        precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent */
-    int32_t strategy; /* SKG_STRATEGY_...; every one gives the same bits */
-    int32_t quantity; /* SKG_ENERGY, ... */
-    int32_t tile;     /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
-    int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
-                         looked for */
-    int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
+    int32_t precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent;
+                             SKG_HALF: distances and images in 16 bits as Vidal and Villard 2016, to compare
+                          with: a point source or samples of one, closed meshes */
+    int32_t strategy;  /* SKG_STRATEGY_...; every one gives the same bits */
+    int32_t quantity;  /* SKG_ENERGY, ... */
+    int32_t tile;      /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
+    int32_t overlaps;  /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
+                          looked for */
+    int32_t profile;   /* 1: stages are timed (a little slower); 0: not */
     int32_t
         falloff; /* 1: intensities fall with the cube of the distance from the source (inverse square and
                     obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
