@@ -143,7 +143,8 @@ static skg_realv skg_photons_v(int nodes, __constant const skg_real *coefficient
  * that exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was
  * subtracted for children than their parent has. World: a plane gets `world` for each mm of path, which is |ray| times
  * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. Noise: variances of the nodes as weights; by photons
- * where fewer than `photons` of them are detected, as far as mean and variance tell: mean^2 / variance is never more. */
+ * where fewer than `photons` of them are detected, as far as mean and variance tell: mean^2 / variance is never more.
+ * Ranged: negative[1] counts the pixels that have a plane outside range[plane], lowest and highest in mm. */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
                             __constant const skg_real *weights, skg_real factor, skg_real limit,
@@ -160,6 +161,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #if SKG_NOISE
                             ,
                             __constant const skg_real *variances, skg_noise_args key, skg_real photons
+#endif
+#if SKG_RANGED
+                            ,
+                            __constant const skg_real *range
 #endif
 ) {
     const int column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0), row = (int)get_global_id(1);
@@ -186,6 +191,18 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
         SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++) if (p == world_plane) x[p][r] += surroundings[r];
 #endif
     }
+#if SKG_RANGED
+    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
+        skg_realv outside = (skg_realv)(range[0]) - x[0][r]; /* mm by which a plane is outside */
+        SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++) {
+            const skg_realv below = (skg_realv)(range[2 * p]) - x[p][r];
+            const skg_realv above = x[p][r] - (skg_realv)(range[2 * p + 1]);
+            outside = below > outside ? below : outside;
+            outside = above > outside ? above : outside;
+        }
+        skg_count(outside, 0, frame.columns - column - r * SKG_WIDE, negative + 1);
+    }
+#endif
     skg_exponents(coefficients, x, highest);
 #if SKG_SHOW == SKG_SHOW_EXPONENT
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {

@@ -144,9 +144,10 @@ skg_status skg_report_effects(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     int64_t nested = 0;
     for (int64_t i = 0; i < scene->count; i++) nested += scene->parts[i].inside >= 0;
-    if (plan->model.nodes > 1)
-        set(plan, SKG_EFFECT_ENERGIES, 1, "%" PRId32 " energies, %" PRId32 " planes of materials that differ",
-            plan->model.nodes, plan->model.planes);
+    if (plan->model.bins > 1)
+        set(plan, SKG_EFFECT_ENERGIES, 1,
+            "%" PRId32 " energies, %" PRId32 " planes for %" PRId32 " materials that differ",
+            plan->model.nodes, plan->model.planes, plan->model.materials);
     else
         set(plan, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
     tell_samples(plan);

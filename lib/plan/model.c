@@ -248,5 +248,6 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->variances);
     skg_free(&model->open);
     skg_free(&model->node_kev);
+    skg_free(&model->range);
     skg_free(&model->node_photons);
 }

@@ -27,6 +27,7 @@ typedef struct {
     double *node_kev;     /* [nodes] */
     int32_t bins;         /* of the spectrum that have photons */
     int32_t materials;    /* that differ: planes without compression */
+    double *range;        /* [planes][2] mm: what planes may hold for the bound to hold; NULL: no matter */
     double bound;         /* of the error that fewer nodes and planes make, stated; 0: every bin is used */
     int64_t verified;     /* points of the range of lengths on which it was found */
 } skg_model;

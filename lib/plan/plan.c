@@ -121,19 +121,21 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .falloff = plan->options.falloff && !is_ratio,
                                    .noise = plan->options.noise,
                                    .energies = plan->options.quantity == SKG_ENERGY};
-    return skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                  model->weights, model->variances, &plan->attenuation);
+    const skg_attenuation_tables tables = {model->coefficients, model->weights, model->variances,
+                                           model->range};
+    return skg_attenuation_create(plan->context, plan->options.precision, &image, &tables,
+                                  &plan->attenuation);
 }
 
 static skg_status make_lengths(skg_plan *plan) {
     const double one = 1;
+    const skg_attenuation_tables tables = {.coefficients = &one, .weights = &one};
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
-    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, NULL,
-                                   &plan->lengths));
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &tables, &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
-    SKG_TRY(
-        skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+    SKG_TRY(skg_buffer_reserve(plan->context, &plan->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE,
+                               "counters"));
     return skg_buffer_reserve(plan->context, &plan->bad, (1 + SKG_FIRST_BAD) * (int64_t)sizeof(cl_int),
                               CL_MEM_READ_WRITE, "bad pixels");
 }

@@ -163,6 +163,16 @@ static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
                     plan->scene->parts[part].label, of_mesh);
 }
 
+static skg_status tell_outside(skg_plan *plan, int32_t pixels) {
+    plan->report.outside_pixels = pixels;
+    if (pixels == 0) return SKG_OK;
+    return skg_fail(
+        SKG_RANGE,
+        "at %" PRId32 " pixels the lengths leave the range that the error bound of %.2g was verified "
+        "for; the image is valid, the bound is not stated there; plan for this view and these poses",
+        pixels, plan->model.bound);
+}
+
 skg_status skg_report_job(skg_job *job) {
     skg_plan *plan = job->plan;
     SKG_TRY(add_stages(job));
@@ -177,7 +187,7 @@ skg_status skg_report_job(skg_job *job) {
         const int32_t *bad = job->bad + k * (1 + SKG_FIRST_BAD);
         if (bad[0] > 0) tell_bad(plan, plan->open[k], bad);
     }
-    return SKG_OK;
+    return tell_outside(plan, job->negative[1]);
 }
 
 void skg_plan_report_init(skg_plan_report *report) {
@@ -190,8 +200,8 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
                         plan->bad.bytes + plan->gaps.bytes + skg_contest_memory_bytes(&plan->contest_memory) +
                         plan->attenuation.coefficients.bytes + plan->attenuation.weights.bytes +
-                        plan->attenuation.variances.bytes + plan->lengths.coefficients.bytes +
-                        plan->lengths.weights.bytes;
+                        plan->attenuation.variances.bytes + plan->attenuation.range.bytes +
+                        plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;
     if (plan->blur) ours.device_bytes += skg_blur_bytes(plan->blur);
     if (plan->detector) ours.device_bytes += skg_detector_bytes(plan->detector);
     for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);

@@ -189,11 +189,18 @@ static skg_status enqueue_frame(submission *s, int64_t index, const double **pos
 static skg_status finish(const submission *s, skg_job *job) {
     skg_plan *plan = s->plan;
     cl_command_queue queue = plan->context->device->queue;
-    SKG_TRY(skg_job_read(job, plan->negative.memory, sizeof *job->negative, job->negative));
+    SKG_TRY(skg_job_read(job, plan->negative.memory, 2 * sizeof *job->negative, job->negative));
     SKG_TRY(skg_job_read(job, plan->geometry.bad.memory, sizeof *job->broken, job->broken));
     SKG_TRY(skg_raster_read_listed(plan->main, job->listed));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     SKG_CL_TRY(clFlush(queue));
+    return SKG_OK;
+}
+
+static skg_status clear_counters(skg_plan *plan) {
+    const cl_int none = 0;
+    SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
+                                   2 * sizeof none, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -204,12 +211,13 @@ static skg_status submit(submission *s, skg_job **job) {
     skg_status status = SKG_OK;
     SKG_TRY(skg_job_create(plan, &made));
     SKG_TRY_CLEANUP(skg_alloc(plan->scene->count, sizeof *poses, "poses", &poses));
-    SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->negative, "counters", &made->negative));
+    SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->negative, "counters", &made->negative));
     SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->listed, "counters", &made->listed));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->broken, "counters", &made->broken));
     if (plan->open_count)
         SKG_TRY_CLEANUP(skg_job_stage(made, plan->open_count * (1 + SKG_FIRST_BAD), sizeof *made->bad,
                                       "bad pixels", &made->bad));
+    SKG_TRY_CLEANUP(clear_counters(plan));
     for (int64_t i = 0; i < s->count; i++) SKG_TRY_CLEANUP(enqueue_frame(s, i, poses, made));
     SKG_TRY_CLEANUP(finish(s, made));
     *job = made;

@@ -257,8 +257,9 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
                                           .channels = 1,
                                           .shown = SKG_SHOWN_EXPONENT,
                                           .world_plane = -1};
-        status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, coefficients,
-                                        &weight, NULL, &attenuation);
+        const skg_attenuation_tables tables = {.coefficients = coefficients, .weights = &weight};
+        status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
+                                        &attenuation);
         if (status == SKG_OK)
             status = skg_attenuate(attenuator, raster, camera, scale, &attenuation, 1, -HUGE_VAL,
                                    negative.memory, NULL, &place, NULL);

@@ -174,7 +174,9 @@ SKG_API void skg_output_init(skg_output *output);
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
-/* Waits until the job's images are in their place, releases the job and sets *job to NULL. */
+/* Waits until the job's images are in their place, releases the job and sets *job to NULL. SKG_RANGE: the
+ * images are there, but some pixels meet lengths outside the range that the plan's error bound was verified
+ * for. */
 SKG_API skg_status skg_job_wait(skg_job **job);
 
 /* Submit and wait of one frame as the scene stands. */
@@ -223,6 +225,7 @@ typedef struct {
                      worst that was found; 0 where every bin is used */
     int64_t verified;        /* number of points (lengths of all materials) on which it was looked for */
     int64_t repaired_pixels; /* of the last frame: of the bad ones; the others are without their part */
+    int64_t outside_pixels;  /* of the last job: lengths outside the range that the bound was verified for */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
