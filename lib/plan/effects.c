@@ -70,6 +70,8 @@ static void tell_compression(skg_plan *plan) {
             model->nodes, model->bins, model->planes, model->materials, model->bound, model->verified);
     else if (model->bins == 1)
         set(plan, effect, 0, "the beam has one energy");
+    else if (plan->options.precision == SKG_HALF)
+        set(plan, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
     else if (plan->options.tolerance > 0)
         set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
             plan->options.tolerance);
