@@ -133,6 +133,8 @@ static void tell_compression(skg_plan *plan) {
         set(plan, effect, 0, "the beam has one energy");
     else if (plan->options.noise)
         set(plan, effect, 0, "noise counts the photons of every energy");
+    else if (plan->options.precision == SKG_HALF)
+        set(plan, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
     else if (plan->options.tolerance > 0)
         set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
             plan->options.tolerance);
