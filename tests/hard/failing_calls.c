@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_CALLS = 1 << 16, MOST_BLOCKS = 1 << 16, DEPTH = 10 };
+enum { MOST_CALLS = 1 << 16, MOST_BLOCKS = 1 << 16, DEPTH = 8 };
 
 static atomic_flag locked = ATOMIC_FLAG_INIT;
 static int counting = -1; /* the kind; -1: not counting */
