@@ -120,7 +120,7 @@ static void line(hard_outcome *o) {
 }
 
 /* A million tetrahedra, a part each, in rows and columns of a slab; every part is as any other. */
-__attribute__((unused)) static void million_parts(hard_outcome *o) {
+static void million_parts(hard_outcome *o) {
     enum { ROW = 100, PARTS = ROW * ROW * ROW };
     o->name = "a million parts of four triangles";
     o->danger = "work for every pair of parts; numbers beyond 32 bits; sums that wrap";
@@ -165,4 +165,4 @@ __attribute__((unused)) static void million_parts(hard_outcome *o) {
     solid_free(&one);
 }
 
-const hard_function hard_meshes[] = {hole, flipped, t_junction, zero_volume, line, NULL};
+const hard_function hard_meshes[] = {hole, flipped, t_junction, zero_volume, line, million_parts, NULL};

@@ -170,6 +170,7 @@ void hard_solid_make(int which, hard_solid *s) {
         s->name = "non-manifold edges";
         s->danger = "four triangles at an edge: which ones are a pair?";
         s->body = edge_sharers();
+        s->sliver = 1; /* its sides are nearly along the rays, as those of slivers */
         break;
     case 14:
         s->name = "a hundred plates that touch";
@@ -181,7 +182,8 @@ void hard_solid_make(int which, hard_solid *s) {
         s->name = "grazing: a disc of 1000 to 1, nearly edge-on";
         s->danger = "every ray grazes: depth changes by the whole disc within a pixel";
         s->body = solid_sphere(60, 80, 40);
-        solid_move(&s->body, (const double[12]){0.001, 0, 0.002, 0, 0, 1, 0, 0, 0.002, 0, 1, 0});
+        solid_move(&s->body,
+                   (const double[12]){0.001, 0, 0.002, 0.5 * 1000 / 1200, 0, 1, 0, 0, 0.002, 0, 1, 0});
         s->view = run_view(128, 1);
         s->sliver = 1;
         break;
