@@ -16,7 +16,8 @@ int64_t failing_stop(void);
 /* Name of the call that failed since failing_start; NULL: none did. */
 const char *failing_hit(void);
 
-/* Of the calls of the last counted run: 1 where call `at` is the first one from its place in the program. */
+/* Of the calls of the last run in which none was to fail: 1 where nobody has asked yet about a call from the
+ * place in the program that call `at` came from. */
 int failing_is_new(int64_t at);
 
 /* Blocks and OpenCL objects that the library holds. */
