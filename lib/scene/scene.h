@@ -3,6 +3,7 @@
 #define SKG_SCENE_PRIVATE_H
 
 #include "core/core.h"
+#include "scene/part_index.h"
 
 #include <skiagraph/scene.h>
 
@@ -20,6 +21,8 @@ struct skg_scene {
     skg_context *context; /* retained; NULL: warnings are dropped */
     skg_scene_part_data *parts;
     int64_t count, capacity;
+    skg_part_index labels; /* by label */
+    skg_part_index places; /* by mesh and the pose it came with; of parts alike, the first */
     int64_t structure; /* grows with every part added or put inside another: a plan of an older one is stale
                         */
     int64_t materials; /* grows with every material that changes */
