@@ -86,6 +86,10 @@ skg_tissue skg_tissue_of(const char *label);
 int skg_label_begins(const char *label, const char *word);
 int skg_label_stays(const char *label); /* a bone that does not move */
 
+/* measure.c */
+double skg_body_lung_ratio(const skg_body *body);   /* V0/V of the lungs; 1 where there is none */
+double skg_body_needle_depth(const skg_body *body); /* of the mesh below the skin, mm; NaN: no needle */
+
 /* near.c */
 skg_status skg_near_prepare(skg_body_organ *organ);
 /* The nearest point of an organ's triangles within reach of a point; the distance, or

@@ -36,7 +36,8 @@ static void write_sample(const skg_thorax *thorax, int64_t i, FILE *f) {
 }
 
 /* The source in front of the patient, the detector behind the back, rows from head to foot: the patient's
- * right is on the viewer's left. */
+ * right is on the viewer's left. The events: breath held at end-expiration (2.4 s: phase 0.6 of "quiet")
+ * while the needle goes 110 mm deep, shallow breathing, ducts that fill while it is drawn back. */
 static void write_scene(const skg_thorax *thorax, FILE *f) {
     fprintf(
         f,
@@ -57,7 +58,18 @@ static void write_scene(const skg_thorax *thorax, FILE *f) {
         "    },\n"
         "    \"Samples\": [\n");
     for (int64_t i = 0; i < thorax->parts; i++) write_sample(thorax, i, f);
-    fprintf(f, "    ]\n}\n");
+    fprintf(f, "    ],\n"
+               "    \"Breathing\": {\n"
+               "        \"Pattern\": \"quiet\",\n"
+               "        \"Reference\": 0,\n"
+               "        \"Events\": [\n"
+               "            {\"Hold\": [2.4, 6.4]},\n"
+               "            {\"Weight\": [[2.4, 1], [6.4, 0.3]]},\n"
+               "            {\"Needle\": [[2.6, -20], [6.2, 110], [8, 110], [11.5, -20]]},\n"
+               "            {\"Contrast\": \"bile ducts\", \"Share\": [[6.4, 0], [9, 1]]},\n"
+               "            {\"Contrast\": \"common bile duct\", \"Share\": [[7.5, 0], [10.5, 1]]}\n"
+               "        ]\n"
+               "    }\n}\n");
 }
 
 skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {

@@ -50,7 +50,7 @@ static const struct {
     /* of the schema, later */
     {"\"Samples\"", "\"SceneGraph\": {}, \"Samples\"", SKG_ERR_UNSUPPORTED,
      "SceneGraph: a scene graph file is not simulated yet"},
-    {"\"Samples\"", "\"Breathing\": {\"Frequency\": 0.25}, \"Samples\"", SKG_ERR_UNSUPPORTED, "Breathing: "},
+    {"\"Samples\"", "\"Breathing\": {\"Frequency\": 0.25}, \"Samples\"", SKG_ERR_FORMAT, "Frequency"},
     {"\"Samples\"", "\"Noise\": true, \"Samples\"", SKG_ERR_UNSUPPORTED, "Noise: noise is not simulated yet"},
     {"\"Samples\"", "\"Precision\": \"half\", \"Samples\"", SKG_ERR_UNSUPPORTED, "half"},
     {"\"PointSource\"", "[\"FocalSpot\", 1, \"mm\"]", SKG_ERR_FORMAT, "write it like"},

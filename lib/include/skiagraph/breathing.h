@@ -117,9 +117,9 @@ SKG_API void skg_thorax_part_init(skg_thorax_part *part);
 SKG_API skg_status skg_thorax_size(const skg_thorax *thorax, int64_t *parts);
 SKG_API skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number, skg_thorax_part *part);
 
-/* Writes one PLY file per part and a scene file, thorax.json, into a folder that exists: a tube of 80 kV 1 m in
- * front of a detector behind the patient's back, head up, the patient's right on the viewer's left, and the
- * breathing and events of a percutaneous cholangiography (docs/scene-files.md). SKG_ERR_OUTPUT. */
+/* Writes one PLY file per part and a scene file, thorax.json, into a folder that exists: a tube of 80 kV 1 m
+ * in front of a detector behind the patient's back, head up, the patient's right on the viewer's left, and
+ * the breathing and events of a percutaneous cholangiography (docs/scene-files.md). SKG_ERR_OUTPUT. */
 SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder);
 
 /* A body: organs that move with the breath. Each has a rule, found by its label (without regard to case):
