@@ -112,8 +112,8 @@ int cli_write_frame(cli_fluoroscopy *f, int which, const char *path) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* One range for all frames: all but a hundredth of the darkest and a thousandth of the densest pixels of some
- * frames over the whole time. */
+/* One range for all frames: all but a fiftieth of the darkest and a thousandth of the densest pixels behind
+ * something, of some frames over the whole time. */
 static int find_range(cli_fluoroscopy *f, const sequence *s) {
     int64_t *bin = calloc(RANGE_BINS, sizeof *bin), total = 0, sum = 0;
     const int64_t looks = s->frames < RANGE_FRAMES ? s->frames : RANGE_FRAMES;
@@ -123,13 +123,14 @@ static int find_range(cli_fluoroscopy *f, const sequence *s) {
         if (exit_status == CLI_DONE) exit_status = make_image(f, 0);
         for (int64_t i = 0; i < f->pixels && exit_status == CLI_DONE; i++) {
             const double at = (double)f->image[0][i] / RANGE_HIGHEST * RANGE_BINS;
-            bin[at >= RANGE_BINS ? RANGE_BINS - 1 : at > 0 ? (int)at : 0]++;
+            if (at < 1) continue; /* beside everything */
+            bin[at < RANGE_BINS ? (int)at : RANGE_BINS - 1]++;
             total++;
         }
     }
     f->low = 0, f->high = RANGE_HIGHEST;
     for (int b = 0; b < RANGE_BINS && exit_status == CLI_DONE; b++) {
-        if (sum <= total / 100) f->low = b * RANGE_HIGHEST / RANGE_BINS;
+        if (sum <= total / 50) f->low = b * RANGE_HIGHEST / RANGE_BINS;
         if (sum <= total - total / 1000) f->high = (b + 1) * RANGE_HIGHEST / RANGE_BINS;
         sum += bin[b];
     }
