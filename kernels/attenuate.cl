@@ -4,6 +4,9 @@
 
 /* Compilers that do not know the pragma skip it; bits do not depend on it. */
 #define SKG_UNROLL _Pragma("unroll")
+#ifndef SKG_HALF_UNIT
+#define SKG_HALF_UNIT 1.0f
+#endif
 #define SKG_LN2 0.693147180559945309417
 
 #if SKG_OUTPUT_DOUBLE
@@ -22,11 +25,13 @@ typedef float skg_out;
 #if SKG_DOUBLE
 #define SKG_SCALAR double
 #define SKG_AS_MASK_V SKG_CAT(as_long, SKG_WIDE)
+#define SKG_TO_MASK_V SKG_CAT(convert_long, SKG_WIDE)
 SKG_DEFINE_EXP2_DOUBLE(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
 SKG_DEFINE_LOG_DOUBLE(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
 #else
 #define SKG_SCALAR float
 #define SKG_AS_MASK_V SKG_CAT(as_int, SKG_WIDE)
+#define SKG_TO_MASK_V SKG_CAT(convert_int, SKG_WIDE)
 SKG_DEFINE_EXP2_FLOAT(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
 SKG_DEFINE_LOG_FLOAT(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
 #endif
@@ -42,6 +47,16 @@ static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row)
 }
 
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
+#if SKG_HALF
+    /* The image, too, is kept in binary16; energies in MeV. */
+    float lanes[SKG_WIDE];
+    SKG_STORE_V(value, 0, lanes);
+    for (int k = 0; k < min(pixels, SKG_WIDE); k++) {
+        const float rounded = skg_to_half(lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT;
+        place[k] = (skg_out)rounded + (SKG_ADD ? place[k] : (skg_out)(0));
+    }
+    return;
+#endif
     if (pixels >= SKG_WIDE) {
 #if SKG_ADD
         SKG_STORE_V(SKG_LOAD_V(0, place) + SKG_TO_OUT_V(value), 0, place);
@@ -97,11 +112,38 @@ static skg_realv skg_highest_open(int nodes, __constant const skg_real *coeffici
 }
 #endif
 
+#if SKG_NOISE
+/* A draw for the pixels of run r that are `few`; each node by itself. */
+static skg_realv skg_photons_v(int nodes, __constant const skg_real *coefficients, __constant const skg_real *weights,
+                               __constant const skg_real *variances, skg_realv x[SKG_PLANES][SKG_RUNS], int r,
+                               skg_realv all, skg_intv few, const skg_noise_args *key, int pixel, int channel) {
+    skg_realv value = (skg_realv)(0);
+    skg_uintv draw[4];
+    for (int n = 0; n < nodes; n++) {
+        const skg_real weight = weights[n * SKG_CHANNELS], variance = variances[n * SKG_CHANNELS];
+        if ((n & 3) == 0)
+            skg_draw_v(key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2), draw);
+        if (!(weight > 0)) continue;
+        skg_realv power = coefficients[n * SKG_PLANES] * x[0][r];
+        SKG_UNROLL for (int p = 1; p < SKG_PLANES; p++)
+            power = fma((skg_realv)(coefficients[n * SKG_PLANES + p]), x[p][r], power);
+        const skg_floatv expected = SKG_TO_FLOAT_V(weight * weight / variance * all * skg_exp2_v(power));
+        const skg_intv many = expected > (skg_floatv)(SKG_FEW);
+        const skg_floatv counted =
+            skg_poisson_v(few & ~many ? expected : (skg_floatv)(0.0f), draw[n & 3]);
+        const skg_floatv spread = fma(skg_root_v(expected), skg_normal_v(draw[n & 3]), expected);
+        value = fma((skg_realv)(variance / weight), SKG_TO_REAL_V(many ? spread : counted), value);
+    }
+    return value;
+}
+#endif
+
 /* One work-item SKG_RUNS runs of SKG_WIDE pixels of a row. coefficients: of -exponent * log2(e), or of the exponent
  * where that is shown. Strides and offset of the output in elements. factor: of intensities. negative: counts the pixels
  * that exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was
  * subtracted for children than their parent has. World: a plane gets `world` for each mm of path, which is |ray| times
- * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. */
+ * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. Noise: variances of the nodes as weights; by photons
+ * where fewer than `photons` of them are detected, as far as mean and variance tell: mean^2 / variance is never more. */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
                             __constant const skg_real *weights, skg_real factor, skg_real limit,
@@ -115,6 +157,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
                             ,
                             skg_real nearest
 #endif
+#if SKG_NOISE
+                            ,
+                            __constant const skg_real *variances, skg_noise_args key, skg_real photons
+#endif
 ) {
     const int column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0), row = (int)get_global_id(1);
     if (column >= frame.columns || row >= frame.rows) return;
@@ -122,9 +168,15 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #if SKG_WORLD
     skg_realv surroundings[SKG_RUNS];
 #endif
+#if SKG_NOISE
+    skg_realv spread[SKG_CHANNELS][SKG_RUNS];
+    SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) spread[c][r] = (skg_realv)(0);
+#endif
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
         const int at = min(column + r * SKG_WIDE, frame.columns - 1); /* runs past the end stay in the row */
-        const skg_realv length = skg_ray_lengths_v(&ray, at, row), scaled = length * ray.unit;
+        const skg_realv length = skg_ray_lengths_v(&ray, at, row);
+        const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * ray.unit;
         SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++)
             x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * scaled;
 #if SKG_WORLD
@@ -160,6 +212,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #endif
             SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
                 shown[c][r] = fma((skg_realv)(weights[n * SKG_CHANNELS + c]), passed, shown[c][r]);
+#if SKG_NOISE
+            SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+                spread[c][r] = fma((skg_realv)(variances[n * SKG_CHANNELS + c]), passed, spread[c][r]);
+#endif
         }
     }
     SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
@@ -186,6 +242,20 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
             shown[c][r] = shown[c][r] / open * skg_exp2_v(-top);
 #else
             shown[c][r] *= all;
+#endif
+#if SKG_NOISE
+            const skg_realv mean = shown[c][r], variance = spread[c][r] * all;
+            const int at = column + r * SKG_WIDE, pixel = row * frame.columns + at;
+            const skg_intv few = SKG_TO_INT_V(mean * mean < photons * variance);
+            skg_uintv draw[4];
+            skg_draw_v(&key, pixel, SKG_DRAW_WORD(SKG_DRAW_QUANTUM, c, 0), draw);
+            const skg_floatv deviate = skg_root_v(SKG_TO_FLOAT_V(variance)) * skg_normal_v(draw[0]);
+            shown[c][r] += SKG_TO_REAL_V(deviate);
+            if (skg_any(few)) {
+                const skg_realv counted = skg_photons_v(nodes, coefficients, weights + c, variances + c, x, r, all, few,
+                                                        &key, pixel, c);
+                shown[c][r] = SKG_TO_MASK_V(few) ? counted : shown[c][r];
+            }
 #endif
         }
 #if SKG_WORLD

@@ -71,6 +71,7 @@ struct skg_body {
     int64_t organs, room;
     skg_body_organ *organ;
     int tried, linked;  /* skg_body_link was called; succeeded */
+    int large;          /* deformable organs have so many vertices that threads pay */
     double tendon[3];   /* mm, now */
     double withdrawn;   /* the needle, mm */
     int loop;           /* steps of the loop that are kept: 0 or LOOP_STEPS */

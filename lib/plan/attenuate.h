@@ -15,15 +15,16 @@ typedef struct {
     int32_t world_plane; /* that the world's path adds to; -1: vacuum */
     int32_t ratio;       /* 1: over what the world alone lets pass */
     int32_t falloff;     /* 1: intensities fall with the distance */
-    int32_t reserved;
+    int32_t energies;    /* 1: shows keV, which half precision keeps in MeV */
+    int32_t noise;       /* 1: quantum noise, of intensities that are no ratio */
     double world_weight; /* of a mm of the world's path in its plane */
-    skg_buffer coefficients, weights;
+    skg_buffer coefficients, weights, variances;
 } skg_attenuation;
 
-/* shape: planes, nodes, channels and what is shown. coefficients: [nodes][planes]; weights:
- * [nodes][channels]; copied. */
+/* shape: planes, nodes, channels and what is shown. coefficients: [nodes][planes]; weights,
+ * variances (with noise; else NULL): [nodes][channels]; copied. */
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
-                                  const double *coefficients, const double *weights,
+                                  const double *coefficients, const double *weights, const double *variances,
                                   skg_attenuation *attenuation);
 void skg_attenuation_release(skg_attenuation *attenuation);
 
@@ -39,11 +40,16 @@ typedef struct {
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
-/* Enqueues one image. scale: of the sums; factor: of intensities; least: exponents below it are counted into
- * negative (one int). */
+/* Below so many detected photons in a pixel, quantum noise is drawn photon by photon. */
+#define SKG_FEW_PHOTONS 50.0
+
+/* Enqueues one image. scale: of the sums; factor: of intensities; with noise,
+ * of photons: the share of a sample of the source, whose draws add up to one of all photons;
+ * least: exponents below it are counted into negative (one int). noise: its key, where there is noise. */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
-                         cl_mem negative, const skg_image_place *place, skg_stage_log *log);
+                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
+                         skg_stage_log *log);
 
 /* Enqueues -ln of a finished mean, in place. */
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,

@@ -76,12 +76,11 @@ static skg_status check_output(submission *s, const skg_output *output) {
     return check_strides(s);
 }
 
-/* Same structure, and every mesh as many triangles, as when the plan was made. */
-static skg_status check_stale(const skg_plan *plan) {
-    if (plan->scene->structure == plan->structure) return SKG_OK;
-    skg_fail(SKG_STALE,
-             "parts of the scene were added or put elsewhere since the plan was made; make a new plan");
-    return SKG_STALE;
+/* Same parts in the same places as when the plan was made; materials may have changed. */
+static skg_status check_stale(skg_plan *plan) {
+    if (plan->scene->structure == plan->structure) return skg_plan_renew_model(plan);
+    return skg_fail(
+        SKG_STALE, "parts of the scene were added or put elsewhere since the plan was made; make a new plan");
 }
 
 static skg_status check_submission(submission *s, const skg_output *output) {
@@ -92,16 +91,19 @@ static skg_status check_submission(submission *s, const skg_output *output) {
     return check_stale(s->plan);
 }
 
-/* A frame, its view into `view`, and its poses into poses ([parts], NULL: the scene's). */
+/* A frame, its view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise. */
 static skg_status read_frame(const submission *s, int64_t index, skg_frame *frame, skg_view *view,
-                             const double **poses) {
+                             const double **poses, skg_noise_args *noise) {
     const skg_plan *plan = s->plan;
     skg_frame_init(frame);
     *view = plan->view;
+    *noise = skg_noise_key(plan->options.noise_seed, index);
     memset(poses, 0, (size_t)plan->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
     SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", frame,
                             sizeof *frame));
+    *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame->noise_seed),
+                           frame->index);
     if (frame->view) {
         SKG_TRY(skg_view_check(frame->view));
         skg_view_init(view);
@@ -178,7 +180,7 @@ static skg_status enqueue_frame(submission *s, int64_t index, const double **pos
     skg_frame frame;
     skg_frame_work work = {
         .view = &view, .poses = poses, .frame = &frame, .lengths_of = s->lengths_of, .kind = s->kind};
-    SKG_TRY(read_frame(s, index, &frame, &view, poses));
+    SKG_TRY(read_frame(s, index, &frame, &view, poses, &work.noise));
     SKG_TRY(place_image(s, index, &work.place));
     SKG_TRY(skg_frame_enqueue(s->plan, job, &work));
     return s->buffer ? SKG_OK : read_back(s, index, job);
