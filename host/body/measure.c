@@ -51,7 +51,7 @@ double skg_body_needle_depth(const skg_body *body) {
         skg_add_scaled(o->pivot, -1, o->tip, way);
         return skg_length(way);
     }
-    return NAN;
+    return (double)NAN;
 }
 
 static void normal_of(const skg_body_organ *o, int64_t t, int now, double n[3]) {

@@ -49,7 +49,7 @@ static int read_positive(const cli_arguments *arguments, const cli_flag *flag, d
 static int read_flags(const cli_arguments *arguments, cli_fluoroscopy *f, sequence *s) {
     const char *phase = cli_value(arguments, &flag_phase);
     char *end = NULL;
-    *s = (sequence){.fps = 30, .phase = NAN};
+    *s = (sequence){.fps = 30, .phase = (double)NAN};
     s->place = cli_value(arguments, &flag_place);
     s->meshes = cli_value(arguments, &flag_meshes);
     if (!s->place) return cli_error(CLI_USAGE, "breathe: nowhere to write to; add -o DIR");

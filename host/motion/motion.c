@@ -87,7 +87,7 @@ static skg_status check_parts(const skg_motion *motion) {
 
 static skg_status find_lung(skg_motion *motion) {
     const skg_scene *scene = motion->setup->scene;
-    motion->lung_hu = NAN;
+    motion->lung_hu = (double)NAN;
     for (int64_t p = 0; p < scene->count && isnan(motion->lung_hu); p++)
         if (skg_label_begins(organ_of(motion, p)->label, "lung"))
             SKG_TRY(skg_material_to_hounsfield(scene->parts[p].material, HU_KEV, &motion->lung_hu));
@@ -194,7 +194,7 @@ skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
 skg_status skg_motion_at_phase(skg_motion *motion, double phase) {
     if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_phase: no motion");
     SKG_TRY(skg_breath_at_phase(&motion->setup->breathing.breath, phase, &motion->state.breath));
-    motion->state.time_s = NAN;
+    motion->state.time_s = (double)NAN;
     motion->state.needle_mm = motion->needle_mm;
     for (int64_t k = 0; k < motion->matters; k++) motion->share[k] = 1;
     return pose(motion);
