@@ -62,6 +62,27 @@ static void read_line(const char *name, int line, int columns, double *values) {
     }
 }
 
+/* Head up, the patient's right on the viewer's left: the liver is there, in the lower half. */
+START_TEST(the_liver_is_on_the_left) {
+    enum { SIDE = 40 };
+    static char bytes[MOST_BYTES];
+    static float lengths[SIDE * SIDE];
+    double sum = 0, column = 0, row = 0;
+    ck_run(0, "lbuffer thorax.json %s --part liver -o liver.mha --quiet", SMALL);
+    const size_t count = read_file("liver.mha", bytes);
+    ck_assert_uint_gt(count, sizeof lengths);
+    memcpy(lengths, bytes + count - sizeof lengths, sizeof lengths);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        sum += (double)lengths[i];
+        column += i % SIDE * (double)lengths[i];
+        row += i / SIDE * (double)lengths[i];
+    }
+    ck_assert_double_gt(sum, 0);
+    ck_assert_double_lt(column / sum, 0.45 * SIDE);
+    ck_assert_double_gt(row / sum, 0.5 * SIDE);
+}
+END_TEST
+
 /* Phase 0.25 is the second of four frames of a breath, and the last of one frame a second from phase 0.25 on.
  */
 START_TEST(a_phase_alone_is_the_phase_in_sequence) {
@@ -165,6 +186,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_thorax, tear_down_thorax);
+    tcase_add_test(tests, the_liver_is_on_the_left);
     tcase_add_test(tests, a_phase_alone_is_the_phase_in_sequence);
     tcase_add_test(tests, motion_is_told);
     tcase_add_test(tests, events_happen);
