@@ -7,6 +7,7 @@
 
 static const cli_verb *const verbs[] = {
     &cli_image, &cli_lbuffer, &cli_plan, &cli_mesh, &cli_material, &cli_beam, &cli_devices,
+    &cli_thorax, &cli_breathe,
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
 

@@ -32,6 +32,7 @@ static skg_status list_lengths(const skg_plan *plan, const skg_frame_work *work,
 
 static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
     if (work->lengths_of >= 0) return list_lengths(plan, work, frame);
+    if (work->frame && work->frame->matters != 0) return skg_frame_list_matter(plan, work->frame, frame);
     frame->all_writes = plan->model.writes;
     frame->firsts = plan->model.first_write;
     frame->planes = plan->model.planes;

@@ -9,6 +9,7 @@
 typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
+    const skg_frame *frame;     /* the caller's, for its matter; NULL: as planned */
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t kind;               /* of lengths: SKG_NET or SKG_SURFACE */
     int32_t reserved;
@@ -36,6 +37,9 @@ skg_status skg_frame_prepare(skg_plan *plan);
 
 /* Enqueues the frame; when it is done the result is in its place. */
 skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work);
+
+/* Fills what parts add where some are of other matter in this frame (matter.c). */
+skg_status skg_frame_list_matter(const skg_plan *plan, const skg_frame *given, skg_frame_parts *frame);
 
 /* Enqueues the open parts of a frame after the raster of the closed ones, whose sums they join (open.c). */
 skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_parts *frame, skg_raster *shared);

@@ -91,37 +91,36 @@ static skg_status check_submission(submission *s, const skg_output *output) {
     return check_stale(s->plan);
 }
 
-/* A frame's view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise. */
-static skg_status read_frame(const submission *s, int64_t index, skg_view *view, const double **poses,
-                             skg_noise_args *noise) {
+/* A frame, its view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise. */
+static skg_status read_frame(const submission *s, int64_t index, skg_frame *frame, skg_view *view,
+                             const double **poses, skg_noise_args *noise) {
     const skg_plan *plan = s->plan;
-    skg_frame frame;
-    skg_frame_init(&frame);
+    skg_frame_init(frame);
     *view = plan->view;
     *noise = skg_noise_key(plan->options.noise_seed, index);
     memset(poses, 0, (size_t)plan->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
-    SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", &frame,
-                            sizeof frame));
-    *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame.noise_seed),
-                           frame.index);
-    if (frame.view) {
-        SKG_TRY(skg_view_check(frame.view));
+    SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", frame,
+                            sizeof *frame));
+    *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame->noise_seed),
+                           frame->index);
+    if (frame->view) {
+        SKG_TRY(skg_view_check(frame->view));
         skg_view_init(view);
-        SKG_TRY(skg_struct_read(frame.view, "skg_view", view, sizeof *view));
+        SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
         SKG_TRY(skg_plan_check_size(plan, view));
     }
-    if (frame.posed < 0 || (frame.posed > 0 && (!frame.posed_ids || !frame.posed_poses)))
+    if (frame->posed < 0 || (frame->posed > 0 && (!frame->posed_ids || !frame->posed_poses)))
         return skg_fail(SKG_ERR_ARGUMENT,
                         "frame %" PRId64 " has %" PRId64 " posed parts, but no ids or poses", index,
-                        frame.posed);
-    for (int64_t k = 0; k < frame.posed; k++) {
-        const int64_t part = frame.posed_ids[k];
+                        frame->posed);
+    for (int64_t k = 0; k < frame->posed; k++) {
+        const int64_t part = frame->posed_ids[k];
         if (part < 0 || part >= plan->scene->count)
             return skg_fail(SKG_ERR_ARGUMENT, "frame %" PRId64 " poses part %" PRId64 " of %" PRId64, index,
                             part, plan->scene->count);
-        SKG_TRY(skg_scene_check_pose(plan->scene->parts[part].label, frame.posed_poses + 16 * k));
-        poses[part] = frame.posed_poses + 16 * k;
+        SKG_TRY(skg_scene_check_pose(plan->scene->parts[part].label, frame->posed_poses + 16 * k));
+        poses[part] = frame->posed_poses + 16 * k;
     }
     return SKG_OK;
 }
@@ -178,8 +177,10 @@ static skg_status read_back(const submission *s, int64_t index, skg_job *job) {
 
 static skg_status enqueue_frame(submission *s, int64_t index, const double **poses, skg_job *job) {
     skg_view view;
-    skg_frame_work work = {.view = &view, .poses = poses, .lengths_of = s->lengths_of, .kind = s->kind};
-    SKG_TRY(read_frame(s, index, &view, poses, &work.noise));
+    skg_frame frame;
+    skg_frame_work work = {
+        .view = &view, .poses = poses, .frame = &frame, .lengths_of = s->lengths_of, .kind = s->kind};
+    SKG_TRY(read_frame(s, index, &frame, &view, poses, &work.noise));
     SKG_TRY(place_image(s, index, &work.place));
     SKG_TRY(skg_frame_enqueue(s->plan, job, &work));
     return s->buffer ? SKG_OK : read_back(s, index, job);

@@ -14,7 +14,7 @@ static const skg_json_key top_keys[] = {
     {"Precision", NULL, SKG_KEY_READ},
     {"Tolerance", NULL, SKG_KEY_READ},
     {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
-    {"Breathing", "breathing", SKG_KEY_NOT_YET},
+    {"Breathing", NULL, SKG_KEY_READ},
     {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
     {"World", NULL, SKG_KEY_READ},
@@ -106,7 +106,9 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(skg_setup_read_noise(reader, &noise));
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
-    return skg_setup_read_samples(reader, &samples);
+    SKG_TRY(skg_setup_read_samples(reader, &samples));
+    skg_json_node breathing = skg_json_member(&top, "Breathing");
+    return skg_setup_read_breathing(reader, &breathing);
 }
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
@@ -141,6 +143,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_material_release(&(*setup)->world);
     skg_free(&(*setup)->blur_samples);
     skg_free(&(*setup)->scan.folder);
+    skg_breathing_section_free(&(*setup)->breathing);
     skg_free(setup);
 }
 

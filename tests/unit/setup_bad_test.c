@@ -50,7 +50,7 @@ static const struct {
     /* of the schema, later */
     {"\"Samples\"", "\"SceneGraph\": {}, \"Samples\"", SKG_ERR_UNSUPPORTED,
      "SceneGraph: a scene graph file is not simulated yet"},
-    {"\"Samples\"", "\"Breathing\": {\"Frequency\": 0.25}, \"Samples\"", SKG_ERR_UNSUPPORTED, "Breathing: "},
+    {"\"Samples\"", "\"Breathing\": {\"Frequency\": 0.25}, \"Samples\"", SKG_ERR_FORMAT, "Frequency"},
     {"\"Samples\"", "\"Noise\": {\"Swank\": 2}, \"Samples\"", SKG_ERR_FORMAT, "Noise.Swank: is 2"},
     {"\"Samples\"", "\"Noise\": {\"Step\": [-1, \"keV\"]}, \"Samples\"", SKG_ERR_FORMAT, "Step[0]: is -1"},
     {"\"Samples\"", "\"Noise\": {\"Electronics\": 1}, \"Samples\"", SKG_ERR_FORMAT, "Electronic"},

@@ -137,7 +137,7 @@ SKG_API void skg_plan_release(skg_plan **plan);
 /* From now on frames without a view of their own use this one. Same rows and columns, else SKG_STALE. */
 SKG_API skg_status skg_plan_move(skg_plan *plan, const skg_view *view);
 
-/* One frame. Prepare with skg_frame_init; all zero means: the plan's view, the scene's poses. */
+/* One frame. Prepare with skg_frame_init; all zero means: the plan's view, the scene's poses and matter. */
 typedef struct {
     int32_t size;
     int32_t reserved;          /* 0 */
@@ -148,6 +148,11 @@ typedef struct {
     int64_t noise_seed;        /* with index: the key of the noise, where there is noise: frames of another
                                   key are independent, those of the same have the same noise */
     int64_t index;
+    int64_t matters;              /* how many parts are of other matter than their material in this frame */
+    const int64_t *matter_ids;    /* [matters] numbers of parts */
+    const double *matter_density; /* [matters] of the part over its material's, 0 to 1000; NULL: 1 */
+    const double *matter_share;   /* [matters] of the part that is there, 0 to 1; the rest is of what it lies
+                                     in.   NULL: 1. Below 1 for parts only that no other part lies in */
 } skg_frame;
 
 SKG_API void skg_frame_init(skg_frame *frame);
