@@ -91,7 +91,8 @@ static skg_status check_submission(submission *s, const skg_output *output) {
     return check_stale(s->plan);
 }
 
-/* A frame, its view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise. */
+/* A frame, its view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise.
+ */
 static skg_status read_frame(const submission *s, int64_t index, skg_frame *frame, skg_view *view,
                              const double **poses, skg_noise_args *noise) {
     const skg_plan *plan = s->plan;

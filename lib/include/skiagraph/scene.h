@@ -57,8 +57,8 @@ SKG_API skg_status skg_scene_find(const skg_scene *scene, const char *label, int
 /* A new pose; plans use it from the next frame on. */
 SKG_API skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose);
 
-/* Another material (retained), as a lung's of new density. Plans use it from the next frame on; a plan that compresses
- * several energies (tolerance above 0) is stale then. */
+/* Another material (retained), as a lung's of new density. Plans use it from the next frame on; a plan that
+ * compresses several energies (tolerance above 0) is stale then. */
 SKG_API skg_status skg_scene_set_material(skg_scene *scene, int64_t id, skg_material *material);
 
 /* Where rays start. */
