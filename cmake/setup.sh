@@ -2,7 +2,7 @@
 # skg_need WORDS...: installs what is missing of these packages, or says the exact line and stops.
 
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
-libassimp-dev libjansson-dev libpng-dev libtiff-dev libxrl-dev"
+libassimp-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
 
 skg_need() {
     if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then

@@ -27,12 +27,12 @@ const char *host_pin_threads(void) {
     static char sentence[128];
     const char *batch = batch_variable();
     if (getenv("POCL_AFFINITY")) return "as the environment says";
-    if (!may_run_everywhere()) return "not pinned: this process may run on some of the cores only";
     if (batch) {
         snprintf(sentence, sizeof sentence, "not pinned: %s says that this is one of several processes",
                  batch);
         return sentence;
     }
+    if (!may_run_everywhere()) return "not pinned: this process may run on some of the cores only";
     setenv("POCL_AFFINITY", "1", 1);
     return "pinned: this process may run on all cores, and alone";
 }

@@ -74,6 +74,13 @@ typedef struct {
     SKG_INT reserved;
 } skg_frame_args;
 
+/* The key of a frame's noise (random.clh); sample: of the source, each with draws of its own. */
+typedef struct {
+    SKG_INT seed[2], frame[2]; /* low word first */
+    SKG_INT sample;
+    SKG_INT reserved;
+} skg_noise_args;
+
 /* Length of the ray to pixel (i, j): |centre + i column + j row|, mm; parallel: |centre|. */
 #define SKG_RAY_FIELDS(real)                                                                                  \
     real centre[3], column[3], row[3];                                                                        \
@@ -114,5 +121,6 @@ _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, do
 _Static_assert(sizeof(skg_write_float) == 16 && sizeof(skg_write_double) == 24, "layout of a write");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
+_Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 #endif
 #endif

@@ -14,7 +14,7 @@ enum { MOST_NAMES = 64 };
 const cli_flag cli_flag_device = {"--device", "NAME",
                                   "cpu, gpu, PLATFORM:DEVICE, or part of a device's name; \"cpu threads=4\"\n"
                                   "limits the threads. Default: SKG_DEVICE, then the best there is"};
-const cli_flag cli_flag_precision = {"--precision", "single|double",
+const cli_flag cli_flag_precision = {"--precision", "single|double|half",
                                      "of path lengths and image; default: the scene's, else single"};
 const cli_flag cli_flag_tolerance = {"--tolerance", "ERROR",
                                      "relative error allowed to the spectrum, 0 to below 1; default: the\n"
@@ -168,6 +168,18 @@ int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t le
     if (end == value || *end || errno || number < least || number > most)
         return cli_error(CLI_USAGE, "%s %s is not a whole number from %" PRId64 " to %" PRId64, flag->name,
                          value, least, most);
+    *place = number;
+    return CLI_DONE;
+}
+
+int cli_number(const cli_arguments *arguments, const cli_flag *flag, double least, double most,
+               double *place) {
+    const char *value = cli_value(arguments, flag);
+    if (!value) return CLI_DONE;
+    char *end = NULL;
+    double number = strtod(value, &end);
+    if (end == value || *end || !(number >= least && number <= most))
+        return cli_error(CLI_USAGE, "%s %s is not a number from %g to %g", flag->name, value, least, most);
     *place = number;
     return CLI_DONE;
 }

@@ -22,6 +22,8 @@ int cli_choice(const cli_arguments *arguments, const cli_flag *flag, const char 
                int32_t *place);
 int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t least, int64_t most,
                 int64_t *place);
+int cli_number(const cli_arguments *arguments, const cli_flag *flag, double least, double most,
+               double *place);
 int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high);
 
 /* Says that `name` is not known, with the nearest that is. what: "verb", "flag". */

@@ -1,11 +1,12 @@
 /* What PoCL reads from the environment. The library never touches it; the command is a process of its own and
  * may. */
-#define _GNU_SOURCE /* sched_getaffinity */
+#define _XOPEN_SOURCE 700 /* nftw */
 #include "cli.h"
+
+#include "affinity.h"
 
 #include <errno.h>
 #include <ftw.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,39 +20,6 @@ static int unwritable_reason;
 
 const char *cli_affinity_reason(void) {
     return affinity_reason;
-}
-
-/* Processes of one job share the cores; each of them pinned from core 0 on would meet the others there. */
-static const char *batch_variable(void) {
-    static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE",     "PMI_RANK",   "PMIX_RANK",
-                                        "MPI_LOCALNRANKS",      "SLURM_JOB_ID", "PBS_JOBID",  "LSB_JOBID",
-                                        "LOADL_STEP_ID",        "SGE_TASK_ID",  "PE_HOSTFILE"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (getenv(names[i])) return names[i];
-    return NULL;
-}
-
-static int may_run_everywhere(void) {
-    cpu_set_t mask;
-    if (sched_getaffinity(0, sizeof mask, &mask) != 0) return 0; /* more cores than the mask holds */
-    return CPU_COUNT(&mask) == sysconf(_SC_NPROCESSORS_ONLN);
-}
-
-/* Pinned threads are faster, but PoCL pins from core 0 on without regard to the mask of the process. */
-static void decide_affinity(void) {
-    static char sentence[128];
-    const char *batch = batch_variable();
-    if (getenv("POCL_AFFINITY")) {
-        affinity_reason = "as the environment says";
-    } else if (batch) {
-        snprintf(sentence, sizeof sentence, "not set: %s says that this is one of several processes", batch);
-        affinity_reason = sentence;
-    } else if (!may_run_everywhere()) {
-        affinity_reason = "not set: this process may run on some of the cores only";
-    } else {
-        setenv("POCL_AFFINITY", "1", 1);
-        affinity_reason = "set by this command: it may run on all cores, and alone";
-    }
 }
 
 /* Where PoCL keeps compiled kernels, by its own rule. 0: too long for us. */
@@ -112,7 +80,7 @@ static void decide_cache(void) {
 }
 
 void cli_prepare_environment(void) {
-    decide_affinity();
+    affinity_reason = host_pin_threads();
     decide_cache();
 }
 

@@ -3,7 +3,6 @@
 #include "frames.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 
 int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) {
@@ -14,31 +13,6 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
     if (status == SKG_OK) return CLI_DONE;
     int exit_status = cli_fail(status);
     return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
-}
-
-/* |a x b| */
-static double area_of(const double a[3], const double b[3]) {
-    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-    return sqrt(x * x + y * y + z * z);
-}
-
-int cli_open_beam(const cli_session *session, double *open) {
-    int32_t quantity = session->options.quantity;
-    int64_t bins = 0;
-    double energy = 0, photons = 0;
-    skg_status status = skg_spectrum_size(session->spectrum, &bins);
-    for (int64_t i = 0; status == SKG_OK && i < bins; i++) {
-        double kev, count;
-        status = skg_spectrum_bin(session->spectrum, i, &kev, &count);
-        if (status != SKG_OK) break;
-        energy += kev * count;
-        photons += count;
-    }
-    *open = quantity == SKG_ENERGY    ? energy
-            : quantity == SKG_PHOTONS ? photons
-            : quantity == SKG_FLUENCE ? energy / area_of(session->view.column_step, session->view.row_step)
-                                      : 0;
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
 static json_t *effects_json(const skg_plan *plan) {
@@ -58,15 +32,12 @@ static json_t *effects_json(const skg_plan *plan) {
     return list;
 }
 
-/* The energies at which attenuation is computed, with their photons per pixel. Without compression (which
- * this version has not) they are the spectrum's own, and the error bound is zero. */
-static json_t *nodes_json(const cli_session *session) {
+/* The energies at which attenuation is computed, with the photons per pixel that they stand for. */
+static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
     json_t *list = json_array();
-    int64_t bins = 0;
-    skg_spectrum_size(session->spectrum, &bins);
-    for (int64_t i = 0; i < bins; i++) {
+    for (int64_t i = 0; i < nodes; i++) {
         double node[2];
-        if (skg_spectrum_bin(session->spectrum, i, &node[0], &node[1]) == SKG_OK)
+        if (skg_plan_node(plan, i, &node[0], &node[1], NULL) == SKG_OK)
             json_array_append_new(list, cli_json_numbers(node, 2));
     }
     return list;
@@ -113,12 +84,13 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     skg_plan_report_init(&report);
     skg_plan_get_report(plan, &report);
     json_object_set_new(object, "effects", effects_json(plan));
-    json_object_set_new(object, "nodes", nodes_json(session));
+    json_object_set_new(object, "nodes", nodes_json(plan, report.nodes));
     json_object_set_new(object, "planes", json_integer(report.planes));
     json_object_set_new(object, "plane_bits", json_integer(report.plane_bits));
     json_object_set_new(object, "strategy", cli_json_text(cli_strategy_names[report.strategy]));
     json_object_set_new(object, "tiles", tiles_json(&report));
-    json_object_set_new(object, "bound", json_real(0));
+    json_object_set_new(object, "bound", cli_json_number(report.bound));
+    json_object_set_new(object, "verified", json_integer(report.verified));
     json_object_set_new(object, "precision", cli_json_text(cli_precision_names[report.precision]));
     json_object_set_new(object, "device", cli_json_text(session->device.name));
     json_object_set_new(object, "device_bytes", json_integer(report.device_bytes));
@@ -127,6 +99,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "triangles", json_integer(report.triangles));
     json_object_set_new(object, "vertices", json_integer(report.vertices));
     json_object_set_new(object, "bad_pixels", json_integer(report.bad_pixels));
+    json_object_set_new(object, "repaired_pixels", json_integer(report.repaired_pixels));
     json_object_set_new(object, "negative_pixels", json_integer(report.negative_pixels));
     json_object_set_new(object, "overlaps", overlaps_json(plan, session->scene));
     return object;
@@ -175,21 +148,25 @@ static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
 
 static void print_beam(const cli_session *session) {
     int64_t bins = 0;
-    double kev, photons;
+    skg_quality quality;
+    skg_quality_init(&quality);
     skg_spectrum_size(session->spectrum, &bins);
-    if (bins == 1 && skg_spectrum_bin(session->spectrum, 0, &kev, &photons) == SKG_OK)
-        printf("beam       %g keV, %g photons per pixel of the open beam\n", kev, photons);
+    printf("beam       ");
+    if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
+    if (skg_spectrum_quality(session->spectrum, &quality) == SKG_OK)
+        printf("%g keV, %g photons per pixel of the open beam\n", quality.mean_kev, quality.photons);
     else
-        printf("beam       %" PRId64 " energies\n", bins);
+        printf("not to be judged: %s\n", skg_last_error());
 }
 
 static void print_strategy(const skg_plan_report *report) {
     printf("strategy   %s: ", cli_strategy_names[report->strategy]);
-    if (report->tiles == 1)
-        printf("the detector is one tile\n");
+    if (report->strategy != SKG_STRATEGY_TILES)
+        printf("the whole detector, %" PRId64 " triangles\n", report->triangles);
     else
-        printf("%" PRId64 " tiles of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
-               report->tiles, report->tile_columns, report->tile_rows, report->triangles_per_tile);
+        printf("%" PRId64 " tile%s of %" PRId64 " x %" PRId64 " pixels, %.1f triangles in each\n",
+               report->tiles, report->tiles == 1 ? "" : "s", report->tile_columns, report->tile_rows,
+               report->triangles_per_tile);
 }
 
 void cli_explain_print(const skg_plan *plan, const cli_session *session) {
@@ -208,8 +185,8 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     printf("planes     %" PRId64 " of %" PRId64 " bits for %" PRId64 " parts\n", report.planes,
            report.plane_bits, report.parts - report.open_parts);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
-           " with a negative exponent\n",
-           report.bad_pixels, report.negative_pixels);
+           " of them repaired; %" PRId64 " with a negative exponent\n",
+           report.bad_pixels, report.repaired_pixels, report.negative_pixels);
     print_effects(plan);
     print_stages(plan);
     print_overlaps(plan, session->scene);

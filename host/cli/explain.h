@@ -7,9 +7,6 @@
 /* Makes the session's plan and takes the time. The caller releases it. */
 int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms);
 
-/* What a pixel of the open beam holds, in the unit of the session's quantity; 0 for relative ones. */
-int cli_open_beam(const cli_session *session, double *open);
-
 /* The object that `plan --json` prints, and other verbs under "plan". */
 json_t *cli_explain_json(const skg_plan *plan, const cli_session *session);
 void cli_explain_print(const skg_plan *plan, const cli_session *session);

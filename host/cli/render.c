@@ -3,6 +3,7 @@
 #include "explain.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -43,15 +44,30 @@ static int write_files(const cli_rendering *rendering) {
     return failure;
 }
 
-/* Least and largest value of the first channel, as they are. */
+/* Least and largest finite value of a channel, as they are; both 0 where there is none. */
+static void find_range(const skg_picture *picture, int64_t channel, double *low, double *high) {
+    const int64_t pixels = picture->columns * picture->rows;
+    int found = 0;
+    *low = *high = 0;
+    for (int64_t i = channel * pixels; i < (channel + 1) * pixels; i++) {
+        double value = picture->type == SKG_FLOAT64 ? ((const double *)picture->data)[i]
+                                                    : (double)((const float *)picture->data)[i];
+        if (!isfinite(value)) continue;
+        if (!found || value < *low) *low = value;
+        if (!found || value > *high) *high = value;
+        found = 1;
+    }
+}
+
 static void print_values(const skg_picture *picture) {
-    double low, high;
-    skg_picture plain = *picture;
-    plain.open = 0;
-    plain.quantity = SKG_ENERGY; /* without an open beam: shown as it is */
-    if (skg_picture_range(&plain, &low, &high) != SKG_OK) return;
-    printf("%" PRId64 " x %" PRId64 " pixels, %s %.6g to %.6g %s\n", picture->columns, picture->rows,
-           picture->name, low, high, picture->unit);
+    printf("%" PRId64 " x %" PRId64 " pixels", picture->columns, picture->rows);
+    for (int64_t c = 0; c < picture->channels; c++) {
+        double low, high;
+        find_range(picture, c, &low, &high);
+        printf(", %s %.6g to %.6g %s", picture->channel_names ? picture->channel_names[c] : picture->name,
+               low, high, picture->unit);
+    }
+    putchar('\n');
 }
 
 static int print_rendering(const cli_rendering *rendering, const skg_plan *plan, const cli_times *times) {
@@ -70,11 +86,29 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
     return CLI_DONE;
 }
 
+/* What the plan says of its channels; the picture's name, unit and open beam are those of the first. */
+static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
+    skg_picture *picture = &rendering->picture;
+    if (rendering->lengths) return CLI_DONE;
+    skg_status status = skg_plan_channels(plan, &picture->channels);
+    for (int64_t c = 0; status == SKG_OK && c < picture->channels; c++) {
+        skg_channel channel;
+        skg_channel_init(&channel);
+        status = skg_plan_channel(plan, c, &channel);
+        if (status != SKG_OK) break;
+        rendering->channel_names[c] = channel.name;
+        if (c > 0) continue;
+        picture->name = channel.name;
+        picture->unit = channel.unit;
+        picture->open = channel.open;
+    }
+    picture->channel_names = rendering->channel_names;
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
 /* Memory for one frame of the precision asked for. */
-static int make_room(cli_rendering *rendering, const skg_plan *plan, skg_output *output) {
-    int64_t channels = 1;
-    skg_status status = rendering->lengths ? SKG_OK : skg_plan_channels(plan, &channels);
-    if (status != SKG_OK) return cli_fail(status);
+static int make_room(cli_rendering *rendering, skg_output *output) {
+    const int64_t channels = rendering->picture.channels;
     const skg_view *view = &rendering->session.view;
     int twice = rendering->session.options.precision == SKG_DOUBLE;
     skg_output_init(output);
@@ -84,7 +118,6 @@ static int make_room(cli_rendering *rendering, const skg_plan *plan, skg_output 
     rendering->picture.type = output->type;
     rendering->picture.columns = view->columns;
     rendering->picture.rows = view->rows;
-    rendering->picture.channels = channels;
     rendering->picture.data = output->data;
     rendering->picture.view = view;
     return CLI_DONE;
@@ -101,7 +134,8 @@ int cli_render(cli_rendering *rendering) {
                                 &rendering->picture.high);
     session->options.profile = times.repeats > 0;
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);
-    if (exit_status == CLI_DONE) exit_status = make_room(rendering, plan, &output);
+    if (exit_status == CLI_DONE) exit_status = name_channels(rendering, plan);
+    if (exit_status == CLI_DONE) exit_status = make_room(rendering, &output);
     if (exit_status == CLI_DONE)
         exit_status = cli_run_frames(plan, rendering->frame, &output, rendering->frame_user, &times);
     if (exit_status == CLI_DONE) exit_status = write_files(rendering);

@@ -11,8 +11,9 @@ typedef struct {
     cli_session session;
     cli_frame frame;
     const void *frame_user;
+    const char *channel_names[SKG_MOST_CHANNELS];
     int lengths;         /* 1: one channel, whatever the plan's images have */
-    skg_picture picture; /* name, unit, quantity, open, display; the rest is filled in here */
+    skg_picture picture; /* quantity and display, of lengths also name and unit; the rest is filled in here */
 } cli_rendering;
 
 /* Checks --repeat and --range, and that every -o can be written: before anything is computed. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 const char *const cli_strategy_names[4] = {"auto", "copies", "tiles", "atomics"};
-const char *const cli_precision_names[2] = {"single", "double"};
+const char *const cli_precision_names[3] = {"single", "double", "half"};
 
 static int read_tolerance(const cli_arguments *arguments, char *setting, size_t size) {
     const char *value = cli_value(arguments, &cli_flag_tolerance);
@@ -43,7 +43,7 @@ int cli_open_session(const cli_arguments *arguments, cli_session *session) {
     *session = (cli_session){0};
     int exit_status = read_tolerance(arguments, tolerance, sizeof tolerance);
     if (exit_status == CLI_DONE)
-        exit_status = cli_choice(arguments, &cli_flag_precision, cli_precision_names, 2, &precision);
+        exit_status = cli_choice(arguments, &cli_flag_precision, cli_precision_names, 3, &precision);
     if (exit_status == CLI_DONE)
         exit_status = cli_choice(arguments, &cli_flag_strategy, cli_strategy_names, 4, &strategy);
     if (exit_status == CLI_DONE)

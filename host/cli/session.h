@@ -22,6 +22,6 @@ int cli_open_session(const cli_arguments *arguments, cli_session *session);
 void cli_close_session(cli_session *session);
 
 extern const char *const cli_strategy_names[4]; /* by SKG_STRATEGY_ value */
-extern const char *const cli_precision_names[2];
+extern const char *const cli_precision_names[3];
 
 #endif

@@ -74,6 +74,12 @@ static void write_header(const skg_picture *picture, FILE *stream) {
             view ? " 1" : "");
     if (picture->channels > 1)
         fprintf(stream, "ElementNumberOfChannels = %lld\n", (long long)picture->channels);
+    if (picture->channels > 1 && picture->channel_names) { /* readers keep fields that they do not know */
+        fprintf(stream, "ChannelNames = ");
+        for (int64_t c = 0; c < picture->channels; c++)
+            fprintf(stream, "%s%s", c > 0 ? "; " : "", picture->channel_names[c]);
+        fputc('\n', stream);
+    }
     fprintf(stream, "ElementType = %s\nElementDataFile = LOCAL\n",
             picture->type == SKG_FLOAT64 ? "MET_DOUBLE" : "MET_FLOAT");
 }

@@ -62,6 +62,10 @@ static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
         return skg_fail(SKG_ERR_ARGUMENT,
                         "picture: %" PRId64 " x %" PRId64 " pixels, but its view has %" PRId64 " x %" PRId64,
                         picture->columns, picture->rows, picture->view->columns, picture->view->rows);
+    for (int64_t c = 0; picture->channel_names && c < picture->channels; c++)
+        if (!picture->channel_names[c])
+            return skg_fail(SKG_ERR_ARGUMENT, "picture: channel %" PRId64 " has no name", c);
+    if (picture->channel_names) picture->name = picture->channel_names[0];
     return check_range(picture);
 }
 

@@ -40,9 +40,11 @@ static double norm(const double v[3]) {
 }
 
 static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
+    skg_picture page = *picture;
     char description[SKG_DESCRIPTION_LENGTH];
     int bits = picture->type == SKG_FLOAT64 ? 64 : 32;
-    skg_picture_describe(picture, description, sizeof description);
+    if (page.channel_names) page.name = page.channel_names[channel];
+    skg_picture_describe(&page, description, sizeof description);
     int done = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, (uint32_t)picture->columns) &&
                TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, (uint32_t)picture->rows) &&
                TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits) &&

@@ -45,6 +45,16 @@ const skg_mixture_row *skg_find_mixture(const char *name) {
     return NULL;
 }
 
+/* Whether the text begins with these letters; hyphens in it are read past: icru44 begins ICRU-44. */
+static int begins(const char *text, const char *word, size_t length) {
+    for (; length > 0; text++) {
+        if (*text == '-') continue;
+        if (tolower((unsigned char)*text) != tolower((unsigned char)*word)) return 0;
+        word++, length--;
+    }
+    return 1;
+}
+
 /* Whether every word of the query begins a word of the names. */
 static int has_words(const char *names, const char *query) {
     for (const char *word = query; *word;) {
@@ -55,10 +65,7 @@ static int has_words(const char *names, const char *query) {
         int found = 0;
         for (const char *c = names; *c && !found; c++) {
             int start = c == names || !isalnum((unsigned char)c[-1]);
-            size_t k = 0;
-            while (start && k < length && tolower((unsigned char)c[k]) == tolower((unsigned char)word[k]))
-                k++;
-            found = start && k == length;
+            found = start && begins(c, word, length);
         }
         if (!found) return 0;
         word += length;

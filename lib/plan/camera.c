@@ -180,3 +180,14 @@ void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray
     ray->middle_i = column;
     ray->middle_j = row;
 }
+
+void skg_rays_round(const skg_ray_double *from, skg_ray_float *to) {
+    for (int k = 0; k < 3; k++) {
+        to->centre[k] = (float)from->centre[k];
+        to->column[k] = (float)from->column[k];
+        to->row[k] = (float)from->row[k];
+    }
+    to->middle_i = (float)from->middle_i;
+    to->middle_j = (float)from->middle_j;
+    to->unit = (float)from->unit;
+}

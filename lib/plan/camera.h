@@ -44,6 +44,7 @@ double skg_camera_pixel_area(const skg_camera *camera);
 double skg_camera_nearest_ray(const skg_camera *camera);
 
 /* What sums are multiplied by: lengths of the rays, and 1 / scale. */
+void skg_rays_round(const skg_ray_double *from, skg_ray_float *to);
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);
 
 #endif

@@ -20,7 +20,6 @@ skg_status skg_plan_name_channels(skg_plan *plan) {
             snprintf(name, room, "%s from %g to %g keV", quantity_names[options->quantity],
                      options->band_kev[c], options->band_kev[c + 1]);
     }
-    plan->options.band_kev = NULL; /* the caller's, and read */
     return SKG_OK;
 }
 

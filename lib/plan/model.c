@@ -1,6 +1,8 @@
 #include "plan/model.h"
 
 #include "beam/spectrum.h"
+#include "plan/compress.h"
+#include "plan/noise.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -26,6 +28,13 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     SKG_TRY(skg_alloc(m->spectrum->count, sizeof *m->bins, "nodes", &m->bins));
     for (int64_t i = 0; i < m->spectrum->count; i++)
         if (m->spectrum->photons[i] > 0) m->bins[model->nodes++] = i;
+    model->bins = model->nodes;
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_kev, "nodes", &model->node_kev));
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_photons, "nodes", &model->node_photons));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+        model->node_photons[n] = m->spectrum->photons[m->bins[n]];
+    }
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
@@ -51,18 +60,24 @@ static skg_status look_up(making *m, const skg_model *model) {
     return SKG_OK;
 }
 
+/* Half precision sums distances as they are: a plane a material, of which parts add 1 or -1 times theirs. */
+static int is_unweighted(const making *m) {
+    return m->options->precision == SKG_HALF;
+}
+
 /* The factor by which mu is a basis, or 0 where it is not proportional to it. */
-static double factor_of(const double *mu, const double *basis, int32_t nodes) {
+static double factor_of(const making *m, const double *mu, const double *basis, int32_t nodes) {
     const double factor = mu[0] / basis[0];
+    if (is_unweighted(m) && memcmp(mu, basis, (size_t)nodes * sizeof *mu) != 0) return 0;
     for (int32_t n = 1; n < nodes; n++)
         if (!(fabs(mu[n] - factor * basis[n]) <= PROPORTIONAL * mu[n])) return 0;
     return factor;
 }
 
 /* A new basis: with one energy 1/mm, so that plane and exponent are the same; else the material itself. */
-static void start_basis(const double *mu, int32_t nodes, double *basis) {
+static void start_basis(const making *m, const double *mu, int32_t nodes, double *basis) {
     memcpy(basis, mu, (size_t)nodes * sizeof *basis);
-    if (nodes == 1) basis[0] = 1;
+    if (nodes == 1 && !is_unweighted(m)) basis[0] = 1;
 }
 
 static skg_status choose_planes(making *m, skg_model *model) {
@@ -75,7 +90,7 @@ static skg_status choose_planes(making *m, skg_model *model) {
         m->plane[p] = -1;
         if (!(mu[0] > 0)) continue; /* no attenuation at one energy: none at any */
         for (int32_t k = 0; k < model->planes && m->plane[p] < 0; k++) {
-            m->factor[p] = factor_of(mu, m->bases + (int64_t)k * nodes, nodes);
+            m->factor[p] = factor_of(m, mu, m->bases + (int64_t)k * nodes, nodes);
             if (m->factor[p] > 0) m->plane[p] = k;
         }
         if (m->plane[p] >= 0) continue;
@@ -83,8 +98,8 @@ static skg_status choose_planes(making *m, skg_model *model) {
             room = 2 * room + 8;
             SKG_TRY(skg_realloc(room * nodes, sizeof *m->bases, "planes", &m->bases));
         }
-        start_basis(mu, nodes, m->bases + (int64_t)model->planes * nodes);
-        m->factor[p] = nodes == 1 ? mu[0] : 1;
+        start_basis(m, mu, nodes, m->bases + (int64_t)model->planes * nodes);
+        m->factor[p] = mu[0] / m->bases[(int64_t)model->planes * nodes];
         m->plane[p] = model->planes++;
     }
     return SKG_OK;
@@ -124,6 +139,17 @@ static skg_status worth_of(const making *m, double energy, double *worth) {
     return skg_response_at(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
 }
 
+/* Variance of what a photon that arrives adds (contracts 4.6): it is recorded with the probability
+ * `efficiency`, then adds worth / efficiency on average, and the scintillator's pulse heights widen that by
+ * the Swank factor. */
+static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
+    double efficiency = 1;
+    if (m->options->response) SKG_TRY(skg_response_at(m->options->response, energy, 1, NULL, &efficiency));
+    const double swank = m->options->quantity == SKG_PHOTONS ? 1 : m->options->swank;
+    *variance = efficiency > 0 ? worth * worth / (efficiency * swank) : 0;
+    return SKG_OK;
+}
+
 static int in_band(const making *m, int64_t channel, double energy) {
     const double *edges = m->options->band_kev;
     return m->options->bands == 0 || (energy >= edges[channel] && energy < edges[channel + 1]);
@@ -131,10 +157,6 @@ static int in_band(const making *m, int64_t channel, double energy) {
 
 static skg_status check_bands(const making *m) {
     const skg_plan_options *options = m->options;
-    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS ||
-        (options->bands > 0 && !options->band_kev))
-        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
-                        options->bands, SKG_MOST_CHANNELS);
     for (int64_t c = 0; c < options->bands; c++)
         if (!(options->band_kev[c] < options->band_kev[c + 1]))
             return skg_fail(SKG_ERR_BEAM, "band %" PRId64 " runs from %g to %g keV; edges have to rise", c,
@@ -142,23 +164,32 @@ static skg_status check_bands(const making *m) {
     return SKG_OK;
 }
 
+static int shows_ratio(const making *m) {
+    return skg_plan_is_ratio(m->options) && !skg_plan_is_absolute(m->options);
+}
+
 static skg_status weigh(const making *m, skg_model *model) {
-    const int32_t quantity = m->options->quantity;
-    const int is_ratio = quantity == SKG_TRANSMISSION || quantity == SKG_ATTENUATION;
+    const int noise = m->options->noise;
+    const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
     const int32_t channels = model->channels;
     SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->weights, "nodes", &model->weights));
     SKG_TRY(skg_alloc(channels, sizeof *model->open, "nodes", &model->open));
+    if (noise)
+        SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->variances, "nodes",
+                          &model->variances));
     for (int32_t n = 0; n < model->nodes; n++) {
         const int64_t bin = m->bins[n];
         const double energy = m->spectrum->energy_kev[bin];
-        double worth = 0;
+        double worth = 0, variance = 0;
         SKG_TRY(worth_of(m, energy, &worth));
+        if (noise) SKG_TRY(variance_of(m, energy, worth, &variance));
         for (int32_t c = 0; c < channels; c++)
             if (in_band(m, c, energy)) {
                 model->weights[n * channels + c] = m->spectrum->photons[bin] * worth;
                 model->open[c] += m->spectrum->photons[bin] * worth;
+                if (noise) model->variances[n * channels + c] = m->spectrum->photons[bin] * variance;
             }
     }
     for (int32_t c = 0; c < channels && is_ratio; c++) {
@@ -178,13 +209,14 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
     for (int32_t n = 0; n < model->nodes; n++)
         for (int32_t k = 0; k < model->planes; k++)
             model->coefficients[n * planes + k] = m->bases[(int64_t)k * model->nodes + n];
+    model->materials = model->planes;
     model->planes = planes;
     model->world_plane = m->plane[m->scene->count];
     model->world_weight = m->factor[m->scene->count];
     return SKG_OK;
 }
 
-skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum,
+skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model) {
     making m = {.scene = scene, .spectrum = spectrum, .options = options, .matters = scene->count + 1};
     skg_status status = SKG_OK;
@@ -195,6 +227,10 @@ skg_status skg_model_create(const skg_scene *scene, const skg_spectrum *spectrum
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
+    /* Photons of every bin count by themselves for the variance. */
+    if (options->tolerance > 0 && !options->noise && !is_unweighted(&m) && model->nodes > 2 &&
+        model->materials > 0)
+        SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);
@@ -209,5 +245,9 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->writes);
     skg_free(&model->coefficients);
     skg_free(&model->weights);
+    skg_free(&model->variances);
     skg_free(&model->open);
+    skg_free(&model->node_kev);
+    skg_free(&model->range);
+    skg_free(&model->node_photons);
 }

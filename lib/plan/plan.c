@@ -8,13 +8,18 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options = (skg_plan_options){
-            .size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1, .supersampling = 1};
+        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
+                                      .precision = SKG_SINGLE,
+                                      .overlaps = 1,
+                                      .supersampling = 1,
+                                      .swank = 1,
+                                      .repair = SKG_REPAIR_NEIGHBOURS};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
-    if (options->precision != SKG_SINGLE && options->precision != SKG_DOUBLE)
-        return skg_fail(SKG_ERR_ARGUMENT, "precision %" PRId32 " is unknown; SKG_SINGLE or SKG_DOUBLE",
+    if (options->precision < SKG_SINGLE || options->precision > SKG_HALF)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "precision %" PRId32 " is unknown; SKG_SINGLE, SKG_DOUBLE or SKG_HALF",
                         options->precision);
     if (options->precision == SKG_DOUBLE && !context->device->info.has_double)
         return skg_fail(SKG_ERR_UNSUPPORTED,
@@ -30,10 +35,19 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
                         options->quantity);
     if (options->falloff != 0 && options->falloff != 1)
         return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
+    if (!(options->tolerance >= 0 && options->tolerance < 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
+                        options->tolerance);
+    if (options->repair < SKG_REPAIR_NONE || options->repair > SKG_REPAIR_EXACT)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
+                        options->repair);
+    if (options->clip != 0 && options->clip != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "clip is %" PRId32 "; 1 or 0", options->clip);
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
-    return SKG_OK;
+    return skg_plan_check_detector(options);
 }
 
 static void start_report(skg_plan *plan) {
@@ -48,6 +62,10 @@ static void start_report(skg_plan *plan) {
         report->vertices += plan->meshes.meshes[i].mesh->vertices;
     report->open_parts = plan->open_count;
     report->planes = plan->model.planes;
+    report->nodes = plan->model.nodes;
+    report->bins = plan->model.bins;
+    report->bound = plan->model.bound;
+    report->verified = plan->model.verified;
     report->strategy = plan->strategy;
 }
 
@@ -73,8 +91,9 @@ static skg_status make_geometry(skg_plan *plan) {
         SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, sorted[i], &reordered));
         list[i] = (skg_geometry_mesh){mesh->vertices, mesh->triangles, sorted[i]};
     }
-    SKG_TRY_CLEANUP(skg_geometry_create(plan->context, plan->options.precision, meshes->count, list,
-                                        plan->scene->count, meshes->of_part, &plan->geometry));
+    SKG_TRY_CLEANUP(
+        skg_geometry_create(plan->context, plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE,
+                            meshes->count, list, plan->scene->count, meshes->of_part, &plan->geometry));
 cleanup:
     for (int64_t i = 0; sorted && i < meshes->count; i++) skg_free(&sorted[i]);
     skg_free(&sorted);
@@ -83,12 +102,10 @@ cleanup:
 }
 
 static skg_status make_attenuation(skg_plan *plan) {
-    const double one = 1;
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
-    const int is_ratio =
-        plan->options.quantity == SKG_TRANSMISSION || plan->options.quantity == SKG_ATTENUATION;
-    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_averages(plan)
+    const int is_ratio = skg_plan_is_ratio(&plan->options) && !skg_plan_is_absolute(&plan->options);
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_is_late(plan)
                               ? SKG_SHOWN_INTENSITY
                           : model->nodes == 1 ? SKG_SHOWN_EXPONENT
                                               : SKG_SHOWN_LOGARITHM;
@@ -101,16 +118,24 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .world_plane = has_world ? (int32_t)model->world_plane : -1,
                                    .world_weight = model->world_weight,
                                    .ratio = has_world && is_ratio,
-                                   .falloff = plan->options.falloff && !is_ratio};
+                                   .falloff = plan->options.falloff && !is_ratio,
+                                   .noise = plan->options.noise,
+                                   .energies = plan->options.quantity == SKG_ENERGY};
+    const skg_attenuation_tables tables = {model->coefficients, model->weights, model->variances,
+                                           model->range};
+    return skg_attenuation_create(plan->context, plan->options.precision, &image, &tables,
+                                  &plan->attenuation);
+}
+
+static skg_status make_lengths(skg_plan *plan) {
+    const double one = 1;
+    const skg_attenuation_tables tables = {.coefficients = &one, .weights = &one};
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
-    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                   model->weights, &plan->attenuation));
-    SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &tables, &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
-    SKG_TRY(
-        skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+    SKG_TRY(skg_buffer_reserve(plan->context, &plan->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE,
+                               "counters"));
     return skg_buffer_reserve(plan->context, &plan->bad, (1 + SKG_FIRST_BAD) * (int64_t)sizeof(cl_int),
                               CL_MEM_READ_WRITE, "bad pixels");
 }
@@ -123,15 +148,54 @@ static skg_status make_samples(skg_plan *plan) {
     return SKG_OK;
 }
 
+skg_status skg_plan_renew_model(skg_plan *plan) {
+    skg_model model;
+    if (plan->materials == plan->scene->materials) return SKG_OK;
+    if (plan->model.bound > 0)
+        return skg_fail(SKG_STALE,
+                        "a material has changed, and the plan's %d energies were chosen for the old ones; "
+                        "make a new plan",
+                        (int)plan->model.nodes);
+    skg_status status = skg_model_create(plan->scene, &plan->view, plan->spectrum, &plan->options, &model);
+    if (status != SKG_OK) {
+        skg_model_release(&model);
+        return status;
+    }
+    skg_model_release(&plan->model);
+    plan->model = model;
+    plan->report.planes = model.planes;
+    /* OpenCL keeps the old tables until what is enqueued is done. */
+    skg_attenuation_release(&plan->attenuation);
+    SKG_TRY(make_attenuation(plan));
+    plan->materials = plan->scene->materials;
+    return SKG_OK;
+}
+
+/* What the paper's buffers could not hold is not offered in them. */
+static skg_status check_half(const skg_plan *plan) {
+    if (plan->options.precision != SKG_HALF) return SKG_OK;
+    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
+        plan->contest_possible || plan->options.blur || skg_plan_is_absolute(&plan->options))
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "precision half is for comparison: a point source or samples of one, closed meshes without "
+            "priorities, vacuum around them, no noise or blur; take single");
+    return SKG_OK;
+}
+
 static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_meshes_create(plan->scene, &plan->meshes));
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
-    SKG_TRY(skg_model_create(plan->scene, plan->spectrum, &plan->options, &plan->model));
+    SKG_TRY(skg_model_create(plan->scene, &plan->view, plan->spectrum, &plan->options, &plan->model));
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
+    plan->contest_possible = skg_contest_possible(plan->scene, plan->options.clip);
+    SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
+    SKG_TRY(skg_plan_make_detector(plan));
     SKG_TRY(make_attenuation(plan));
+    SKG_TRY(make_lengths(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
@@ -141,10 +205,20 @@ static skg_status make(skg_plan *plan) {
     return skg_report_effects(plan);
 }
 
-/* The caller's arrays are not kept, its handles are. */
-static void retain_parts_of_options(skg_plan_options *options) {
+/* The caller's handles are retained, its arrays copied. */
+static skg_status keep_options(skg_plan *plan) {
+    skg_plan_options *options = &plan->options;
+    const double *edges = options->band_kev;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
+    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS || (options->bands > 0 && !edges))
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
+                        options->bands, SKG_MOST_CHANNELS);
+    if (options->bands == 0) return SKG_OK;
+    SKG_TRY(skg_alloc(options->bands + 1, sizeof *plan->band_kev, "bands", &plan->band_kev));
+    for (int64_t c = 0; c <= options->bands; c++) plan->band_kev[c] = edges[c];
+    options->band_kev = plan->band_kev;
+    return SKG_OK;
 }
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
@@ -164,12 +238,13 @@ skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_vie
     made->scene = scene, skg_ref(&scene->refs);
     made->spectrum = spectrum, skg_ref(&spectrum->refs);
     made->structure = scene->structure;
+    made->materials = scene->materials;
     skg_plan_options_init(&made->options);
     skg_view_init(&made->view);
     if (options)
         SKG_TRY_CLEANUP(skg_struct_read(options, "skg_plan_options", &made->options, sizeof made->options));
     SKG_TRY_CLEANUP(skg_struct_read(view, "skg_view", &made->view, sizeof made->view));
-    retain_parts_of_options(&made->options);
+    SKG_TRY_CLEANUP(keep_options(made));
     SKG_TRY_CLEANUP(check_options(context, &made->options));
     SKG_TRY_CLEANUP(make(made));
     *plan = made;
@@ -191,9 +266,13 @@ static void release_device_memory(skg_plan *plan) {
     skg_attenuation_release(&plan->attenuation);
     skg_attenuation_release(&plan->lengths);
     skg_attenuator_release(&plan->attenuator);
+    skg_blur_release(&plan->blur);
+    skg_detector_release(&plan->detector);
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
+    skg_buffer_release(&plan->gaps);
+    skg_contest_memory_release(&plan->contest_memory);
 }
 
 void skg_plan_release(skg_plan **plan) {
@@ -202,10 +281,13 @@ void skg_plan_release(skg_plan **plan) {
     *plan = NULL;
     if (!skg_unref(&last->refs)) return;
     release_device_memory(last);
+    for (int64_t k = 0; last->caps && k < last->open_count; k++) skg_caps_release(&last->caps[k]);
+    skg_free(&last->caps);
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);
     skg_free(&last->channel_names);
+    skg_free(&last->band_kev);
     skg_model_release(&last->model);
     skg_plan_meshes_release(&last->meshes);
     skg_response_release(&last->options.response);

@@ -24,9 +24,10 @@ typedef struct {
     const double *pose;   /* 4x4, row by row */
     const double *origin; /* of its mesh's offsets, mm */
     int32_t flipped;      /* its mesh is drawn with triangles turned round */
-    double reference;     /* path parameter that its depths are measured from: the middle of those that lie on
-                             paths, so     that no term is larger than their extent. Above 0 with a point source */
-    int32_t weights;      /* how many planes; 0: the part is not drawn, but keeps its place */
+    double
+        reference;   /* path parameter that its depths are measured from: the middle of those that lie on
+                        paths, so     that no term is larger than their extent. Above 0 with a point source */
+    int32_t weights; /* how many planes; 0: the part is not drawn, but keeps its place */
     const skg_plane_weight *weight;
 } skg_geometry_part;
 

@@ -118,9 +118,14 @@ static skg_status compile(skg_raster *raster) {
     static const char *const bands[] = {"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"};
     static const char *const square_files[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
     static const char *const source[] = {"pixel.clh", "source_plane.cl"};
+    static const char *const half[] = {"pixel.clh", "half.cl"};
     const skg_kernel_options *options = &raster->options.kernels;
     skg_context *context = raster->context;
     cl_program program = NULL;
+    if (options->half) {
+        SKG_TRY(skg_kernels_get(context, options, 2, half, NULL, &program));
+        return skg_kernel_create(program, "skg_raster_half", &raster->kernels[SKG_RASTER_DRAW]);
+    }
     if (raster->options.strategy == SKG_STRATEGY_COPIES) {
         SKG_TRY(skg_kernels_get(context, options, 3, copies, NULL, &program));
         SKG_TRY(skg_kernel_create(program, "skg_raster_copies", &raster->kernels[SKG_RASTER_DRAW]));
@@ -275,9 +280,24 @@ static skg_status run_bands(skg_raster *raster, const skg_geometry *g, skg_stage
     return run(raster, SKG_RASTER_DRAW, "raster", 12, memory, (size_t)raster->workers, 1, log);
 }
 
-static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera) {
+    skg_ray_double rays;
+    skg_camera_rays(camera, 1, &rays);
+    skg_rays_round(&rays, &raster->rays);
+}
+
+static skg_status run_half(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
-                             g->write_table.memory, g->triangle_blocks.memory, g->offsets.memory,
+                             g->write_table.memory, g->triangle_blocks.memory, raster->sums.memory};
+    SKG_TRY(fill(raster, &raster->sums, 0, 0,
+                 (int64_t)raster->frame.planes * raster->frame.plane * sum_bytes(raster)));
+    SKG_TRY(skg_kernel_set(raster->kernels[SKG_RASTER_DRAW], 7, sizeof raster->rays, &raster->rays));
+    return run(raster, SKG_RASTER_DRAW, "raster", 6, memory, triangle_groups(raster), GROUP, log);
+}
+
+static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const cl_mem memory[] = {g->corners.memory,         g->projected.memory, g->part_table.memory,
+                             g->triangle_blocks.memory, g->offsets.memory,   g->write_table.memory,
                              raster->sums.memory};
     cl_kernel kernel = raster->kernels[SKG_RASTER_SOURCE];
     const size_t local[2] = {GROUP, 1};
@@ -296,6 +316,7 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
     frame->claim = claim_size(geometry->triangles, raster->workers - 1);
     if (geometry->triangles > raster->options.triangles)
         return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
+    if (raster->options.kernels.half) return run_half(raster, geometry, log);
     if (raster->options.strategy == SKG_STRATEGY_COPIES)
         SKG_TRY(run_copies(raster, geometry, log));
     else if (raster->options.strategy == SKG_STRATEGY_ATOMICS)

@@ -26,6 +26,9 @@ typedef struct skg_raster skg_raster;
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster);
 void skg_raster_release(skg_raster **raster);
 
+/* Rays of the frames to come: only sums in half precision need them. */
+void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
+
 /* Enqueues a frame: what skg_geometry_project has projected is added up. Nothing is waited for. */
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
 

@@ -18,7 +18,8 @@ struct skg_raster {
     skg_context *context;
     skg_raster_options options;
     skg_frame_args frame;
-    int32_t workers; /* persistent work-groups, where the strategy has such */
+    skg_ray_float rays; /* half */
+    int32_t workers;    /* persistent work-groups, where the strategy has such */
     skg_buffer sums;
     skg_buffer used;                          /* copies that count; then the counter of claims */
     skg_buffer scratch;                       /* bands: an image for each worker */

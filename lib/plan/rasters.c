@@ -38,6 +38,10 @@ skg_status skg_plan_choose_strategy(skg_plan *plan) {
     };
     plan->strategy = plan->options.strategy;
     plan->strategy_reason = "asked for";
+    if (plan->options.precision == SKG_HALF) {
+        plan->strategy = SKG_STRATEGY_ATOMICS;
+        plan->strategy_reason = "precision half has no other";
+    }
     if (plan->strategy == SKG_STRATEGY_AUTO)
         plan->strategy = skg_raster_choose(&facts, &plan->strategy_reason);
     return SKG_OK;

@@ -22,7 +22,7 @@ skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
     skg_scene *made = NULL;
     SKG_TRY(skg_alloc(1, sizeof *made, "scene", &made));
     skg_refs_init(&made->refs);
-    made->structure = made->poses = 1;
+    made->structure = made->materials = made->poses = 1;
     if (context) {
         skg_status status = skg_context_retain(context);
         if (status != SKG_OK) {
@@ -144,7 +144,7 @@ skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
     }
     SKG_TRY(skg_part_index_reserve(&scene->labels));
     SKG_TRY(skg_part_index_reserve(&scene->places));
-    skg_scene_part_data made = {.inside = ours.inside};
+    skg_scene_part_data made = {.inside = ours.inside, .priority = ours.priority};
     memcpy(made.pose, ours.pose, sizeof made.pose);
     SKG_TRY(skg_copy_text(label, &made.label));
     skg_mesh_retain(ours.mesh);
@@ -195,6 +195,7 @@ skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part) {
     SKG_TRY(check_id(scene, id, "skg_scene_part"));
     const skg_scene_part_data *data = &scene->parts[id];
     skg_part ours = {.size = sizeof ours,
+                     .priority = data->priority,
                      .inside = data->inside,
                      .mesh = data->mesh,
                      .material = data->material,
@@ -231,5 +232,16 @@ skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose) 
     SKG_TRY(skg_scene_check_pose(scene->parts[id].label, pose));
     memcpy(scene->parts[id].pose, pose, sizeof scene->parts[id].pose);
     scene->poses++;
+    return SKG_OK;
+}
+
+skg_status skg_scene_set_material(skg_scene *scene, int64_t id, skg_material *material) {
+    SKG_TRY(check_id(scene, id, "skg_scene_set_material"));
+    if (!material)
+        return skg_fail(SKG_ERR_ARGUMENT, "part %s has no material; give it one", scene->parts[id].label);
+    skg_material_retain(material);
+    skg_material_release(&scene->parts[id].material);
+    scene->parts[id].material = material;
+    scene->materials++;
     return SKG_OK;
 }

@@ -13,6 +13,7 @@ typedef struct {
     char *label;
     int64_t inside; /* -1: in the world. From a scene file it may be a later part, never in a circle. */
     double pose[16];
+    int32_t priority, reserved;
 } skg_scene_part_data;
 
 struct skg_scene {
@@ -24,6 +25,7 @@ struct skg_scene {
     skg_part_index places; /* by mesh and the pose it came with; of parts alike, the first */
     int64_t structure; /* grows with every part added or put inside another: a plan of an older one is stale
                         */
+    int64_t materials; /* grows with every material that changes */
     int64_t poses;     /* grows with every pose that changes */
 };
 

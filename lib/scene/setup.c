@@ -15,9 +15,11 @@ static const skg_json_key top_keys[] = {
     {"Tolerance", NULL, SKG_KEY_READ},
     {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
     {"Breathing", "breathing", SKG_KEY_NOT_YET},
-    {"Noise", "noise", SKG_KEY_NOT_YET},
+    {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
     {"World", NULL, SKG_KEY_READ},
+    {"Repair", NULL, SKG_KEY_READ},
+    {"Clip", NULL, SKG_KEY_READ},
 };
 
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
@@ -40,14 +42,27 @@ static skg_status read_version(const skg_json_object *top) {
 
 static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     static const char *const names[] = {"single", "double", "half"};
+    static const int32_t values[] = {SKG_SINGLE, SKG_DOUBLE, SKG_HALF};
     skg_json_node node = skg_json_member(top, "Precision");
     if (!node.value) return SKG_OK;
     int64_t choice = 0;
     SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
-    if (choice == 2)
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "half is not simulated yet; use single or double");
     setup->has_precision = 1;
-    setup->precision = choice == 0 ? SKG_SINGLE : SKG_DOUBLE;
+    setup->precision = values[choice];
+    return SKG_OK;
+}
+
+/* What becomes of open meshes, and of what leaves its parent. */
+static skg_status read_mends(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {
+        [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
+    const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
+    if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
+    if (!repair.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&repair, "repair", names, 3, &choice));
+    setup->has_repair = 1;
+    setup->repair = (int32_t)choice;
     return SKG_OK;
 }
 
@@ -82,10 +97,13 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
+    SKG_TRY(read_mends(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
     SKG_TRY(read_world(reader, &top));
+    skg_json_node noise = skg_json_member(&top, "Noise");
+    SKG_TRY(skg_setup_read_noise(reader, &noise));
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
     return skg_setup_read_samples(reader, &samples);
@@ -121,6 +139,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_spectrum_release(&(*setup)->spectrum);
     skg_response_release(&(*setup)->response);
     skg_material_release(&(*setup)->world);
+    skg_free(&(*setup)->blur_samples);
     skg_free(&(*setup)->scan.folder);
     skg_free(setup);
 }
@@ -147,8 +166,21 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
+    if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->has_repair) ours.repair = setup->repair;
+    if (setup->clip) ours.clip = 1;
+    if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
+    if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
+    if (setup->blur.columns > 0) ours.blur = &setup->blur;
+    if (setup->noise.quantum || setup->noise.electronic_kev > 0 || setup->noise.step_kev > 0) {
+        ours.noise = setup->noise.quantum;
+        ours.swank = setup->noise.swank;
+        ours.noise_seed = setup->noise.seed;
+        ours.electronic_kev = setup->noise.electronic_kev;
+        ours.quantum_step_kev = setup->noise.step_kev;
+    }
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
 }

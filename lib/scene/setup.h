@@ -28,15 +28,28 @@ typedef struct {
     char *folder;     /* OutFolder relative to the scene file's own, or NULL */
 } skg_scan_section;
 
+/* The key Noise; all zero but swank: none. */
+typedef struct {
+    int32_t quantum, reserved;
+    double electronic_kev, step_kev, swank;
+    int64_t seed;
+} skg_setup_noise;
+
 struct skg_setup {
     skg_scene *scene;
     skg_spectrum *spectrum;
     int32_t absolute;       /* 1: photons come from mAs; the beam falls off with distance */
     skg_response *response; /* NULL: ideal */
     skg_material *world;    /* around the parts; NULL: vacuum */
-    skg_view view;          /* of the first projection */
+    skg_detector_blur blur; /* columns 0: none */
+    double *blur_samples;   /* that it points to */
+    skg_setup_noise noise;
+    skg_spot spot;
+    int32_t supersampling; /* rays a side of a pixel */
+    skg_view view;         /* of the first projection */
     skg_scan_section scan;
     int32_t precision, has_precision;
+    int32_t repair, has_repair, clip;
     double tolerance; /* negative: not given */
 };
 
@@ -55,6 +68,10 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
 
+/* Shape of a source and how it is sampled (setup_spot.c). */
+skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
+                                       int32_t *parallel);
+
 /* The key Beam; with mAs in photons per mm2 at 1 m until the detector is known and skg_setup_place_beam was
  * called. node: of the beam or what it lies in, for messages. */
 skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node);
@@ -62,6 +79,10 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
 
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
+
+/* LSF or PSF of a detector; Noise of the file (value NULL: none). */
+skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *detector);
+skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);
 
 /* A material: its name, or an array with its kind; density may be absent (value NULL). label: its name where
  * it has none of its own; may be NULL. The caller releases it. */

@@ -1,29 +1,11 @@
 #include "scene/setup.h"
 
 static const skg_json_key source_keys[] = {
-    {"Position", NULL, SKG_KEY_READ},
-    {"Direction", NULL, SKG_KEY_READ},
-    {"Shape", NULL, SKG_KEY_READ},
-    {"Beam", NULL, SKG_KEY_READ},
+    {"Position", NULL, SKG_KEY_READ}, {"Direction", NULL, SKG_KEY_READ},
+    {"Shape", NULL, SKG_KEY_READ},    {"Samples", NULL, SKG_KEY_READ},
+    {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
+    {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
 };
-
-static skg_status read_shape(const skg_json_object *source, int32_t *parallel) {
-    static const char *const shapes[] = {"PointSource", "Point",        "Cone",
-                                         "ConeBeam",    "ParallelBeam", "Parallel"};
-    skg_json_node node, first;
-    int64_t choice = 0;
-    SKG_TRY(skg_json_need(source, "Shape", "\"PointSource\" or \"ParallelBeam\"", &node));
-    if (json_is_array(node.value)) {
-        static const char *const spots[] = {"FocalSpot"};
-        first = skg_json_element(&node, 0);
-        SKG_TRY(skg_json_choice(&first, "shape of an extended source", spots, 1, &choice));
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED,
-                             "a focal spot is not simulated yet; use \"PointSource\"");
-    }
-    SKG_TRY(skg_json_choice(&node, "shape of a source", shapes, 6, &choice));
-    *parallel = choice >= 4;
-    return SKG_OK;
-}
 
 skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node) {
     skg_setup *setup = reader->setup;
@@ -31,7 +13,7 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     skg_json_node beam;
     int32_t parallel = 0;
     SKG_TRY(skg_json_read_object(node, source_keys, sizeof source_keys / sizeof *source_keys, &source));
-    SKG_TRY(read_shape(&source, &parallel));
+    SKG_TRY(skg_setup_read_source_shape(reader, &source, &parallel));
     skg_view_init(&setup->view);
     skg_json_node position = skg_json_member(&source, "Position");
     skg_json_node direction = skg_json_member(&source, "Direction");

@@ -84,11 +84,11 @@ START_TEST(affinity_is_left_alone_where_it_would_hurt) {
     ck_run(0, "POCL_AFFINITY=0 |devices");
     ck_assert_ptr_nonnull(strstr(said, "0 (as the environment says)"));
     ck_run(0, "SLURM_JOB_ID=7 |devices");
-    ck_assert_ptr_nonnull(strstr(said, "- (not set: SLURM_JOB_ID says"));
+    ck_assert_ptr_nonnull(strstr(said, "- (not pinned: SLURM_JOB_ID says"));
     if (sysconf(_SC_NPROCESSORS_ONLN) > 1) { /* 0 is a core that every machine has */
         char line[256];
         snprintf(line, sizeof line,
-                 "taskset -c 0 %s devices | grep -q 'not set: this process may run on some'", SKG_COMMAND);
+                 "taskset -c 0 %s devices | grep -q 'not pinned: this process may run on some'", SKG_COMMAND);
         ck_assert_int_eq(system(line), 0);
     }
 }

@@ -47,7 +47,7 @@ START_TEST(quantities_have_their_values) {
         double open;
     } cases[] = {
         {"", "energy (keV per pixel)", 0, 60000},
-        {"--quantity photons", "photons (per pixel)", 0, 1000},
+        {"--quantity photons", "photons (photons per pixel)", 0, 1000},
         {"--quantity fluence", "fluence (keV/mm2)", 0, 30000}, /* pixels of 1 x 2 mm */
         {"--quantity=transmission", "transmission (I/I0)", 0, 1},
         {"--quantity attenuation", "attenuation (-ln(I/I0))", 1, 0},
@@ -66,6 +66,39 @@ START_TEST(quantities_have_their_values) {
             ck_assert(values[0] == cases[i].open); /* beside both: the open beam */
         }
     }
+}
+END_TEST
+
+/* Two energies and one band for each: a channel each, with its own name in the file. */
+START_TEST(bands_are_channels) {
+    static const char beam[] = "--set 'Source.Beam=[{\"Energy\":40,\"Unit\":\"keV\",\"PhotonCount\":100},"
+                               "{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1000}]'";
+    static char bytes[PIXELS * 8 + 4096];
+    char path[512];
+    float values[2];
+    double expected = exp(-(0.02 * 20.5 + 0.05 * 20));
+    ck_run(0, "image scene.json -o a.mha -o a.tif -o a.png --bands 30,50,70 --quantity photons %s", beam);
+    ck_assert_ptr_nonnull(strstr(said, "photons from 30 to 50 keV"));
+    snprintf(path, sizeof path, "%s/a.mha", folder);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    size_t count = fread(bytes, 1, sizeof bytes - 1, stream);
+    fclose(stream);
+    bytes[count] = '\0';
+    ck_assert_ptr_nonnull(strstr(bytes, "ElementNumberOfChannels = 2\n"));
+    ck_assert_ptr_nonnull(
+        strstr(bytes, "ChannelNames = photons from 30 to 50 keV; photons from 50 to 70 keV\n"));
+    memcpy(values, bytes + count - (size_t)(PIXELS - MIDDLE) * sizeof values, sizeof values);
+    ck_assert_double_eq_tol((double)values[0], 100 * expected, 1e-5 * 100);
+    ck_assert_double_eq_tol((double)values[1], 1000 * expected, 1e-5 * 1000);
+    ck_run(0, "image scene.json -o a.mha --bands 1,2");
+    ck_assert_ptr_nonnull(strstr(said, "energy from 1 to 2 keV 0 to 0 keV per pixel"));
+    ck_run_fails(2, "--bands 30: one edge makes no band", "image scene.json -o b.mha --bands 30");
+    ck_run_fails(2, "\"20\" is no energy in keV above", "image scene.json -o b.mha --bands 30,20");
+    ck_run_fails(2, "\"\" is no energy in keV above", "image scene.json -o b.mha --bands 30,");
+    ck_run_fails(2, "more than 16 bands",
+                 "image scene.json -o b.mha --bands 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18");
+    ck_run_fails(3, "channel 0", "image scene.json -o b.mha --bands 1,2 --quantity transmission");
 }
 END_TEST
 
@@ -164,9 +197,12 @@ END_TEST
 START_TEST(plan_says_what_and_why) {
     ck_run(0, "plan scene.json");
     ck_assert_ptr_nonnull(strstr(said, "scene.json: 2 parts (0 open), 24 triangles"));
+    ck_assert_ptr_null(strstr(said, "1 tiles"));
     ck_assert_ptr_nonnull(strstr(said, "60 keV, 1000 photons per pixel"));
     ck_assert_ptr_nonnull(strstr(said, "\n  on  nesting "));
     ck_assert_ptr_nonnull(strstr(said, "Directly transmitted photons only."));
+    ck_run(0, "plan scene.json --strategy atomics");
+    ck_assert_ptr_nonnull(strstr(said, "atomics: the whole detector, 24 triangles\n"));
     ck_run(0, "plan scene.json --set Samples.bone.Cuboid='[10,60,30,\"mm\"]'");
     ck_assert_ptr_nonnull(strstr(said, "bone leaves its parent skin: "));
 }
@@ -203,6 +239,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, quantities_have_their_values);
+    tcase_add_test(tests, bands_are_channels);
     tcase_add_test(tests, lengths_are_net_or_of_the_surface);
     tcase_add_test(tests, every_output_is_written);
     tcase_add_test(tests, strategies_give_the_same_bits);

@@ -111,6 +111,21 @@ START_TEST(one_material_by_many_names) {
     ck_assert_double_eq(density_of(formula), 1);
     skg_material_release(&formula);
     ck_assert_double_eq(mu_rho("bone cortical icru44", 60), mu_rho("Bone, Cortical (ICRU-44)", 60));
+    static const char *const words[][2] = {{"soft tissue icru44", "Tissue, Soft (ICRU-44)"},
+                                           {"icru44 tissue soft", "Tissue, Soft (ICRU-44)"},
+                                           {"ICRU-44 soft tissue", "Tissue, Soft (ICRU-44)"},
+                                           {"icru44 cortical bone", "Bone, Cortical (ICRU-44)"},
+                                           {"cortical bone", "Bone, Cortical (ICRU-44)"},
+                                           {"lung", "Lung inflated (ICRU-46 healthy adult)"},
+                                           {"blood", "Blood, Whole (ICRU-44)"},
+                                           {"muscle", "Muscle, Skeletal (ICRU-44)"}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        skg_material *material = named(words[i][0]);
+        const char *name = NULL;
+        ck_skg(skg_material_name(material, &name));
+        ck_assert_str_eq(name, words[i][1]);
+        skg_material_release(&material);
+    }
     ck_assert_double_eq(mu_rho("Fe", 60), mu_rho("iron", 60));
     ck_assert_double_eq(mu_rho("weight:Fe100", 60), mu_rho("Fe", 60));
     ck_assert_double_eq(mu_rho("portland", 60),

@@ -283,6 +283,31 @@ START_TEST(metaimage_keeps_bits_and_place) {
 }
 END_TEST
 
+START_TEST(channels_have_names_of_their_own) {
+    static const char *const names[CHANNELS] = {"low band", "high band"}, *const none[CHANNELS] = {"low",
+                                                                                                   NULL};
+    char header[2048];
+    float data[CHANNELS * PIXELS + 1];
+    skg_picture picture = picture_of(SKG_FLOAT32);
+    picture.channels = CHANNELS, picture.channel_names = names;
+    ck_skg(skg_picture_write(&picture, at("a.mha")));
+    read_mha(path, header, sizeof header, data, sizeof data);
+    ck_assert_ptr_nonnull(strstr(header, "\nChannelNames = low band; high band\n"));
+    ck_skg(skg_picture_write(&picture, at("a.tif")));
+    TIFF *tiff = TIFFOpen(path, "r");
+    ck_assert_ptr_nonnull(tiff);
+    for (int c = 0; c < CHANNELS; c++) {
+        char *description = NULL;
+        ck_assert_int_eq(TIFFSetDirectory(tiff, (tdir_t)c), 1);
+        TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &description);
+        ck_assert_int_eq(strncmp(description, names[c], strlen(names[c])), 0);
+    }
+    TIFFClose(tiff);
+    picture.channel_names = none;
+    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "channel 1 has no name");
+}
+END_TEST
+
 START_TEST(metaimage_interleaves_channels) {
     char header[2048];
     float data[CHANNELS * PIXELS + 1];
@@ -394,6 +419,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, png_knows_what_the_data_are);
     tcase_add_test(tests, ranges_leave_out_what_is_not_finite);
     tcase_add_test(tests, tiff_keeps_every_bit);
+    tcase_add_test(tests, channels_have_names_of_their_own);
     tcase_add_test(tests, metaimage_keeps_bits_and_place);
     tcase_add_test(tests, metaimage_interleaves_channels);
     tcase_add_test(tests, skewed_steps_are_no_metaimage);

@@ -187,6 +187,24 @@ START_TEST(responses) {
 }
 END_TEST
 
+START_TEST(focal_spots) {
+    write_file("scene.json", good);
+    ck_skg(load());
+    ck_assert_ptr_null(options().spot);
+    ck_assert_int_eq(options().supersampling, 1);
+    ck_skg(load_with("Source.Shape=[\"FocalSpot\", 0.5, \"cm\", 4]", NULL));
+    ck_assert_int_eq(options().spot->shape, SKG_SPOT_CUBE);
+    ck_assert_int_eq(options().spot->grid, 4);
+    for (int k = 0; k < 3; k++) ck_assert_double_eq(options().spot->extent[k], 5);
+    ck_skg(load_with("Source.Shape=[\"Gaussian\", 1, 0.6, \"mm\"]", "Source.Samples=128"));
+    ck_assert_int_eq(options().spot->shape, SKG_SPOT_GAUSSIAN);
+    ck_assert_int_eq(options().spot->samples, 128);
+    ck_assert_double_eq(options().spot->extent[1], 0.6);
+    ck_skg(load_with("Detector.Oversampling=3", NULL));
+    ck_assert_int_eq(options().supersampling, 3);
+}
+END_TEST
+
 START_TEST(worlds) {
     const skg_material *world = NULL;
     double mu = 0;
@@ -244,6 +262,47 @@ static const struct {
      "Detector.Scintillator.Material: "},
 };
 
+static skg_plan_options options_with(const char *one, const char *two) {
+    skg_plan_options options;
+    ck_skg(load_with(one, two));
+    skg_plan_options_init(&options);
+    ck_skg(skg_setup_options(setup, &options));
+    return options;
+}
+
+START_TEST(line_and_point_spread) {
+    skg_plan_options options = options_with("World=Vacuum", NULL);
+    ck_assert_ptr_null(options.blur);
+    options = options_with("Detector.LSF=[0.25, 1, 0.5]", NULL);
+    ck_assert(options.blur->columns == 3 && options.blur->rows == 3 && !options.blur->point);
+    ck_assert_double_eq(options.blur->along_row[2], 0.5);
+    ck_assert_double_eq(options.blur->along_column[0], 0.25);
+    options = options_with("Detector.LSF=[[1], [1, 2, 4]]", NULL);
+    ck_assert(options.blur->columns == 1 && options.blur->rows == 3);
+    ck_assert_double_eq(options.blur->along_row[0], 1);
+    ck_assert_double_eq(options.blur->along_column[2], 4);
+    options = options_with("Detector.PSF=[[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [1, 1, 1, 1, 1]]", NULL);
+    ck_assert(options.blur->columns == 5 && options.blur->rows == 3);
+    ck_assert_double_eq(options.blur->point[8], 8);
+}
+END_TEST
+
+START_TEST(noises) {
+    skg_plan_options options = options_with("Noise=false", NULL);
+    ck_assert_int_eq(options.noise, 0);
+    options = options_with("Noise=true", NULL);
+    ck_assert_int_eq(options.noise, 1);
+    ck_assert_double_eq(options.swank, 1);
+    options = options_with("Noise={\"Quantum\": false, \"Electronic\": [2500, \"eV\"], \"Step\": [0.5, "
+                           "\"keV\"], \"Swank\": 0.92, \"Seed\": -7}",
+                           NULL);
+    ck_assert(options.noise == 0 && options.noise_seed == -7);
+    ck_assert_double_eq_tol(options.electronic_kev, 2.5, 1e-12);
+    ck_assert_double_eq(options.quantum_step_kev, 0.5);
+    ck_assert_double_eq(options.swank, 0.92);
+}
+END_TEST
+
 START_TEST(what_is_refused) {
     ck_skg_fails(load_with(bad[_i].setting, NULL), bad[_i].status, bad[_i].says);
     ck_assert_ptr_null(setup);
@@ -263,7 +322,10 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, beams_of_many_energies);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
+    tcase_add_test(tests, focal_spots);
     tcase_add_test(tests, worlds);
+    tcase_add_test(tests, line_and_point_spread);
+    tcase_add_test(tests, noises);
     tcase_add_loop_test(tests, what_is_refused, 0, sizeof bad / sizeof *bad);
     tcase_add_test(tests, parallel_beams_have_no_mas);
 }

@@ -69,6 +69,8 @@ typedef struct {
     int64_t filter_count;
     const skg_filter *filters; /* all of them: inherent, added, air */
     skg_context *context;      /* for warnings; may be NULL */
+    skg_log_function log;      /* receives the warnings where there is no context; may be NULL */
+    void *log_user;
 } skg_tube;
 
 SKG_API void skg_tube_init(skg_tube *tube);

@@ -27,6 +27,7 @@ typedef struct {
     double open; /* value of the open beam in data's unit (I0), for display curves; unused for transmission
                     and attenuation; 0 where data is shown as it is (path lengths) */
     double low, high; /* .png: shown from black to white; both 0: the image's own minimum and maximum */
+    const char *const *channel_names; /* [channels]: in the place of name, for each channel; may be NULL */
 } skg_picture;
 
 SKG_API void skg_picture_init(skg_picture *picture);
@@ -34,8 +35,9 @@ SKG_API void skg_picture_init(skg_picture *picture);
 /* Writes by extension: .png (16 bit grey, row 0 on top, first channel, display curve and range stated in a
  * text chunk), .tif or .tiff and .mha (float32 or float64, every channel). MetaImage carries spacing, origin
  * and direction of the detector; skewed steps cannot be such a direction and are refused
- * (SKG_ERR_UNSUPPORTED): use TIFF. Errors: SKG_ERR_ARGUMENT (unknown extension, named with those known),
- * SKG_ERR_OUTPUT. */
+ * (SKG_ERR_UNSUPPORTED): use TIFF. Each TIFF page's description has its channel's name; a MetaImage with
+ * channel_names has a field ChannelNames, "; " between them. Errors: SKG_ERR_ARGUMENT (unknown extension,
+ * named with those known), SKG_ERR_OUTPUT. */
 SKG_API skg_status skg_picture_write(const skg_picture *picture, const char *path);
 
 /* Whether skg_picture_write could write there, to know it before a long computation: the extension is one of

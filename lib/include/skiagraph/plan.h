@@ -16,7 +16,7 @@ extern "C" {
 typedef struct skg_plan skg_plan;
 typedef struct skg_job skg_job;
 
-enum { SKG_SINGLE = 0, SKG_DOUBLE = 1 };
+enum { SKG_SINGLE = 0, SKG_DOUBLE = 1, SKG_HALF = 2 };
 enum { SKG_STRATEGY_AUTO = 0, SKG_STRATEGY_COPIES = 1, SKG_STRATEGY_TILES = 2, SKG_STRATEGY_ATOMICS = 3 };
 
 /* What a pixel holds. I0 is the same chain without parts. */
@@ -29,6 +29,31 @@ enum {
 };
 
 enum { SKG_MOST_CHANNELS = 16 };
+
+/* What a line or a point becomes on the detector, sampled one pixel apart, the middle sample in place; scaled
+ * to sum 1. Either two line spread functions, whose product is the point spread function, or the latter.
+ * Sample k of n is what of a pixel's value is found k - n/2 pixels further on. Beyond its border the image
+ * goes on as at the border. Numbers of samples are odd, 1 to 4095. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;           /* 0 */
+    int64_t columns, rows;      /* samples along a row and along a column */
+    const double *along_row;    /* [columns] line spread function */
+    const double *along_column; /* [rows] line spread function */
+    const double *point;        /* [rows][columns] point spread function; NULL: the two above */
+} skg_detector_blur;
+
+SKG_API void skg_detector_blur_init(skg_detector_blur *blur);
+
+/* What becomes of an open mesh's bad pixels, where a ray does not leave it as often as it enters it. A ray
+ * that goes in by one hole and out by another is not found out by this, and stays without the part. NONE: the
+ * part is left out there. NEIGHBOURS: the mean of the part's path parameters over the pixel's neighbourhood,
+ * which is grown until it holds valid pixels (Vidal and Villard 2016, 3.2.7); left out where there is no
+ * valid one at all. EXACT: cast anew on the host, in double, through the mesh with each loop of open edges
+ * capped by a fan about its mean. Exact where loops are plane: any missing triangle, plane holes, cracks at
+ * T-junctions, single flipped triangles; one of many surfaces where not. Submitting waits for the raster of
+ * open parts. */
+enum { SKG_REPAIR_NONE = 0, SKG_REPAIR_NEIGHBOURS = 1, SKG_REPAIR_EXACT = 2 };
 
 /* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
  * centre, their width along the projected column step. */
@@ -62,14 +87,15 @@ SKG_API void skg_spot_init(skg_spot *spot);
 
 typedef struct {
     int32_t size;
-    int32_t
-        precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent */
-    int32_t strategy; /* SKG_STRATEGY_...; every one gives the same bits */
-    int32_t quantity; /* SKG_ENERGY, ... */
-    int32_t tile;     /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
-    int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
-                         looked for */
-    int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
+    int32_t precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent;
+                             SKG_HALF: distances and images in 16 bits as Vidal and Villard 2016, to compare
+                          with: a point source or samples of one, closed meshes */
+    int32_t strategy;  /* SKG_STRATEGY_...; every one gives the same bits */
+    int32_t quantity;  /* SKG_ENERGY, ... */
+    int32_t tile;      /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
+    int32_t overlaps;  /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
+                          looked for */
+    int32_t profile;   /* 1: stages are timed (a little slower); 0: not */
     int32_t
         falloff; /* 1: intensities fall with the cube of the distance from the source (inverse square and
                     obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
@@ -79,9 +105,22 @@ typedef struct {
                               everything */
     const skg_spot *spot;  /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
     int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
-    int32_t reserved;      /* 0 */
+    int32_t noise; /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
     const double
-        *band_kev; /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+        *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
+    double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
+                         error that fewer energies and planes may make, relative where more than 1e-6 of the
+                         open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
+                         that the plan's view meets, and a quarter more */
+    const skg_detector_blur *blur; /* copied; NULL: none */
+    double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
+                           variance by 1 / swank; 1 (default): every photon gives what the response says */
+    int64_t noise_seed; /* added to that of each frame */
+    double electronic_kev;   /* standard deviation of the electronic noise, keV per pixel; 0: none */
+    double quantum_step_kev; /* values are whole multiples of it, keV per pixel; 0: any */
+    int32_t repair;          /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
+    int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
+                     it */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -106,7 +145,8 @@ typedef struct {
     int64_t posed;             /* how many parts have a pose of their own in this frame */
     const int64_t *posed_ids;  /* [posed] numbers of parts */
     const double *posed_poses; /* [posed][16] */
-    int64_t noise_seed;        /* with index: the key of the noise, where there is noise */
+    int64_t noise_seed;        /* with index: the key of the noise, where there is noise: frames of another
+                                  key are independent, those of the same have the same noise */
     int64_t index;
 } skg_frame;
 
@@ -134,7 +174,9 @@ SKG_API void skg_output_init(skg_output *output);
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
-/* Waits until the job's images are in their place, releases the job and sets *job to NULL. */
+/* Waits until the job's images are in their place, releases the job and sets *job to NULL. SKG_RANGE: the
+ * images are there, but some pixels meet lengths outside the range that the plan's error bound was verified
+ * for. */
 SKG_API skg_status skg_job_wait(skg_job **job);
 
 /* Submit and wait of one frame as the scene stands. */
@@ -178,10 +220,22 @@ typedef struct {
                             out */
     int64_t bad_pixels;  /* of the last frame: signed hits of an open mesh do not cancel there */
     int64_t negative_pixels; /* of the last frame: negative exponent */
+    int64_t nodes, bins;     /* energies that are used, and that the spectrum has photons at */
+    double bound; /* of the error that fewer nodes and planes make, in the words of the tolerance: twice the
+                     worst that was found; 0 where every bin is used */
+    int64_t verified;        /* number of points (lengths of all materials) on which it was looked for */
+    int64_t repaired_pixels; /* of the last frame: of the bad ones; the others are without their part */
+    int64_t outside_pixels;  /* of the last job: lengths outside the range that the bound was verified for */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
 SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report);
+
+/* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
+ * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
+ * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. */
+SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                                 double *weights);
 
 /* Each effect that a plan knows: on or off, and why. Text valid as long as the plan. */
 typedef struct {

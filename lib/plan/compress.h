@@ -1,0 +1,13 @@
+/* Fewer planes and energies for a model, within a tolerance. Private. */
+#ifndef SKG_COMPRESS_H
+#define SKG_COMPRESS_H
+
+#include "plan/model.h"
+
+/* Rewrites a model that has a plane per material and a node per bin; leaves it as it is where that meets no
+ * lower cost. mu: [planes][nodes] 1/mm, what a mm of a plane attenuates; it is left as it was. tolerance > 0.
+ * is_ratio: images are over the open beam. */
+skg_status skg_compress(const skg_scene *scene, const skg_view *view, const double *mu, double tolerance,
+                        int is_ratio, skg_model *model);
+
+#endif

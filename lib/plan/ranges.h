@@ -1,0 +1,23 @@
+/* Which lengths of materials the rays of a view meet: a coarse L-buffer in double, on the host. Private. */
+#ifndef SKG_RANGES_H
+#define SKG_RANGES_H
+
+#include "plan/model.h"
+
+typedef struct {
+    int32_t planes, reserved;
+    int64_t rays;
+    double *lengths; /* [rays][planes] what a ray adds to the planes, mm times weight */
+    double *low;     /* [planes] mm: range with a margin of a quarter; 0 or less (parts that overlap) */
+    double *high;    /* [planes] mm */
+    double *hits;    /* [parts] mean per ray */
+} skg_ranges;
+
+/* Rays to 64 x 64 places over the view's detector, and 16 x 16 over each part's own rectangle, so that small
+ * parts are met; a part that the view does not show counts with the longest edge of its box. model: its
+ * planes and writes. */
+skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, const skg_model *model,
+                           skg_ranges *ranges);
+void skg_ranges_release(skg_ranges *ranges);
+
+#endif

@@ -1,0 +1,237 @@
+/* Images with a tolerance against the same images with every energy and every material's plane. */
+#include "suite.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SIDE = 48, MOST_CHANNELS = 3 };
+
+typedef struct {
+    double pixels[MOST_CHANNELS * SIDE * SIDE];
+    skg_plan_report report;
+    double open[MOST_CHANNELS];
+    int64_t channels;
+} picture;
+
+static skg_context *context;
+static skg_scene *scene;
+static skg_view view;
+static uint64_t state;
+
+static double next_random(void) {
+    state = state * 6364136223846793005u + 1442695040888963407u; /* Knuth's MMIX */
+    return (double)(state >> 11) * 0x1p-53;
+}
+
+static void open_scene(uint64_t seed) {
+    state = seed;
+    ck_skg(skg_context_create(NULL, &context));
+    ck_skg(skg_scene_create(context, &scene));
+    skg_view_init(&view);
+    view.columns = view.rows = SIDE;
+    view.source[2] = -800;
+    view.centre[2] = 300;
+    view.column_step[0] = view.row_step[1] = 6;
+}
+
+static void close_scene(void) {
+    skg_scene_release(&scene);
+    skg_context_release(&context);
+}
+
+static void add(skg_mesh *mesh, const char *name, double x, double y, int64_t inside) {
+    skg_material *material = NULL;
+    skg_part part;
+    char label[16];
+    int64_t number = 0;
+    ck_skg(skg_scene_size(scene, &number));
+    snprintf(label, sizeof label, "part %d", (int)number);
+    ck_skg(skg_material_named(name, &material));
+    skg_part_init(&part);
+    part.mesh = mesh, part.material = material, part.inside = inside, part.label = label;
+    part.pose[3] = x, part.pose[7] = y;
+    ck_skg(skg_scene_add(scene, &part, NULL));
+    skg_mesh_release(&mesh);
+    skg_material_release(&material);
+}
+
+/* A body, tissues in it, and now and then what has a K edge or lets little pass. */
+static void add_parts(int count) {
+    static const char *const names[] = {"Adipose Tissue (ICRU-44)",
+                                        "Bone, Cortical (ICRU-44)",
+                                        "Lung Tissue (ICRU-44)",
+                                        "Blood, Whole (ICRU-44)",
+                                        "Breast Tissue (ICRU-44)",
+                                        "water",
+                                        "Brain, Grey/White Matter (ICRU-44)",
+                                        "I",
+                                        "Fe",
+                                        "Gd"};
+    skg_mesh *mesh = NULL;
+    ck_skg(skg_mesh_cuboid(200, 180, 150 * next_random() + 60, &mesh));
+    add(mesh, "Tissue, Soft (ICRU-44)", 0, 0, -1);
+    for (int k = 0; k < count; k++) {
+        const int which = (int)(10 * next_random());
+        const double size = which < 7 ? 20 + 30 * next_random() : 0.3 + next_random();
+        if (which < 7)
+            ck_skg(skg_mesh_sphere(size / 2, 24, &mesh));
+        else
+            ck_skg(skg_mesh_cuboid(15, 15, size, &mesh));
+        add(mesh, names[which], 140 * next_random() - 70, 120 * next_random() - 60, 0);
+    }
+}
+
+static skg_spectrum *tube(double kvp) {
+    skg_tube t;
+    skg_spectrum *spectrum = NULL;
+    skg_material *aluminium = NULL;
+    ck_skg(skg_material_element(13, &aluminium));
+    const skg_filter filter = {aluminium, 2.5};
+    skg_tube_init(&t);
+    t.kvp = kvp, t.filter_count = 1, t.filters = &filter;
+    ck_skg(skg_spectrum_tube(&t, &spectrum));
+    skg_material_release(&aluminium);
+    return spectrum;
+}
+
+static void take(skg_spectrum *spectrum, const skg_plan_options *options, picture *shown) {
+    skg_plan *plan = NULL;
+    skg_output output;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, options, &plan));
+    ck_skg(skg_plan_channels(plan, &shown->channels));
+    ck_assert_int_le(shown->channels, MOST_CHANNELS);
+    for (int64_t c = 0; c < shown->channels; c++) {
+        skg_channel channel;
+        skg_channel_init(&channel);
+        ck_skg(skg_plan_channel(plan, c, &channel));
+        shown->open[c] = channel.open;
+    }
+    skg_output_init(&output);
+    output.data = shown->pixels;
+    output.type = options->precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
+    ck_skg(skg_plan_image(plan, &output));
+    if (output.type == SKG_FLOAT32) /* from the end: doubles do not overwrite what is still to be read */
+        for (int64_t k = shown->channels * SIDE * SIDE - 1; k >= 0; k--) {
+            float pixel;
+            memcpy(&pixel, (const char *)shown->pixels + (size_t)k * sizeof pixel, sizeof pixel);
+            shown->pixels[k] = (double)pixel;
+        }
+    skg_plan_report_init(&shown->report);
+    ck_skg(skg_plan_get_report(plan, &shown->report));
+    skg_plan_release(&plan);
+}
+
+/* Error of a pixel in the words of the tolerance. */
+static double error_of(const skg_plan_options *options, double found, double truth, double open) {
+    if (options->quantity == SKG_ATTENUATION) {
+        found = exp(-found), truth = exp(-truth);
+        open = 1;
+    }
+    return fabs(found - truth) / fmax(truth, 1e-6 * open);
+}
+
+static void compare(skg_spectrum *spectrum, skg_plan_options *options) {
+    static picture exact, fewer;
+    const double tolerance = options->tolerance;
+    take(spectrum, options, &fewer);
+    options->tolerance = 0;
+    take(spectrum, options, &exact);
+    ck_assert_int_gt(fewer.report.verified, 0);
+    ck_assert_double_le(fewer.report.bound, tolerance);
+    ck_assert_int_lt(fewer.report.nodes, fewer.report.bins);
+    ck_assert_int_le(fewer.report.planes, exact.report.planes);
+    ck_assert_int_eq(exact.report.nodes, fewer.report.bins);
+    ck_assert_int_eq(exact.report.verified, 0);
+    ck_assert_double_eq(exact.report.bound, 0);
+    /* Single precision: exponents up to 14 carry 2^-24 of themselves from each of a few operations. */
+    const double bar = fewer.report.bound + (options->precision == SKG_DOUBLE ? 1e-11 : 14 * 8 * 0x1p-24);
+    for (int64_t k = 0; k < exact.channels * SIDE * SIDE; k++) {
+        const double open = exact.open[k / (SIDE * SIDE)];
+        ck_assert_double_le(error_of(options, fewer.pixels[k], exact.pixels[k], open), bar);
+    }
+}
+
+static int has_double(void) {
+    skg_device_info info;
+    skg_device_info_init(&info);
+    ck_skg(skg_context_device(context, &info));
+    return info.has_double;
+}
+
+/* Most show intensities of one channel, so that they share kernels. */
+START_TEST(random_scenes) {
+    static const double edges[4] = {15, 40, 65, 160};
+    skg_material *air = NULL;
+    skg_plan_options options;
+    open_scene((uint64_t)_i + 1);
+    add_parts(2 + (int)(6 * next_random()));
+    skg_spectrum *spectrum = tube(60 + floor(90 * next_random()));
+    skg_plan_options_init(&options);
+    options.overlaps = 0;
+    options.precision = has_double() ? SKG_DOUBLE : SKG_SINGLE;
+    options.quantity = _i == 4 ? SKG_ATTENUATION : _i % 2 ? SKG_PHOTONS : SKG_ENERGY;
+    options.tolerance = pow(10, -2 - 3 * next_random());
+    if (_i % 10 == 7) {
+        options.quantity = SKG_TRANSMISSION;
+        ck_skg(skg_material_named("water", &air)); /* in water: what air does not show */
+        options.world = air;
+    }
+    if (_i == 3) options.bands = 3, options.band_kev = edges;
+    compare(spectrum, &options);
+    skg_material_release(&air);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
+/* A body that grows beyond what was verified is told, and its image is still made; back again is well. */
+START_TEST(leaving_the_verified_range) {
+    static float pixels[SIDE * SIDE];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    skg_output output;
+    skg_plan_report report;
+    skg_job *job = NULL;
+    const int64_t part = 0;
+    double larger[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.6, 0, 0, 0, 0, 1};
+    skg_frame frame;
+    open_scene(5);
+    add_parts(0);
+    skg_spectrum *spectrum = tube(100);
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-3;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    skg_output_init(&output);
+    output.data = pixels;
+    ck_skg(skg_plan_image(plan, &output));
+    const float before = pixels[SIDE * SIDE / 2 + SIDE / 2];
+    skg_frame_init(&frame);
+    frame.posed = 1, frame.posed_ids = &part, frame.posed_poses = larger;
+    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg_fails(skg_job_wait(&job), SKG_RANGE, "bound");
+    ck_assert_ptr_null(job);
+    const float after = pixels[SIDE * SIDE / 2 + SIDE / 2];
+    ck_assert(after > 0 && after < before);
+    skg_plan_report_init(&report);
+    ck_skg(skg_plan_get_report(plan, &report));
+    ck_assert_int_gt(report.outside_pixels, SIDE);
+    larger[10] = 1.2; /* within the quarter more */
+    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    ck_skg(skg_plan_get_report(plan, &report));
+    ck_assert_int_eq(report.outside_pixels, 0);
+    skg_plan_release(&plan);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_loop_test(tests, random_scenes, 0, 20);
+    tcase_add_test(tests, leaving_the_verified_range);
+}
+
+SKG_SUITE_MAIN("compression", add_tests)
