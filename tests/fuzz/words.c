@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const cli_verb *const verbs[] = {&cli_image, &cli_lbuffer, &cli_plan, &cli_mesh, &cli_devices};
+static const cli_verb *const verbs[] = {&cli_image,    &cli_lbuffer, &cli_plan,   &cli_mesh,
+                                        &cli_material, &cli_beam,    &cli_devices};
 
 static void read_flags(const cli_arguments *arguments) {
     static const char *const names[4] = {"auto", "copies", "tiles", "atomics"};
