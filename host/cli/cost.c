@@ -3,10 +3,12 @@
 
 #include "plot.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 const char *const cost_dial_names[COST_DIALS] = {"scene", "precision",      "tolerance",
                                                  "bins",  "source samples", "supersampling"};
@@ -57,6 +59,7 @@ static void add_rays(cost_study *study) {
         }
     its.precision = SKG_SINGLE;
     for (int i = 0; study->has_tube && i < 5; i += step) {
+        if (!cost_has_bins(study, bins[i])) break; /* wider than the tube's model allows */
         its.bins = bins[i];
         its.tolerance = 0;
         add(study, COST_BINS, 0, its);
@@ -111,11 +114,11 @@ static int find_pass_time(cost_study *study, double *image) {
     return status < SKG_OK ? cli_fail(status) : CLI_DONE;
 }
 
-/* A setting that the scene does not allow (half of an open mesh) is noted, not fatal. */
+/* A setting that the scene does not allow (half of an open mesh), or has no memory, is noted, not fatal. */
 static int measure(cost_study *study, cost_point *point, double *image, int *keep) {
     skg_status status = cost_image(study, &point->setting, image, point);
     *keep = status >= SKG_OK;
-    if (!*keep && cli_exit_status(status) == CLI_DEVICE && status != SKG_ERR_UNSUPPORTED)
+    if (status == SKG_ERR_DEVICE || status == SKG_ERR_INTERNAL || status == SKG_ERR_NO_DEVICE)
         return cli_fail(status);
     if (!*keep) {
         char text[160];
@@ -124,7 +127,7 @@ static int measure(cost_study *study, cost_point *point, double *image, int *kee
         return CLI_DONE;
     }
     int exit_status = cost_compare(study, image, study->references[point->reference].image, point);
-    if (exit_status == CLI_DONE && point->dial == COST_PRECISION)
+    if (exit_status == CLI_DONE && (point->dial == COST_PRECISION || point->dial == COST_SCENE))
         point->max_mm = cost_length_error(study, point->setting.precision);
     return exit_status;
 }
@@ -181,11 +184,19 @@ static int has_extension(const char *path, const char *extension) {
     return length > its && strcasecmp(path + length - its, extension) == 0;
 }
 
+/* Before the long computation: whether what -o names could be written. */
 static int check_outputs(const cli_arguments *arguments) {
     const char *path;
-    for (int i = 0; (path = cli_nth_value(arguments, &flag_output, i)); i++)
+    for (int i = 0; (path = cli_nth_value(arguments, &flag_output, i)); i++) {
         if (!has_extension(path, ".html") && !has_extension(path, ".csv"))
             return cli_error(CLI_USAGE, "-o %s: its extension is neither .html nor .csv", path);
+        const char *slash = strrchr(path, '/');
+        char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+        if (!folder) return cli_error(CLI_DEVICE, "out of host memory");
+        int can = access(folder, W_OK | X_OK) == 0;
+        free(folder);
+        if (!can) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
+    }
     return CLI_DONE;
 }
 

@@ -87,6 +87,9 @@ int cost_compare(const cost_study *study, const double *image, const double *ref
 /* Largest error in mm of the path lengths of all parts at a precision; NaN where it has none. */
 double cost_length_error(cost_study *study, int32_t precision);
 
+/* Whether the scene's tube can have so few bins. */
+int cost_has_bins(const cost_study *study, int64_t bins);
+
 /* Passes over the scene that one image takes. */
 double cost_passes(const cost_setting *setting);
 

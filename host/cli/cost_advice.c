@@ -9,39 +9,41 @@
 void cost_find_frontier(cost_study *study) {
     for (int i = 0; i < study->count; i++) {
         cost_point *point = &study->points[i];
-        point->on_frontier = point->reference == 0;
+        point->on_frontier = point->reference == 0 && !isnan(point->max_open);
         for (int k = 0; k < study->count && point->on_frontier; k++) {
             const cost_point *other = &study->points[k];
-            int no_worse = other->reference == 0 && other->median_ms <= point->median_ms &&
-                           other->max_open <= point->max_open;
-            int better = other->median_ms < point->median_ms || other->max_open < point->max_open;
+            int no_worse =
+                other->reference == 0 && other->min_ms <= point->min_ms && other->max_open <= point->max_open;
+            int better = other->min_ms < point->min_ms || other->max_open < point->max_open;
             if (no_worse && better) point->on_frontier = 0;
         }
     }
 }
 
-/* The fastest of the rays' settings within a bar, or else the one with the least error. */
+/* The fastest (minimum: the one that other load disturbs least) of the rays' settings within a bar, or else
+ * the one with the least error. */
 static int choose_rays(const cost_study *study, double bar) {
     int fastest = -1, best = -1;
     for (int i = 0; i < study->count; i++) {
         const cost_point *point = &study->points[i];
-        if (point->reference != 0) continue;
+        if (point->reference != 0 || isnan(point->max_open)) continue;
         if (best < 0 || point->max_open < study->points[best].max_open) best = i;
         if (!(point->max_open <= bar)) continue;
-        if (fastest < 0 || point->median_ms < study->points[fastest].median_ms) fastest = i;
+        if (fastest < 0 || point->min_ms < study->points[fastest].min_ms) fastest = i;
     }
     return fastest >= 0 ? fastest : best;
 }
 
-/* The one with the fewest passes within a bar, or else the one with the most; -1: the dial is not there. */
+/* The one with the fewest passes within a bar, or else the one with the least error; -1: the dial is not
+ * there. */
 static int choose_sampling(const cost_study *study, int reference, double bar) {
-    int most = -1;
+    int best = -1;
     for (int i = 0; i < study->count; i++) { /* rising in passes */
         if (study->points[i].reference != reference) continue;
         if (study->points[i].rms_open <= bar) return i;
-        most = i;
+        if (best < 0 || study->points[i].rms_open < study->points[best].rms_open) best = i;
     }
-    return most;
+    return best;
 }
 
 static int is_plain(const char *word) {

@@ -39,7 +39,7 @@ static void print_sampling(const cost_study *study, const cost_advice *advice) {
     if (advice->supersampling >= 0) worst = fmax(worst, study->points[advice->supersampling].rms_open);
     printf("  with source and pixels' areas%s (root mean square %.1e of the open beam)",
            advice->sampling_met ? "" : ", NOT reached; the best tried", worst);
-    if (advice->whole_state == COST_WHOLE_MEASURED) printf(", %.3f ms", advice->whole.median_ms);
+    if (advice->whole_state == COST_WHOLE_MEASURED) printf(", %.3f ms", advice->whole.min_ms);
     printf("%s:\n", states[advice->whole_state]);
     printf("    %s\n", advice->whole_command);
 }
@@ -47,7 +47,7 @@ static void print_sampling(const cost_study *study, const cost_advice *advice) {
 static void print_advice(const cost_study *study, const cost_advice *advice) {
     const cost_point *rays = &study->points[advice->rays];
     printf("\nfor an error of %g%s: largest %.1e of the open beam, %.3f ms\n    %s\n", advice->tolerance,
-           advice->rays_met ? "" : ", NOT reached; the best tried", rays->max_open, rays->median_ms,
+           advice->rays_met ? "" : ", NOT reached; the best tried", rays->max_open, rays->min_ms,
            advice->rays_command);
     if (advice->whole_state == COST_WHOLE_IS_RAYS)
         printf("  which resolves source and pixels' areas as well%s\n",
