@@ -257,7 +257,8 @@ const cli_verb cli_cost = {
     "precision, tolerance and the tube's bins with double precision, every energy, at the scene's own rays;\n"
     "source samples and supersampling with the most of them. Prints time (minimum and median), largest and\n"
     "root mean square error of the open beam and of the pixel, path lengths also in mm; and for errors of 1e-2,\n"
-    "1e-3, 1e-4 and 1e-6 the command that gives it soonest. Times mean something on an idle machine only.",
+    "1e-3, 1e-4 and 1e-6 the command that gives it soonest. Times mean something on an idle machine only.\n"
+    "--json prints {references, points, advice, notes, ...}; advice names points by their number.",
     1,
     1,
     flags,

@@ -7,7 +7,7 @@
 #include "session.h"
 
 enum { COST_SCENE, COST_PRECISION, COST_TOLERANCE, COST_BINS, COST_SAMPLES, COST_SUPERSAMPLING, COST_DIALS };
-enum { COST_MOST_POINTS = 96, COST_MOST_NOTES = 16, COST_TOLERANCES = 4 };
+enum { COST_MOST_POINTS = 96, COST_MOST_NOTES = 16, COST_MOST_SPECTRA = 16, COST_TOLERANCES = 4 };
 enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: bins of 1 keV up to the highest voltage */
 
 extern const char *const cost_dial_names[COST_DIALS];
@@ -61,6 +61,11 @@ typedef struct {
     cost_setting own; /* the scene's */
     int64_t finest;   /* bins of the reference: 0 or COST_FINEST_BINS */
     int has_tube, has_energies, has_spot;
+    struct {
+        int64_t bins;
+        skg_spectrum *spectrum;
+    } spectra[COST_MOST_SPECTRA]; /* of the tube, as they were asked for: the scene is read again for each */
+    int spectrum_count;
     double pass_ms;               /* of one ray a pixel at the scene's setting */
     cost_reference references[3]; /* of the rays; of source samples; of supersampling */
     cost_point points[COST_MOST_POINTS];
@@ -88,7 +93,7 @@ int cost_compare(const cost_study *study, const double *image, const double *ref
 double cost_length_error(cost_study *study, int32_t precision);
 
 /* Whether the scene's tube can have so few bins. */
-int cost_has_bins(const cost_study *study, int64_t bins);
+int cost_has_bins(cost_study *study, int64_t bins);
 
 /* Passes over the scene that one image takes. */
 double cost_passes(const cost_setting *setting);

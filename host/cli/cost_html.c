@@ -3,6 +3,7 @@
 
 #include "plot.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,11 +105,15 @@ static int reference_json(const cost_study *study, json_t **uri) {
     return exit_status;
 }
 
-/* Middle grey: no difference; black and white: the largest, either sign. */
-static int difference_json(const cost_study *study, const cost_point *point, json_t **uri) {
+/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range. */
+static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
     skg_picture picture;
+    float largest = 0;
+    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++)
+        if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
+    *range = (double)largest;
     begin_picture(study, point->difference, &picture);
-    picture.high = point->max_open > 0 ? point->max_open : 1;
+    picture.high = largest > 0 ? (double)largest : 1;
     picture.low = -picture.high;
     return picture_json(&picture, uri);
 }
@@ -129,9 +134,12 @@ static int add_pictures(const cost_study *study, json_t *object) {
     if (exit_status == CLI_DONE) json_object_set_new(object, "image", uri);
     for (int i = 0; exit_status == CLI_DONE && i < study->count; i++) {
         if (!is_pictured(study, i)) continue;
-        exit_status = difference_json(study, &study->points[i], &uri);
-        if (exit_status == CLI_DONE)
-            json_object_set_new(json_array_get(points, (size_t)i), "difference", uri);
+        double range = 0;
+        json_t *point = json_array_get(points, (size_t)i);
+        exit_status = difference_json(study, &study->points[i], &uri, &range);
+        if (exit_status != CLI_DONE) break;
+        json_object_set_new(point, "difference", uri);
+        json_object_set_new(point, "range", cli_json_number(range));
     }
     return exit_status;
 }

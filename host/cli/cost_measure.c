@@ -26,12 +26,8 @@ double cost_patience_ms(const cost_study *study) {
     return study->quick ? 2e3 : 2e4;
 }
 
-/* The scene's spectrum with so many bins at most. The caller releases it. */
-static skg_status spectrum_of(const cost_study *study, int64_t bins, skg_spectrum **spectrum) {
-    if (bins == 0) {
-        *spectrum = study->session.spectrum;
-        return skg_spectrum_retain(*spectrum);
-    }
+/* Reads the scene again with so many bins at most. The caller releases the spectrum. */
+static skg_status read_spectrum(const cost_study *study, int64_t bins, skg_spectrum **spectrum) {
     const cli_arguments *arguments = study->arguments;
     const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings);
     char setting[64];
@@ -50,14 +46,29 @@ static skg_status spectrum_of(const cost_study *study, int64_t bins, skg_spectru
     return status;
 }
 
-int cost_has_bins(const cost_study *study, int64_t bins) {
-    skg_spectrum *spectrum = NULL;
-    int has = spectrum_of(study, bins, &spectrum) == SKG_OK;
-    skg_spectrum_release(&spectrum);
-    return has;
+/* The scene's spectrum with so many bins at most; it belongs to the study. */
+static skg_status spectrum_of(cost_study *study, int64_t bins, skg_spectrum **spectrum) {
+    *spectrum = study->session.spectrum;
+    if (bins == 0) return SKG_OK;
+    for (int i = 0; i < study->spectrum_count; i++)
+        if (study->spectra[i].bins == bins) {
+            *spectrum = study->spectra[i].spectrum;
+            return SKG_OK;
+        }
+    if (study->spectrum_count == COST_MOST_SPECTRA) return SKG_ERR_INTERNAL;
+    skg_status status = read_spectrum(study, bins, spectrum);
+    if (status != SKG_OK) return status;
+    study->spectra[study->spectrum_count].bins = bins;
+    study->spectra[study->spectrum_count++].spectrum = *spectrum;
+    return SKG_OK;
 }
 
-static skg_status plan_of(const cost_study *study, const cost_setting *setting, skg_plan **plan) {
+int cost_has_bins(cost_study *study, int64_t bins) {
+    skg_spectrum *spectrum;
+    return spectrum_of(study, bins, &spectrum) == SKG_OK;
+}
+
+static skg_status plan_of(cost_study *study, const cost_setting *setting, skg_plan **plan) {
     skg_plan_options options = study->session.options;
     skg_spot spot;
     skg_spectrum *spectrum = NULL;
@@ -72,10 +83,8 @@ static skg_status plan_of(const cost_study *study, const cost_setting *setting, 
         spot.samples = setting->samples;
         options.spot = &spot;
     }
-    status = skg_plan_create(study->session.context, study->session.scene, &study->session.view, spectrum,
-                             &options, plan);
-    skg_spectrum_release(&spectrum);
-    return status;
+    return skg_plan_create(study->session.context, study->session.scene, &study->session.view, spectrum,
+                           &options, plan);
 }
 
 /* What the scene's own plan finds: samples of the source, the open beam, the size of the image. */
@@ -113,7 +122,6 @@ static int look_at_beam(cost_study *study) {
     if (study->has_tube) status = skg_spectrum_size(spectrum, &finest);
     study->has_energies = own > 1 || finest > 1;
     study->finest = finest > own ? COST_FINEST_BINS : 0;
-    skg_spectrum_release(&spectrum);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -134,6 +142,7 @@ int cost_open(cost_study *study) {
 
 void cost_close(cost_study *study) {
     for (int i = 0; i < 3; i++) free(study->references[i].image);
+    for (int i = 0; i < study->spectrum_count; i++) skg_spectrum_release(&study->spectra[i].spectrum);
     for (int i = 0; i < study->count; i++) free(study->points[i].difference);
     for (int i = 0; i < COST_TOLERANCES; i++) {
         free(study->advice[i].rays_command);

@@ -75,13 +75,14 @@ static json_t *point_of(json_t *study, json_t *index) {
 
 /* Each command line, run by itself, keeps what is said of it. Images of one setting are the same bits, so
  * that the error is the same number but for rounding in its own arithmetic. */
-static void check_advice(json_t *study, const char *extra) {
+static void check_advice(json_t *study, size_t first, const char *extra) {
     double open = number(study, "open_keV");
     size_t index;
     json_t *advice;
     ck_assert_uint_eq(json_array_size(member(study, "advice")), 4);
     json_array_foreach(member(study, "advice"), index, advice) {
         char reference[256];
+        if (index < first) continue;
         json_t *rays = point_of(study, member(advice, "rays")), *whole = member(advice, "whole");
         json_t *setting = member(rays, "setting");
         double tolerance = number(advice, "tolerance");
@@ -106,14 +107,6 @@ static void check_advice(json_t *study, const char *extra) {
     }
 }
 
-START_TEST(recommended_commands_keep_their_tolerance) {
-    ck_run(0, "cost 'small scene.json' --quick --json");
-    json_t *study = said_json();
-    check_advice(study, "");
-    json_decref(study);
-}
-END_TEST
-
 START_TEST(an_extended_source_is_swept) {
     ck_run(0, "cost 'small scene.json' --quick --json %s", disc);
     json_t *study = said_json(), *point;
@@ -126,7 +119,7 @@ START_TEST(an_extended_source_is_swept) {
     }
     ck_assert_double_gt(last, 0); /* 64 samples are not 256 */
     ck_assert_double_gt(first, 4 * last);
-    check_advice(study, disc);
+    check_advice(study, 3, disc);
     json_decref(study);
 }
 END_TEST
@@ -138,9 +131,8 @@ static int is_dial(json_t *point, const char *dial, const char *precision) {
 
 /* What is known of the dials: 16 bits lose to 32 and those to 64; a tolerance bounds the error it makes (and
  * single precision adds less than 1e-6 of the open beam); the best setting differs from itself by nothing. */
-START_TEST(errors_are_those_of_the_dials) {
-    ck_run(0, "cost 'small scene.json' --quick --json");
-    json_t *study = said_json(), *point;
+static void check_errors(json_t *study) {
+    json_t *point;
     double half = -1, single = -1, twice = -1, half_mm = -1, single_mm = -1;
     size_t index;
     int tolerances = 0, bins = 0;
@@ -165,6 +157,13 @@ START_TEST(errors_are_those_of_the_dials) {
     ck_assert_double_gt(half, 100 * single);
     ck_assert(single_mm > 0 && single_mm < 1e-3);
     ck_assert(half_mm > 0.01 && half_mm < 1); /* 16 bits of 0.25 to 0.5 m: half of 0.24 mm a surface */
+}
+
+START_TEST(errors_are_those_of_the_dials_and_advice_holds) {
+    ck_run(0, "cost 'small scene.json' --quick --json");
+    json_t *study = said_json();
+    check_errors(study);
+    check_advice(study, 0, "");
     json_decref(study);
 }
 END_TEST
@@ -186,7 +185,7 @@ static char *read_page(const char *name) {
 START_TEST(table_csv_and_page_are_written) {
     ck_run(0, "cost 'small scene.json' --quick -o a.html -o a.csv");
     ck_assert_str_eq(complained, "");
-    ck_assert_ptr_nonnull(strstr(said, "\n* scene "));
+    ck_assert_ptr_nonnull(strstr(said, "\n* precision      double, "));
     ck_assert_ptr_nonnull(strstr(said, "\n  supersampling "));
     ck_assert_ptr_nonnull(strstr(said, "for an error of 1e-06: largest "));
     ck_assert_ptr_nonnull(strstr(said, "skiagraph image 'small scene.json' -o image.mha --precision "));
@@ -222,7 +221,8 @@ static const char worker[] =
     "const points = () => svg.querySelectorAll('.point').length;\n"
     "const check = (name, is) => { if (!is) verdict.push(name); };\n"
     "const change = (element) => element.dispatchEvent(new Event('change', {bubbles: true}));\n"
-    "check('drawn', points() === study.points.length);\n"
+    "check('drawn', points() === study.points.filter(p => p.max_open !== null).length);\n"
+    "check('half', study.points.some(p => p.max_open === null));\n"
     "check('rows', document.querySelectorAll('#rows tr').length === study.points.length);\n"
     "check('advice', document.querySelectorAll('.advice code').length >= 4);\n"
     "for (const id of ['error', 'time']) {\n"
@@ -243,13 +243,14 @@ static const char worker[] =
     "  document.body.setAttribute('data-verdict', verdict.length ? 'failed: ' + verdict : 'every control works'));\n"
     "</script>\n</body>";
 
-/* In a real browser: $CHROMIUM, or chromium. */
+/* In a real browser: $CHROMIUM, or chromium. The milliampere-seconds are so many that an image in 16 bits
+ * overflows: an error that is no number is told as such. */
 START_TEST(page_works_in_a_browser) {
     if (system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") != 0) {
         printf("page_works_in_a_browser: skipped, there is no chromium\n");
         return;
     }
-    ck_run(0, "cost 'small scene.json' --quick --quiet -o a.html %s", disc);
+    ck_run(0, "cost 'small scene.json' --quick --quiet -o a.html %s --set Source.Beam.mAs=20", disc);
     char *page = read_page("a.html"), line[1024], profile[] = "/tmp/skg-browser-XXXXXX";
     char *end = strstr(page, "</body>");
     ck_assert_ptr_nonnull(end);
@@ -277,9 +278,8 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
-    tcase_add_test(tests, recommended_commands_keep_their_tolerance);
     tcase_add_test(tests, an_extended_source_is_swept);
-    tcase_add_test(tests, errors_are_those_of_the_dials);
+    tcase_add_test(tests, errors_are_those_of_the_dials_and_advice_holds);
     tcase_add_test(tests, table_csv_and_page_are_written);
     tcase_add_test(tests, what_cannot_be_done_is_told);
     tcase_add_test(tests, page_works_in_a_browser);
