@@ -23,7 +23,7 @@ double cost_passes(const cost_setting *setting) {
 }
 
 double cost_patience_ms(const cost_study *study) {
-    return study->quick ? 2e3 : 2e4;
+    return study->quick ? 1e3 : 4e3;
 }
 
 /* Reads the scene again with so many bins at most. The caller releases the spectrum. */
@@ -160,7 +160,7 @@ static int ascending(const void *a, const void *b) {
 static skg_status time_runs(const cost_study *study, skg_plan *plan, const skg_output *output,
                             cost_point *point) {
     const int64_t least = study->quick ? 3 : 9;
-    const double wish_ms = study->quick ? 50 : 300, limit_ms = study->quick ? 1000 : 6000;
+    const double wish_ms = study->quick ? 50 : 300, limit_ms = study->quick ? 1000 : 3000;
     double ms[MOST_RUNS], begun = cli_now_ms(), passed = 0;
     int64_t n = 0;
     skg_status status = SKG_OK;
