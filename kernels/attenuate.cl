@@ -25,11 +25,13 @@ typedef float skg_out;
 #if SKG_DOUBLE
 #define SKG_SCALAR double
 #define SKG_AS_MASK_V SKG_CAT(as_long, SKG_WIDE)
+#define SKG_TO_MASK_V SKG_CAT(convert_long, SKG_WIDE)
 SKG_DEFINE_EXP2_DOUBLE(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
 SKG_DEFINE_LOG_DOUBLE(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
 #else
 #define SKG_SCALAR float
 #define SKG_AS_MASK_V SKG_CAT(as_int, SKG_WIDE)
+#define SKG_TO_MASK_V SKG_CAT(convert_int, SKG_WIDE)
 SKG_DEFINE_EXP2_FLOAT(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
 SKG_DEFINE_LOG_FLOAT(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
 #endif
@@ -68,13 +70,66 @@ static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
     for (int k = 0; k < pixels; k++) place[k] = SKG_ADD ? place[k] + rest[k] : rest[k];
 }
 
+/* What a pass is given; the kernel's arguments of the same names. */
+typedef struct {
+    const skg_frame_args *frame;
+    const skg_ray_args *ray;
+    int nodes, column, row; /* the work-item's first pixel */
+    __constant const skg_real *coefficients, *weights;
+    skg_real factor;
+#if SKG_WORLD
+    int world_plane;
+    skg_real4 world;
+#endif
+#if SKG_FALLOFF
+    skg_real nearest;
+#endif
+#if SKG_NOISE
+    __constant const skg_real *variances;
+    const skg_noise_args *key;
+    skg_real photons;
+#endif
+} skg_pass;
+
+/* What a work-item knows of its pixels, a vector a run. */
+typedef struct {
+    skg_realv x[SKG_PLANES][SKG_RUNS];       /* mm of the planes, world included */
+    skg_realv highest[SKG_RUNS];             /* the greatest power of two, or the first node's; see the modes */
+    skg_realv shown[SKG_CHANNELS][SKG_RUNS]; /* sums over nodes, then what is shown */
+#if SKG_WORLD
+    skg_realv world[SKG_RUNS]; /* mm that the world adds to its plane */
+#endif
+#if SKG_NOISE
+    skg_realv spread[SKG_CHANNELS][SKG_RUNS]; /* variances */
+#endif
+} skg_pixels;
+
+#define SKG_EACH_RUN SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
+#define SKG_EACH_CHANNEL SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
+#define SKG_EACH_PLANE(first) SKG_UNROLL for (int p = first; p < SKG_PLANES; p++)
+
+/* Path lengths from the sums. Runs past the end of a row stay in it. */
+static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies, __global const int *used,
+                            skg_pixels *pixels) {
+    SKG_EACH_RUN {
+        const int at = min(pass->column + r * SKG_WIDE, pass->frame->columns - 1);
+        const skg_realv length = skg_ray_lengths_v(pass->ray, at, pass->row);
+        const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * pass->ray->unit;
+        SKG_EACH_PLANE(0)
+        pixels->x[p][r] = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, p, pass->row, at)) * scaled;
+#if SKG_WORLD
+        const skg_realv path = fma((skg_realv)(pass->world.z), (skg_real)at + SKG_LANES,
+                                   (skg_realv)(fma(pass->world.w, (skg_real)pass->row, pass->world.y)));
+        pixels->world[r] = pass->world.x * length * path;
+        SKG_EACH_PLANE(0) if (p == pass->world_plane) pixels->x[p][r] += pixels->world[r];
+#endif
+    }
+}
+
 /* Sums of coefficient times mm over the planes, for each run. */
-static void skg_exponents(__constant const skg_real *coefficient, skg_realv x[SKG_PLANES][SKG_RUNS],
-                          skg_realv *exponent) {
-    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) exponent[r] = coefficient[0] * x[0][r];
-    SKG_UNROLL for (int p = 1; p < SKG_PLANES; p++)
-        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
-            exponent[r] = fma((skg_realv)(coefficient[p]), x[p][r], exponent[r]);
+static void skg_exponents(__constant const skg_real *coefficient, const skg_pixels *pixels, skg_realv *exponent) {
+    SKG_EACH_RUN exponent[r] = coefficient[0] * pixels->x[0][r];
+    SKG_EACH_PLANE(1) SKG_EACH_RUN exponent[r] = fma((skg_realv)(coefficient[p]), pixels->x[p][r], exponent[r]);
 }
 
 /* How many of these pixels' lanes exceed the limit. */
@@ -87,34 +142,156 @@ static void skg_count(skg_realv value, skg_real limit, int pixels, __global int 
     if (found) atomic_add(count, found);
 }
 
-/* Sum over nodes of weight * 2^(power - base) of one channel of the open beam, power = coefficient of the world's plane
- * times mm there. */
-#if SKG_RATIO
-static skg_realv skg_open_beam(int nodes, __constant const skg_real *coefficients, __constant const skg_real *weights,
-                               int world_plane, skg_realv world, skg_realv base) {
-    skg_realv open = (skg_realv)(0);
-    for (int n = 0; n < nodes; n++)
-        open = fma((skg_realv)(weights[n * SKG_CHANNELS]),
-                   skg_exp2_v(fma((skg_realv)(coefficients[n * SKG_PLANES + world_plane]), world, -base)), open);
-    return open;
+#if SKG_RANGED
+/* Pixels that have a plane outside range[plane]. */
+static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels, __constant const skg_real *range,
+                              __global int *outside) {
+    SKG_EACH_RUN {
+        skg_realv most = (skg_realv)(range[0]) - pixels->x[0][r]; /* mm by which a plane is outside */
+        SKG_EACH_PLANE(0) {
+            const skg_realv below = (skg_realv)(range[2 * p]) - pixels->x[p][r];
+            const skg_realv above = pixels->x[p][r] - (skg_realv)(range[2 * p + 1]);
+            most = below > most ? below : most;
+            most = above > most ? above : most;
+        }
+        skg_count(most, 0, pass->frame->columns - pass->column - r * SKG_WIDE, outside);
+    }
+}
+#endif
+
+/* shown = sum over nodes of weight * 2^power; of the logarithm, over 2^highest, so that nothing underflows. */
+static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
+    skg_realv power[SKG_RUNS];
+    SKG_EACH_CHANNEL SKG_EACH_RUN pixels->shown[c][r] = (skg_realv)(0);
+#if SKG_NOISE
+    SKG_EACH_CHANNEL SKG_EACH_RUN pixels->spread[c][r] = (skg_realv)(0);
+#endif
+#if SKG_SHOW == SKG_SHOW_LOGARITHM
+    for (int n = 1; n < pass->nodes; n++) {
+        skg_exponents(pass->coefficients + n * SKG_PLANES, pixels, power);
+        SKG_EACH_RUN pixels->highest[r] = power[r] > pixels->highest[r] ? power[r] : pixels->highest[r];
+    }
+#endif
+    for (int n = 0; n < pass->nodes; n++) {
+        skg_exponents(pass->coefficients + n * SKG_PLANES, pixels, power);
+        SKG_EACH_RUN {
+#if SKG_SHOW == SKG_SHOW_LOGARITHM
+            const skg_realv passed = skg_exp2_v(power[r] - pixels->highest[r]);
+#else
+            const skg_realv passed = skg_exp2_v(power[r]);
+#endif
+            SKG_EACH_CHANNEL pixels->shown[c][r] =
+                fma((skg_realv)(pass->weights[n * SKG_CHANNELS + c]), passed, pixels->shown[c][r]);
+#if SKG_NOISE
+            SKG_EACH_CHANNEL pixels->spread[c][r] =
+                fma((skg_realv)(pass->variances[n * SKG_CHANNELS + c]), passed, pixels->spread[c][r]);
+#endif
+        }
+    }
 }
 
-static skg_realv skg_highest_open(int nodes, __constant const skg_real *coefficients, int world_plane,
-                                  skg_realv world) {
-    skg_realv highest = (skg_realv)(coefficients[world_plane]) * world;
-    for (int n = 1; n < nodes; n++) {
-        const skg_realv power = (skg_realv)(coefficients[n * SKG_PLANES + world_plane]) * world;
+#if SKG_RATIO
+/* The greatest power of two of the open beam, in which there is the world alone. */
+static skg_realv skg_highest_open(const skg_pass *pass, skg_realv world) {
+    skg_realv highest = (skg_realv)(pass->coefficients[pass->world_plane]) * world;
+    for (int n = 1; n < pass->nodes; n++) {
+        const skg_realv power = (skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]) * world;
         highest = power > highest ? power : highest;
     }
     return highest;
 }
+
+/* Sum over nodes of weight * 2^(power - base) of one channel of the open beam. */
+static skg_realv skg_open_beam(const skg_pass *pass, int channel, skg_realv world, skg_realv base) {
+    skg_realv open = (skg_realv)(0);
+    for (int n = 0; n < pass->nodes; n++) {
+        const skg_realv coefficient = (skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]);
+        open = fma((skg_realv)(pass->weights[n * SKG_CHANNELS + channel]),
+                   skg_exp2_v(fma(coefficient, world, -base)), open);
+    }
+    return open;
+}
 #endif
+
+#if SKG_NOISE
+/* A draw for the pixels of run r that are `few`; each node by itself. */
+static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, int r, skg_realv all, skg_intv few,
+                               int pixel, int channel) {
+    skg_realv value = (skg_realv)(0);
+    skg_uintv draw[4];
+    for (int n = 0; n < pass->nodes; n++) {
+        const skg_real weight = pass->weights[n * SKG_CHANNELS + channel];
+        const skg_real variance = pass->variances[n * SKG_CHANNELS + channel];
+        if ((n & 3) == 0) skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2), draw);
+        if (!(weight > 0)) continue;
+        skg_realv power = pass->coefficients[n * SKG_PLANES] * pixels->x[0][r];
+        SKG_EACH_PLANE(1)
+        power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + p]), pixels->x[p][r], power);
+        const skg_floatv expected = SKG_TO_FLOAT_V(weight * weight / variance * all * skg_exp2_v(power));
+        const skg_intv many = expected > (skg_floatv)(SKG_FEW);
+        const skg_floatv counted = skg_poisson_v(few & ~many ? expected : (skg_floatv)(0.0f), draw[n & 3]);
+        const skg_floatv spread = fma(skg_root_v(expected), skg_normal_v(draw[n & 3]), expected);
+        value = fma((skg_realv)(variance / weight), SKG_TO_REAL_V(many ? spread : counted), value);
+    }
+    return value;
+}
+
+/* Quantum noise on one channel of run r: a normal deviate where photons are many, else photon by photon. */
+static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int r, int channel, skg_realv all) {
+    const skg_realv mean = pixels->shown[channel][r], variance = pixels->spread[channel][r] * all;
+    const int pixel = pass->row * pass->frame->columns + pass->column + r * SKG_WIDE;
+    const skg_intv few = SKG_TO_INT_V(mean * mean < pass->photons * variance);
+    skg_uintv draw[4];
+    skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_QUANTUM, channel, 0), draw);
+    const skg_floatv deviate = skg_root_v(SKG_TO_FLOAT_V(variance)) * skg_normal_v(draw[0]);
+    const skg_realv normal = mean + SKG_TO_REAL_V(deviate);
+    if (!skg_any(few)) return normal;
+    return SKG_TO_MASK_V(few) ? skg_photons_v(pass, pixels, r, all, few, pixel, channel) : normal;
+}
+#endif
+
+/* From sums over nodes to what is shown of run r. */
+static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
+#if SKG_FALLOFF
+    const skg_realv near =
+        pass->nearest / skg_ray_lengths_v(pass->ray, pass->column + r * SKG_WIDE, pass->row);
+    const skg_realv all = near * near * near * pass->factor;
+#else
+    const skg_realv all = (skg_realv)(pass->factor);
+#endif
+#if SKG_RATIO
+    const skg_realv top = skg_highest_open(pass, pixels->world[r]);
+#endif
+    SKG_EACH_CHANNEL {
+        skg_realv value = pixels->shown[c][r];
+#if SKG_SHOW == SKG_SHOW_LOGARITHM
+        value = -fma(pixels->highest[r], (skg_realv)(SKG_LN2), skg_log_v(value));
+#if SKG_RATIO
+        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_open_beam(pass, c, pixels->world[r], top)));
+#endif
+#elif SKG_RATIO
+        value = value / skg_open_beam(pass, c, pixels->world[r], top) * skg_exp2_v(-top);
+#else
+        value *= all;
+#endif
+        pixels->shown[c][r] = value;
+#if SKG_NOISE
+        pixels->shown[c][r] = skg_noisy_v(pass, pixels, r, c, all);
+#endif
+    }
+#if SKG_WORLD
+    /* What the parts alone subtract is told. */
+    pixels->highest[r] -= pass->coefficients[pass->world_plane] * pixels->world[r];
+#endif
+}
 
 /* One work-item SKG_RUNS runs of SKG_WIDE pixels of a row. coefficients: of -exponent * log2(e), or of the exponent
  * where that is shown. Strides and offset of the output in elements. factor: of intensities. negative: counts the pixels
  * that exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was
  * subtracted for children than their parent has. World: a plane gets `world` for each mm of path, which is |ray| times
- * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. */
+ * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. Noise: variances of the nodes as weights; by photons
+ * where fewer than `photons` of them are detected, as far as mean and variance tell: mean^2 / variance is never more.
+ * Ranged: negative[1] counts the pixels that have a plane outside range[plane], lowest and highest in mm. */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
                             __constant const skg_real *weights, skg_real factor, skg_real limit,
@@ -128,91 +305,58 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
                             ,
                             skg_real nearest
 #endif
+#if SKG_NOISE
+                            ,
+                            __constant const skg_real *variances, skg_noise_args key, skg_real photons
+#endif
+#if SKG_RANGED
+                            ,
+                            __constant const skg_real *range
+#endif
 ) {
-    const int column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0), row = (int)get_global_id(1);
-    if (column >= frame.columns || row >= frame.rows) return;
-    skg_realv x[SKG_PLANES][SKG_RUNS], shown[SKG_CHANNELS][SKG_RUNS], power[SKG_RUNS], highest[SKG_RUNS];
+    skg_pass pass;
+    skg_pixels pixels;
+    pass.frame = &frame;
+    pass.ray = &ray;
+    pass.nodes = nodes;
+    pass.column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0);
+    pass.row = (int)get_global_id(1);
+    pass.coefficients = coefficients;
+    pass.weights = weights;
+    pass.factor = factor;
 #if SKG_WORLD
-    skg_realv surroundings[SKG_RUNS];
+    pass.world_plane = world_plane;
+    pass.world = world;
 #endif
-    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
-        const int at = min(column + r * SKG_WIDE, frame.columns - 1); /* runs past the end stay in the row */
-        const skg_realv length = skg_ray_lengths_v(&ray, at, row);
-        const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * ray.unit;
-        SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++)
-            x[p][r] = skg_real_sums_v(skg_sums_v(&frame, copies, used, p, row, at)) * scaled;
-#if SKG_WORLD
-        const skg_realv path = fma((skg_realv)(world.z), (skg_real)at + SKG_LANES,
-                                   (skg_realv)(fma(world.w, (skg_real)row, world.y)));
-        surroundings[r] = world.x * length * path;
-        SKG_UNROLL for (int p = 0; p < SKG_PLANES; p++) if (p == world_plane) x[p][r] += surroundings[r];
-#endif
-    }
-    skg_exponents(coefficients, x, highest);
-#if SKG_SHOW == SKG_SHOW_EXPONENT
-    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
-        shown[0][r] = highest[r];
-        highest[r] = -highest[r];
-    }
-#else
-    SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
-        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) shown[c][r] = (skg_realv)(0);
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-    /* -ln sum w 2^z = -(z0 ln 2 + ln sum w 2^(z - z0)) with z0 the greatest: nothing underflows. */
-    for (int n = 1; n < nodes; n++) {
-        skg_exponents(coefficients + n * SKG_PLANES, x, power);
-        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) highest[r] = power[r] > highest[r] ? power[r] : highest[r];
-    }
-#endif
-    for (int n = 0; n < nodes; n++) {
-        skg_exponents(coefficients + n * SKG_PLANES, x, power);
-        SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-            const skg_realv passed = skg_exp2_v(power[r] - highest[r]);
-#else
-            const skg_realv passed = skg_exp2_v(power[r]);
-#endif
-            SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
-                shown[c][r] = fma((skg_realv)(weights[n * SKG_CHANNELS + c]), passed, shown[c][r]);
-        }
-    }
-    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
 #if SKG_FALLOFF
-        const skg_realv near = nearest / skg_ray_lengths_v(&ray, column + r * SKG_WIDE, row);
-        const skg_realv all = near * near * near * factor;
-#else
-        const skg_realv all = (skg_realv)(factor);
+    pass.nearest = nearest;
 #endif
-#if SKG_RATIO
-        const skg_realv top = skg_highest_open(nodes, coefficients, world_plane, surroundings[r]);
+#if SKG_NOISE
+    pass.variances = variances;
+    pass.key = &key;
+    pass.photons = photons;
 #endif
-        SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++) {
-#if SKG_RATIO
-            const skg_realv open =
-                skg_open_beam(nodes, coefficients, weights + c, world_plane, surroundings[r], top);
+    if (pass.column >= frame.columns || pass.row >= frame.rows) return;
+    skg_read_planes(&pass, copies, used, &pixels);
+#if SKG_RANGED
+    skg_count_outside(&pass, &pixels, range, negative + 1);
 #endif
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-            shown[c][r] = -fma(highest[r], (skg_realv)(SKG_LN2), skg_log_v(shown[c][r]));
-#if SKG_RATIO
-            shown[c][r] += fma(top, (skg_realv)(SKG_LN2), skg_log_v(open));
-#endif
-#elif SKG_RATIO
-            shown[c][r] = shown[c][r] / open * skg_exp2_v(-top);
-#else
-            shown[c][r] *= all;
-#endif
-        }
-#if SKG_WORLD
-        highest[r] -= coefficients[world_plane] * surroundings[r]; /* what the parts alone subtract is told */
-#endif
+    skg_exponents(coefficients, &pixels, pixels.highest);
+#if SKG_SHOW == SKG_SHOW_EXPONENT
+    SKG_EACH_RUN {
+        pixels.shown[0][r] = pixels.highest[r];
+        pixels.highest[r] = -pixels.highest[r];
     }
+#else
+    skg_add_nodes(&pass, &pixels);
+    SKG_EACH_RUN skg_finish(&pass, &pixels, r);
 #endif
-    SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++) {
-        const int at = column + r * SKG_WIDE, pixels = frame.columns - at;
-        if (pixels <= 0) break;
-        SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
-            skg_show(shown[c][r], output + offset + row * row_stride + c * channel_stride + at, pixels);
-        skg_count(highest[r], limit, pixels, negative);
+    SKG_EACH_RUN {
+        const int at = pass.column + r * SKG_WIDE, left = frame.columns - at;
+        __global skg_out *place = output + offset + pass.row * row_stride + at;
+        if (left <= 0) break;
+        SKG_EACH_CHANNEL skg_show(pixels.shown[c][r], place + c * channel_stride, left);
+        skg_count(pixels.highest[r], limit, left, negative);
     }
 }
 

@@ -19,7 +19,8 @@
 #define SKG_SPARE_COLUMNS 16
 #define SKG_SPARE_ROWS 4
 
-/* Most tiles that a triangle may meet and still be listed in each; wider ones are in one list for all tiles. */
+/* Most tiles that a triangle may meet and still be listed in each; wider ones are in one list for all tiles.
+ */
 #define SKG_MOST_TILES 8
 
 /* Bands of a CPU: most of them, and triangles that are sorted at once. */
@@ -32,33 +33,34 @@
 /* How many bad pixels of an open mesh are listed. */
 #define SKG_FIRST_BAD 8
 
-/* One part in one frame. Pixels are relative to the part's own pixel (pixel_i, pixel_j), depths to `reference`, so
- * that neither loses digits to its distance. With V a vertex of the mesh, r = offset_r + row2.V is the path parameter
- * (0 at the source, 1 at the pixel) less `reference`, t = reference + r, and the vertex is seen at
- * x = anchor_x + (offset_x + row0.V) / t, y alike; with a parallel beam without the division. */
-#define SKG_PART_FIELDS(real)                                                                                 \
-    real row0[3], offset_x;                                                                                   \
-    real row1[3], offset_y;                                                                                   \
-    real row2[3], offset_r;                                                                                   \
-    real anchor_x, anchor_y, reference;                                                                       \
-    real highest;       /* of r: where the ray ends, at the pixel */                                          \
-    real start[3];      /* parallel: paths start at r = start[0] + start[1] i + start[2] j */                 \
-    real unused;                                                                                              \
-    SKG_INT pixel_i, pixel_j;                                                                                 \
-    SKG_INT mesh_vertex;    /* first of the mesh in the vertex buffer */                                      \
-    SKG_INT first_vertex;   /* of the part, in the numbering over all parts */                                \
-    SKG_INT vertices;                                                                                         \
-    SKG_INT mesh_triangle;  /* first of the mesh in the corner table */                                       \
-    SKG_INT first_triangle; /* of the part, in the numbering over all parts */                                \
-    SKG_INT triangles;                                                                                        \
-    SKG_INT turned;         /* 0, or -1: handedness of the projection, of the pose and of the mesh together */ \
-    SKG_INT first_write, writes;                                                                              \
+/* One part in one frame. Pixels are relative to the part's own pixel (pixel_i, pixel_j), depths to
+ * `reference`, so that neither loses digits to its distance. With V a vertex of the mesh, r = offset_r +
+ * row2.V is the path parameter (0 at the source, 1 at the pixel) less `reference`, t = reference + r, and the
+ * vertex is seen at x = anchor_x + (offset_x + row0.V) / t, y alike; with a parallel beam without the
+ * division. */
+#define SKG_PART_FIELDS(real)                                                                                \
+    real row0[3], offset_x;                                                                                  \
+    real row1[3], offset_y;                                                                                  \
+    real row2[3], offset_r;                                                                                  \
+    real anchor_x, anchor_y, reference;                                                                      \
+    real highest;  /* of r: where the ray ends, at the pixel */                                              \
+    real start[3]; /* parallel: paths start at r = start[0] + start[1] i + start[2] j */                     \
+    real unused;                                                                                             \
+    SKG_INT pixel_i, pixel_j;                                                                                \
+    SKG_INT mesh_vertex;  /* first of the mesh in the vertex buffer */                                       \
+    SKG_INT first_vertex; /* of the part, in the numbering over all parts */                                 \
+    SKG_INT vertices;                                                                                        \
+    SKG_INT mesh_triangle;  /* first of the mesh in the corner table */                                      \
+    SKG_INT first_triangle; /* of the part, in the numbering over all parts */                               \
+    SKG_INT triangles;                                                                                       \
+    SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
+    SKG_INT first_write, writes;                                                                             \
     SKG_INT reserved;
 
-/* One plane that a part's hits add to: round(q * weight + bias), q = r / reference (parallel: r). A count plane has
- * weight 0 and bias 1. */
-#define SKG_WRITE_FIELDS(real)                                                                                \
-    real weight, bias;                                                                                        \
+/* One plane that a part's hits add to: round(q * weight + bias), q = r / reference (parallel: r). A count
+ * plane has weight 0 and bias 1. */
+#define SKG_WRITE_FIELDS(real)                                                                               \
+    real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
 
 /* What one frame's launches need to know. Accumulator of pixel (row, column) of a plane of a copy:
@@ -70,14 +72,21 @@ typedef struct {
     SKG_INT claim;                         /* items that a work-group claims at once */
     SKG_INT tile_columns, tile_rows;       /* shape of a tile */
     SKG_INT tiles_across, tiles_down;
-    SKG_INT queue;                         /* entries of the queue of large triangles */
+    SKG_INT queue; /* entries of the queue of large triangles */
     SKG_INT reserved;
 } skg_frame_args;
 
+/* The key of a frame's noise (random.clh); sample: of the source, each with draws of its own. */
+typedef struct {
+    SKG_INT seed[2], frame[2]; /* low word first */
+    SKG_INT sample;
+    SKG_INT reserved;
+} skg_noise_args;
+
 /* Length of the ray to pixel (i, j): |centre + i column + j row|, mm; parallel: |centre|. */
-#define SKG_RAY_FIELDS(real)                                                                                  \
-    real centre[3], column[3], row[3];                                                                        \
-    real middle_i, middle_j; /* the pixel of `centre` */                                                      \
+#define SKG_RAY_FIELDS(real)                                                                                 \
+    real centre[3], column[3], row[3];                                                                       \
+    real middle_i, middle_j; /* the pixel of `centre` */                                                     \
     real unit;               /* 1 / scale of the plane */
 
 #ifdef __OPENCL_C_VERSION__
@@ -114,5 +123,6 @@ _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, do
 _Static_assert(sizeof(skg_write_float) == 16 && sizeof(skg_write_double) == 24, "layout of a write");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
+_Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 #endif
 #endif

@@ -85,21 +85,29 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
     return r < -reference ? -reference : r > end ? end : r;
 }
 
+/* What is done with a hit: added to the sums, where no file before this one says otherwise. */
+#ifndef SKG_SOURCE_HIT
+#define SKG_SOURCE_ARGUMENTS __global const skg_write *writes, __global skg_sum *sums
+#define SKG_SOURCE_BEGIN(range) if (range.writes == 0) return
+#define SKG_SOURCE_HIT(row, column, q, factor)                                                                \
+    skg_deposit_global(sums + ((row) * frame.stride + (column)), frame.plane, writes, &range, q, factor)
+#endif
+
 /* One work-item SKG_SOURCE_ROWS rows of one triangle. */
 __kernel void skg_source_plane(skg_frame_args frame, __global const int *corners,
                                __global const skg_real4 *projected, __global const skg_part_entry *parts,
-                               __global const skg_write *writes, __global const int *blocks,
-                               __global const skg_real *vertices, __global skg_sum *sums) {
+                               __global const int *blocks, __global const skg_real *vertices,
+                               SKG_SOURCE_ARGUMENTS) {
     const int triangle = (int)get_global_id(0), first = SKG_SOURCE_ROWS * (int)get_global_id(1);
     if (triangle >= frame.triangles) return;
     skg_range range;
     skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
+    SKG_SOURCE_BEGIN(range);
     __global const skg_part_entry *p = &parts[range.number];
     __global const int *corner = corners + 3 * (triangle + range.corner_shift);
     skg_real4 a, b, c;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.writes == 0 || (a.w > (skg_real)SKG_NEAR && b.w > (skg_real)SKG_NEAR && c.w > (skg_real)SKG_NEAR))
-        return;
+    if (a.w > (skg_real)SKG_NEAR && b.w > (skg_real)SKG_NEAR && c.w > (skg_real)SKG_NEAR) return;
     skg_corner k[3];
     skg_corner_of(p, vertices, corner[0], a, &k[0]);
     skg_corner_of(p, vertices, corner[1], b, &k[1]);
@@ -116,14 +124,13 @@ __kernel void skg_source_plane(skg_frame_args frame, __global const int *corners
             if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, &down);
         }
         const int2 columns = skg_columns_between(&up, &down, -range.pixel_i, frame.columns - range.pixel_i);
-        __global skg_sum *line = sums + (row * frame.stride + range.pixel_i);
         for (int column = columns.x; column < columns.y; column++) {
             const skg_real i = (skg_real)column;
             const int passed = skg_passed(&down, i);
             if (passed == skg_passed(&up, i)) continue;
             const skg_real r = skg_depth_between(&down, &up, i, p->reference);
-            skg_deposit_global(line + column, frame.plane, writes, &range, r / p->reference,
-                               (passed != 0) == (range.turned == 0) ? 1 : -1);
+            SKG_SOURCE_HIT(row, range.pixel_i + column, r / p->reference,
+                           (passed != 0) == (range.turned == 0) ? 1 : -1);
         }
     }
 }

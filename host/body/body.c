@@ -6,6 +6,10 @@
 #include <inttypes.h>
 #include <string.h>
 
+/* Below so many vertices a step takes about a millisecond, and threads that wait for work between steps take
+ * more from a device on the same cores than they give. */
+enum { THREADS_FROM = 40000 };
+
 void skg_body_options_init(skg_body_options *options) {
     *options = (skg_body_options){.size = (int32_t)sizeof *options, .tendon_mm = {0, 0, -15}};
 }
@@ -128,6 +132,10 @@ skg_status skg_body_link(skg_body *body) {
                         "body: no organ that moves; labels are as \"rib 5 left\", \"liver\"");
     body->tried = 1;
     SKG_TRY(skg_body_find_links(body));
+    int64_t deformable = 0;
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].role == ROLE_LINKED) deformable += body->organ[i].vertices;
+    body->large = deformable >= THREADS_FROM;
     body->linked = 1;
     return SKG_OK;
 }

@@ -71,6 +71,7 @@ struct skg_body {
     int64_t organs, room;
     skg_body_organ *organ;
     int tried, linked;  /* skg_body_link was called; succeeded */
+    int large;          /* deformable organs have so many vertices that threads pay */
     double tendon[3];   /* mm, now */
     double withdrawn;   /* the needle, mm */
     int loop;           /* steps of the loop that are kept: 0 or LOOP_STEPS */
@@ -85,6 +86,10 @@ skg_role skg_role_of(const char *label, int *number, int *side);
 skg_tissue skg_tissue_of(const char *label);
 int skg_label_begins(const char *label, const char *word);
 int skg_label_stays(const char *label); /* a bone that does not move */
+
+/* measure.c */
+double skg_body_lung_ratio(const skg_body *body);   /* V0/V of the lungs; 1 where there is none */
+double skg_body_needle_depth(const skg_body *body); /* of the mesh below the skin, mm; NaN: no needle */
 
 /* near.c */
 skg_status skg_near_prepare(skg_body_organ *organ);

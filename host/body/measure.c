@@ -27,6 +27,33 @@ static double volume_now(const skg_body_organ *o) {
     return o->mesh->orientation < 0 ? -volume : volume;
 }
 
+static void measure_lungs(const skg_body *body, double *now_ml, double *rest_ml) {
+    *now_ml = *rest_ml = 0;
+    for (int64_t i = 0; i < body->organs; i++) {
+        const skg_body_organ *o = body->organ + i;
+        if (!skg_label_begins(o->label, "lung")) continue;
+        *now_ml += 1e-3 * volume_now(o);
+        *rest_ml += 1e-3 * o->volume;
+    }
+}
+
+double skg_body_lung_ratio(const skg_body *body) {
+    double now, rest;
+    measure_lungs(body, &now, &rest);
+    return rest > 0 ? rest / now : 1;
+}
+
+double skg_body_needle_depth(const skg_body *body) {
+    for (int64_t i = 0; i < body->organs; i++) {
+        const skg_body_organ *o = body->organ + i;
+        double way[3];
+        if (o->role != ROLE_NEEDLE) continue;
+        skg_add_scaled(o->pivot, -1, o->tip, way);
+        return skg_length(way);
+    }
+    return (double)NAN;
+}
+
 static void normal_of(const skg_body_organ *o, int64_t t, int now, double n[3]) {
     double p[3][3];
     for (int c = 0; c < 3; c++)
@@ -49,16 +76,12 @@ static void measure_diaphragm(const skg_body_organ *o, skg_body_measure *m) {
     }
 }
 
-static void measure_organ(const skg_body_organ *o, skg_body_measure *m, double *lung_rest) {
+static void measure_organ(const skg_body_organ *o, skg_body_measure *m) {
     for (int64_t t = 0; t < o->triangles; t++) {
         double before[3], after[3];
         normal_of(o, t, 0, before);
         normal_of(o, t, 1, after);
         m->flipped_triangles += skg_dot(before, after) < 0;
-    }
-    if (skg_label_begins(o->label, "lung")) {
-        m->lung_ml += 1e-3 * volume_now(o);
-        *lung_rest += 1e-3 * o->volume;
     }
     if (skg_label_begins(o->label, "liver")) {
         for (int64_t i = 0; i < o->vertices; i++)
@@ -78,10 +101,11 @@ skg_status skg_body_get_measure(const skg_body *body, skg_body_measure *theirs) 
     if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
     skg_body_measure m;
     skg_body_measure_init(&m);
-    double lung_rest = 0;
-    m.lung_density_ratio = m.liver_volume_ratio = 1;
-    for (int64_t i = 0; i < body->organs; i++) measure_organ(body->organ + i, &m, &lung_rest);
-    if (lung_rest > 0) m.lung_density_ratio = lung_rest / m.lung_ml;
+    double lung_rest;
+    m.liver_volume_ratio = 1;
+    for (int64_t i = 0; i < body->organs; i++) measure_organ(body->organ + i, &m);
+    measure_lungs(body, &m.lung_ml, &lung_rest);
+    m.lung_density_ratio = skg_body_lung_ratio(body);
     m.tidal_ml = m.lung_ml - lung_rest;
     return skg_struct_write(&m, sizeof m, "skg_body_measure", theirs);
 }

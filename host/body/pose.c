@@ -155,7 +155,7 @@ static skg_status write_mesh(skg_body_organ *o) {
 /* Organs of one role do not follow each other. */
 static skg_status pose_role(skg_body *body, skg_role role) {
     skg_status status = SKG_OK;
-#pragma omp parallel for schedule(dynamic, 1) if (role == ROLE_LINKED)
+#pragma omp parallel for schedule(dynamic, 1) if (role == ROLE_LINKED && body->large)
     for (int64_t i = 0; i < body->organs; i++) {
         if (body->organ[i].role != role) continue;
         skg_status one = pose_one(body, body->organ + i);

@@ -64,7 +64,7 @@ static skg_status check_links(const char *name, int64_t nodes, const double *res
 static skg_status make_front(int64_t nodes, skg_chain_front *front) {
     SKG_TRY(skg_alloc(nodes, sizeof(double), "chain", &front->gain));
     SKG_TRY(skg_alloc(nodes, sizeof(int32_t), "chain", &front->place));
-    SKG_TRY(skg_alloc(nodes, sizeof(int32_t), "chain", &front->heap));
+    SKG_TRY(skg_alloc(nodes, sizeof *front->heap, "chain", &front->heap));
     return skg_alloc(nodes, sizeof(int32_t), "chain", &front->seen);
 }
 

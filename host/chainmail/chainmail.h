@@ -23,16 +23,22 @@ typedef struct {
     int32_t node;
 } skg_chain_edge;
 
+typedef struct {
+    double gain;
+    int32_t node;
+} skg_chain_waiting;
+
 /* Scratch of one axis and one direction: an indexed heap, largest gain first. */
 typedef struct {
-    double *gain;    /* mm, per node: how far it moves in this direction */
-    int32_t *place;  /* per node: its place in the heap, or absent, or settled */
-    int32_t *heap;   /* nodes */
+    double *gain;   /* mm, per node: how far it moves in this direction */
+    int32_t *place; /* per node: its place in the heap, or absent, or settled */
+    skg_chain_waiting *heap;
     int32_t *seen;   /* nodes whose gain was set, in order of discovery */
     int64_t waiting; /* in the heap */
     int64_t found;   /* in seen */
     double conflict; /* mm: most that a driver is overrun */
     int64_t at;      /* that driver; -1 */
+    double without;  /* gain of nodes that were not seen */
 } skg_chain_front;
 
 typedef struct {

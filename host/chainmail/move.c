@@ -12,54 +12,53 @@ enum { ABSENT = -1, SETTLED = -2 };
  */
 static const double rounding_mm = 1e-9;
 
-static void sift_up(skg_chain_front *f, int64_t hole, int32_t node) {
-    double gain = f->gain[node];
+static void sift_up(skg_chain_front *f, int64_t hole, skg_chain_waiting entry) {
     while (hole > 0) {
         int64_t parent = (hole - 1) / 4;
-        int32_t above = f->heap[parent];
-        if (f->gain[above] >= gain) break;
-        f->heap[hole] = above, f->place[above] = (int32_t)hole;
+        if (f->heap[parent].gain >= entry.gain) break;
+        f->heap[hole] = f->heap[parent], f->place[f->heap[hole].node] = (int32_t)hole;
         hole = parent;
     }
-    f->heap[hole] = node, f->place[node] = (int32_t)hole;
+    f->heap[hole] = entry, f->place[entry.node] = (int32_t)hole;
 }
 
 static int32_t pop(skg_chain_front *f) {
-    int32_t top = f->heap[0], last = f->heap[--f->waiting];
+    int32_t top = f->heap[0].node;
+    skg_chain_waiting last = f->heap[--f->waiting];
     f->place[top] = SETTLED;
     if (f->waiting == 0) return top;
     int64_t hole = 0;
-    double gain = f->gain[last];
     for (;;) {
         int64_t child = 4 * hole + 1, end = child + 4 < f->waiting ? child + 4 : f->waiting, best = -1;
-        double most = gain;
+        double most = last.gain;
         for (int64_t c = child; c < end; c++)
-            if (f->gain[f->heap[c]] > most) best = c, most = f->gain[f->heap[c]];
+            if (f->heap[c].gain > most) best = c, most = f->heap[c].gain;
         if (best < 0) break;
-        f->heap[hole] = f->heap[best], f->place[f->heap[hole]] = (int32_t)hole;
+        f->heap[hole] = f->heap[best], f->place[f->heap[hole].node] = (int32_t)hole;
         hole = best;
     }
-    f->heap[hole] = last, f->place[last] = (int32_t)hole;
+    f->heap[hole] = last, f->place[last.node] = (int32_t)hole;
     return top;
 }
 
-/* Node may gain this much; floor: what it has without. */
-static inline void offer(skg_chain_front *f, int32_t node, double gain, double floor) {
-    int32_t place = f->place[node];
-    if (place == SETTLED) return;
-    if (place == ABSENT) {
-        if (!(gain > floor)) return;
-        f->seen[f->found++] = node;
-        f->gain[node] = gain;
-        sift_up(f, f->waiting++, node);
-    } else if (gain > f->gain[node]) {
-        f->gain[node] = gain;
-        sift_up(f, place, node);
-    }
+static void lift(skg_chain_front *f, int32_t node, double gain) {
+    f->gain[node] = gain;
+    int64_t hole = f->place[node];
+    if (hole == ABSENT) f->seen[f->found++] = node, hole = f->waiting++;
+    sift_up(f, hole, (skg_chain_waiting){gain, node});
 }
 
-static void forget(skg_chain_front *f) {
-    for (int64_t i = 0; i < f->found; i++) f->place[f->seen[i]] = ABSENT;
+/* Node may gain this much. Where the search has not been, its gain is what it has without; where it is
+ * settled no later offer is larger, as slacks are not negative. */
+static inline void offer(skg_chain_front *f, int32_t node, double gain) {
+    if (gain > f->gain[node]) lift(f, node, gain);
+}
+
+/* Every gain to what a node has without. */
+static void forget(const skg_chain *chain, skg_chain_front *f, double without) {
+    for (int64_t i = 0; i < f->found; i++) f->place[f->seen[i]] = ABSENT, f->gain[f->seen[i]] = without;
+    for (int64_t i = 0; f->without != without && i < chain->nodes; i++) f->gain[i] = without;
+    f->without = without;
     f->found = f->waiting = 0;
     f->conflict = 0, f->at = -1;
 }
@@ -72,11 +71,11 @@ static inline double link_slack(const skg_chain_edge *edge, int direction, doubl
 
 /* Gains over the state u (one axis) of every node that has to move in this direction. */
 static void spread(const skg_chain *chain, int axis, int direction, const double *u, skg_chain_front *f) {
-    forget(f);
+    forget(chain, f, 0);
     const skg_chain_edge *edges = chain->edge[axis];
     for (int64_t s = 0; s < chain->drivers; s++) {
         int32_t node = chain->driver[s];
-        offer(f, node, direction * (chain->target[axis][s] - u[node]), 0);
+        offer(f, node, direction * (chain->target[axis][s] - u[node]));
     }
     while (f->waiting > 0) {
         int32_t i = pop(f);
@@ -88,24 +87,22 @@ static void spread(const skg_chain *chain, int axis, int direction, const double
         }
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
             int32_t j = edges[e].node;
-            offer(f, j, gain - link_slack(edges + e, direction, here, u[j]), 0);
+            offer(f, j, gain - link_slack(edges + e, direction, here, u[j]));
         }
     }
 }
 
 void skg_chain_bounds(const skg_chain *chain, int axis, int direction, const double *sources,
                       skg_chain_front *f) {
-    forget(f);
+    forget(chain, f, -HUGE_VAL);
     const skg_chain_edge *edges = chain->edge[axis];
-    for (int64_t i = 0; i < chain->nodes; i++) f->gain[i] = -HUGE_VAL;
     for (int64_t s = 0; !sources && s < chain->drivers; s++)
-        offer(f, chain->driver[s], direction * chain->target[axis][s], -HUGE_VAL);
-    for (int64_t i = 0; sources && i < chain->nodes; i++)
-        offer(f, (int32_t)i, direction * sources[i], -HUGE_VAL);
+        offer(f, chain->driver[s], direction * chain->target[axis][s]);
+    for (int64_t i = 0; sources && i < chain->nodes; i++) offer(f, (int32_t)i, direction * sources[i]);
     while (f->waiting > 0) {
         int32_t i = pop(f);
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++)
-            offer(f, edges[e].node, f->gain[i] - (direction > 0 ? edges[e].fall : edges[e].rise), -HUGE_VAL);
+            offer(f, edges[e].node, f->gain[i] - (direction > 0 ? edges[e].fall : edges[e].rise));
     }
 }
 

@@ -4,6 +4,7 @@
 #include "plot.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,6 +115,21 @@ static int find_pass_time(cost_study *study, double *image) {
     return status < SKG_OK ? cli_fail(status) : CLI_DONE;
 }
 
+/* Root mean square of what the scene's noise adds to `image`, which is without. */
+static int find_noise(cost_study *study, const double *image) {
+    const skg_plan_options *options = &study->session.options;
+    if (!options->noise && !(options->electronic_kev > 0)) return CLI_DONE;
+    double *noisy = calloc((size_t)study->pixels, sizeof *noisy), squares = 0;
+    if (!noisy) return cli_error(CLI_DEVICE, "out of host memory for the image");
+    study->noisy = 1;
+    skg_status status = cost_image(study, &study->own, noisy, NULL);
+    study->noisy = 0;
+    for (int64_t i = 0; i < study->pixels; i++) squares += (noisy[i] - image[i]) * (noisy[i] - image[i]);
+    study->noise = sqrt(squares / (double)study->pixels) / study->open;
+    free(noisy);
+    return status < SKG_OK ? cli_fail(status) : CLI_DONE;
+}
+
 /* A setting that the scene does not allow (half of an open mesh), or has no memory, is noted, not fatal. */
 static int measure(cost_study *study, cost_point *point, double *image, int *keep) {
     skg_status status = cost_image(study, &point->setting, image, point);
@@ -160,6 +176,7 @@ static int sweep(cost_study *study) {
     if (study->session.options.spot && study->session.options.spot->grid > 0)
         cost_note(study, "source samples are not swept: the scene fixes them by a grid");
     int exit_status = find_pass_time(study, image);
+    if (exit_status == CLI_DONE) exit_status = find_noise(study, image);
     if (exit_status == CLI_DONE) {
         add_rays(study);
         add_samples(study);

@@ -44,6 +44,7 @@ enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
 /* For one tolerance. Numbers are of points; -1: the scene has no such dial. */
 typedef struct {
     double tolerance;
+    double bar;                 /* the tolerance, or a tenth of the noise where that is more */
     int rays;                   /* the fastest whose largest error is within it, or else the best */
     int samples, supersampling; /* the cheapest whose root mean square is, or else the best */
     int rays_met, sampling_met; /* 1 or 0 */
@@ -57,6 +58,8 @@ typedef struct {
     cli_session session;
     int quick;
     int64_t pixels, thumb_columns, thumb_rows, thumb_block;
+    int noisy;        /* 1: images have the noise that the scene asks for */
+    double noise;     /* root mean square of it, of the open beam; 0: none is asked for */
     double open;      /* keV per pixel of the open beam */
     cost_setting own; /* the scene's */
     int64_t finest;   /* bins of the reference: 0 or COST_FINEST_BINS */

@@ -140,10 +140,10 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
 
 /* Rays, samples and supersampling together; more careful rays where the whole misses the tolerance. */
 static int advise_whole(cost_study *study, cost_advice *advice) {
-    double bar = advice->tolerance;
+    double bar = advice->bar;
     for (int turn = 0; turn < 3; turn++, bar /= 4) {
         advice->rays = choose_rays(study, bar);
-        advice->rays_met = study->points[advice->rays].max_open <= advice->tolerance;
+        advice->rays_met = study->points[advice->rays].max_open <= advice->bar;
         advice->whole = (cost_point){.dial = COST_SCENE, .setting = whole_of(study, advice)};
         const cost_setting *setting = &advice->whole.setting;
         advice->whole_state = COST_WHOLE_IS_RAYS;
@@ -153,7 +153,7 @@ static int advise_whole(cost_study *study, cost_advice *advice) {
         if (reference_ms(study, setting) > cost_patience_ms(study)) return CLI_DONE;
         advice->whole_state = COST_WHOLE_MEASURED;
         int exit_status = measure_whole(study, advice);
-        if (exit_status != CLI_DONE || !advice->rays_met || advice->whole.max_open <= advice->tolerance)
+        if (exit_status != CLI_DONE || !advice->rays_met || advice->whole.max_open <= advice->bar)
             return exit_status;
     }
     advice->rays_met = 0;
@@ -167,11 +167,12 @@ int cost_advise(cost_study *study) {
     for (int i = 0; i < COST_TOLERANCES; i++) {
         cost_advice *advice = &study->advice[i];
         advice->tolerance = cost_tolerances[i];
-        advice->samples = choose_sampling(study, 1, advice->tolerance);
-        advice->supersampling = choose_sampling(study, 2, advice->tolerance);
+        advice->bar = fmax(advice->tolerance, study->noise / 10);
+        advice->samples = choose_sampling(study, 1, advice->bar);
+        advice->supersampling = choose_sampling(study, 2, advice->bar);
         advice->sampling_met =
-            (advice->samples < 0 || study->points[advice->samples].rms_open <= advice->tolerance) &&
-            (advice->supersampling < 0 || study->points[advice->supersampling].rms_open <= advice->tolerance);
+            (advice->samples < 0 || study->points[advice->samples].rms_open <= advice->bar) &&
+            (advice->supersampling < 0 || study->points[advice->supersampling].rms_open <= advice->bar);
         int exit_status = advise_whole(study, advice);
         if (exit_status != CLI_DONE) return exit_status;
         advice->rays_command = command_of(study, &study->points[advice->rays].setting);

@@ -77,6 +77,10 @@ static skg_status plan_of(cost_study *study, const cost_setting *setting, skg_pl
     options.precision = setting->precision;
     options.tolerance = setting->tolerance;
     options.supersampling = setting->supersampling;
+    if (!study->noisy) {
+        options.noise = 0;
+        options.electronic_kev = options.quantum_step_kev = 0;
+    }
     options.overlaps = 0; /* told once, by cost_open */
     if (setting->samples > 0) {
         spot = *options.spot;

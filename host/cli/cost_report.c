@@ -71,6 +71,10 @@ void cost_print(const cost_study *study) {
     for (int i = 0; i < study->count; i++) print_point(&study->points[i]);
     printf("  * frontier: none of the same rays is both faster and better; keV: energies used; mm: path "
            "lengths\n");
+    if (study->noise > 0)
+        printf(
+            "  noise: root mean square %.1e of the open beam; errors below a tenth of it are not asked for\n",
+            study->noise);
     for (int i = 0; i < study->note_count; i++) printf("  %s\n", study->notes[i]);
     for (int i = 0; i < COST_TOLERANCES; i++) print_advice(study, &study->advice[i]);
 }
@@ -116,6 +120,7 @@ static json_t *index_json(int index) {
 static json_t *advice_json(const cost_advice *advice) {
     json_t *object = json_object();
     json_object_set_new(object, "tolerance", cli_json_number(advice->tolerance));
+    json_object_set_new(object, "bar", cli_json_number(advice->bar));
     json_object_set_new(object, "rays", index_json(advice->rays));
     json_object_set_new(object, "rays_met", json_boolean(advice->rays_met));
     json_object_set_new(object, "rays_command", cli_json_text(advice->rays_command));
@@ -144,6 +149,7 @@ json_t *cost_json(const cost_study *study) {
     json_object_set_new(object, "columns", json_integer(study->session.view.columns));
     json_object_set_new(object, "rows", json_integer(study->session.view.rows));
     json_object_set_new(object, "open_keV", cli_json_number(study->open));
+    json_object_set_new(object, "noise", study->noise > 0 ? cli_json_number(study->noise) : json_null());
     json_object_set_new(object, "references", references);
     json_object_set_new(object, "points", points);
     json_object_set_new(object, "advice", advice);

@@ -247,8 +247,5 @@ skg_status skg_thorax_needle(const skg_thorax_plan *plan, skg_thorax *thorax) {
     skg_status status = skg_shape_tube("needle", 2, ring, 0.36, 8, &arrays);
     if (status == SKG_OK) status = skg_thorax_add(thorax, "needle", 0, -1, &arrays);
     skg_mesh_arrays_free(&arrays);
-    if (status != SKG_OK) return status;
-    thorax->part[thorax->parts - 1].material = "Fe";
-    thorax->part[thorax->parts - 1].density = 7.9;
-    return SKG_OK;
+    return status;
 }

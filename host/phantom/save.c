@@ -28,32 +28,48 @@ static void write_sample(const skg_thorax *thorax, int64_t i, FILE *f) {
     else
         fprintf(f, "\"Parent\": null, ");
     if (thorax->part[i].material)
-        fprintf(f, "\"Material\": [\"Element\", \"%s\"], \"Density\": %g", thorax->part[i].material,
-                thorax->part[i].density);
+        fprintf(f, "\"Material\": \"%s\"", thorax->part[i].material);
     else
         fprintf(f, "\"Material\": [\"HU\", %g]", thorax->part[i].hounsfield);
+    if (thorax->part[i].density > 0) fprintf(f, ", \"Density\": %g", thorax->part[i].density);
     fprintf(f, i + 1 < thorax->parts ? "},\n" : "}\n");
 }
 
 /* The source in front of the patient, the detector behind the back, rows from head to foot: the patient's
- * right is on the viewer's left. */
+ * right is on the viewer's left. The events: breath held at end-expiration (2.4 s: phase 0.6 of "quiet")
+ * while the needle goes 110 mm deep, shallow breathing, ducts that fill while it is drawn back. */
 static void write_scene(const skg_thorax *thorax, FILE *f) {
-    fprintf(f, "{\n"
-               "    \"Source\": {\n"
-               "        \"Position\": [0, -860, -20, \"mm\"],\n"
-               "        \"Shape\": \"PointSource\",\n"
-               "        \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 10000}]\n"
-               "    },\n"
-               "    \"Detector\": {\n"
-               "        \"Position\": [0, 140, -20, \"mm\"],\n"
-               "        \"UpVector\": [0, 0, -1],\n"
-               "        \"RightVector\": [1, 0, 0],\n"
-               "        \"NumberOfPixels\": [512, 512],\n"
-               "        \"Size\": [480, 480, \"mm\"]\n"
-               "    },\n"
-               "    \"Samples\": [\n");
+    fprintf(
+        f,
+        "{\n"
+        "    \"Source\": {\n"
+        "        \"Position\": [0, -860, -20, \"mm\"],\n"
+        "        \"Shape\": \"PointSource\",\n"
+        "        \"Beam\": {\"kVp\": 80, \"Filter\": [[\"Al\", 3.5, \"mm\"], [\"Cu\", 0.1, \"mm\"]]}\n"
+        "    },\n"
+        "    \"Tolerance\": 0.01,\n"
+        "    \"Detector\": {\n"
+        "        \"Position\": [0, 140, -20, \"mm\"],\n"
+        "        \"UpVector\": [0, 0, -1],\n"
+        "        \"RightVector\": [1, 0, 0],\n"
+        "        \"NumberOfPixels\": [512, 512],\n"
+        "        \"Size\": [480, 480, \"mm\"],\n"
+        "        \"Scintillator\": {\"Material\": \"CsI\", \"Thickness\": 600, \"Unit\": \"um\", \"Packing\": 0.8}\n"
+        "    },\n"
+        "    \"Samples\": [\n");
     for (int64_t i = 0; i < thorax->parts; i++) write_sample(thorax, i, f);
-    fprintf(f, "    ]\n}\n");
+    fprintf(f, "    ],\n"
+               "    \"Breathing\": {\n"
+               "        \"Pattern\": \"quiet\",\n"
+               "        \"Reference\": 0,\n"
+               "        \"Events\": [\n"
+               "            {\"Hold\": [2.4, 6.4]},\n"
+               "            {\"Weight\": [[2.4, 1], [6.4, 0.3]]},\n"
+               "            {\"Needle\": [[2.6, -20], [6.2, 110], [8, 110], [11.5, -20]]},\n"
+               "            {\"Contrast\": \"bile ducts\", \"Share\": [[6.4, 0], [9, 1]]},\n"
+               "            {\"Contrast\": \"common bile duct\", \"Share\": [[7.5, 0], [10.5, 1]]}\n"
+               "        ]\n"
+               "    }\n}\n");
 }
 
 skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {

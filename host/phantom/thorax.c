@@ -13,6 +13,35 @@ void skg_thorax_part_init(skg_thorax_part *part) {
     *part = (skg_thorax_part){.size = (int32_t)sizeof *part, .inside = -1};
 }
 
+/* What parts are of, by how their labels begin: a name of the material tables, and a density in g/cm3 where
+ * it is not theirs. Bones are by Hounsfield number: a bone as a whole has marrow in it. */
+static const struct {
+    const char *label, *material;
+    double density;
+} tissue[] = {{"skin", "Adipose", 0},
+              {"lung", "Lung tissue", 0.24}, /* end-expiration; about 720 g in 3 l */
+              {"trachea", "Air", 0},
+              {"bronchus", "Air", 0},
+              {"heart", "Blood", 0},
+              {"diaphragm", "Muscle", 0},
+              {"liver", "Liver", 0},
+              {"gallbladder", "Water", 0},
+              {"bile ducts", "Iopamidol 150", 0},
+              {"common bile duct", "Iopamidol 150", 0},
+              {"stomach", "Soft tissue", 0},
+              {"spleen", "Spleen", 0},
+              {"kidney", "Kidney", 0},
+              {"needle", "Needle steel", 0}};
+
+static void set_tissue(skg_thorax *thorax, int64_t i) {
+    for (size_t t = 0; t < sizeof tissue / sizeof *tissue; t++)
+        if (strncmp(thorax->part[i].label, tissue[t].label, strlen(tissue[t].label)) == 0) {
+            thorax->part[i].material = tissue[t].material;
+            thorax->part[i].density = tissue[t].density;
+            return;
+        }
+}
+
 skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
                           skg_mesh_arrays *arrays) {
     if (thorax->parts == thorax->room) {
@@ -26,6 +55,7 @@ skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfie
     strncpy(thorax->part[thorax->parts].label, label, sizeof thorax->part->label - 1);
     thorax->part[thorax->parts].hounsfield = hounsfield;
     thorax->part[thorax->parts].inside = inside;
+    set_tissue(thorax, thorax->parts);
     thorax->part[thorax->parts++].mesh = mesh;
     return SKG_OK;
 }

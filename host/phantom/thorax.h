@@ -28,7 +28,7 @@ struct skg_thorax {
     int64_t parts, room;
     struct {
         char label[40];
-        const char *material; /* chemical symbol or NULL */
+        const char *material; /* a name of the tables, or NULL */
         double hounsfield, density;
         int64_t inside;
         skg_mesh *mesh;

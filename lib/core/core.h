@@ -12,6 +12,9 @@
  *     return skg_fail(SKG_ERR_MESH, "%s: no triangles", name); */
 skg_status skg_fail(skg_status status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Control characters become question marks: names in files may hold any, and a sentence is one line. */
+void skg_one_line(char *sentence);
+
 /* Returns from the calling function when the call failed or is stale. */
 #define SKG_TRY(call)                                                                                        \
     do {                                                                                                     \

@@ -34,6 +34,11 @@ const char *skg_last_error(void) {
     return last_error;
 }
 
+void skg_one_line(char *sentence) {
+    for (; *sentence; sentence++)
+        if ((unsigned char)*sentence < ' ' || *sentence == 0x7f) *sentence = '?';
+}
+
 skg_status skg_fail(skg_status status, const char *format, ...) {
     /* The arguments may quote the last error itself: format beside it first. */
     static _Thread_local char sentence[sizeof last_error];
@@ -41,6 +46,7 @@ skg_status skg_fail(skg_status status, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
+    if (status != SKG_ERR_BUILD) skg_one_line(sentence); /* a build log keeps its lines */
     snprintf(last_error, sizeof last_error, "%s", sentence);
     return status;
 }

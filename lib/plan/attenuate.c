@@ -15,7 +15,7 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, output_double, add, runs, energies;
+    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, runs, energies;
 } kernel_key;
 
 struct skg_attenuator {
@@ -39,26 +39,31 @@ static skg_status upload(skg_context *context, int32_t is_double, int64_t count,
 }
 
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
-                                  const double *coefficients, const double *weights,
-                                  skg_attenuation *attenuation) {
+                                  const skg_attenuation_tables *tables, skg_attenuation *attenuation) {
     const int32_t is_double = precision == SKG_DOUBLE;
     const int64_t count = (int64_t)shape->nodes * shape->planes;
     double *scaled = NULL;
     SKG_TRY(skg_alloc(count, sizeof *scaled, "attenuation", &scaled));
     /* exp(-x) = 2^(-x log2 e) */
     for (int64_t i = 0; i < count; i++)
-        scaled[i] = coefficients[i] * (shape->shown == SKG_SHOWN_EXPONENT ? 1 : -1.4426950408889634);
+        scaled[i] = tables->coefficients[i] * (shape->shown == SKG_SHOWN_EXPONENT ? 1 : -1.4426950408889634);
     *attenuation = *shape;
     skg_status status = upload(context, is_double, count, scaled, &attenuation->coefficients);
     skg_free(&scaled);
     SKG_TRY(status);
-    return upload(context, is_double, (int64_t)shape->nodes * shape->channels, weights,
-                  &attenuation->weights);
+    const int64_t weighted = (int64_t)shape->nodes * shape->channels;
+    if (shape->noise)
+        SKG_TRY(upload(context, is_double, weighted, tables->variances, &attenuation->variances));
+    if (tables->range)
+        SKG_TRY(upload(context, is_double, 2 * (int64_t)shape->planes, tables->range, &attenuation->range));
+    return upload(context, is_double, weighted, tables->weights, &attenuation->weights);
 }
 
 void skg_attenuation_release(skg_attenuation *attenuation) {
     skg_buffer_release(&attenuation->coefficients);
     skg_buffer_release(&attenuation->weights);
+    skg_buffer_release(&attenuation->variances);
+    skg_buffer_release(&attenuation->range);
 }
 
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator) {
@@ -74,16 +79,18 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "attenuate.cl"};
+    static const char *const quiet[] = {"exponential.clh", "attenuate.cl"};
+    static const char *const noisy[] = {"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"};
     char more[256];
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d%s",
+        "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->output_double, (int)key->add, (int)key->runs,
-        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
-    return skg_kernels_get(attenuator->context, &key->options, 2, files, more, program);
+        (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->add, (int)key->runs,
+        (int)key->ranged, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+    return skg_kernels_get(attenuator->context, &key->options, key->noise ? 4 : 2, key->noise ? noisy : quiet,
+                           more, program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
@@ -117,9 +124,10 @@ static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
     return skg_kernel_set(kernel, 13, sizeof channel, &channel);
 }
 
-/* Arguments from `first` on of effects that are there: world and falloff. */
+/* Arguments from `first` on of effects that are there: world, falloff, noise, range. */
 static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key *key,
-                              const skg_camera *camera, const skg_attenuation *attenuation) {
+                              const skg_camera *camera, const skg_attenuation *attenuation,
+                              const skg_noise_args *noise, double photons) {
     const int single = key->options.precision == SKG_SINGLE;
     if (key->world) {
         /* |ray| times path: the whole ray of a point source; with a parallel beam, whose |ray| is 1 mm, from
@@ -139,6 +147,15 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
         SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof nearest_single : sizeof nearest,
                                single ? (const void *)&nearest_single : (const void *)&nearest));
     }
+    if (key->noise) {
+        const float photons_single = (float)photons;
+        SKG_TRY(skg_kernel_set_memory(kernel, first++, 1, &attenuation->variances.memory));
+        SKG_TRY(skg_kernel_set(kernel, first++, sizeof *noise, noise));
+        SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof photons_single : sizeof photons,
+                               single ? (const void *)&photons_single : (const void *)&photons));
+    }
+    if (key->ranged)
+        return skg_kernel_set(kernel, first, sizeof attenuation->range.memory, &attenuation->range.memory);
     return SKG_OK;
 }
 
@@ -154,15 +171,18 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                         .world = attenuation->world_plane >= 0,
                         .ratio = attenuation->ratio,
                         .falloff = attenuation->falloff && !camera->parallel,
+                        .noise = attenuation->noise,
                         .output_double = place->output_double,
                         .energies = raster->options.kernels.half && attenuation->energies,
                         .add = place->add,
+                        .ranged = attenuation->range.memory != NULL,
                         .runs = attenuation->nodes > 1 ? RUNS : 1};
 }
 
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
-                         cl_mem negative, const skg_image_place *place, skg_stage_log *log) {
+                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
+                         skg_stage_log *log) {
     const skg_kernel_options *sums = &raster->options.kernels;
     const kernel_key key = key_of(raster, camera, attenuation, place);
     const int single = sums->precision == SKG_SINGLE;
@@ -188,7 +208,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
                            single ? (const void *)&limit_single : (const void *)&limit));
     SKG_TRY(skg_kernel_set(kernel, 9, sizeof negative, &negative));
     SKG_TRY(set_place(kernel, place));
-    SKG_TRY(set_effects(kernel, 14, &key, camera, attenuation));
+    SKG_TRY(set_effects(kernel, 14, &key, camera, attenuation, noise, SKG_FEW_PHOTONS * factor));
     const int64_t lanes = skg_kernel_lanes(raster->context, sums->precision) * key.runs;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),

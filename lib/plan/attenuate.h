@@ -16,15 +16,24 @@ typedef struct {
     int32_t ratio;       /* 1: over what the world alone lets pass */
     int32_t falloff;     /* 1: intensities fall with the distance */
     int32_t energies;    /* 1: shows keV, which half precision keeps in MeV */
+    int32_t noise;       /* 1: quantum noise, of intensities that are no ratio */
     double world_weight; /* of a mm of the world's path in its plane */
-    skg_buffer coefficients, weights;
+    skg_buffer coefficients, weights, variances;
+    skg_buffer
+        range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not looked at */
 } skg_attenuation;
 
-/* shape: planes, nodes, channels and what is shown. coefficients: [nodes][planes]; weights:
- * [nodes][channels]; copied. */
+/* What a host gives. */
+typedef struct {
+    const double *coefficients; /* [nodes][planes] */
+    const double *weights;      /* [nodes][channels] */
+    const double *variances;    /* [nodes][channels] with noise; else NULL */
+    const double *range;        /* [planes][2]; NULL: not looked at */
+} skg_attenuation_tables;
+
+/* shape: planes, nodes, channels and what is shown. The tables are copied. */
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
-                                  const double *coefficients, const double *weights,
-                                  skg_attenuation *attenuation);
+                                  const skg_attenuation_tables *tables, skg_attenuation *attenuation);
 void skg_attenuation_release(skg_attenuation *attenuation);
 
 typedef struct skg_attenuator skg_attenuator; /* the kernels, made on demand */
@@ -39,11 +48,17 @@ typedef struct {
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
-/* Enqueues one image. scale: of the sums; factor: of intensities; least: exponents below it are counted into
- * negative (one int). */
+/* Below so many detected photons in a pixel, quantum noise is drawn photon by photon. */
+#define SKG_FEW_PHOTONS 50.0
+
+/* Enqueues one image. scale: of the sums; factor: of intensities; with noise, of photons: the share of a
+ * sample of the source, whose draws add up to one of all photons; least: exponents below it are counted into
+ * negative[0], pixels outside the attenuation's range into negative[1]. noise: its key, where there is noise.
+ */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
                          double scale, const skg_attenuation *attenuation, double factor, double least,
-                         cl_mem negative, const skg_image_place *place, skg_stage_log *log);
+                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
+                         skg_stage_log *log);
 
 /* Enqueues -ln of a finished mean, in place. */
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,

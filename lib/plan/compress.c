@@ -135,6 +135,23 @@ cleanup:
     return status;
 }
 
+/* What planes hold over the range of lengths; and rounding of their sums more. */
+static skg_status find_range(const compressing *c, skg_model *model) {
+    const int32_t planes = c->basis.planes;
+    SKG_TRY(skg_alloc(2 * (int64_t)planes, sizeof *model->range, "planes", &model->range));
+    for (int32_t k = 0; k < planes; k++) {
+        double low = 0, high = 0;
+        for (int32_t m = 0; m < c->beam.materials; m++) {
+            const double mix = c->basis.mix[m * planes + k];
+            const double ends[2] = {mix * c->beam.low[m], mix * c->beam.high[m]};
+            low += fmin(ends[0], ends[1]), high += fmax(ends[0], ends[1]);
+        }
+        const double rounding = 1e-5 * (high - low) + 1e-3;
+        model->range[2 * k] = low - rounding, model->range[2 * k + 1] = high + rounding;
+    }
+    return SKG_OK;
+}
+
 static void rewrite_nodes(const compressing *c, skg_model *model) {
     const skg_nodes *nodes = &c->found.nodes;
     const int32_t sets = model->channels, bins = c->beam.bins, planes = c->basis.planes;
@@ -168,6 +185,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const doub
         skg_nodes_find(&c.beam, c.basis.mu, c.tolerance, c.ranges.rays, c.ranges.lengths, &c.found));
     if (c.found.nodes.count == 0) goto cleanup;
     c.found.bound *= errors;
+    SKG_TRY_CLEANUP(find_range(&c, model));
     SKG_TRY_CLEANUP(rewrite_writes(&c, model));
     rewrite_nodes(&c, model);
 cleanup:

@@ -13,8 +13,7 @@ static int by_size(const void *a, const void *b) {
 /* What 99.9 % of the pixels of all channels change by at most, of the open beam. change: workspace. */
 static double most_change(const skg_plan *plan, const float *before, const float *after, float *change) {
     const int64_t size = plan->view.rows * plan->view.columns, count = size * plan->model.channels;
-    const int is_ratio =
-        plan->options.quantity == SKG_TRANSMISSION || plan->options.quantity == SKG_ATTENUATION;
+    const int is_ratio = skg_plan_is_ratio(&plan->options) && !skg_plan_is_absolute(&plan->options);
     for (int64_t i = 0; i < count; i++) {
         const double open = is_ratio ? 1 : plan->model.open[i / size];
         change[i] = open > 0 ? (float)(fabs((double)after[i] - (double)before[i]) / open) : 0;
@@ -23,10 +22,14 @@ static double most_change(const skg_plan *plan, const float *before, const float
     return (double)change[(int64_t)(0.999 * (double)(count - 1))];
 }
 
-/* The linear image (a ratio before its logarithm) with so many samples of the source, one ray a pixel. */
+/* The linear image (a ratio before its logarithm, without noise) with so many samples of the source, one ray
+ * a pixel. */
 static skg_status take(skg_plan *plan, int64_t samples, float *image) {
     const int32_t quantity = plan->options.quantity;
     const int64_t shifts = plan->samples.shifts;
+    skg_detector *detector = plan->detector;
+    plan->detector = NULL;
+    plan->attenuation.noise = 0;
     skg_output output;
     skg_output_init(&output);
     output.data = image;
@@ -34,7 +37,10 @@ static skg_status take(skg_plan *plan, int64_t samples, float *image) {
     plan->samples.shifts = 1;
     if (quantity == SKG_ATTENUATION) plan->options.quantity = SKG_TRANSMISSION;
     skg_status status = skg_plan_image(plan, &output);
+    if (status == SKG_RANGE) status = SKG_OK; /* how it differs from the last one does not depend on it */
     plan->options.quantity = quantity;
+    plan->detector = detector;
+    plan->attenuation.noise = plan->options.noise;
     plan->samples.shifts = shifts;
     return status;
 }

@@ -17,6 +17,67 @@ static void set(skg_plan *plan, int effect, int on, const char *format, ...) {
     state->on = on;
 }
 
+static void tell_noise(skg_plan *plan) {
+    const skg_plan_options *options = &plan->options;
+    if (options->noise)
+        set(plan, SKG_EFFECT_NOISE, 1,
+            "asked for; Swank factor %g; photon by photon where fewer than %g are detected in a pixel",
+            options->swank, SKG_FEW_PHOTONS);
+    else
+        set(plan, SKG_EFFECT_NOISE, 0, "not asked for");
+    if (plan->blur)
+        set(plan, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(plan->blur));
+    else
+        set(plan, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
+    if (options->electronic_kev > 0)
+        set(plan, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel",
+            options->electronic_kev);
+    else
+        set(plan, SKG_EFFECT_ELECTRONIC, 0, "not asked for");
+    if (options->quantum_step_kev > 0)
+        set(plan, SKG_EFFECT_QUANTISATION, 1, "steps of %g keV per pixel", options->quantum_step_kev);
+    else
+        set(plan, SKG_EFFECT_QUANTISATION, 0, "no step is given");
+}
+
+static void report_contest(skg_plan *plan, int64_t competing) {
+    if (!plan->contest_possible)
+        set(plan, SKG_EFFECT_PRIORITY, 0,
+            "no two parts of one parent differ in priority, and none is clipped");
+    else if (competing == 0)
+        set(plan, SKG_EFFECT_PRIORITY, 0, "parts of different priority keep apart in the plan's view");
+    else
+        set(plan, SKG_EFFECT_PRIORITY, 1, "hits of %" PRId64 " parts are listed: they may compete%s",
+            competing, plan->options.clip ? ", or leave their parents" : "");
+}
+
+/* Effects that follow from where the parts lie. */
+static skg_status report_places(skg_plan *plan) {
+    const skg_scene *scene = plan->scene;
+    skg_camera camera;
+    skg_extent *extents = NULL;
+    skg_contest contest = {0};
+    int64_t near = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_camera_make(&plan->view, NULL, 0, 0, &camera));
+    SKG_TRY(skg_alloc(scene->count, sizeof *extents, "effects", &extents));
+    for (int64_t i = 0; i < scene->count; i++) {
+        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, &extents[i]);
+        near += extents[i].near_source && extents[i].on_detector;
+    }
+    if (near)
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
+    else
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
+    if (plan->contest_possible)
+        SKG_TRY_CLEANUP(skg_contest_find(scene, plan->options.clip, extents, &contest));
+    report_contest(plan, contest.count);
+cleanup:
+    skg_contest_release(&contest);
+    skg_free(&extents);
+    return status;
+}
+
 static void tell_samples(skg_plan *plan) {
     const skg_samples *samples = &plan->samples;
     static const char *const shapes[] = {"point", "line",   "rectangle",    "cube",
@@ -70,6 +131,10 @@ static void tell_compression(skg_plan *plan) {
             model->nodes, model->bins, model->planes, model->materials, model->bound, model->verified);
     else if (model->bins == 1)
         set(plan, effect, 0, "the beam has one energy");
+    else if (plan->options.noise)
+        set(plan, effect, 0, "noise counts the photons of every energy");
+    else if (plan->options.precision == SKG_HALF)
+        set(plan, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
     else if (plan->options.tolerance > 0)
         set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
             plan->options.tolerance);
@@ -81,9 +146,10 @@ skg_status skg_report_effects(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     int64_t nested = 0;
     for (int64_t i = 0; i < scene->count; i++) nested += scene->parts[i].inside >= 0;
-    if (plan->model.nodes > 1)
-        set(plan, SKG_EFFECT_ENERGIES, 1, "%" PRId32 " energies, %" PRId32 " planes of materials that differ",
-            plan->model.nodes, plan->model.planes);
+    if (plan->model.bins > 1)
+        set(plan, SKG_EFFECT_ENERGIES, 1,
+            "%" PRId32 " energies, %" PRId32 " planes for %" PRId32 " materials that differ",
+            plan->model.nodes, plan->model.planes, plan->model.materials);
     else
         set(plan, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
     tell_samples(plan);
@@ -99,24 +165,24 @@ skg_status skg_report_effects(skg_plan *plan) {
             "%" PRId64 " parts are not closed: each has a plane and a count of its own", plan->open_count);
     else
         set(plan, SKG_EFFECT_OPEN, 0, "every mesh is closed: signed hits cancel exactly");
+    static const char *const repairs[] = {
+        [SKG_REPAIR_NONE] = "not asked for: bad pixels are left out",
+        [SKG_REPAIR_NEIGHBOURS] = "bad pixels of a part get the mean of its nearest valid ones",
+        [SKG_REPAIR_EXACT] =
+            "rays of bad pixels are cast anew on the host, through meshes with their holes capped",
+    };
+    if (plan->open_count)
+        set(plan, SKG_EFFECT_REPAIR, plan->options.repair != SKG_REPAIR_NONE, "%s",
+            repairs[plan->options.repair]);
+    else
+        set(plan, SKG_EFFECT_REPAIR, 0, "every mesh is closed");
     if (!plan->options.overlaps)
         set(plan, SKG_EFFECT_OVERLAPS, 0, "not asked for");
     else
         set(plan, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " pairs of parts overlap or leave their parent",
             plan->overlap_count);
-    skg_camera camera;
-    int64_t near = 0;
-    SKG_TRY(skg_camera_make(&plan->view, NULL, 0, 0, &camera));
-    for (int64_t i = 0; i < scene->count; i++) {
-        skg_extent extent;
-        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, &extent);
-        near += extent.near_source && extent.on_detector;
-    }
-    if (near)
-        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
-    else
-        set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
-    return SKG_OK;
+    tell_noise(plan);
+    return report_places(plan);
 }
 
 void skg_effect_init(skg_effect *effect) {

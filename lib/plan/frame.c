@@ -8,6 +8,7 @@ static void release_parts(skg_frame_parts *frame) {
     skg_free(&frame->writes);
     skg_free(&frame->first_write);
     skg_free(&frame->extents);
+    skg_contest_release(&frame->contest);
 }
 
 /* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
@@ -31,6 +32,7 @@ static skg_status list_lengths(const skg_plan *plan, const skg_frame_work *work,
 
 static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
     if (work->lengths_of >= 0) return list_lengths(plan, work, frame);
+    if (work->frame && work->frame->matters != 0) return skg_frame_list_matter(plan, work->frame, frame);
     frame->all_writes = plan->model.writes;
     frame->firsts = plan->model.first_write;
     frame->planes = plan->model.planes;
@@ -95,7 +97,9 @@ static skg_status upload(skg_plan *plan, skg_job *job) {
 static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work, int64_t sample,
                           const skg_frame_parts *frame) {
     const int lengths = work->lengths_of >= 0;
-    const double area = plan->options.quantity == SKG_FLUENCE ? skg_camera_pixel_area(&frame->camera) : 1;
+    /* Noise is that of photons in a pixel: the area comes later. */
+    const int areas = plan->options.quantity == SKG_FLUENCE && !skg_plan_is_absolute(&plan->options);
+    const double area = areas ? skg_camera_pixel_area(&frame->camera) : 1;
     const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&plan->samples));
     /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
     const double least = -1e-6 * frame->scale.bound - 1e-6;
@@ -104,9 +108,20 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
     place.add = sample > 0;
     SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
+    skg_noise_args noise = work->noise;
+    noise.sample = sample > 0 ? (cl_int)sample : 0;
     return skg_attenuate(plan->attenuator, plan->main, &frame->camera, frame->scale.scale,
                          lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
-                         &place, &job->log);
+                         &noise, &place, &job->log);
+}
+
+/* Who competes for intervals in this frame; a mesh's own lengths know nothing of others. */
+static skg_status find_contest(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    if (!plan->contest_possible || (work->lengths_of >= 0 && work->kind == SKG_SURFACE)) return SKG_OK;
+    SKG_TRY(skg_contest_find(plan->scene, plan->options.clip, frame->extents, &frame->contest));
+    for (int64_t s = 0; s < frame->contest.count; s++)
+        frame->kernels.source_plane |= frame->extents[frame->contest.parts[s]].near_source;
+    return SKG_OK;
 }
 
 /* Camera of a sample (below 0: the point source and the pixels' centres), parts, scale, and the rasteriser
@@ -118,14 +133,15 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &frame->camera));
     SKG_TRY(list_writes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
+    SKG_TRY(find_contest(plan, work, frame));
     frame->kernels.precision = plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE;
     frame->kernels.half = plan->options.precision == SKG_HALF;
     frame->kernels.bits =
         frame->kernels.half ? 32 : frame->scale.bits; /* half: 2^-24 m, whatever the scene */
     frame->kernels.parallel = frame->camera.parallel;
     frame->kernels.listed_writes = frame->planes > 1 || frame->kernels.half;
-    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes, plan->open_count > 0,
-                            &plan->main));
+    SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes,
+                            plan->open_count > 0 || plan->contest_possible, &plan->main));
     plan->report.plane_bits = frame->scale.bits;
     skg_raster_tiles(plan->main, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
     return SKG_OK;
@@ -150,6 +166,7 @@ static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_wor
                                          frame.parts, frame.scale.scale, &job->log));
     if (frame.kernels.half) skg_raster_set_rays(plan->main, &frame.camera);
     SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
+    if (frame.contest.count) SKG_TRY_CLEANUP(skg_contest_run(plan, job, &frame, plan->main));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
     SKG_TRY_CLEANUP(resolve(plan, job, work, sample, &frame));
 cleanup:
@@ -162,9 +179,11 @@ int skg_plan_averages(const skg_plan *plan) {
 }
 
 skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work) {
-    if (work->lengths_of >= 0 || !skg_plan_averages(plan)) return enqueue_pass(plan, job, work, -1);
-    const int64_t count = skg_samples_count(&plan->samples);
-    for (int64_t s = 0; s < count; s++) SKG_TRY(enqueue_pass(plan, job, work, s));
-    if (plan->options.quantity != SKG_ATTENUATION) return SKG_OK;
+    if (work->lengths_of >= 0) return enqueue_pass(plan, job, work, -1);
+    const int64_t first = skg_plan_averages(plan) ? 0 : -1;
+    const int64_t end = first < 0 ? 0 : skg_samples_count(&plan->samples);
+    for (int64_t s = first; s < end; s++) SKG_TRY(enqueue_pass(plan, job, work, s));
+    SKG_TRY(skg_plan_detect(plan, job, work));
+    if (plan->options.quantity != SKG_ATTENUATION || !skg_plan_is_late(plan)) return SKG_OK;
     return skg_attenuate_logarithm(plan->attenuator, plan->main, &plan->attenuation, &work->place, &job->log);
 }

@@ -9,9 +9,11 @@
 typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
+    const skg_frame *frame;     /* the caller's, for its matter; NULL: as planned */
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t kind;               /* of lengths: SKG_NET or SKG_SURFACE */
     int32_t reserved;
+    skg_noise_args noise; /* its key */
     skg_image_place place;
 } skg_frame_work;
 
@@ -27,6 +29,7 @@ typedef struct {
     const int64_t *firsts;              /* [parts + 1] all_writes[firsts[p]] ... */
     skg_extent *extents;                /* [parts] */
     skg_scale scale;
+    skg_contest contest; /* closed parts that compete for intervals */
 } skg_frame_parts;
 
 /* Compiles and allocates for images of the plan's view. */
@@ -35,10 +38,36 @@ skg_status skg_frame_prepare(skg_plan *plan);
 /* Enqueues the frame; when it is done the result is in its place. */
 skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work *work);
 
+/* Fills what parts add where some are of other matter in this frame (matter.c). */
+skg_status skg_frame_list_matter(const skg_plan *plan, const skg_frame *given, skg_frame_parts *frame);
+
 /* Enqueues the open parts of a frame after the raster of the closed ones, whose sums they join (open.c). */
 skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_parts *frame, skg_raster *shared);
 
+/* An open part whose own planes are rastered. */
+typedef struct {
+    int64_t open;                      /* number in plan->open */
+    const skg_raster *raster, *shared; /* of its planes, and those that its sums join */
+    cl_mem moves;                      /* as skg_open_add takes them */
+    int64_t first_move, move_count;    /* its own; their order is that of its writes */
+    int64_t count_plane;
+    cl_mem bad; /* as skg_raster_bad_pixels leaves it */
+} skg_open_part;
+
+/* Enqueues the repair of its bad pixels, as the plan's options have it (repair.c). Exact: waits for its
+ * raster. */
+skg_status skg_open_part_repair(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
+                                const skg_open_part *part);
+
+/* Enqueues what priorities and clipping take off the sums of the closed parts, whose tables the device has;
+ * waits for the number of hits (priority_hits.c). */
+skg_status skg_contest_run(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
+                           const skg_raster *raster);
+
 /* Warns once that nothing falls on the detector: which way, how far (unseen.c). */
 void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame);
+
+/* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps (detect.c). */
+skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *work);
 
 #endif

@@ -15,7 +15,8 @@ struct skg_job {
     int32_t reserved;
     cl_event last;     /* of the last command; NULL where the submission failed half way */
     skg_stage_log log; /* of all frames, where stages are timed */
-    int32_t *negative; /* staged: pixels with a negative exponent in the last frame */
+    int32_t *negative; /* staged: pixels with a negative exponent in the last frame; outside the
+                          verified range in any */
     int32_t *listed;   /* staged: [2] as skg_raster_read_listed has it, of the last frame */
     int32_t *broken;   /* staged: the lowest vertex that was not finite, over all parts; INT32_MAX: none */
     int32_t *bad; /* staged: [open parts][1 + SKG_FIRST_BAD] what the open parts of the last frame left */

@@ -2,6 +2,7 @@
 
 #include "beam/spectrum.h"
 #include "plan/compress.h"
+#include "plan/noise.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -138,6 +139,17 @@ static skg_status worth_of(const making *m, double energy, double *worth) {
     return skg_response_at(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
 }
 
+/* Variance of what a photon that arrives adds (contracts 4.6): it is recorded with the probability
+ * `efficiency`, then adds worth / efficiency on average, and the scintillator's pulse heights widen that by
+ * the Swank factor. */
+static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
+    double efficiency = 1;
+    if (m->options->response) SKG_TRY(skg_response_at(m->options->response, energy, 1, NULL, &efficiency));
+    const double swank = m->options->quantity == SKG_PHOTONS ? 1 : m->options->swank;
+    *variance = efficiency > 0 ? worth * worth / (efficiency * swank) : 0;
+    return SKG_OK;
+}
+
 static int in_band(const making *m, int64_t channel, double energy) {
     const double *edges = m->options->band_kev;
     return m->options->bands == 0 || (energy >= edges[channel] && energy < edges[channel + 1]);
@@ -153,25 +165,31 @@ static skg_status check_bands(const making *m) {
 }
 
 static int shows_ratio(const making *m) {
-    return m->options->quantity == SKG_TRANSMISSION || m->options->quantity == SKG_ATTENUATION;
+    return skg_plan_is_ratio(m->options) && !skg_plan_is_absolute(m->options);
 }
 
 static skg_status weigh(const making *m, skg_model *model) {
+    const int noise = m->options->noise;
     const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
     const int32_t channels = model->channels;
     SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->weights, "nodes", &model->weights));
     SKG_TRY(skg_alloc(channels, sizeof *model->open, "nodes", &model->open));
+    if (noise)
+        SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->variances, "nodes",
+                          &model->variances));
     for (int32_t n = 0; n < model->nodes; n++) {
         const int64_t bin = m->bins[n];
         const double energy = m->spectrum->energy_kev[bin];
-        double worth = 0;
+        double worth = 0, variance = 0;
         SKG_TRY(worth_of(m, energy, &worth));
+        if (noise) SKG_TRY(variance_of(m, energy, worth, &variance));
         for (int32_t c = 0; c < channels; c++)
             if (in_band(m, c, energy)) {
                 model->weights[n * channels + c] = m->spectrum->photons[bin] * worth;
                 model->open[c] += m->spectrum->photons[bin] * worth;
+                if (noise) model->variances[n * channels + c] = m->spectrum->photons[bin] * variance;
             }
     }
     for (int32_t c = 0; c < channels && is_ratio; c++) {
@@ -209,7 +227,9 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
-    if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
+    /* Photons of every bin count by themselves for the variance. */
+    if (options->tolerance > 0 && !options->noise && !is_unweighted(&m) && model->nodes > 2 &&
+        model->materials > 0)
         SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
 cleanup:
     skg_free(&m.bins);
@@ -225,7 +245,9 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->writes);
     skg_free(&model->coefficients);
     skg_free(&model->weights);
+    skg_free(&model->variances);
     skg_free(&model->open);
     skg_free(&model->node_kev);
+    skg_free(&model->range);
     skg_free(&model->node_photons);
 }

@@ -1,6 +1,6 @@
 /* Open parts: each is rastered into planes and a count of its own; where its signed hits cancel, its sums
- * join those of the closed parts. One count for several would let +1 and -1 of two meshes cancel (contracts
- * 3). */
+ * join those of the closed parts, elsewhere repaired ones (repair.c). One count for several would let +1 and
+ * -1 of two meshes cancel (contracts 3). */
 #include "plan/frame.h"
 #include "plan/raster_private.h"
 
@@ -67,7 +67,7 @@ static skg_status run_batch(skg_plan *plan, skg_job *job, const skg_frame_parts 
     skg_raster *raster = NULL;
     skg_buffer moves = {0};
     skg_status status = SKG_OK;
-    int64_t plane = 0;
+    int64_t plane = 0, move = 0;
     kernels.listed_writes = 1;
     SKG_TRY(skg_plan_raster(plan, &kernels, plan->strategy, batch->planes, 0, &raster));
     SKG_TRY(skg_geometry_project(plan->context, &plan->geometry, &kernels, &frame->camera, batch->parts,
@@ -81,10 +81,21 @@ static skg_status run_batch(skg_plan *plan, skg_job *job, const skg_frame_parts 
     SKG_TRY_CLEANUP(run_add(plan, job, raster, shared, batch, moves.memory));
     for (int64_t k = first; k < first + open; k++) {
         const int64_t part = plan->open[k];
-        plane += frame->firsts[part + 1] - frame->firsts[part];
-        SKG_TRY_CLEANUP(skg_raster_bad_pixels(raster, plane++, plan->bad.memory, &job->log));
+        const int64_t writes = frame->firsts[part + 1] - frame->firsts[part];
+        const skg_open_part own = {.open = k,
+                                   .raster = raster,
+                                   .shared = shared,
+                                   .moves = moves.memory,
+                                   .first_move = move,
+                                   .move_count = writes,
+                                   .count_plane = plane + writes,
+                                   .bad = plan->bad.memory};
+        plane += writes + 1;
+        move += writes;
+        SKG_TRY_CLEANUP(skg_raster_bad_pixels(raster, own.count_plane, own.bad, &job->log));
         SKG_TRY_CLEANUP(skg_job_read(job, plan->bad.memory, (1 + SKG_FIRST_BAD) * (int64_t)sizeof *job->bad,
                                      job->bad + k * (1 + SKG_FIRST_BAD)));
+        if (writes > 0) SKG_TRY_CLEANUP(skg_open_part_repair(plan, job, frame, &own));
     }
 cleanup:
     skg_buffer_release(&moves); /* OpenCL keeps it until what is enqueued is done */

@@ -8,8 +8,12 @@
 
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
-        *options = (skg_plan_options){
-            .size = (int32_t)sizeof *options, .precision = SKG_SINGLE, .overlaps = 1, .supersampling = 1};
+        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
+                                      .precision = SKG_SINGLE,
+                                      .overlaps = 1,
+                                      .supersampling = 1,
+                                      .swank = 1,
+                                      .repair = SKG_REPAIR_NEIGHBOURS};
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -34,10 +38,16 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
     if (!(options->tolerance >= 0 && options->tolerance < 1))
         return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
                         options->tolerance);
+    if (options->repair < SKG_REPAIR_NONE || options->repair > SKG_REPAIR_EXACT)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
+                        options->repair);
+    if (options->clip != 0 && options->clip != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "clip is %" PRId32 "; 1 or 0", options->clip);
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
-    return SKG_OK;
+    return skg_plan_check_detector(options);
 }
 
 static void start_report(skg_plan *plan) {
@@ -94,9 +104,8 @@ cleanup:
 static skg_status make_attenuation(skg_plan *plan) {
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
-    const int is_ratio =
-        plan->options.quantity == SKG_TRANSMISSION || plan->options.quantity == SKG_ATTENUATION;
-    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_averages(plan)
+    const int is_ratio = skg_plan_is_ratio(&plan->options) && !skg_plan_is_absolute(&plan->options);
+    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_is_late(plan)
                               ? SKG_SHOWN_INTENSITY
                           : model->nodes == 1 ? SKG_SHOWN_EXPONENT
                                               : SKG_SHOWN_LOGARITHM;
@@ -110,20 +119,23 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .world_weight = model->world_weight,
                                    .ratio = has_world && is_ratio,
                                    .falloff = plan->options.falloff && !is_ratio,
+                                   .noise = plan->options.noise,
                                    .energies = plan->options.quantity == SKG_ENERGY};
-    return skg_attenuation_create(plan->context, plan->options.precision, &image, model->coefficients,
-                                  model->weights, &plan->attenuation);
+    const skg_attenuation_tables tables = {model->coefficients, model->weights, model->variances,
+                                           model->range};
+    return skg_attenuation_create(plan->context, plan->options.precision, &image, &tables,
+                                  &plan->attenuation);
 }
 
 static skg_status make_lengths(skg_plan *plan) {
     const double one = 1;
+    const skg_attenuation_tables tables = {.coefficients = &one, .weights = &one};
     const skg_attenuation length = {
         .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
-    SKG_TRY(
-        skg_attenuation_create(plan->context, plan->options.precision, &length, &one, &one, &plan->lengths));
+    SKG_TRY(skg_attenuation_create(plan->context, plan->options.precision, &length, &tables, &plan->lengths));
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
-    SKG_TRY(
-        skg_buffer_reserve(plan->context, &plan->negative, sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+    SKG_TRY(skg_buffer_reserve(plan->context, &plan->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE,
+                               "counters"));
     return skg_buffer_reserve(plan->context, &plan->bad, (1 + SKG_FIRST_BAD) * (int64_t)sizeof(cl_int),
                               CL_MEM_READ_WRITE, "bad pixels");
 }
@@ -162,11 +174,12 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
 /* What the paper's buffers could not hold is not offered in them. */
 static skg_status check_half(const skg_plan *plan) {
     if (plan->options.precision != SKG_HALF) return SKG_OK;
-    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world)
+    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
+        plan->contest_possible || plan->options.blur || skg_plan_is_absolute(&plan->options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
-            "precision half is for comparison: a point source or samples of one, closed meshes, vacuum "
-            "around them; take single");
+            "precision half is for comparison: a point source or samples of one, closed meshes without "
+            "priorities, vacuum around them, no noise or blur; take single");
     return SKG_OK;
 }
 
@@ -177,8 +190,10 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
+    plan->contest_possible = skg_contest_possible(plan->scene, plan->options.clip);
     SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
+    SKG_TRY(skg_plan_make_detector(plan));
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(make_lengths(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
@@ -251,9 +266,13 @@ static void release_device_memory(skg_plan *plan) {
     skg_attenuation_release(&plan->attenuation);
     skg_attenuation_release(&plan->lengths);
     skg_attenuator_release(&plan->attenuator);
+    skg_blur_release(&plan->blur);
+    skg_detector_release(&plan->detector);
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
+    skg_buffer_release(&plan->gaps);
+    skg_contest_memory_release(&plan->contest_memory);
 }
 
 void skg_plan_release(skg_plan **plan) {
@@ -262,6 +281,8 @@ void skg_plan_release(skg_plan **plan) {
     *plan = NULL;
     if (!skg_unref(&last->refs)) return;
     release_device_memory(last);
+    for (int64_t k = 0; last->caps && k < last->open_count; k++) skg_caps_release(&last->caps[k]);
+    skg_free(&last->caps);
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);

@@ -3,10 +3,14 @@
 #define SKG_PLAN_PRIVATE_H
 
 #include "plan/attenuate.h"
+#include "plan/blur.h"
+#include "plan/caps.h"
 #include "plan/job.h"
 #include "plan/meshes.h"
 #include "plan/model.h"
+#include "plan/noise.h"
 #include "plan/overlap.h"
+#include "plan/priority.h"
 #include "plan/samples.h"
 #include "plan/scale.h"
 
@@ -21,8 +25,14 @@
     X(SKG_EFFECT_COMPRESSION, "spectral compression")                                                        \
     X(SKG_EFFECT_NESTING, "nesting")                                                                         \
     X(SKG_EFFECT_OPEN, "open meshes")                                                                        \
+    X(SKG_EFFECT_REPAIR, "repair")                                                                           \
     X(SKG_EFFECT_SOURCE_PLANE, "source plane")                                                               \
-    X(SKG_EFFECT_OVERLAPS, "overlap check")
+    X(SKG_EFFECT_OVERLAPS, "overlap check")                                                                  \
+    X(SKG_EFFECT_NOISE, "quantum noise")                                                                     \
+    X(SKG_EFFECT_BLUR, "blur")                                                                               \
+    X(SKG_EFFECT_ELECTRONIC, "electronic noise")                                                             \
+    X(SKG_EFFECT_QUANTISATION, "quantisation")                                                               \
+    X(SKG_EFFECT_PRIORITY, "priority")
 
 enum {
 #define SKG_EFFECT_ENUM(name, text) name,
@@ -67,8 +77,11 @@ struct skg_plan {
     skg_attenuation attenuation; /* of images */
     skg_attenuation lengths;     /* of path lengths: the plane itself */
     skg_attenuator *attenuator;
+    skg_blur *blur;         /* NULL: none */
+    skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
     int64_t open_count;
-    int64_t *open; /* [open_count] parts that are not closed */
+    int64_t *open;  /* [open_count] parts that are not closed */
+    skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
     skg_scale_grid grid;
     int32_t strategy; /* decided */
     const char *strategy_reason;
@@ -77,6 +90,10 @@ struct skg_plan {
     skg_raster_options raster_options[SKG_MOST_RASTERS];
     skg_raster *main; /* of the last frame: that of the closed parts */
     skg_buffer image, negative, bad;
+    skg_buffer gaps; /* of the open part at hand: int [rows][columns], as skg_open_gaps leaves them */
+
+    int32_t contest_possible; /* priorities differ, or children are clipped */
+    skg_contest_memory contest_memory;
 
     int64_t overlap_count;
     skg_overlap_pair *overlaps;
@@ -105,6 +122,13 @@ skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);
 
 /* Decides the strategy for the plan's view (rasters.c). */
 skg_status skg_plan_choose_strategy(skg_plan *plan);
+
+/* Refuses options of noise and blur that cannot be, and makes the stages that they call for. */
+skg_status skg_plan_check_detector(const skg_plan_options *options);
+skg_status skg_plan_make_detector(skg_plan *plan);
+
+/* Whether logarithms are taken of finished means, after noise and blur. */
+int skg_plan_is_late(const skg_plan *plan);
 
 /* The rasteriser with these abilities, made on demand. more_sums: as in its options. */
 skg_status skg_plan_raster(skg_plan *plan, const skg_kernel_options *kernels, int32_t strategy,

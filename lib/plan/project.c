@@ -150,11 +150,12 @@ cleanup:
 }
 
 /* Until the device has read the slot's last contents. */
-static void wait_for(skg_table_slot *slot) {
-    if (!slot->read) return;
-    clWaitForEvents(1, &slot->read);
+static skg_status wait_for(skg_table_slot *slot) {
+    if (!slot->read) return SKG_OK;
+    SKG_CL_TRY(clWaitForEvents(1, &slot->read));
     clReleaseEvent(slot->read);
     slot->read = NULL;
+    return SKG_OK;
 }
 
 void skg_geometry_release(skg_geometry *geometry) {
@@ -166,7 +167,7 @@ void skg_geometry_release(skg_geometry *geometry) {
     skg_free(&geometry->first_vertex);
     for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
         skg_table_slot *slot = &geometry->slots[i];
-        wait_for(slot);
+        if (wait_for(slot) != SKG_OK) clReleaseEvent(slot->read);
         skg_free(&slot->entries);
         skg_free(&slot->writes);
     }
@@ -253,10 +254,12 @@ static skg_status upload_tables(skg_context *context, skg_geometry *geometry, co
     const int32_t next = (geometry->slot + 1) % SKG_TABLE_SLOTS;
     skg_table_slot *slot = &geometry->slots[next];
     cl_command_queue queue = context->device->queue;
-    wait_for(slot);
+    SKG_TRY(wait_for(slot));
     SKG_TRY(fill_tables(geometry, camera, part, scale, slot));
     if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
     const size_t bytes = (size_t)slot->write_count * write_size(geometry);
+    geometry->uploaded =
+        0; /* should one of the two writes fail, the device has neither the old nor the new */
     SKG_TRY(
         skg_buffer_reserve(context, &geometry->write_table, (int64_t)bytes, CL_MEM_READ_ONLY, "write table"));
     if (bytes > 0)

@@ -296,8 +296,8 @@ static skg_status run_half(skg_raster *raster, const skg_geometry *g, skg_stage_
 }
 
 static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
-    const cl_mem memory[] = {g->corners.memory,     g->projected.memory,       g->part_table.memory,
-                             g->write_table.memory, g->triangle_blocks.memory, g->offsets.memory,
+    const cl_mem memory[] = {g->corners.memory,         g->projected.memory, g->part_table.memory,
+                             g->triangle_blocks.memory, g->offsets.memory,   g->write_table.memory,
                              raster->sums.memory};
     cl_kernel kernel = raster->kernels[SKG_RASTER_SOURCE];
     const size_t local[2] = {GROUP, 1};

@@ -10,11 +10,11 @@ static skg_status get_bad_kernels(skg_raster *raster) {
     cl_program program = NULL;
     if (raster->bad) return SKG_OK;
     SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, 1, files, NULL, &program));
+    SKG_TRY(skg_buffer_reserve(raster->context, &raster->rows_bad,
+                               raster->frame.rows * (int64_t)sizeof(cl_int), CL_MEM_READ_WRITE,
+                               "bad pixels of the rows"));
     if (!raster->bad_rows) SKG_TRY(skg_kernel_create(program, "skg_count_bad_rows", &raster->bad_rows));
-    SKG_TRY(skg_kernel_create(program, "skg_count_bad", &raster->bad));
-    return skg_buffer_reserve(raster->context, &raster->rows_bad,
-                              raster->frame.rows * (int64_t)sizeof(cl_int), CL_MEM_READ_WRITE,
-                              "bad pixels of the rows");
+    return skg_kernel_create(program, "skg_count_bad", &raster->bad); /* last: it says that all is there */
 }
 
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t plane, cl_mem result, skg_stage_log *log) {

@@ -26,17 +26,26 @@ static skg_status place_solid(const skg_scene_part_data *part, skg_solid *solid,
     return SKG_OK;
 }
 
+/* Of the pairs that nothing settles. */
 static void warn_of_overlaps(skg_plan *plan) {
-    const skg_overlap_pair *worst = &plan->overlaps[0];
+    const skg_overlap_pair *worst = NULL;
     const skg_scene *scene = plan->scene;
     double volume = 0;
-    for (int64_t i = 0; i < plan->overlap_count; i++) volume += plan->overlaps[i].volume;
+    int64_t count = 0;
+    for (int64_t i = 0; i < plan->overlap_count; i++) {
+        const skg_overlap_pair *pair = &plan->overlaps[i];
+        if (skg_contest_settles(scene, plan->options.clip, pair)) continue;
+        if (!worst) worst = pair;
+        volume += pair->volume;
+        count++;
+    }
+    if (!worst) return;
     skg_log(
         plan->context, SKG_LOG_WARNING,
         "%" PRId64
         " pairs of parts overlap or leave their parent, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
         "%.3g mm along z at (%.1f, %.1f, %.1f) mm; their lengths add (or subtract the parent), nothing is clamped",
-        plan->overlap_count, volume / 1000, scene->parts[worst->part].label,
+        count, volume / 1000, scene->parts[worst->part].label,
         worst->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[worst->other].label,
         worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
 }
@@ -52,7 +61,7 @@ skg_status skg_report_overlaps(skg_plan *plan) {
     for (int64_t i = 0; i < scene->count; i++)
         SKG_TRY_CLEANUP(place_solid(&scene->parts[i], &solids[i], &positions[i]));
     SKG_TRY_CLEANUP(skg_overlaps_find(scene->count, solids, &plan->overlap_count, &plan->overlaps));
-    if (plan->overlap_count) warn_of_overlaps(plan);
+    warn_of_overlaps(plan);
 cleanup:
     for (int64_t i = 0; positions && i < scene->count; i++) skg_free(&positions[i]);
     skg_free(&positions);
@@ -122,17 +131,27 @@ static void tell_negative(skg_plan *plan, int32_t pixels) {
 
 /* bad: of one open part, as skg_raster_bad_pixels leaves it. */
 static void tell_bad(skg_plan *plan, int64_t part, const int32_t *bad) {
-    const int64_t columns = plan->view.columns;
+    static const char *const done[] = {
+        [SKG_REPAIR_NONE] = "it is left out there",
+        [SKG_REPAIR_NEIGHBOURS] = "it has the mean of its nearest valid pixels there",
+        [SKG_REPAIR_EXACT] = "these rays were cast anew through the mesh with its holes capped",
+    };
+    const int64_t columns = plan->view.columns, all = columns * plan->view.rows;
+    const int hopeless = plan->options.repair == SKG_REPAIR_NEIGHBOURS && bad[0] == all;
+    const int32_t repair = hopeless ? SKG_REPAIR_NONE : plan->options.repair;
+    plan->report.bad_pixels += bad[0];
+    if (repair != SKG_REPAIR_NONE) plan->report.repaired_pixels += bad[0];
     char places[32 * SKG_FIRST_BAD] = "";
     size_t length = 0;
     for (int32_t k = 0; k < bad[0] && k < SKG_FIRST_BAD; k++)
         length += (size_t)snprintf(places + length, sizeof places - length, "%s(%" PRId64 ", %" PRId64 ")",
                                    k ? ", " : "", bad[1 + k] % columns, bad[1 + k] / columns);
-    skg_log(plan->context, SKG_LOG_WARNING,
-            "part %s is open: at %" PRId32
-            " pixels as many rays enter it as do not leave it, and it is left out "
-            "there; first at (column, row) %s; close its mesh",
-            plan->scene->parts[part].label, bad[0], places);
+    skg_log(
+        plan->context, SKG_LOG_WARNING,
+        "part %s is open: at %" PRId32
+        " pixels its rays do not leave it as often as they enter it; %s; first at (column, row) %s; close "
+        "its mesh",
+        plan->scene->parts[part].label, bad[0], done[repair], places);
 }
 
 static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
@@ -144,6 +163,16 @@ static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
                     plan->scene->parts[part].label, of_mesh);
 }
 
+static skg_status tell_outside(skg_plan *plan, int32_t pixels) {
+    plan->report.outside_pixels = pixels;
+    if (pixels == 0) return SKG_OK;
+    return skg_fail(
+        SKG_RANGE,
+        "at %" PRId32 " pixels the lengths leave the range that the error bound of %.2g was verified "
+        "for; the image is valid, the bound is not stated there; plan for this view and these poses",
+        pixels, plan->model.bound);
+}
+
 skg_status skg_report_job(skg_job *job) {
     skg_plan *plan = job->plan;
     SKG_TRY(add_stages(job));
@@ -153,13 +182,12 @@ skg_status skg_report_job(skg_job *job) {
     plan->report.triangles_per_tile = plan->strategy == SKG_STRATEGY_TILES
                                           ? listings / (double)plan->report.tiles
                                           : (double)plan->report.triangles;
-    plan->report.bad_pixels = 0;
+    plan->report.bad_pixels = plan->report.repaired_pixels = 0;
     for (int64_t k = 0; k < plan->open_count; k++) {
         const int32_t *bad = job->bad + k * (1 + SKG_FIRST_BAD);
-        plan->report.bad_pixels += bad[0];
         if (bad[0] > 0) tell_bad(plan, plan->open[k], bad);
     }
-    return SKG_OK;
+    return tell_outside(plan, job->negative[1]);
 }
 
 void skg_plan_report_init(skg_plan_report *report) {
@@ -170,9 +198,12 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_get_report: no plan");
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
-                        plan->bad.bytes + plan->attenuation.coefficients.bytes +
-                        plan->attenuation.weights.bytes + plan->lengths.coefficients.bytes +
-                        plan->lengths.weights.bytes;
+                        plan->bad.bytes + plan->gaps.bytes + skg_contest_memory_bytes(&plan->contest_memory) +
+                        plan->attenuation.coefficients.bytes + plan->attenuation.weights.bytes +
+                        plan->attenuation.variances.bytes + plan->attenuation.range.bytes +
+                        plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;
+    if (plan->blur) ours.device_bytes += skg_blur_bytes(plan->blur);
+    if (plan->detector) ours.device_bytes += skg_detector_bytes(plan->detector);
     for (int32_t i = 0; i < plan->raster_count; i++) ours.device_bytes += skg_raster_bytes(plan->rasters[i]);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }

@@ -91,33 +91,37 @@ static skg_status check_submission(submission *s, const skg_output *output) {
     return check_stale(s->plan);
 }
 
-/* A frame's view into `view`, and its poses into poses ([parts], NULL: the scene's). */
-static skg_status read_frame(const submission *s, int64_t index, skg_view *view, const double **poses) {
+/* A frame, its view into `view`, its poses into poses ([parts], NULL: the scene's), and the key of its noise.
+ */
+static skg_status read_frame(const submission *s, int64_t index, skg_frame *frame, skg_view *view,
+                             const double **poses, skg_noise_args *noise) {
     const skg_plan *plan = s->plan;
-    skg_frame frame;
-    skg_frame_init(&frame);
+    skg_frame_init(frame);
     *view = plan->view;
+    *noise = skg_noise_key(plan->options.noise_seed, index);
     memset(poses, 0, (size_t)plan->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
-    SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", &frame,
-                            sizeof frame));
-    if (frame.view) {
-        SKG_TRY(skg_view_check(frame.view));
+    SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", frame,
+                            sizeof *frame));
+    *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame->noise_seed),
+                           frame->index);
+    if (frame->view) {
+        SKG_TRY(skg_view_check(frame->view));
         skg_view_init(view);
-        SKG_TRY(skg_struct_read(frame.view, "skg_view", view, sizeof *view));
+        SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
         SKG_TRY(skg_plan_check_size(plan, view));
     }
-    if (frame.posed < 0 || (frame.posed > 0 && (!frame.posed_ids || !frame.posed_poses)))
+    if (frame->posed < 0 || (frame->posed > 0 && (!frame->posed_ids || !frame->posed_poses)))
         return skg_fail(SKG_ERR_ARGUMENT,
                         "frame %" PRId64 " has %" PRId64 " posed parts, but no ids or poses", index,
-                        frame.posed);
-    for (int64_t k = 0; k < frame.posed; k++) {
-        const int64_t part = frame.posed_ids[k];
+                        frame->posed);
+    for (int64_t k = 0; k < frame->posed; k++) {
+        const int64_t part = frame->posed_ids[k];
         if (part < 0 || part >= plan->scene->count)
             return skg_fail(SKG_ERR_ARGUMENT, "frame %" PRId64 " poses part %" PRId64 " of %" PRId64, index,
                             part, plan->scene->count);
-        SKG_TRY(skg_scene_check_pose(plan->scene->parts[part].label, frame.posed_poses + 16 * k));
-        poses[part] = frame.posed_poses + 16 * k;
+        SKG_TRY(skg_scene_check_pose(plan->scene->parts[part].label, frame->posed_poses + 16 * k));
+        poses[part] = frame->posed_poses + 16 * k;
     }
     return SKG_OK;
 }
@@ -174,8 +178,10 @@ static skg_status read_back(const submission *s, int64_t index, skg_job *job) {
 
 static skg_status enqueue_frame(submission *s, int64_t index, const double **poses, skg_job *job) {
     skg_view view;
-    skg_frame_work work = {.view = &view, .poses = poses, .lengths_of = s->lengths_of, .kind = s->kind};
-    SKG_TRY(read_frame(s, index, &view, poses));
+    skg_frame frame;
+    skg_frame_work work = {
+        .view = &view, .poses = poses, .frame = &frame, .lengths_of = s->lengths_of, .kind = s->kind};
+    SKG_TRY(read_frame(s, index, &frame, &view, poses, &work.noise));
     SKG_TRY(place_image(s, index, &work.place));
     SKG_TRY(skg_frame_enqueue(s->plan, job, &work));
     return s->buffer ? SKG_OK : read_back(s, index, job);
@@ -185,11 +191,18 @@ static skg_status enqueue_frame(submission *s, int64_t index, const double **pos
 static skg_status finish(const submission *s, skg_job *job) {
     skg_plan *plan = s->plan;
     cl_command_queue queue = plan->context->device->queue;
-    SKG_TRY(skg_job_read(job, plan->negative.memory, sizeof *job->negative, job->negative));
+    SKG_TRY(skg_job_read(job, plan->negative.memory, 2 * sizeof *job->negative, job->negative));
     SKG_TRY(skg_job_read(job, plan->geometry.bad.memory, sizeof *job->broken, job->broken));
     SKG_TRY(skg_raster_read_listed(plan->main, job->listed));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     SKG_CL_TRY(clFlush(queue));
+    return SKG_OK;
+}
+
+static skg_status clear_counters(skg_plan *plan) {
+    const cl_int none = 0;
+    SKG_CL_TRY(clEnqueueFillBuffer(plan->context->device->queue, plan->negative.memory, &none, sizeof none, 0,
+                                   2 * sizeof none, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -200,12 +213,13 @@ static skg_status submit(submission *s, skg_job **job) {
     skg_status status = SKG_OK;
     SKG_TRY(skg_job_create(plan, &made));
     SKG_TRY_CLEANUP(skg_alloc(plan->scene->count, sizeof *poses, "poses", &poses));
-    SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->negative, "counters", &made->negative));
+    SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->negative, "counters", &made->negative));
     SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->listed, "counters", &made->listed));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->broken, "counters", &made->broken));
     if (plan->open_count)
         SKG_TRY_CLEANUP(skg_job_stage(made, plan->open_count * (1 + SKG_FIRST_BAD), sizeof *made->bad,
                                       "bad pixels", &made->bad));
+    SKG_TRY_CLEANUP(clear_counters(plan));
     for (int64_t i = 0; i < s->count; i++) SKG_TRY_CLEANUP(enqueue_frame(s, i, poses, made));
     SKG_TRY_CLEANUP(finish(s, made));
     *job = made;

@@ -52,6 +52,8 @@ void skg_scene_release(skg_scene **scene) {
     if (skg_unref(&(*scene)->refs)) {
         for (int64_t i = 0; i < (*scene)->count; i++) release_part(&(*scene)->parts[i]);
         skg_free(&(*scene)->parts);
+        skg_free(&(*scene)->labels.slots);
+        skg_free(&(*scene)->places.slots);
         skg_context_release(&(*scene)->context);
         skg_free(scene);
     }
@@ -78,20 +80,34 @@ skg_status skg_scene_check_pose(const char *label, const double *pose) {
     return SKG_OK;
 }
 
+static uint64_t label_hash(const char *label) {
+    return skg_hash_bytes(0, label, strlen(label));
+}
+
 static int64_t label_index(const skg_scene *scene, const char *label) {
-    for (int64_t i = 0; i < scene->count; i++)
-        if (strcmp(scene->parts[i].label, label) == 0) return i;
+    int64_t at = 0, part;
+    while ((part = skg_part_index_next(&scene->labels, label_hash(label), &at)) >= 0)
+        if (strcmp(scene->parts[part].label, label) == 0) return part;
     return -1;
 }
 
-static void warn_of_twin(const skg_scene *scene, const skg_scene_part_data *part) {
-    for (int64_t i = 0; i < scene->count; i++) {
-        const skg_scene_part_data *other = &scene->parts[i];
-        if (other->mesh == part->mesh && memcmp(other->pose, part->pose, sizeof part->pose) == 0)
-            skg_log(scene->context, SKG_LOG_WARNING,
-                    "parts %s and %s are the same mesh in the same place; their lengths add", other->label,
-                    part->label);
+static uint64_t place_hash(const skg_scene_part_data *part) {
+    return skg_hash_bytes(skg_hash_bytes(0, &part->mesh, sizeof part->mesh), part->pose, sizeof part->pose);
+}
+
+/* Adds the part to the index of places, or warns that one is already there. */
+static void note_place(skg_scene *scene, const skg_scene_part_data *part) {
+    const uint64_t hash = place_hash(part);
+    int64_t at = 0, other;
+    while ((other = skg_part_index_next(&scene->places, hash, &at)) >= 0) {
+        const skg_scene_part_data *twin = &scene->parts[other];
+        if (twin->mesh != part->mesh || memcmp(twin->pose, part->pose, sizeof part->pose) != 0) continue;
+        skg_log(scene->context, SKG_LOG_WARNING,
+                "parts %s and %s are the same mesh in the same place; their lengths add", twin->label,
+                part->label);
+        return;
     }
+    skg_part_index_add(&scene->places, hash, scene->count);
 }
 
 static skg_status check_part(const skg_scene *scene, const skg_part *part, const char *label) {
@@ -126,14 +142,17 @@ skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
         SKG_TRY(skg_realloc(capacity, sizeof *scene->parts, "parts", &scene->parts));
         scene->capacity = capacity;
     }
-    skg_scene_part_data made = {.inside = ours.inside};
+    SKG_TRY(skg_part_index_reserve(&scene->labels));
+    SKG_TRY(skg_part_index_reserve(&scene->places));
+    skg_scene_part_data made = {.inside = ours.inside, .priority = ours.priority};
     memcpy(made.pose, ours.pose, sizeof made.pose);
     SKG_TRY(skg_copy_text(label, &made.label));
     skg_mesh_retain(ours.mesh);
     made.mesh = ours.mesh;
     skg_material_retain(ours.material);
     made.material = ours.material;
-    warn_of_twin(scene, &made);
+    note_place(scene, &made);
+    skg_part_index_add(&scene->labels, label_hash(label), scene->count);
     scene->parts[scene->count] = made;
     if (id) *id = scene->count;
     scene->count++;
@@ -176,6 +195,7 @@ skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part) {
     SKG_TRY(check_id(scene, id, "skg_scene_part"));
     const skg_scene_part_data *data = &scene->parts[id];
     skg_part ours = {.size = sizeof ours,
+                     .priority = data->priority,
                      .inside = data->inside,
                      .mesh = data->mesh,
                      .material = data->material,

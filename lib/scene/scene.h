@@ -3,6 +3,7 @@
 #define SKG_SCENE_PRIVATE_H
 
 #include "core/core.h"
+#include "scene/part_index.h"
 
 #include <skiagraph/scene.h>
 
@@ -12,6 +13,7 @@ typedef struct {
     char *label;
     int64_t inside; /* -1: in the world. From a scene file it may be a later part, never in a circle. */
     double pose[16];
+    int32_t priority, reserved;
 } skg_scene_part_data;
 
 struct skg_scene {
@@ -19,6 +21,8 @@ struct skg_scene {
     skg_context *context; /* retained; NULL: warnings are dropped */
     skg_scene_part_data *parts;
     int64_t count, capacity;
+    skg_part_index labels; /* by label */
+    skg_part_index places; /* by mesh and the pose it came with; of parts alike, the first */
     int64_t structure; /* grows with every part added or put inside another: a plan of an older one is stale
                         */
     int64_t materials; /* grows with every material that changes */

@@ -14,10 +14,12 @@ static const skg_json_key top_keys[] = {
     {"Precision", NULL, SKG_KEY_READ},
     {"Tolerance", NULL, SKG_KEY_READ},
     {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
-    {"Breathing", "breathing", SKG_KEY_NOT_YET},
-    {"Noise", "noise", SKG_KEY_NOT_YET},
+    {"Breathing", NULL, SKG_KEY_READ},
+    {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
     {"World", NULL, SKG_KEY_READ},
+    {"Repair", NULL, SKG_KEY_READ},
+    {"Clip", NULL, SKG_KEY_READ},
 };
 
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
@@ -47,6 +49,20 @@ static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
     setup->has_precision = 1;
     setup->precision = values[choice];
+    return SKG_OK;
+}
+
+/* What becomes of open meshes, and of what leaves its parent. */
+static skg_status read_mends(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {
+        [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
+    const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
+    if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
+    if (!repair.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&repair, "repair", names, 3, &choice));
+    setup->has_repair = 1;
+    setup->repair = (int32_t)choice;
     return SKG_OK;
 }
 
@@ -81,13 +97,18 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
+    SKG_TRY(read_mends(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
     SKG_TRY(read_world(reader, &top));
+    skg_json_node noise = skg_json_member(&top, "Noise");
+    SKG_TRY(skg_setup_read_noise(reader, &noise));
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
-    return skg_setup_read_samples(reader, &samples);
+    SKG_TRY(skg_setup_read_samples(reader, &samples));
+    skg_json_node breathing = skg_json_member(&top, "Breathing");
+    return skg_setup_read_breathing(reader, &breathing);
 }
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
@@ -120,7 +141,9 @@ void skg_setup_release(skg_setup **setup) {
     skg_spectrum_release(&(*setup)->spectrum);
     skg_response_release(&(*setup)->response);
     skg_material_release(&(*setup)->world);
+    skg_free(&(*setup)->blur_samples);
     skg_free(&(*setup)->scan.folder);
+    skg_breathing_section_free(&(*setup)->breathing);
     skg_free(setup);
 }
 
@@ -148,9 +171,19 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->has_repair) ours.repair = setup->repair;
+    if (setup->clip) ours.clip = 1;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
+    if (setup->blur.columns > 0) ours.blur = &setup->blur;
+    if (setup->noise.quantum || setup->noise.electronic_kev > 0 || setup->noise.step_kev > 0) {
+        ours.noise = setup->noise.quantum;
+        ours.swank = setup->noise.swank;
+        ours.noise_seed = setup->noise.seed;
+        ours.electronic_kev = setup->noise.electronic_kev;
+        ours.quantum_step_kev = setup->noise.step_kev;
+    }
     return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
 }

@@ -14,6 +14,7 @@
 #include "scene/json.h"
 #include "scene/scene.h"
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/setup.h>
 
 /* The section Scan, as given; angles in degrees. */
@@ -28,17 +29,57 @@ typedef struct {
     char *folder;     /* OutFolder relative to the scene file's own, or NULL */
 } skg_scan_section;
 
+/* A value over time: straight between its points (s, value), constant beyond them. */
+typedef struct {
+    double *points; /* [count][2], times rising */
+    int64_t count;  /* 0: not given */
+} skg_curve;
+
+/* The section Breathing; without it the defaults. */
+typedef struct {
+    skg_breath breath; /* samples and holds are those below */
+    skg_body_options body;
+    double *samples;
+    skg_breath_hold *holds;
+    int32_t lung_density, reserved; /* 1: keeps the lungs' mass */
+    int64_t organ_count;
+    struct skg_breathing_organ {
+        int64_t part;
+        char *as; /* label whose rule it follows; NULL: its own */
+        skg_tissue tissue;
+    } * organs;
+    skg_curve weight; /* factor on both channels */
+    skg_curve needle; /* depth below the skin, mm */
+    int64_t contrast_count;
+    struct skg_breathing_contrast {
+        int64_t part;
+        skg_curve share;
+    } * contrasts;
+} skg_breathing_section;
+
+/* The key Noise; all zero but swank: none. */
+typedef struct {
+    int32_t quantum, reserved;
+    double electronic_kev, step_kev, swank;
+    int64_t seed;
+} skg_setup_noise;
+
 struct skg_setup {
     skg_scene *scene;
     skg_spectrum *spectrum;
     int32_t absolute;       /* 1: photons come from mAs; the beam falls off with distance */
     skg_response *response; /* NULL: ideal */
     skg_material *world;    /* around the parts; NULL: vacuum */
+    skg_detector_blur blur; /* columns 0: none */
+    double *blur_samples;   /* that it points to */
+    skg_setup_noise noise;
     skg_spot spot;
     int32_t supersampling; /* rays a side of a pixel */
     skg_view view;         /* of the first projection */
     skg_scan_section scan;
+    skg_breathing_section breathing;
     int32_t precision, has_precision;
+    int32_t repair, has_repair, clip;
     double tolerance; /* negative: not given */
 };
 
@@ -57,6 +98,10 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
 
+/* node->value may be absent; after Samples, whose labels it names (setup_breathing.c). */
+skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);
+void skg_breathing_section_free(skg_breathing_section *section);
+
 /* Shape of a source and how it is sampled (setup_spot.c). */
 skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
                                        int32_t *parallel);
@@ -68,6 +113,10 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
 
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
+
+/* LSF or PSF of a detector; Noise of the file (value NULL: none). */
+skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *detector);
+skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);
 
 /* A material: its name, or an array with its kind; density may be absent (value NULL). label: its name where
  * it has none of its own; may be NULL. The caller releases it. */

@@ -9,7 +9,8 @@ static const skg_json_key detector_keys[] = {
     {"RightVector", NULL, SKG_KEY_READ},  {"NumberOfPixels", NULL, SKG_KEY_READ},
     {"Size", NULL, SKG_KEY_READ},         {"Spacing", NULL, SKG_KEY_READ},
     {"Oversampling", NULL, SKG_KEY_READ}, {"EnergyResponse", NULL, SKG_KEY_READ},
-    {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", "blur", SKG_KEY_NOT_YET},
+    {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", NULL, SKG_KEY_READ},
+    {"PSF", NULL, SKG_KEY_READ},
 };
 
 /* Width and height of a pixel in mm, from Spacing or Size. */
@@ -94,6 +95,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(read_axes(&detector, view, right, up));
     SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
     SKG_TRY(skg_setup_read_response(reader, &detector));
+    SKG_TRY(skg_setup_read_blur(reader, &detector));
     skg_scale_vector(spacing[0], right, view->column_step);
     skg_scale_vector(spacing[1], up, view->row_step);
     skg_status status = skg_view_check(view);

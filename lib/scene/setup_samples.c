@@ -37,7 +37,7 @@ static const skg_json_key sample_keys[] = {
     {"DiffuseColor", NULL, SKG_KEY_IGNORED},
     {"SpecularColor", NULL, SKG_KEY_IGNORED},
     {"Shininess", NULL, SKG_KEY_IGNORED},
-    {"Priority", "priority of overlapping samples", SKG_KEY_NOT_YET},
+    {"Priority", NULL, SKG_KEY_READ},
 };
 
 /* What the second pass needs to know of a sample. */
@@ -100,7 +100,10 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     double own[16];
     int32_t flip = 0;
     skg_part_init(&part);
-    skg_json_node label = skg_json_member(sample, "Label");
+    skg_json_node label = skg_json_member(sample, "Label"), priority = skg_json_member(sample, "Priority");
+    int64_t number = 0;
+    if (priority.value) SKG_TRY(skg_json_integer(&priority, INT32_MIN, INT32_MAX, &number));
+    part.priority = (int32_t)number;
     if (label.value) SKG_TRY(skg_json_text(&label, &part.label));
     SKG_TRY(read_flag(sample, "FlipNormals", &flip));
     skg_status status = SKG_OK;

@@ -187,8 +187,51 @@ START_TEST(random_scenes) {
 }
 END_TEST
 
+/* A body that grows beyond what was verified is told, and its image is still made; back again is well. */
+START_TEST(leaving_the_verified_range) {
+    static float pixels[SIDE * SIDE];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    skg_output output;
+    skg_plan_report report;
+    skg_job *job = NULL;
+    const int64_t part = 0;
+    double larger[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.6, 0, 0, 0, 0, 1};
+    skg_frame frame;
+    open_scene(5);
+    add_parts(0);
+    skg_spectrum *spectrum = tube(100);
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-3;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    skg_output_init(&output);
+    output.data = pixels;
+    ck_skg(skg_plan_image(plan, &output));
+    const float before = pixels[SIDE * SIDE / 2 + SIDE / 2];
+    skg_frame_init(&frame);
+    frame.posed = 1, frame.posed_ids = &part, frame.posed_poses = larger;
+    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg_fails(skg_job_wait(&job), SKG_RANGE, "bound");
+    ck_assert_ptr_null(job);
+    const float after = pixels[SIDE * SIDE / 2 + SIDE / 2];
+    ck_assert(after > 0 && after < before);
+    skg_plan_report_init(&report);
+    ck_skg(skg_plan_get_report(plan, &report));
+    ck_assert_int_gt(report.outside_pixels, SIDE);
+    larger[10] = 1.2; /* within the quarter more */
+    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    ck_skg(skg_plan_get_report(plan, &report));
+    ck_assert_int_eq(report.outside_pixels, 0);
+    skg_plan_release(&plan);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, random_scenes, 0, 20);
+    tcase_add_test(tests, leaving_the_verified_range);
 }
 
 SKG_SUITE_MAIN("compression", add_tests)

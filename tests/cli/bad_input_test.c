@@ -94,7 +94,7 @@ START_TEST(scene_files) {
     look_at_folder(1);
     write_text("scene.json", scene);
     ck_setting_fails(3, "did you mean NumberOfPixels", "Detector.NumberOfPixel=[3,3]");
-    ck_setting_fails(3, "not", "Noise=true"); /* not yet */
+    ck_setting_fails(3, "Noise: ", "Noise=3");
     ck_setting_fails(3, "Tolerance", "Tolerance=2");
 }
 END_TEST

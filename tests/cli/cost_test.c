@@ -206,6 +206,25 @@ START_TEST(table_csv_and_page_are_written) {
 }
 END_TEST
 
+/* 1e4 photons of 60 keV a pixel of the open beam: the noise of N photons is sqrt(N), so that its root mean
+ * square over the image is sqrt(mean I/I0) of 1 %; of 825 pixels within 15 %, six standard errors. */
+START_TEST(advice_stops_at_a_tenth_of_the_noise) {
+    static double image[PIXELS];
+    static const char beam[] = "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":10000}]'";
+    double mean = 0;
+    ck_run(0, "image 'small scene.json' --quiet -o image.mha --quantity transmission %s", beam);
+    read_pixels("image.mha", image);
+    for (int i = 0; i < PIXELS; i++) mean += image[i] / PIXELS;
+    ck_run(0, "cost 'small scene.json' --quick --json --set Noise=true %s", beam);
+    json_t *study = said_json(), *advice = json_array_get(member(study, "advice"), 3);
+    double noise = number(study, "noise");
+    ck_assert_double_eq_tol(noise, 0.01 * sqrt(mean), 0.15 * 0.01 * sqrt(mean));
+    ck_assert_double_eq_tol(number(advice, "bar"), noise / 10, 1e-12);
+    ck_assert_double_le(number(point_of(study, member(advice, "rays")), "max_open"), noise / 10);
+    json_decref(study);
+}
+END_TEST
+
 START_TEST(what_cannot_be_done_is_told) {
     ck_run_fails(2, "its extension is neither .html nor .csv", "cost 'small scene.json' -o a.png");
     ck_run_fails(5, "nowhere/a.html: cannot be written", "cost 'small scene.json' -o nowhere/a.html");
@@ -281,6 +300,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, an_extended_source_is_swept);
     tcase_add_test(tests, errors_are_those_of_the_dials_and_advice_holds);
     tcase_add_test(tests, table_csv_and_page_are_written);
+    tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);
     tcase_add_test(tests, what_cannot_be_done_is_told);
     tcase_add_test(tests, page_works_in_a_browser);
 }

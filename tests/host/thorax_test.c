@@ -87,8 +87,9 @@ START_TEST(parts_are_where_and_as_large_as_they_should_be) {
     double ratio = (left.bounds[3] - right.bounds[0]) / (left.bounds[4] - left.bounds[1]);
     ck_assert_double_le(fabs(ratio - 1.62), 0.28);
     for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(left.bounds[3 * k], -right.bounds[3 - 3 * k], 1e-9);
-    ck_assert_ptr_null(part[find("liver")].material);
-    ck_assert_str_eq(part[find("needle")].material, "Fe");
+    ck_assert_str_eq(part[find("liver")].material, "Liver");
+    ck_assert_ptr_null(part[find("spine")].material); /* by its Hounsfield number */
+    ck_assert_str_eq(part[find("needle")].material, "Needle steel");
     ck_assert_int_eq(part[find("bile ducts")].inside, find("liver"));
     ck_assert_int_eq(part[find("liver")].inside, find("skin"));
     skg_thorax_release(&thorax);

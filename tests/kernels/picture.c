@@ -257,11 +257,12 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
                                           .channels = 1,
                                           .shown = SKG_SHOWN_EXPONENT,
                                           .world_plane = -1};
-        status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, coefficients,
-                                        &weight, &attenuation);
+        const skg_attenuation_tables tables = {.coefficients = coefficients, .weights = &weight};
+        status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
+                                        &attenuation);
         if (status == SKG_OK)
             status = skg_attenuate(attenuator, raster, camera, scale, &attenuation, 1, -HUGE_VAL,
-                                   negative.memory, &place, NULL);
+                                   negative.memory, NULL, &place, NULL);
         skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;
         SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, output.memory, CL_TRUE, 0,

@@ -289,7 +289,8 @@ START_TEST(lengths_are_those_of_the_referee) {
             options.kernels.parallel = n % 3 != SKG_POINT;
             options.kernels.source_plane = n >= 3;
             picture result;
-            const double scale = scale_of(&options) / (n % 3 == SKG_PARALLEL_FROM_INFINITY ? 256 : 1); /* mm */
+            const double scale =
+                scale_of(&options) / (n % 3 == SKG_PARALLEL_FROM_INFINITY ? 256 : 1); /* mm */
             ck_skg(picture_take(context, &options, &view, THREE, bodies, scale, &result));
             const errors e = compare(&view, &result, truth);
             /* Single: the bars of the contract. Double: a hundred times its epsilon, and the scale's own

@@ -22,6 +22,17 @@ START_TEST(last_error_may_quote_itself) {
 }
 END_TEST
 
+/* Found by fuzzing: a scene file's text went into the sentence with its line breaks. */
+START_TEST(a_sentence_is_one_line) {
+    skg_fail(SKG_ERR_FORMAT, "near '%s'", "Num\nber\x1b[2J\x7f");
+    ck_assert_str_eq(skg_last_error(), "near 'Num?ber?[2J?'");
+    skg_fail(SKG_ERR_SCENE, "part %s", "L\xc3\xa4uchte"); /* UTF-8 stays */
+    ck_assert_str_eq(skg_last_error(), "part L\xc3\xa4uchte");
+    skg_fail(SKG_ERR_BUILD, "a.cl:1: error\na.cl:2: error");
+    ck_assert_ptr_nonnull(strchr(skg_last_error(), '\n'));
+}
+END_TEST
+
 START_TEST(allocation_checks_its_product) {
     double *p = NULL;
     ck_skg_fails(skg_alloc(INT64_MAX / 4, sizeof *p, "lengths", &p), SKG_ERR_MEMORY, "lengths");
@@ -90,6 +101,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_status_has_name_and_text);
     tcase_add_test(tests, last_error_may_quote_itself);
+    tcase_add_test(tests, a_sentence_is_one_line);
     tcase_add_test(tests, allocation_checks_its_product);
     tcase_add_test(tests, structs_grow);
     tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);

@@ -3,6 +3,7 @@
 #include "suite.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static skg_scene *scene;
@@ -201,6 +202,28 @@ START_TEST(the_same_mesh_twice_in_a_place_is_told) {
 }
 END_TEST
 
+/* Each part was compared with all before it: a million took hours. */
+START_TEST(many_parts) {
+    enum { PARTS = 300000 };
+    int64_t id = -1;
+    char label[16];
+    skg_part part = good_part("0");
+    for (int n = 0; n < PARTS; n++) {
+        snprintf(label, sizeof label, "%d", n);
+        part.label = label;
+        part.pose[3] = n;
+        ck_skg(skg_scene_add(scene, &part, NULL));
+    }
+    for (int n = 0; n < PARTS; n += 9973) {
+        snprintf(label, sizeof label, "%d", n);
+        ck_skg(skg_scene_find(scene, label, &id));
+        ck_assert_int_eq(id, n);
+        part.label = label;
+        ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "two parts have the label");
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, parts_come_back_as_they_went_in);
@@ -212,6 +235,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, singular_poses_are_refused);
     tcase_add_test(tests, circles_of_parents_are_refused);
     tcase_add_test(tests, the_same_mesh_twice_in_a_place_is_told);
+    tcase_add_test(tests, many_parts);
 }
 
 SKG_SUITE_MAIN("scene", add_tests)

@@ -262,6 +262,47 @@ static const struct {
      "Detector.Scintillator.Material: "},
 };
 
+static skg_plan_options options_with(const char *one, const char *two) {
+    skg_plan_options options;
+    ck_skg(load_with(one, two));
+    skg_plan_options_init(&options);
+    ck_skg(skg_setup_options(setup, &options));
+    return options;
+}
+
+START_TEST(line_and_point_spread) {
+    skg_plan_options options = options_with("World=Vacuum", NULL);
+    ck_assert_ptr_null(options.blur);
+    options = options_with("Detector.LSF=[0.25, 1, 0.5]", NULL);
+    ck_assert(options.blur->columns == 3 && options.blur->rows == 3 && !options.blur->point);
+    ck_assert_double_eq(options.blur->along_row[2], 0.5);
+    ck_assert_double_eq(options.blur->along_column[0], 0.25);
+    options = options_with("Detector.LSF=[[1], [1, 2, 4]]", NULL);
+    ck_assert(options.blur->columns == 1 && options.blur->rows == 3);
+    ck_assert_double_eq(options.blur->along_row[0], 1);
+    ck_assert_double_eq(options.blur->along_column[2], 4);
+    options = options_with("Detector.PSF=[[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [1, 1, 1, 1, 1]]", NULL);
+    ck_assert(options.blur->columns == 5 && options.blur->rows == 3);
+    ck_assert_double_eq(options.blur->point[8], 8);
+}
+END_TEST
+
+START_TEST(noises) {
+    skg_plan_options options = options_with("Noise=false", NULL);
+    ck_assert_int_eq(options.noise, 0);
+    options = options_with("Noise=true", NULL);
+    ck_assert_int_eq(options.noise, 1);
+    ck_assert_double_eq(options.swank, 1);
+    options = options_with("Noise={\"Quantum\": false, \"Electronic\": [2500, \"eV\"], \"Step\": [0.5, "
+                           "\"keV\"], \"Swank\": 0.92, \"Seed\": -7}",
+                           NULL);
+    ck_assert(options.noise == 0 && options.noise_seed == -7);
+    ck_assert_double_eq_tol(options.electronic_kev, 2.5, 1e-12);
+    ck_assert_double_eq(options.quantum_step_kev, 0.5);
+    ck_assert_double_eq(options.swank, 0.92);
+}
+END_TEST
+
 START_TEST(what_is_refused) {
     ck_skg_fails(load_with(bad[_i].setting, NULL), bad[_i].status, bad[_i].says);
     ck_assert_ptr_null(setup);
@@ -283,6 +324,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, responses);
     tcase_add_test(tests, focal_spots);
     tcase_add_test(tests, worlds);
+    tcase_add_test(tests, line_and_point_spread);
+    tcase_add_test(tests, noises);
     tcase_add_loop_test(tests, what_is_refused, 0, sizeof bad / sizeof *bad);
     tcase_add_test(tests, parallel_beams_have_no_mas);
 }

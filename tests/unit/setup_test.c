@@ -316,6 +316,28 @@ START_TEST(options_are_given_on) {
 }
 END_TEST
 
+START_TEST(mends_and_priorities) {
+    skg_plan_options options;
+    skg_plan_options_init(&options);
+    write_edited("\"Opacity\": 0.4", "\"priority\": -3");
+    ck_skg(load());
+    ck_assert_int_eq(part_at(0).priority, -3);
+    ck_assert_int_eq(part_at(1).priority, 0);
+    ck_skg(skg_setup_options(setup, &options));
+    ck_assert_int_eq(options.repair, SKG_REPAIR_NEIGHBOURS); /* what the file does not say stays */
+    ck_assert_int_eq(options.clip, 0);
+    write_edited("\"Samples\"", "\"Repair\": \"Exact\", \"Clip\": true, \"Samples\"");
+    ck_skg(load());
+    ck_skg(skg_setup_options(setup, &options));
+    ck_assert_int_eq(options.repair, SKG_REPAIR_EXACT);
+    ck_assert_int_eq(options.clip, 1);
+    write_edited("\"Samples\"", "\"Repair\": \"none\", \"Samples\"");
+    ck_skg(load());
+    ck_skg(skg_setup_options(setup, &options));
+    ck_assert_int_eq(options.repair, SKG_REPAIR_NONE);
+}
+END_TEST
+
 START_TEST(settings_change_the_file) {
     const char *const settings[] = {"detector.numberofpixels=[32, 16]", "Samples.bone.Type=inner",
                                     "Samples.0.Cube=[2, \"cm\"]", "Precision=double", "Scan.StartAngle=180"};
@@ -377,6 +399,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, scans_are_kept);
     tcase_add_test(tests, a_scan_gives_its_first_projection);
     tcase_add_test(tests, options_are_given_on);
+    tcase_add_test(tests, mends_and_priorities);
     tcase_add_test(tests, settings_change_the_file);
     tcase_add_test(tests, the_example_of_the_manual_is_read);
     tcase_add_test(tests, labels_with_dots_can_be_set);

@@ -108,18 +108,18 @@ typedef struct {
     int64_t inside;       /* number of the part that it lies in, -1: none */
     skg_mesh *mesh;       /* not retained for the caller */
     const char *label;    /* unique */
-    const char *material; /* chemical symbol where it is no tissue ("Fe" of the needle), or NULL */
-    double hounsfield;    /* HU at about 120 kV, where material is NULL */
-    double density_g_cm3; /* where material is given; else 0 */
+    const char *material; /* as skg_material_named takes it ("Liver", "Needle steel"); NULL of bones */
+    double hounsfield;    /* HU at about 120 kV: what it is of where material is NULL */
+    double density_g_cm3; /* 0: that of the material's tables */
 } skg_thorax_part;
 
 SKG_API void skg_thorax_part_init(skg_thorax_part *part);
 SKG_API skg_status skg_thorax_size(const skg_thorax *thorax, int64_t *parts);
 SKG_API skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number, skg_thorax_part *part);
 
-/* Writes one PLY file per part and a scene file, thorax.json, into a folder that exists: a point source 1 m
- * in front of a detector behind the patient's back, head up, the patient's right on the viewer's left.
- * SKG_ERR_OUTPUT. */
+/* Writes one PLY file per part and a scene file, thorax.json, into a folder that exists: a tube of 80 kV 1 m
+ * in front of a detector behind the patient's back, head up, the patient's right on the viewer's left, and
+ * the breathing and events of a percutaneous cholangiography (docs/scene-files.md). SKG_ERR_OUTPUT. */
 SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder);
 
 /* A body: organs that move with the breath. Each has a rule, found by its label (without regard to case):

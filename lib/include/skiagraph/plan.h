@@ -30,6 +30,31 @@ enum {
 
 enum { SKG_MOST_CHANNELS = 16 };
 
+/* What a line or a point becomes on the detector, sampled one pixel apart, the middle sample in place; scaled
+ * to sum 1. Either two line spread functions, whose product is the point spread function, or the latter.
+ * Sample k of n is what of a pixel's value is found k - n/2 pixels further on. Beyond its border the image
+ * goes on as at the border. Numbers of samples are odd, 1 to 4095. */
+typedef struct {
+    int32_t size;
+    int32_t reserved;           /* 0 */
+    int64_t columns, rows;      /* samples along a row and along a column */
+    const double *along_row;    /* [columns] line spread function */
+    const double *along_column; /* [rows] line spread function */
+    const double *point;        /* [rows][columns] point spread function; NULL: the two above */
+} skg_detector_blur;
+
+SKG_API void skg_detector_blur_init(skg_detector_blur *blur);
+
+/* What becomes of an open mesh's bad pixels, where a ray does not leave it as often as it enters it. A ray
+ * that goes in by one hole and out by another is not found out by this, and stays without the part. NONE: the
+ * part is left out there. NEIGHBOURS: the mean of the part's path parameters over the pixel's neighbourhood,
+ * which is grown until it holds valid pixels (Vidal and Villard 2016, 3.2.7); left out where there is no
+ * valid one at all. EXACT: cast anew on the host, in double, through the mesh with each loop of open edges
+ * capped by a fan about its mean. Exact where loops are plane: any missing triangle, plane holes, cracks at
+ * T-junctions, single flipped triangles; one of many surfaces where not. Submitting waits for the raster of
+ * open parts. */
+enum { SKG_REPAIR_NONE = 0, SKG_REPAIR_NEIGHBOURS = 1, SKG_REPAIR_EXACT = 2 };
+
 /* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
  * centre, their width along the projected column step. */
 enum {
@@ -80,13 +105,22 @@ typedef struct {
                               everything */
     const skg_spot *spot;  /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
     int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
-    int32_t reserved;      /* 0 */
+    int32_t noise; /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
     const double
         *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
     double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
                          error that fewer energies and planes may make, relative where more than 1e-6 of the
                          open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
                          that the plan's view meets, and a quarter more */
+    const skg_detector_blur *blur; /* copied; NULL: none */
+    double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
+                           variance by 1 / swank; 1 (default): every photon gives what the response says */
+    int64_t noise_seed; /* added to that of each frame */
+    double electronic_kev;   /* standard deviation of the electronic noise, keV per pixel; 0: none */
+    double quantum_step_kev; /* values are whole multiples of it, keV per pixel; 0: any */
+    int32_t repair;          /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
+    int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
+                     it */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -103,7 +137,7 @@ SKG_API void skg_plan_release(skg_plan **plan);
 /* From now on frames without a view of their own use this one. Same rows and columns, else SKG_STALE. */
 SKG_API skg_status skg_plan_move(skg_plan *plan, const skg_view *view);
 
-/* One frame. Prepare with skg_frame_init; all zero means: the plan's view, the scene's poses. */
+/* One frame. Prepare with skg_frame_init; all zero means: the plan's view, the scene's poses and matter. */
 typedef struct {
     int32_t size;
     int32_t reserved;          /* 0 */
@@ -111,8 +145,14 @@ typedef struct {
     int64_t posed;             /* how many parts have a pose of their own in this frame */
     const int64_t *posed_ids;  /* [posed] numbers of parts */
     const double *posed_poses; /* [posed][16] */
-    int64_t noise_seed;        /* with index: the key of the noise, where there is noise */
+    int64_t noise_seed;        /* with index: the key of the noise, where there is noise: frames of another
+                                  key are independent, those of the same have the same noise */
     int64_t index;
+    int64_t matters;              /* how many parts are of other matter than their material in this frame */
+    const int64_t *matter_ids;    /* [matters] numbers of parts */
+    const double *matter_density; /* [matters] of the part over its material's, 0 to 1000; NULL: 1 */
+    const double *matter_share;   /* [matters] of the part that is there, 0 to 1; the rest is of what it lies
+                                     in.   NULL: 1. Below 1 for parts only that no other part lies in */
 } skg_frame;
 
 SKG_API void skg_frame_init(skg_frame *frame);
@@ -139,7 +179,9 @@ SKG_API void skg_output_init(skg_output *output);
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
-/* Waits until the job's images are in their place, releases the job and sets *job to NULL. */
+/* Waits until the job's images are in their place, releases the job and sets *job to NULL. SKG_RANGE: the
+ * images are there, but some pixels meet lengths outside the range that the plan's error bound was verified
+ * for. */
 SKG_API skg_status skg_job_wait(skg_job **job);
 
 /* Submit and wait of one frame as the scene stands. */
@@ -186,7 +228,9 @@ typedef struct {
     int64_t nodes, bins;     /* energies that are used, and that the spectrum has photons at */
     double bound; /* of the error that fewer nodes and planes make, in the words of the tolerance: twice the
                      worst that was found; 0 where every bin is used */
-    int64_t verified; /* number of points (lengths of all materials) on which it was looked for */
+    int64_t verified;        /* number of points (lengths of all materials) on which it was looked for */
+    int64_t repaired_pixels; /* of the last frame: of the bad ones; the others are without their part */
+    int64_t outside_pixels;  /* of the last job: lengths outside the range that the bound was verified for */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);

@@ -17,10 +17,14 @@ extern "C" {
 
 typedef struct skg_scene skg_scene;
 
-/* One part. Prepare with skg_part_init: identity pose, no parent. */
+/* One part. Prepare with skg_part_init: identity pose, no parent.
+ * Priority: where closed parts with one parent (or in the world) overlap, those of the highest priority have
+ * the interval of the ray to themselves; the others fall, and with them what lies inside them. Equal ones
+ * add. Open parts neither win nor lose. Submitting a frame in which such parts may meet waits until their
+ * hits are counted. */
 typedef struct {
     int32_t size;
-    int32_t reserved; /* 0 */
+    int32_t priority; /* 0 by default; see above */
     int64_t inside;   /* number of the part that this one displaces, or -1: it stands in the world. In a scene
                          from a file it may be larger than the part's own. */
     skg_mesh *mesh;   /* retained by the scene */
@@ -53,8 +57,8 @@ SKG_API skg_status skg_scene_find(const skg_scene *scene, const char *label, int
 /* A new pose; plans use it from the next frame on. */
 SKG_API skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose);
 
-/* Another material (retained), as a lung's of new density. Plans use it from the next frame on; a plan that compresses
- * several energies (tolerance above 0) is stale then. */
+/* Another material (retained), as a lung's of new density. Plans use it from the next frame on; a plan that
+ * compresses several energies (tolerance above 0) is stale then. */
 SKG_API skg_status skg_scene_set_material(skg_scene *scene, int64_t id, skg_material *material);
 
 /* Where rays start. */

@@ -10,6 +10,7 @@
 #include <skiagraph/image.h>
 #include <skiagraph/material.h>
 #include <skiagraph/mesh.h>
+#include <skiagraph/motion.h>
 #include <skiagraph/plan.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/setup.h>

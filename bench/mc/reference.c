@@ -1,0 +1,55 @@
+#include "mc/reference.h"
+
+#include "common/bench.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What of a header is of interest. */
+typedef struct {
+    int64_t columns, rows;
+    char data[512];
+} header;
+
+static int read_header(const char *path, header *h) {
+    char line[1024];
+    FILE *file = fopen(path, "r");
+    if (!file) return 0;
+    *h = (header){0};
+    while (fgets(line, sizeof line, file)) {
+        char type[64];
+        if (sscanf(line, "ElementType = %63s", type) == 1 && strcmp(type, "MET_FLOAT") != 0)
+            bench_die("%s: elements of %s; MET_FLOAT is read", path, type);
+        if (strncmp(line, "BinaryDataByteOrderMSB = True", 29) == 0) bench_die("%s: big endian", path);
+        sscanf(line, "DimSize = %" SCNd64 " %" SCNd64, &h->columns, &h->rows);
+        sscanf(line, "ElementDataFile = %511[^\r\n]", h->data);
+    }
+    fclose(file);
+    return 1;
+}
+
+double *reference_read(const char *prefix, const char *name, int64_t columns, int64_t rows, int needed) {
+    char path[4096], data[5000];
+    header h;
+    snprintf(path, sizeof path, "%s%s.mhd", prefix, name);
+    if (!read_header(path, &h)) {
+        if (needed) bench_die("%s: cannot be read", path);
+        return NULL;
+    }
+    if (h.columns != columns || h.rows != rows)
+        bench_die("%s: %" PRId64 " x %" PRId64 " pixels, the scene has %" PRId64 " x %" PRId64, path,
+                  h.columns, h.rows, columns, rows);
+    const char *slash = strrchr(path, '/');
+    snprintf(data, sizeof data, "%.*s%s", slash ? (int)(slash - path) + 1 : 0, path, h.data);
+    const size_t count = (size_t)(columns * rows);
+    float *narrow = bench_alloc(count, sizeof *narrow);
+    double *image = bench_alloc(count, sizeof *image);
+    FILE *file = fopen(data, "rb");
+    if (!file || fread(narrow, sizeof *narrow, count, file) != count)
+        bench_die("%s: %zu floats were expected", data, count);
+    fclose(file);
+    for (size_t p = 0; p < count; p++) image[p] = (double)narrow[p];
+    free(narrow);
+    return image;
+}

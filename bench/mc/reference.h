@@ -1,0 +1,11 @@
+/* Reference images: MetaImage headers (.mhd) with raw float32, little endian. */
+#ifndef BENCH_MC_REFERENCE_H
+#define BENCH_MC_REFERENCE_H
+
+#include <stdint.h>
+
+/* Reads <prefix><name>.mhd; ends the program where it is not columns x rows floats. NULL where there is no
+ * such file and it is not needed. To be freed. */
+double *reference_read(const char *prefix, const char *name, int64_t columns, int64_t rows, int needed);
+
+#endif

@@ -1,0 +1,70 @@
+/* skiagraph thorax */
+#include "args.h"
+
+#include "folder.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static const cli_flag flag_folder = {"-o", "DIR", "where to write; made where it is missing"};
+static const cli_flag flag_triangles = {"--triangles", "N", "in all, about: 10000 to 20000000; 42000"};
+
+static int count_all(const skg_thorax *thorax, int64_t *parts, int64_t *triangles) {
+    skg_status status = skg_thorax_size(thorax, parts);
+    *triangles = 0;
+    for (int64_t i = 0; i < *parts && status == SKG_OK; i++) {
+        skg_thorax_part part;
+        int64_t its_vertices, its;
+        skg_thorax_part_init(&part);
+        status = skg_thorax_get_part(thorax, i, &part);
+        if (status == SKG_OK) status = skg_mesh_size(part.mesh, &its_vertices, &its);
+        if (status == SKG_OK) *triangles += its;
+    }
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int print(const cli_arguments *arguments, const char *folder, int64_t parts, int64_t triangles) {
+    if (cli_given(arguments, &cli_flag_json)) {
+        json_t *object = json_object();
+        json_object_set_new(object, "parts", json_integer(parts));
+        json_object_set_new(object, "triangles", json_integer(triangles));
+        json_object_set_new(object, "folder", cli_json_text(folder));
+        return cli_json_print(object);
+    }
+    if (!cli_is_quiet())
+        printf("%" PRId64 " parts of %" PRId64 " triangles; wrote %s/thorax.json\n", parts, triangles,
+               folder);
+    return CLI_DONE;
+}
+
+static int run(const cli_arguments *arguments) {
+    skg_thorax_options options;
+    skg_thorax *thorax = NULL;
+    int64_t parts = 0, triangles = 0;
+    const char *folder = cli_value(arguments, &flag_folder);
+    skg_thorax_options_init(&options);
+    if (!folder) return cli_error(CLI_USAGE, "thorax: nowhere to write to; add -o DIR");
+    int exit_status = cli_integer(arguments, &flag_triangles, 10000, 20000000, &options.triangles);
+    if (exit_status == CLI_DONE) exit_status = cli_make_folder(folder);
+    if (exit_status != CLI_DONE) return exit_status;
+    skg_status status = skg_thorax_create(&options, &thorax);
+    if (status == SKG_OK) status = skg_thorax_save(thorax, folder);
+    exit_status = status == SKG_OK ? count_all(thorax, &parts, &triangles) : cli_fail(status);
+    if (exit_status == CLI_DONE) exit_status = print(arguments, folder, parts, triangles);
+    skg_thorax_release(&thorax);
+    return exit_status;
+}
+
+static const cli_flag *const flags[] = {&flag_folder, &flag_triangles, &cli_flag_json, &cli_flag_quiet, NULL};
+
+const cli_verb cli_thorax = {
+    "thorax",
+    "-o DIR",
+    "meshes and scene file of a generated thorax",
+    "Generates a thorax at end-expiration: spine, ribs, sternum, cartilage, diaphragm, lungs, heart, liver,\n"
+    "bile ducts with contrast, skin, a Chiba needle and more, one closed mesh (PLY) each, and a scene file,\n"
+    "DIR/thorax.json, with tissues by name, a tube's beam and a percutaneous cholangiography for `breathe`.",
+    0,
+    0,
+    flags,
+    run};

@@ -1,0 +1,245 @@
+/* A set-up that breathes. */
+#include "body/body.h"
+#include "scene/scene.h"
+#include "scene/setup.h"
+
+#include <skiagraph/motion.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+struct skg_motion {
+    const skg_setup *setup;
+    skg_body *body;
+    int64_t *organ;   /* [parts] number in the body */
+    double needle_mm; /* depth as the meshes have it; NaN: no needle */
+    skg_motion_state state;
+    int64_t matters; /* lungs, then parts with contrast */
+    int64_t *ids;    /* [matters] */
+    double *density, *share;
+    double lung_hu; /* as the meshes have it */
+};
+
+static const double HU_KEV = 70; /* about the mean of 120 kV */
+
+void skg_motion_state_init(skg_motion_state *state) {
+    *state = (skg_motion_state){.size = (int32_t)sizeof *state};
+    skg_breath_state_init(&state->breath);
+}
+
+static skg_status add_organ(skg_motion *motion, int64_t part) {
+    const skg_breathing_section *section = &motion->setup->breathing;
+    const skg_scene_part_data *from = &motion->setup->scene->parts[part];
+    skg_organ organ;
+    skg_organ_init(&organ);
+    organ.mesh = from->mesh;
+    organ.label = from->label;
+    organ.inside = from->inside < 0 ? -1 : motion->organ[from->inside];
+    for (int64_t i = 0; i < section->organ_count; i++) {
+        if (section->organs[i].part != part) continue;
+        organ.tissue = section->organs[i].tissue;
+        if (section->organs[i].as) organ.label = section->organs[i].as;
+    }
+    return skg_body_add(motion->body, &organ, &motion->organ[part]);
+}
+
+/* Parents before what lies in them; there is no circle. */
+static skg_status add_organs(skg_motion *motion) {
+    const skg_scene *scene = motion->setup->scene;
+    int64_t added = 0;
+    for (int64_t p = 0; p < scene->count; p++) motion->organ[p] = -1;
+    while (added < scene->count)
+        for (int64_t p = 0; p < scene->count; p++) {
+            const int64_t inside = scene->parts[p].inside;
+            if (motion->organ[p] >= 0 || (inside >= 0 && motion->organ[inside] < 0)) continue;
+            SKG_TRY(add_organ(motion, p));
+            added++;
+        }
+    return SKG_OK;
+}
+
+static const skg_body_organ *organ_of(const skg_motion *motion, int64_t part) {
+    return &motion->body->organ[motion->organ[part]];
+}
+
+/* The body writes meshes where they are: each is to be one part's, and where its file has it. */
+static skg_status check_parts(const skg_motion *motion) {
+    static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const skg_scene *scene = motion->setup->scene;
+    for (int64_t p = 0; p < scene->count; p++) {
+        if (organ_of(motion, p)->role == ROLE_STATIC) continue;
+        for (int k = 0; k < 16; k++)
+            if (scene->parts[p].pose[k] != identity[k])
+                return skg_fail(
+                    SKG_ERR_BREATHING,
+                    "%s: breathes, but has a Transform; its file has to have it in place (x to the "
+                    "left, y to the back, z to the head, mm)",
+                    scene->parts[p].label);
+        for (int64_t q = 0; q < scene->count; q++)
+            if (q != p && scene->parts[q].mesh == scene->parts[p].mesh)
+                return skg_fail(SKG_ERR_BREATHING,
+                                "%s: breathes, but %s has the same mesh; give each its own",
+                                scene->parts[p].label, scene->parts[q].label);
+    }
+    return SKG_OK;
+}
+
+static skg_status find_lung(skg_motion *motion) {
+    const skg_scene *scene = motion->setup->scene;
+    motion->lung_hu = (double)NAN;
+    for (int64_t p = 0; p < scene->count && isnan(motion->lung_hu); p++)
+        if (skg_label_begins(organ_of(motion, p)->label, "lung"))
+            SKG_TRY(skg_material_to_hounsfield(scene->parts[p].material, HU_KEV, &motion->lung_hu));
+    return SKG_OK;
+}
+
+static skg_status list_matters(skg_motion *motion) {
+    const skg_breathing_section *section = &motion->setup->breathing;
+    const int64_t parts = motion->setup->scene->count, most = parts + section->contrast_count;
+    SKG_TRY(skg_alloc(most, sizeof *motion->ids, "motion", &motion->ids));
+    SKG_TRY(skg_alloc(2 * most, sizeof *motion->density, "motion", &motion->density));
+    motion->share = motion->density + most;
+    for (int64_t p = 0; p < parts && section->lung_density; p++)
+        if (organ_of(motion, p)->role == ROLE_LINKED && skg_label_begins(organ_of(motion, p)->label, "lung"))
+            motion->ids[motion->matters++] = p;
+    for (int64_t c = 0; c < section->contrast_count; c++)
+        motion->ids[motion->matters++] = section->contrasts[c].part;
+    for (int64_t k = 0; k < motion->matters; k++) motion->density[k] = motion->share[k] = 1;
+    return SKG_OK;
+}
+
+static skg_status make(skg_context *context, skg_motion *motion) {
+    const skg_breathing_section *section = &motion->setup->breathing;
+    SKG_TRY(skg_alloc(motion->setup->scene->count, sizeof *motion->organ, "motion", &motion->organ));
+    SKG_TRY(skg_body_create(context, &section->body, &motion->body));
+    SKG_TRY(add_organs(motion));
+    SKG_TRY(skg_body_link(motion->body));
+    SKG_TRY(check_parts(motion));
+    SKG_TRY(list_matters(motion));
+    SKG_TRY(find_lung(motion));
+    motion->needle_mm = skg_body_needle_depth(motion->body);
+    if (section->needle.count && isnan(motion->needle_mm))
+        return skg_fail(SKG_ERR_BREATHING,
+                        "Breathing.Events: there is no needle in liver and skin to insert");
+    if (section->body.hysteresis > 0) SKG_TRY(skg_body_breathe(motion->body, &section->breath));
+    return SKG_OK;
+}
+
+skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **result) {
+    skg_motion *motion = NULL;
+    if (!setup || !result) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_create: no set-up or no result");
+    *result = NULL;
+    SKG_TRY(skg_alloc(1, sizeof *motion, "motion", &motion));
+    motion->setup = setup;
+    skg_motion_state_init(&motion->state);
+    skg_status status = make(context, motion);
+    if (status != SKG_OK)
+        skg_motion_release(&motion);
+    else
+        *result = motion;
+    return status;
+}
+
+void skg_motion_release(skg_motion **motion) {
+    if (!motion || !*motion) return;
+    skg_body_release(&(*motion)->body);
+    skg_free(&(*motion)->organ);
+    skg_free(&(*motion)->ids);
+    skg_free(&(*motion)->density);
+    skg_free(motion);
+}
+
+static double value_at(const skg_curve *curve, double time) {
+    const double *p = curve->points;
+    int64_t i = 0;
+    while (i < curve->count && p[2 * i] <= time) i++;
+    if (i == 0) return p[1];
+    if (i == curve->count) return p[2 * i - 1];
+    const double share = (time - p[2 * i - 2]) / (p[2 * i] - p[2 * i - 2]);
+    return p[2 * i - 1] + share * (p[2 * i + 1] - p[2 * i - 1]);
+}
+
+/* Breath and needle of motion->state into the meshes. */
+static skg_status pose(skg_motion *motion) {
+    const skg_breathing_section *section = &motion->setup->breathing;
+    if (!isnan(motion->needle_mm))
+        SKG_TRY(skg_body_set_needle(motion->body, motion->needle_mm - motion->state.needle_mm));
+    SKG_TRY(skg_body_pose(motion->body, &motion->state.breath));
+    motion->state.lung_density_ratio = section->lung_density ? skg_body_lung_ratio(motion->body) : 1;
+    motion->state.lung_hu = skg_lung_hounsfield(motion->lung_hu, motion->state.lung_density_ratio);
+    for (int64_t k = 0; k < motion->matters - section->contrast_count; k++)
+        motion->density[k] = motion->state.lung_density_ratio;
+    return SKG_OK;
+}
+
+skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
+    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_time: no motion");
+    const skg_breathing_section *section = &motion->setup->breathing;
+    skg_motion_state *state = &motion->state;
+    SKG_TRY(skg_breath_at_time(&section->breath, time_s, &state->breath));
+    state->time_s = time_s;
+    state->needle_mm = section->needle.count ? value_at(&section->needle, time_s) : motion->needle_mm;
+    if (section->weight.count) {
+        const double weight = value_at(&section->weight, time_s);
+        state->breath.thoracic *= weight;
+        state->breath.diaphragmatic *= weight;
+    }
+    const int64_t first = motion->matters - section->contrast_count;
+    for (int64_t c = 0; c < section->contrast_count; c++)
+        motion->share[first + c] = value_at(&section->contrasts[c].share, time_s);
+    return pose(motion);
+}
+
+skg_status skg_motion_at_phase(skg_motion *motion, double phase) {
+    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_phase: no motion");
+    SKG_TRY(skg_breath_at_phase(&motion->setup->breathing.breath, phase, &motion->state.breath));
+    motion->state.time_s = (double)NAN;
+    motion->state.needle_mm = motion->needle_mm;
+    for (int64_t k = 0; k < motion->matters; k++) motion->share[k] = 1;
+    return pose(motion);
+}
+
+skg_status skg_motion_fill(const skg_motion *motion, skg_frame *frame) {
+    if (!motion || !frame) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_fill: no motion or no frame");
+    skg_frame ours;
+    skg_frame_init(&ours);
+    SKG_TRY(skg_struct_read(frame, "skg_frame", &ours, sizeof ours));
+    ours.matters = motion->matters;
+    ours.matter_ids = motion->ids;
+    ours.matter_density = motion->density;
+    ours.matter_share = motion->share;
+    return skg_struct_write(&ours, sizeof ours, "skg_frame", frame);
+}
+
+skg_status skg_motion_get_state(const skg_motion *motion, skg_motion_state *state) {
+    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_get_state: no motion");
+    return skg_struct_write(&motion->state, sizeof motion->state, "skg_motion_state", state);
+}
+
+skg_status skg_motion_period(const skg_motion *motion, double *period_s) {
+    if (!motion || !period_s) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_period: NULL");
+    *period_s = motion->setup->breathing.breath.period_s;
+    return SKG_OK;
+}
+
+skg_status skg_motion_body(const skg_motion *motion, skg_body **body) {
+    if (!motion || !body) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_body: NULL");
+    *body = motion->body;
+    return SKG_OK;
+}
+
+skg_status skg_motion_moves(const skg_motion *motion, int64_t part, int32_t *moves) {
+    if (!motion || !moves || part < 0 || part >= motion->setup->scene->count)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_moves: no part %" PRId64, part);
+    *moves = organ_of(motion, part)->role != ROLE_STATIC;
+    return SKG_OK;
+}
+
+skg_status skg_motion_rest(const skg_motion *motion, int64_t part, double *positions) {
+    if (!motion || !positions || part < 0 || part >= motion->setup->scene->count)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_rest: no part %" PRId64, part);
+    const skg_body_organ *organ = organ_of(motion, part);
+    memcpy(positions, organ->rest, (size_t)(3 * organ->vertices) * sizeof *positions);
+    return SKG_OK;
+}

@@ -1,0 +1,75 @@
+/* Blur by line spread functions or a point spread function, in two passes over an image in the type of skg_real. The
+ * first works down the columns, from the image into a workspace that is wider (and for a point spread function higher)
+ * than the image by half the function on either side; the second works along the rows, from there into the image. Beyond
+ * its border the image goes on as at the border. Every pixel's terms are added in one order on all devices. */
+
+#define SKG_UNROLL _Pragma("unroll")
+
+/* Rows and vectors of a work-item of the first pass: a row that is read serves SKG_BLUR_ROWS rows that are written. */
+#define SKG_BLUR_ROWS 4
+#define SKG_BLUR_VECTORS 2
+/* Vectors of a work-item of the second pass. */
+#define SKG_BLUR_RUN 4
+
+static skg_realv skg_border_v(__global const skg_real *row, int column, int columns) {
+    if (column >= 0 && column + SKG_WIDE <= columns) return SKG_LOAD_V(0, row + column);
+    skg_real lanes[SKG_WIDE];
+    for (int k = 0; k < SKG_WIDE; k++) lanes[k] = row[clamp(column + k, 0, columns - 1)];
+    return SKG_LOAD_V(0, lanes);
+}
+
+/* taps: odd; weights: [SKG_BLUR_ROWS - 1 + taps + SKG_BLUR_ROWS - 1], zeros about the taps. stride and high: elements
+ * of a row and rows of the workspace, whose pixel (0, 0) is the image's (-left, -above). */
+__kernel void skg_blur_down(__global const skg_real *image, long offset, long row_stride, long channel_stride,
+                            int columns, int rows, int taps, __global const skg_real *weights,
+                            __global skg_real *workspace, int stride, int high, int left, int above) {
+    const int to = SKG_BLUR_VECTORS * SKG_WIDE * (int)get_global_id(0);
+    const int row = SKG_BLUR_ROWS * (int)get_global_id(1), channel = (int)get_global_id(2);
+    if (to >= stride || row >= high) return;
+    skg_realv sum[SKG_BLUR_ROWS][SKG_BLUR_VECTORS];
+    SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++)
+        SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) sum[r][v] = (skg_realv)(0);
+    const int first = row - above - taps / 2;
+    image += offset + channel * channel_stride;
+    for (int k = 0; k < taps + SKG_BLUR_ROWS - 1; k++) {
+        __global const skg_real *from = image + clamp(first + k, 0, rows - 1) * row_stride;
+        SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) {
+            const skg_realv value = skg_border_v(from, to + v * SKG_WIDE - left, columns);
+            SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++)
+                sum[r][v] = fma((skg_realv)(weights[SKG_BLUR_ROWS - 1 + k - r]), value, sum[r][v]);
+        }
+    }
+    SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++) {
+        if (row + r >= high) break;
+        __global skg_real *place = workspace + ((long)channel * high + row + r) * stride + to;
+        SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) SKG_STORE_V(sum[r][v], v, place);
+    }
+}
+
+/* weights: [down][across]; the sum over them, from the workspace's pixel (row, column) on, is the image's there. */
+__kernel void skg_blur_across(__global const skg_real *workspace, int stride, int high, int down, int across,
+                              __global const skg_real *weights, __global skg_real *image, long offset,
+                              long row_stride, long channel_stride, int columns, int rows) {
+    const int column = SKG_BLUR_RUN * SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
+    const int channel = (int)get_global_id(2);
+    if (column >= columns || row >= rows) return;
+    skg_realv sum[SKG_BLUR_RUN];
+    SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++) sum[v] = (skg_realv)(0);
+    for (int j = 0; j < down; j++) {
+        __global const skg_real *from = workspace + ((long)channel * high + row + j) * stride + column;
+        for (int i = 0; i < across; i++)
+            SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++)
+                sum[v] = fma((skg_realv)(weights[j * across + i]), SKG_LOAD_V(v, from + i), sum[v]);
+    }
+    image += offset + channel * channel_stride + row * row_stride + column;
+    SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++) {
+        const int pixels = columns - column - v * SKG_WIDE;
+        if (pixels >= SKG_WIDE)
+            SKG_STORE_V(sum[v], v, image);
+        else {
+            skg_real rest[SKG_WIDE];
+            SKG_STORE_V(sum[v], 0, rest);
+            for (int k = 0; k < pixels; k++) image[v * SKG_WIDE + k] = rest[k];
+        }
+    }
+}

@@ -1,0 +1,157 @@
+/* Parts that compete for intervals along a ray. Hits of these parts alone are listed per pixel (counted, given room,
+ * filled in), sorted and swept; what losers had added is taken off the sums again, as integers. Coverage and depths
+ * are the rasterisers' own (triangle.clh), so that what is taken off is what was added. */
+
+#define SKG_WORDS (SKG_SLOTS / 32)
+
+/* Entry of a slot: number of its part; slot of the parent that it is clipped to, or -1; then two sets of slots, a bit
+ * each: those that win over it, and those that it falls with. */
+#define SKG_ENTRY (2 + 2 * SKG_WORDS)
+
+/* depth: r relative to what all competitors are measured from; code: 2 slot + 1 where the ray enters. */
+typedef struct {
+    skg_real depth;
+    int code;
+} skg_listed;
+
+typedef struct {
+    __global const int *slots;       /* [parts] -1: does not compete */
+    __global const skg_real *shifts; /* [slots] the part's reference less the common one */
+    __global int *counts;            /* [rows][columns] */
+    __global const int *starts;
+    __global skg_listed *hits;
+    int fill; /* 0: hits are counted */
+} skg_lists;
+
+/* q: depth of the hit as skg_depth has it. */
+static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, skg_real reference, int enters) {
+    const int place = atomic_inc(&lists->counts[pixel]);
+    if (!lists->fill) return;
+#if SKG_PARALLEL
+    const skg_real depth = q + lists->shifts[slot];
+#else
+    const skg_real depth = fma(q, reference, lists->shifts[slot]);
+#endif
+    lists->hits[lists->starts[pixel] + place] = (skg_listed){depth, 2 * slot + enters};
+}
+
+#define SKG_LIST_ARGUMENTS                                                                                            \
+    __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const int *starts,     \
+        __global skg_listed *hits, int fill
+
+/* One work-item every get_global_size(1)-th row of a triangle. */
+__kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
+                            __global const skg_part_entry *parts, __global const int *blocks, SKG_LIST_ARGUMENTS) {
+    const skg_lists lists = {slots, shifts, counts, starts, hits, fill};
+    const int triangle = (int)get_global_id(0);
+    if (triangle >= frame.triangles) return;
+    skg_range range;
+    skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
+    const int slot = slots[range.number];
+    if (slot < 0) return;
+    const skg_real reference = parts[range.number].reference;
+    skg_real4 a, b, c;
+    skg_box box;
+    skg_corners(corners, projected, &range, triangle, &a, &b, &c);
+    if (!skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), &box)) return;
+    skg_face f;
+    skg_face_of(&range, a, b, c, &f);
+    for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {
+        skg_line line;
+        skg_row(&f, (skg_real)row, &line);
+        const int enters = skg_negative(&f, &line) != 0;
+        const int first = (range.pixel_j + row) * frame.columns + range.pixel_i;
+        for (int column = box.i0; column < box.i1; column++)
+            if (skg_hit(&line, (skg_real)column))
+                skg_list(&lists, slot, first + column, skg_depth(&f, &line, (skg_real)column), reference, enters);
+    }
+}
+
+/* Room for each pixel's hits, in any order; *total: all of them. Counts become 0 and serve as cursors. */
+__kernel void skg_hits_place(int pixels, __global int *counts, __global int *starts, __global int *total) {
+    const int pixel = (int)get_global_id(0);
+    if (pixel >= pixels) return;
+    const int count = counts[pixel];
+    starts[pixel] = count ? atomic_add(total, count) : 0;
+    counts[pixel] = 0;
+}
+
+static void skg_sort_hits(__global skg_listed *hits, int count) {
+    for (int k = 1; k < count; k++) {
+        const skg_listed moving = hits[k];
+        int to = k;
+        for (; to > 0 && (hits[to - 1].depth > moving.depth ||
+                          (hits[to - 1].depth == moving.depth && hits[to - 1].code > moving.code));
+             to--)
+            hits[to] = hits[to - 1];
+        hits[to] = moving;
+    }
+}
+
+static int skg_is_in(const uint *set, int slot) {
+    return (int)(set[slot / 32] >> (slot % 32) & 1);
+}
+
+/* Whether an active slot loses the interval. dropped: those that lose it, as far as parents of this slot go. */
+static int skg_loses(__global const int *entry, const uint *active, const uint *dropped) {
+    int loses = entry[1] >= 0 && !skg_is_in(active, entry[1]);
+    for (int w = 0; w < SKG_WORDS; w++)
+        loses |= ((uint)entry[2 + w] & active[w]) != 0 || ((uint)entry[2 + SKG_WORDS + w] & dropped[w]) != 0;
+    return loses;
+}
+
+/* Takes off what a part has added to a pixel's sums over an interval. */
+static void skg_take_off(__global const skg_part_entry *part, __global const skg_write *writes, int plane,
+                         skg_real length, __global skg_sum *sums) {
+#if !SKG_PARALLEL
+    length /= part->reference; /* as writes weigh it */
+#endif
+    for (int w = part->first_write; w < part->first_write + part->writes; w++)
+        sums[writes[w].plane * plane] -= (skg_sum)skg_round(length * writes[w].weight);
+}
+
+/* One work-item a pixel. table: [slots][SKG_ENTRY], parents before their children. sums: the first copy. */
+__kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entry *parts,
+                              __global const skg_write *writes, __global const int *counts,
+                              __global const int *starts, __global skg_listed *lists, __global const int *table,
+                              __global skg_sum *sums) {
+    const int column = (int)get_global_id(0), row = (int)get_global_id(1);
+    if (column >= frame.columns || row >= frame.rows) return;
+    const int count = counts[row * frame.columns + column];
+    if (count == 0) return;
+    __global skg_listed *hits = lists + starts[row * frame.columns + column];
+    __global skg_sum *place = sums + (row * frame.stride + column);
+    int winding[SKG_SLOTS];
+    uint active[SKG_WORDS];
+    skg_sort_hits(hits, count);
+    for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
+    for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
+    for (int k = 0; k + 1 < count; k++) {
+        const int slot = hits[k].code / 2;
+        winding[slot] += hits[k].code & 1 ? 1 : -1;
+        const uint bit = 1u << (slot % 32);
+        active[slot / 32] = winding[slot] > 0 ? active[slot / 32] | bit : active[slot / 32] & ~bit;
+        const skg_real length = hits[k + 1].depth - hits[k].depth;
+        if (!(length > 0)) continue;
+        uint dropped[SKG_WORDS];
+        for (int w = 0; w < SKG_WORDS; w++) dropped[w] = 0;
+        for (int w = 0; w < SKG_WORDS; w++)
+            for (uint rest = active[w]; rest; rest &= rest - 1) {
+                const uint lowest = rest & (~rest + 1);
+                const int s = 32 * w + 31 - (int)clz(lowest);
+                __global const int *entry = table + s * SKG_ENTRY;
+                if (!skg_loses(entry, active, dropped)) continue;
+                dropped[w] |= lowest;
+                skg_take_off(&parts[entry[0]], writes, frame.plane, length * (skg_real)winding[s], place);
+            }
+    }
+}
+
+/* Triangles at the source's plane, too (source_plane.cl). */
+#define SKG_SOURCE_ARGUMENTS SKG_LIST_ARGUMENTS
+#define SKG_SOURCE_BEGIN(range)                                                                                       \
+    const skg_lists lists = {slots, shifts, counts, starts, hits, fill};                                              \
+    const int slot = slots[range.number];                                                                             \
+    if (slot < 0) return
+#define SKG_SOURCE_HIT(row, column, q, factor)                                                                        \
+    skg_list(&lists, slot, (row) * frame.columns + (column), q, p->reference, (factor) < 0)

@@ -1,0 +1,24 @@
+/* Rays of an open mesh cast anew on the host, in double, through the mesh and its caps. Private. */
+#ifndef SKG_RECAST_H
+#define SKG_RECAST_H
+
+#include "plan/camera.h"
+#include "plan/caps.h"
+
+/* Pixels by rows. */
+typedef struct {
+    int64_t count;
+    int64_t *first;   /* [rows + 1] into columns */
+    int32_t *columns; /* [count] ascending within a row */
+} skg_pixel_list;
+
+/* The pixels that are not 0 in marks [rows][columns]. */
+skg_status skg_pixel_list_make(int64_t columns, int64_t rows, const int32_t *marks, skg_pixel_list *list);
+void skg_pixel_list_release(skg_pixel_list *list);
+
+/* paths[k]: of the ray to pixel k of the list the part of its length that lies in the mesh, 0 to 1 where the
+ * mesh runs outward. pose: 4x4, row by row. */
+skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps,
+                      const double *pose, const skg_pixel_list *pixels, double *paths);
+
+#endif

@@ -1,0 +1,198 @@
+/* The verbs thorax and breathe. */
+#include "cli/command.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define SMALL                                                                                                \
+    "--set Detector.NumberOfPixels=[40,40] --set Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]'"
+#define PLAIN "--set Breathing=null"
+
+enum { MOST_BYTES = 1 << 20 };
+
+static void set_up_thorax(void) {
+    set_up();
+    ck_run(0, "thorax -o . --triangles 10000 --json");
+    json_t *object = said_json();
+    ck_assert_int_gt(json_integer_value(member(object, "parts")), 60);
+    ck_assert_int_gt(json_integer_value(member(object, "triangles")), 8000);
+    json_decref(object);
+}
+
+/* Folders that breathe made, and what is in them. */
+static void tear_down_thorax(void) {
+    char line[256];
+    snprintf(line, sizeof line, "rm -rf %s/f %s/g %s/m", folder, folder, folder);
+    ck_assert_int_eq(system(line), 0);
+    tear_down();
+}
+
+static size_t read_file(const char *name, char *bytes) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_msg(stream != NULL, "no %s", name);
+    size_t count = fread(bytes, 1, MOST_BYTES, stream);
+    fclose(stream);
+    ck_assert_uint_gt(count, 0);
+    return count;
+}
+
+static void ck_same_files(const char *a, const char *b) {
+    static char left[MOST_BYTES], right[MOST_BYTES];
+    size_t count = read_file(a, left);
+    ck_assert_msg(count == read_file(b, right) && memcmp(left, right, count) == 0, "%s differs from %s", a,
+                  b);
+}
+
+/* Columns of a line of motion.csv. */
+static void read_line(const char *name, int line, int columns, double *values) {
+    static char bytes[MOST_BYTES + 1];
+    char *at = bytes;
+    bytes[read_file(name, bytes)] = '\0';
+    for (int i = 0; i < line; i++) {
+        at = strchr(at, '\n');
+        ck_assert_ptr_nonnull(at);
+        at++;
+    }
+    for (int c = 0; c < columns; c++) {
+        values[c] = strtod(at, &at);
+        ck_assert(*at == (c + 1 < 18 ? ',' : '\n'));
+        at++;
+    }
+}
+
+/* Head up, the patient's right on the viewer's left: the liver is there, in the lower half. */
+START_TEST(the_liver_is_on_the_left) {
+    enum { SIDE = 40 };
+    static char bytes[MOST_BYTES];
+    static float lengths[SIDE * SIDE];
+    double sum = 0, column = 0, row = 0;
+    ck_run(0, "lbuffer thorax.json %s --part liver -o liver.mha --quiet", SMALL);
+    const size_t count = read_file("liver.mha", bytes);
+    ck_assert_uint_gt(count, sizeof lengths);
+    memcpy(lengths, bytes + count - sizeof lengths, sizeof lengths);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        sum += (double)lengths[i];
+        column += i % SIDE * (double)lengths[i];
+        row += i / SIDE * (double)lengths[i];
+    }
+    ck_assert_double_gt(sum, 0);
+    ck_assert_double_lt(column / sum, 0.45 * SIDE);
+    ck_assert_double_gt(row / sum, 0.5 * SIDE);
+}
+END_TEST
+
+/* Phase 0.25 is the second of four frames of a breath, and the last of one frame a second from phase 0.25 on.
+ */
+START_TEST(a_phase_alone_is_the_phase_in_sequence) {
+    ck_run(0, "breathe thorax.json %s %s --fps 1 --range 0:8 -o f --quiet", SMALL, PLAIN);
+    ck_run(0, "breathe thorax.json %s %s --phase 0.25 --range 0:8 -o one.png --quiet", SMALL, PLAIN);
+    ck_run(0,
+           "breathe thorax.json %s --set Breathing='{\"Pattern\":\"quiet\",\"StartPhase\":0.25}' --fps 1 "
+           "--range 0:8 --seconds 5 -o g --quiet",
+           SMALL);
+    ck_same_files("f/frame-0001.png", "one.png");
+    ck_same_files("g/frame-0000.png", "one.png");
+    ck_same_files("g/frame-0004.png", "one.png");
+    ck_assert(has_file("f/frame-0003.png") && !has_file("f/frame-0004.png") && has_file("f/contact.png"));
+}
+END_TEST
+
+enum {
+    PHASE = 1,
+    AMPLITUDE = 2,
+    LUNG = 5,
+    TIDAL = 6,
+    HU = 7,
+    RIGHT = 9,
+    LIVER_Z = 12,
+    BROKEN = 16,
+    NEEDLE = 17
+};
+
+/* A breath: the tidal volume of quiet breathing, mass of the lungs, a diaphragm that goes down with the
+ * liver. */
+START_TEST(motion_is_told) {
+    double in[18], out[18];
+    ck_run(0, "breathe thorax.json %s %s --fps 0.5 --set Breathing='{\"Waveform\":\"Sine\"}' -o f --json",
+           SMALL, "");
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "frames")), 2);
+    ck_assert(json_real_value(member(object, "frames_per_s")) > 0);
+    json_decref(object);
+    read_line("f/motion.csv", 1, 18, in);
+    read_line("f/motion.csv", 2, 18, out);
+    ck_assert(in[PHASE] == 0 && in[AMPLITUDE] == 1 && out[PHASE] == 0.5 && out[AMPLITUDE] == 0);
+    ck_assert(in[TIDAL] > 200 && in[TIDAL] < 800); /* coarse lungs are smaller */
+    ck_assert_double_eq_tol((in[HU] + 1000) * in[LUNG] / ((out[HU] + 1000) * out[LUNG]), 1,
+                            1e-7); /* 9 digits */
+    ck_assert(in[RIGHT] > 10 && in[RIGHT] < 20 && fabs(out[RIGHT]) < 1e-9);
+    ck_assert(in[LIVER_Z] < -8 && in[BROKEN] == 0 && out[BROKEN] == 0);
+}
+END_TEST
+
+/* The scene's own events: a hold, and a needle that goes in. */
+START_TEST(events_happen) {
+    double values[18];
+    ck_run(0, "breathe thorax.json %s --fps 0.5 --seconds 10 -o f --quiet", SMALL);
+    read_line("f/motion.csv", 2, 18, values); /* 2 s */
+    ck_assert(values[NEEDLE] == -20);
+    read_line("f/motion.csv", 3, 18, values); /* 4 s: held */
+    ck_assert_double_eq_tol(values[PHASE], 0.6, 1e-9);
+    ck_assert(values[NEEDLE] > 0 && values[NEEDLE] < 110);
+    read_line("f/motion.csv", 5, 18, values); /* 8 s */
+    ck_assert(values[NEEDLE] == 110);
+    ck_assert(values[AMPLITUDE] == 1 && values[3] == 0.3 && values[4] == 0.3);
+}
+END_TEST
+
+START_TEST(contrast_fills) {
+    static const char beam[] = "--phase 0 --range 0:8 --quiet";
+    ck_run(0, "breathe thorax.json %s %s -o a.png", SMALL, beam);
+    ck_run(0, "breathe thorax.json %s %s -o b.png --outline ribs,diaphragm@0.5", SMALL, beam);
+    static char a[MOST_BYTES], b[MOST_BYTES];
+    size_t count = read_file("a.png", a);
+    ck_assert(count != read_file("b.png", b) || memcmp(a, b, count) != 0);
+    ck_run(0, "breathe thorax.json %s --seconds 11 --fps 0.1 --range 0:8 --quiet -o f", SMALL);
+    count = read_file("f/frame-0000.png", b);
+    ck_assert(count != read_file("a.png", a) || memcmp(a, b, count) != 0); /* without contrast and needle */
+}
+END_TEST
+
+START_TEST(meshes_have_displacements) {
+    static char bytes[MOST_BYTES + 1];
+    ck_run(0, "breathe thorax.json %s %s --phase 0 -o a.mha --meshes m --quiet", SMALL, PLAIN);
+    bytes[read_file("m/liver-0000.ply", bytes)] = '\0';
+    ck_assert_ptr_nonnull(strstr(bytes, "property float displacement\n"));
+    ck_assert(!has_file("m/spine-0000.ply"));
+    ck_run(0, "mesh m/liver-0000.ply m/diaphragm-0000.ply --quiet"); /* closed as they move */
+}
+END_TEST
+
+START_TEST(what_cannot_be_is_refused) {
+    ck_run_fails(2, "-o DIR", "thorax");
+    ck_run_fails(2, "--triangles", "thorax -o . --triangles 9");
+    ck_run_fails(2, "-o DIR", "breathe thorax.json");
+    ck_run_fails(2, "above 0", "breathe thorax.json -o f --fps 0");
+    ck_run_fails(2, "not a number", "breathe thorax.json -o a.png --phase x");
+    ck_run_fails(2, "no part", "breathe thorax.json %s -o f --quiet --outline hats", SMALL);
+    ck_run_fails(3, "has a Transform",
+                 "breathe thorax.json -o f --set Samples.liver.Transform='[[\"Scaling\",1,1,2]]'");
+    ck_run_fails(3, "Patern", "breathe thorax.json -o f --set Breathing='{\"Patern\":\"quiet\"}'");
+    ck_run_fails(5, "cannot be made", "breathe thorax.json -o thorax.json");
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_thorax, tear_down_thorax);
+    tcase_add_test(tests, the_liver_is_on_the_left);
+    tcase_add_test(tests, a_phase_alone_is_the_phase_in_sequence);
+    tcase_add_test(tests, motion_is_told);
+    tcase_add_test(tests, events_happen);
+    tcase_add_test(tests, contrast_fills);
+    tcase_add_test(tests, meshes_have_displacements);
+    tcase_add_test(tests, what_cannot_be_is_refused);
+}
+
+SKG_SUITE_MAIN("breathe", add_tests)

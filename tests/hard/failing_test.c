@@ -1,0 +1,238 @@
+/* A full run (device, scene file, plan, image, lengths, files) in which one call fails, for each place in the
+ * program that makes such a call. The run has to fail with a sentence or to give the right image; nothing may
+ * leak, no file may be half there, and the same plan has to work when asked again. */
+#include "hard/failing_calls.h"
+#include "suite.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <dirent.h>
+#include <jansson.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { COLUMNS = 24, ROWS = 18, PIXELS = COLUMNS * ROWS };
+
+static char folder[64], scene_path[128];
+
+static void write_text(const char *name, const char *text) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_ge(fputs(text, file), 0);
+    ck_assert_int_eq(fclose(file), 0);
+}
+
+/* A closed part, one from a file, an open one, a tube, a response, the world, a scan. */
+static const char scene_text[] =
+    "{\"Source\": {\"Position\": [0, -40, 0, \"cm\"], \"Shape\": \"PointSource\",\n"
+    " \"Beam\": {\"kVp\": 60, \"Filter\": [[\"Al\", 2.5, \"mm\"]], \"MaxNumberOfEnergyBins\": 6}},\n"
+    " \"Detector\": {\"Position\": [0, 10, 0, \"cm\"], \"UpVector\": [0, 0, -1],\n"
+    "  \"NumberOfPixels\": [24, 18], \"Size\": [12, 9, \"cm\"],\n"
+    "  \"EnergyResponse\": {\"File\": \"response.txt\", \"Unit\": \"keV\"}},\n"
+    " \"Samples\": [{\"Label\": \"skin\", \"Cube\": [40, \"mm\"], \"Material\": [\"HU\", 20], \"Type\": \"outer\"},\n"
+    " {\"Label\": \"bone\", \"Path\": \"bone.obj\", \"Unit\": \"mm\", \"Material\": [\"Compound\", \"Ca5(PO4)3OH\"],\n"
+    "  \"Density\": 1.5, \"Transform\": [[\"Rotation\", 30, 0, 0, 1]]},\n"
+    " {\"Label\": \"sheet\", \"Path\": \"sheet.stl\", \"Unit\": \"mm\", \"Material\": [\"Element\", \"Cu\"]}],\n"
+    " \"World\": \"Air\", \"Tolerance\": 1e-3}\n";
+static const char response_text[] = "1 1\n60 58\n200 150\n";
+static const char bone_text[] = "v -5 -5 -5\nv 8 0 0\nv 0 8 0\nv 0 0 8\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+static const char sheet_text[] =
+    "solid s\nfacet normal 0 0 0\nouter loop\nvertex 5 0 5\nvertex 5 9 5\nvertex 9 0 5\n"
+    "endloop\nendfacet\nendsolid s\n";
+
+static void set_up(void) {
+    strcpy(folder, "/tmp/skg-failing-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(scene_path, sizeof scene_path, "%s/scene.json", folder);
+    write_text("scene.json", scene_text);
+    write_text("response.txt", response_text);
+    write_text("bone.obj", bone_text);
+    write_text("sheet.stl", sheet_text);
+    json_set_alloc_funcs(malloc, free); /* of this program: those that may fail */
+}
+
+/* Removes results (or all files); returns how many files there were beside the inputs and whole results. */
+static int clear(int all) {
+    static const char *const inputs[] = {"scene.json", "response.txt", "bone.obj", "sheet.stl"};
+    static const char *const results[] = {"image.mha", "image.tif", "image.png", "bone.ply"};
+    int strange = 0;
+    DIR *files = opendir(folder);
+    for (struct dirent *one; (one = readdir(files));) {
+        char path[400];
+        int input = 0, result = 0;
+        if (one->d_name[0] == '.' && (!one->d_name[1] || one->d_name[1] == '.')) continue;
+        for (int n = 0; n < 4; n++) {
+            input |= strcmp(one->d_name, inputs[n]) == 0;
+            result |= strcmp(one->d_name, results[n]) == 0;
+        }
+        strange += !input && !result;
+        snprintf(path, sizeof path, "%s/%s", folder, one->d_name);
+        if (!input || all) unlink(path);
+    }
+    closedir(files);
+    return strange;
+}
+
+static void tear_down(void) {
+    clear(1);
+    rmdir(folder);
+}
+
+/* What a run makes. */
+typedef struct {
+    skg_context *context;
+    skg_setup *setup;
+    skg_scene *scene;
+    skg_view view;
+    skg_plan *plan;
+    float *image, *lengths;
+} run;
+
+#define TRY(call)                                                                                            \
+    do {                                                                                                     \
+        skg_status try_status = (call);                                                                      \
+        if (try_status != SKG_OK) return try_status;                                                         \
+    } while (0)
+
+static skg_status prepare(run *r, int32_t strategy) {
+    skg_plan_options options;
+    skg_spectrum *spectrum = NULL;
+    skg_spot spot;
+    TRY(skg_context_create(NULL, &r->context));
+    TRY(skg_setup_load(r->context, scene_path, 0, NULL, &r->setup));
+    TRY(skg_setup_scene(r->setup, &r->scene));
+    TRY(skg_setup_spectrum(r->setup, &spectrum));
+    skg_view_init(&r->view);
+    TRY(skg_setup_view(r->setup, &r->view));
+    skg_plan_options_init(&options);
+    TRY(skg_setup_options(r->setup, &options));
+    skg_spot_init(&spot);
+    options.strategy = strategy;
+    options.profile = 1;
+    options.spot = strategy == SKG_STRATEGY_TILES ? &spot : NULL;
+    spot.shape = SKG_SPOT_RECTANGLE;
+    spot.extent[0] = spot.extent[1] = 1; /* mm */
+    spot.samples = 4;
+    return skg_plan_create(r->context, r->scene, &r->view, spectrum, &options, &r->plan);
+}
+
+static skg_status draw(run *r) {
+    skg_output output;
+    skg_job *job = NULL;
+    skg_output_init(&output);
+    output.data = r->image;
+    TRY(skg_plan_image(r->plan, &output));
+    output.data = r->lengths;
+    TRY(skg_plan_lengths(r->plan, 0, SKG_NET, 1, NULL, &output, &job));
+    return skg_job_wait(&job);
+}
+
+static skg_status save(const run *r) {
+    static const char *const names[] = {"image.mha", "image.tif", "image.png"};
+    char path[128];
+    skg_picture picture;
+    skg_part part;
+    skg_picture_init(&picture);
+    picture.columns = COLUMNS;
+    picture.rows = ROWS;
+    picture.channels = 1;
+    picture.data = r->image;
+    picture.view = &r->view;
+    picture.open = 1;
+    for (int n = 0; n < 3; n++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[n]);
+        TRY(skg_picture_write(&picture, path));
+    }
+    snprintf(path, sizeof path, "%s/bone.ply", folder);
+    skg_part_init(&part);
+    TRY(skg_scene_part(r->scene, 1, &part));
+    return skg_mesh_save(part.mesh, path);
+}
+
+static void check_sentence(skg_status status, const char *what) {
+    ck_assert_msg(status < 0, "%s failed, and the answer was %s", what, skg_status_name(status));
+    ck_assert_msg(status != SKG_ERR_INTERNAL, "%s failed: %s", what, skg_last_error());
+    ck_assert_msg(*skg_last_error() != '\0', "%s failed, and nothing was said", what);
+}
+
+/* One run in which call `at` fails (-1: none). Its image and lengths stay in the arrays when it is done. */
+static skg_status run_once(int kind, int32_t strategy, int64_t at, float *image, float *lengths,
+                           int64_t *calls) {
+    run r = {0};
+    /* Blocks of their own: what is written to them too late is seen by AddressSanitizer. */
+    r.image = calloc(PIXELS, sizeof *r.image);
+    r.lengths = calloc(PIXELS, sizeof *r.lengths);
+    failing_start(kind, at);
+    skg_status status = prepare(&r, strategy);
+    if (status == SKG_OK) status = draw(&r);
+    if (status == SKG_OK) status = save(&r);
+    *calls = failing_stop();
+    if (status != SKG_OK) check_sentence(status, failing_hit());
+    if (r.plan) { /* again, and nothing fails */
+        memset(r.image, 0xff, PIXELS * sizeof *r.image);
+        const skg_status again = draw(&r);
+        ck_assert_msg(again == SKG_OK, "after a failing %s (call %lld) the plan does not recover: %s",
+                      failing_hit(), (long long)at, skg_last_error());
+        memcpy(image, r.image, PIXELS * sizeof *image);
+        memcpy(lengths, r.lengths, PIXELS * sizeof *lengths);
+    }
+    free(r.image);
+    free(r.lengths);
+    skg_plan_release(&r.plan);
+    skg_setup_release(&r.setup);
+    skg_context_release(&r.context);
+    return status;
+}
+
+static int64_t fail_everywhere(int kind, int32_t strategy) {
+    static float image[PIXELS], lengths[PIXELS], got[PIXELS], got_lengths[PIXELS];
+    int64_t calls = 0, tried = 0, unused = 0, survived = 0;
+    ck_skg(run_once(kind, strategy, -1, image, lengths, &calls)); /* what is kept for good is made now */
+    ck_skg(run_once(kind, strategy, -1, image, lengths, &calls));
+    ck_assert_int_eq(clear(0), 0);
+    const int64_t blocks = failing_live_blocks(), objects = failing_live_objects();
+    for (int64_t at = 0; at < calls; at++) {
+        if (!failing_is_new(at)) continue;
+        memcpy(got, image, sizeof got);
+        memcpy(got_lengths, lengths, sizeof got_lengths);
+        const skg_status status = run_once(kind, strategy, at, got, got_lengths, &unused);
+        const char *name = failing_hit();
+        tried++;
+        survived += status == SKG_OK;
+        ck_assert_msg(memcmp(got, image, sizeof got) == 0, "%s, call %lld: another image", name,
+                      (long long)at);
+        ck_assert_msg(memcmp(got_lengths, lengths, sizeof got) == 0, "%s, call %lld: other lengths", name,
+                      (long long)at);
+        ck_assert_msg(failing_live_blocks() == blocks, "%s, call %lld (%s): %lld blocks leak", name,
+                      (long long)at, skg_last_error(), (long long)(failing_live_blocks() - blocks));
+        ck_assert_msg(failing_live_objects() == objects, "%s, call %lld (%s): %lld OpenCL objects leak", name,
+                      (long long)at, skg_last_error(), (long long)(failing_live_objects() - objects));
+        ck_assert_msg(clear(0) == 0, "%s, call %lld: a file was left", name, (long long)at);
+    }
+    printf("%lld calls, %lld places tried, %lld of them to no harm\n", (long long)calls, (long long)tried,
+           (long long)survived);
+    return tried;
+}
+
+START_TEST(allocations) {
+    ck_assert_int_gt(fail_everywhere(FAIL_ALLOCATION, SKG_STRATEGY_TILES), 100);
+}
+END_TEST
+
+/* The second and third strategy: places that are theirs alone. */
+START_TEST(opencl_calls) {
+    ck_assert_int_gt(fail_everywhere(FAIL_OPENCL, SKG_STRATEGY_TILES), 100);
+    ck_assert_int_gt(fail_everywhere(FAIL_OPENCL, SKG_STRATEGY_COPIES), 3);
+    ck_assert_int_gt(fail_everywhere(FAIL_OPENCL, SKG_STRATEGY_ATOMICS), 3);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_test(tests, allocations);
+    tcase_add_test(tests, opencl_calls);
+}
+
+SKG_SUITE_MAIN("failing", add_tests)
