@@ -29,7 +29,8 @@ typedef struct {
     int (*run)(const struct cli_arguments *arguments);
 } cli_verb;
 
-extern const cli_verb cli_beam, cli_devices, cli_image, cli_lbuffer, cli_material, cli_mesh, cli_plan;
+extern const cli_verb cli_beam, cli_cost, cli_devices, cli_image, cli_lbuffer, cli_material, cli_mesh,
+    cli_plan;
 extern const cli_verb cli_thorax, cli_breathe;
 
 /* A parsed command line; texts are the program's arguments themselves. */

@@ -6,8 +6,8 @@
 #include <string.h>
 
 static const cli_verb *const verbs[] = {
-    &cli_image, &cli_lbuffer, &cli_plan,   &cli_mesh,    &cli_material,
-    &cli_beam,  &cli_devices, &cli_thorax, &cli_breathe,
+    &cli_image,    &cli_lbuffer, &cli_plan,    &cli_cost,   &cli_mesh,
+    &cli_material, &cli_beam,    &cli_devices, &cli_thorax, &cli_breathe,
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
 

@@ -1,0 +1,176 @@
+/* skiagraph cost: the page. cost_page.html with the study's JSON and its pictures in the place of a mark. */
+#include "cost.h"
+
+#include "plot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+extern const char cost_page[]; /* cost_page.html, as built in */
+
+/* Bytes as "data:image/png;base64,..." (RFC 4648). The caller frees the text; NULL: no memory. */
+static char *data_uri(const unsigned char *bytes, size_t count) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char head[] = "data:image/png;base64,";
+    char *text = malloc(sizeof head + 4 * ((count + 2) / 3));
+    if (!text) return NULL;
+    memcpy(text, head, sizeof head - 1);
+    char *at = text + sizeof head - 1;
+    for (size_t i = 0; i < count; i += 3) {
+        unsigned group = (unsigned)bytes[i] << 16;
+        if (i + 1 < count) group |= (unsigned)bytes[i + 1] << 8;
+        if (i + 2 < count) group |= bytes[i + 2];
+        *at++ = digits[group >> 18];
+        *at++ = digits[group >> 12 & 63];
+        *at++ = i + 1 < count ? digits[group >> 6 & 63] : '=';
+        *at++ = i + 2 < count ? digits[group & 63] : '=';
+    }
+    *at = '\0';
+    return text;
+}
+
+/* What a file holds; the caller frees it. NULL: it cannot be read. */
+static unsigned char *read_all(const char *path, size_t *count) {
+    FILE *stream = fopen(path, "rb");
+    unsigned char *bytes = NULL;
+    *count = 0;
+    if (!stream) return NULL;
+    if (fseek(stream, 0, SEEK_END) == 0) {
+        long size = ftell(stream);
+        rewind(stream);
+        if (size > 0) bytes = malloc((size_t)size);
+        if (bytes) *count = fread(bytes, 1, (size_t)size, stream);
+    }
+    fclose(stream);
+    return bytes;
+}
+
+/* The library writes pictures to files: through one that is gone again. */
+static int picture_json(const skg_picture *picture, json_t **uri) {
+    char folder[] = "/tmp/skiagraph-XXXXXX", path[64];
+    if (!mkdtemp(folder)) return cli_error(CLI_OUTPUT, "/tmp: no folder can be made there");
+    snprintf(path, sizeof path, "%s/picture.png", folder);
+    size_t count = 0;
+    skg_status status = skg_picture_write(picture, path);
+    unsigned char *bytes = status == SKG_OK ? read_all(path, &count) : NULL;
+    char *text = bytes ? data_uri(bytes, count) : NULL;
+    int exit_status = CLI_DONE;
+    if (status != SKG_OK)
+        exit_status = cli_fail(status);
+    else if (!text)
+        exit_status = cli_error(CLI_OUTPUT, "%s: cannot be read back", path);
+    else
+        *uri = json_string(text);
+    unlink(path);
+    rmdir(folder);
+    free(bytes);
+    free(text);
+    return exit_status;
+}
+
+static void begin_picture(const cost_study *study, const float *data, skg_picture *picture) {
+    skg_picture_init(picture);
+    picture->type = SKG_FLOAT32;
+    picture->columns = study->thumb_columns;
+    picture->rows = study->thumb_rows;
+    picture->channels = 1;
+    picture->data = data;
+}
+
+/* The reference as I/I0, means of blocks of pixels. */
+static int reference_json(const cost_study *study, json_t **uri) {
+    const int64_t columns = study->session.view.columns, rows = study->session.view.rows;
+    const int64_t block = study->thumb_block;
+    const double *image = study->references[0].image;
+    float *data = calloc((size_t)(study->thumb_columns * study->thumb_rows), sizeof *data);
+    if (!data) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t r = 0; r < study->thumb_rows; r++)
+        for (int64_t c = 0; c < study->thumb_columns; c++) {
+            double sum = 0;
+            int64_t count = 0;
+            for (int64_t y = r * block; y < (r + 1) * block && y < rows; y++)
+                for (int64_t x = c * block; x < (c + 1) * block && x < columns; x++, count++)
+                    sum += image[y * columns + x];
+            data[r * study->thumb_columns + c] = (float)(sum / (double)count / study->open);
+        }
+    skg_picture picture;
+    begin_picture(study, data, &picture);
+    picture.quantity = SKG_TRANSMISSION;
+    picture.display = SKG_DISPLAY_RADIOGRAPH;
+    int exit_status = picture_json(&picture, uri);
+    free(data);
+    return exit_status;
+}
+
+/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range. */
+static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
+    skg_picture picture;
+    float largest = 0;
+    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++)
+        if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
+    *range = (double)largest;
+    begin_picture(study, point->difference, &picture);
+    picture.high = largest > 0 ? (double)largest : 1;
+    picture.low = -picture.high;
+    return picture_json(&picture, uri);
+}
+
+/* Pictures are chosen: the frontier, the advice, and every dial other than the rays'. */
+static int is_pictured(const cost_study *study, int index) {
+    const cost_point *point = &study->points[index];
+    if (point->on_frontier || point->dial == COST_SCENE || point->dial == COST_PRECISION) return 1;
+    if (point->reference != 0) return 1;
+    for (int i = 0; i < COST_TOLERANCES; i++)
+        if (study->advice[i].rays == index) return 1;
+    return 0;
+}
+
+static int add_pictures(const cost_study *study, json_t *object) {
+    json_t *uri = NULL, *points = json_object_get(object, "points");
+    int exit_status = reference_json(study, &uri);
+    if (exit_status == CLI_DONE) json_object_set_new(object, "image", uri);
+    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++) {
+        if (!is_pictured(study, i)) continue;
+        double range = 0;
+        json_t *point = json_array_get(points, (size_t)i);
+        exit_status = difference_json(study, &study->points[i], &uri, &range);
+        if (exit_status != CLI_DONE) break;
+        json_object_set_new(point, "difference", uri);
+        json_object_set_new(point, "range", cli_json_number(range));
+    }
+    return exit_status;
+}
+
+/* The page with the data where its mark is. "/" is escaped, so that no text ends the script. */
+static char *fill_page(json_t *object) {
+    static const char mark[] = "\"STUDY\"";
+    const char *place = strstr(cost_page, mark);
+    char *data = json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_ENSURE_ASCII), *text = NULL;
+    size_t size = 0;
+    FILE *stream = data && place ? open_memstream(&text, &size) : NULL;
+    if (stream) {
+        fwrite(cost_page, 1, (size_t)(place - cost_page), stream);
+        fputs(data, stream);
+        fputs(place + sizeof mark - 1, stream);
+        if (fclose(stream) != 0) {
+            free(text);
+            text = NULL;
+        }
+    }
+    free(data);
+    return text;
+}
+
+int cost_write_page(const cost_study *study, const char *path) {
+    json_t *object = cost_json(study);
+    int exit_status = add_pictures(study, object);
+    char *text = exit_status == CLI_DONE ? fill_page(object) : NULL;
+    if (exit_status == CLI_DONE && !text) exit_status = cli_error(CLI_DEVICE, "out of host memory");
+    if (exit_status == CLI_DONE) exit_status = cli_write_file(path, text, strlen(text));
+    free(text);
+    json_decref(object);
+    return exit_status;
+}

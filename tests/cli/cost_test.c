@@ -1,0 +1,308 @@
+/* The verb cost: its table, .csv, JSON and page, and whether what it recommends holds. */
+#include "cli/command.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+enum { COLUMNS = 33, ROWS = 25, PIXELS = COLUMNS * ROWS, LARGEST_PAGE = 1 << 23 };
+
+/* A tube, a box and a sphere in it: every dial but the source's. */
+static const char small_scene[] =
+    "{ \"Source\": { \"Position\": [0, -400, 0, \"mm\"], \"Shape\": \"PointSource\",\n"
+    "    \"Beam\": {\"kVp\": 80, \"Filter\": [[\"Al\", 3, \"mm\"]]} },\n"
+    "  \"Detector\": { \"Position\": [0, 100, 0, \"mm\"], \"UpVector\": [0, 0, -1],\n"
+    "    \"NumberOfPixels\": [33, 25], \"Spacing\": [1, 2, \"mm\"] },\n"
+    "  \"Samples\": [\n"
+    "    {\"Label\": \"skin\", \"Cube\": [30.5, \"mm\"], \"Type\": \"outer\", \"Material\": [\"HU\", 20]},\n"
+    "    {\"Label\": \"bone\", \"Sphere\": [16, 7, \"mm\"], \"Material\": [\"HU\", 900]} ] }\n";
+
+static const char disc[] = "--set 'Source.Shape=[\"Disc\",2,\"mm\"]'";
+
+static void set_up_scene(void) {
+    set_up();
+    write_text("small scene.json", small_scene);
+}
+
+/* Pixels of a .mha of one channel, floats or doubles as its header says. */
+static void read_pixels(const char *name, double values[PIXELS]) {
+    static char bytes[PIXELS * 8 + 4096];
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    size_t count = fread(bytes, 1, sizeof bytes - 1, stream);
+    fclose(stream);
+    bytes[count] = '\0';
+    int is_double = strstr(bytes, "ElementType = MET_DOUBLE\n") != NULL;
+    const char *data = strstr(bytes, "ElementDataFile = LOCAL\n");
+    ck_assert_ptr_nonnull(data);
+    data += strlen("ElementDataFile = LOCAL\n");
+    ck_assert_uint_eq(count - (size_t)(data - bytes), (size_t)PIXELS * (is_double ? 8 : 4));
+    for (size_t i = 0; i < PIXELS; i++) {
+        float single;
+        memcpy(&single, data + i * sizeof single, sizeof single);
+        values[i] = (double)single;
+        if (is_double) memcpy(&values[i], data + i * sizeof values[i], sizeof values[i]);
+    }
+}
+
+/* Runs a recommended command line and returns its largest error of the open beam, against `reference`. */
+static double error_of(const char *command, const char *reference, double open) {
+    static double image[PIXELS], exact[PIXELS];
+    static const char name[] = "skiagraph ";
+    double worst = 0;
+    ck_assert_int_eq(strncmp(command, name, strlen(name)), 0);
+    ck_run(0, "%s --quiet", command + strlen(name));
+    read_pixels("image.mha", image);
+    ck_run(0, "image 'small scene.json' -o exact.mha --quiet --precision double --tolerance 0 %s", reference);
+    read_pixels("exact.mha", exact);
+    for (int i = 0; i < PIXELS; i++) worst = fmax(worst, fabs(image[i] - exact[i]) / open);
+    return worst;
+}
+
+static double number(json_t *object, const char *key) {
+    json_t *value = member(object, key);
+    ck_assert_msg(json_is_number(value), "%s is no number", key);
+    return json_number_value(value);
+}
+
+static json_t *point_of(json_t *study, json_t *index) {
+    json_t *point = json_array_get(member(study, "points"), (size_t)json_integer_value(index));
+    ck_assert_ptr_nonnull(point);
+    return point;
+}
+
+/* Each command line, run by itself, keeps what is said of it. Images of one setting are the same bits, so
+ * that the error is the same number but for rounding in its own arithmetic. */
+static void check_advice(json_t *study, size_t first, const char *extra) {
+    double open = number(study, "open_keV");
+    size_t index;
+    json_t *advice;
+    ck_assert_uint_eq(json_array_size(member(study, "advice")), 4);
+    json_array_foreach(member(study, "advice"), index, advice) {
+        char reference[256];
+        if (index < first) continue;
+        json_t *rays = point_of(study, member(advice, "rays")), *whole = member(advice, "whole");
+        json_t *setting = member(rays, "setting");
+        double tolerance = number(advice, "tolerance");
+        ck_assert(json_is_true(member(advice, "rays_met")));
+        snprintf(reference, sizeof reference, "%s --set Source.Samples=%d", extra,
+                 (int)json_integer_value(member(setting, "samples")));
+        double error =
+            error_of(json_string_value(member(advice, "rays_command")), *extra ? reference : "", open);
+        ck_assert_double_le(error, tolerance);
+        ck_assert_double_eq_tol(error, number(rays, "max_open"), 1e-12);
+        if (json_is_null(whole)) continue;
+        setting = member(whole, "setting");
+        int used = 0;
+        if (*extra)
+            used = snprintf(reference, sizeof reference, "%s --set Source.Samples=%d", extra,
+                            (int)json_integer_value(member(setting, "samples")));
+        snprintf(reference + used, sizeof reference - (size_t)used, " --set Detector.Oversampling=%d",
+                 (int)json_integer_value(member(setting, "supersampling")));
+        error = error_of(json_string_value(member(advice, "whole_command")), reference, open);
+        ck_assert_double_le(error, tolerance);
+        ck_assert_double_eq_tol(error, number(whole, "max_open"), 1e-12);
+    }
+}
+
+START_TEST(an_extended_source_is_swept) {
+    ck_run(0, "cost 'small scene.json' --quick --json %s", disc);
+    json_t *study = said_json(), *point;
+    size_t index;
+    double first = -1, last = -1;
+    json_array_foreach(member(study, "points"), index, point) {
+        if (strcmp(json_string_value(member(point, "dial")), "source samples") != 0) continue;
+        last = number(point, "rms_open");
+        if (first < 0) first = last;
+    }
+    ck_assert_double_gt(last, 0); /* 64 samples are not 256 */
+    ck_assert_double_gt(first, 4 * last);
+    check_advice(study, 3, disc);
+    json_decref(study);
+}
+END_TEST
+
+static int is_dial(json_t *point, const char *dial, const char *precision) {
+    return strcmp(json_string_value(member(point, "dial")), dial) == 0 &&
+           strcmp(json_string_value(member(member(point, "setting"), "precision")), precision) == 0;
+}
+
+/* What is known of the dials: 16 bits lose to 32 and those to 64; a tolerance bounds the error it makes (and
+ * single precision adds less than 1e-6 of the open beam); the best setting differs from itself by nothing. */
+static void check_errors(json_t *study) {
+    json_t *point;
+    double half = -1, single = -1, twice = -1, half_mm = -1, single_mm = -1;
+    size_t index;
+    int tolerances = 0, bins = 0;
+    json_array_foreach(member(study, "points"), index, point) {
+        json_t *setting = member(point, "setting");
+        double error = number(point, "max_open"), tolerance = number(setting, "tolerance");
+        ck_assert_double_le(number(point, "rms_open"), error);
+        ck_assert_double_le(number(point, "rms_ref"), number(point, "max_ref"));
+        ck_assert_double_le(number(point, "min_ms"), number(point, "median_ms"));
+        if (is_dial(point, "precision", "half")) half = error, half_mm = number(point, "max_mm");
+        if (is_dial(point, "scene", "single")) single = error, single_mm = number(point, "max_mm");
+        if (is_dial(point, "precision", "double")) twice = error;
+        bins += is_dial(point, "bins", "single");
+        if (strcmp(json_string_value(member(point, "dial")), "tolerance") != 0) continue;
+        ck_assert_double_le(error, tolerance + 1e-6);
+        tolerances++;
+    }
+    ck_assert_int_eq(tolerances, 6);
+    ck_assert_int_ge(bins, 2);
+    ck_assert(twice == 0);
+    ck_assert(single > 0 && single < 1e-6);
+    ck_assert_double_gt(half, 100 * single);
+    ck_assert(single_mm > 0 && single_mm < 1e-3);
+    ck_assert(half_mm > 0.01 && half_mm < 1); /* 16 bits of 0.25 to 0.5 m: half of 0.24 mm a surface */
+}
+
+START_TEST(errors_are_those_of_the_dials_and_advice_holds) {
+    ck_run(0, "cost 'small scene.json' --quick --json");
+    json_t *study = said_json();
+    check_errors(study);
+    check_advice(study, 0, "");
+    json_decref(study);
+}
+END_TEST
+
+/* A page of any size; the caller frees it. */
+static char *read_page(const char *name) {
+    char path[512], *text = malloc(LARGEST_PAGE);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(text);
+    ck_assert_ptr_nonnull(stream);
+    size_t count = fread(text, 1, LARGEST_PAGE - 1, stream);
+    fclose(stream);
+    ck_assert_uint_lt(count, LARGEST_PAGE - 1);
+    text[count] = '\0';
+    return text;
+}
+
+START_TEST(table_csv_and_page_are_written) {
+    ck_run(0, "cost 'small scene.json' --quick -o a.html -o a.csv");
+    ck_assert_str_eq(complained, "");
+    ck_assert_ptr_nonnull(strstr(said, "\n* precision      double, "));
+    ck_assert_ptr_nonnull(strstr(said, "\n  supersampling "));
+    ck_assert_ptr_nonnull(strstr(said, "for an error of 1e-06: largest "));
+    ck_assert_ptr_nonnull(strstr(said, "skiagraph image 'small scene.json' -o image.mha --precision "));
+    ck_assert_ptr_nonnull(strstr(said, "wrote a.html\nwrote a.csv\n"));
+    char *page = read_page("a.html"), *table = read_page("a.csv");
+    ck_assert_ptr_null(strstr(page, "http"));
+    ck_assert_ptr_null(strstr(page, "\"STUDY\""));
+    ck_assert_ptr_nonnull(strstr(page, "data:image\\/png;base64,iVBORw0KGgo")); /* a PNG's first bytes */
+    ck_assert_ptr_nonnull(strstr(page, "</html>"));
+    ck_assert_int_eq(strncmp(table, "dial,precision,tolerance,", 25), 0);
+    int lines = 0, commas = 0;
+    for (const char *at = table; *at; at++) lines += *at == '\n', commas += *at == ',';
+    ck_assert_int_gt(lines, 12);
+    ck_assert_int_eq(commas, 17 * lines);
+    ck_assert_int_eq(look_at_folder(0), 3); /* no half-written file */
+    free(page);
+    free(table);
+}
+END_TEST
+
+/* 1e4 photons of 60 keV a pixel of the open beam: the noise of N photons is sqrt(N), so that its root mean
+ * square over the image is sqrt(mean I/I0) of 1 %; of 825 pixels within 15 %, six standard errors. */
+START_TEST(advice_stops_at_a_tenth_of_the_noise) {
+    static double image[PIXELS];
+    static const char beam[] = "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":10000}]'";
+    double mean = 0;
+    ck_run(0, "image 'small scene.json' --quiet -o image.mha --quantity transmission %s", beam);
+    read_pixels("image.mha", image);
+    for (int i = 0; i < PIXELS; i++) mean += image[i] / PIXELS;
+    ck_run(0, "cost 'small scene.json' --quick --json --set Noise=true %s", beam);
+    json_t *study = said_json(), *advice = json_array_get(member(study, "advice"), 3);
+    double noise = number(study, "noise");
+    ck_assert_double_eq_tol(noise, 0.01 * sqrt(mean), 0.15 * 0.01 * sqrt(mean));
+    ck_assert_double_eq_tol(number(advice, "bar"), noise / 10, 1e-12);
+    ck_assert_double_le(number(point_of(study, member(advice, "rays")), "max_open"), noise / 10);
+    json_decref(study);
+}
+END_TEST
+
+START_TEST(what_cannot_be_done_is_told) {
+    ck_run_fails(2, "its extension is neither .html nor .csv", "cost 'small scene.json' -o a.png");
+    ck_run_fails(5, "nowhere/a.html: cannot be written", "cost 'small scene.json' -o nowhere/a.html");
+    ck_run_fails(3, "none.json", "cost none.json --quick");
+    ck_run_fails(2, "unknown flag --quik; did you mean --quick", "cost 'small scene.json' --quik");
+}
+END_TEST
+
+/* Works every control of the page, and says in an attribute what came of it. */
+static const char worker[] =
+    "<script>\n"
+    "const verdict = [], svg = document.getElementById('plot');\n"
+    "const points = () => svg.querySelectorAll('.point').length;\n"
+    "const check = (name, is) => { if (!is) verdict.push(name); };\n"
+    "const change = (element) => element.dispatchEvent(new Event('change', {bubbles: true}));\n"
+    "check('drawn', points() === study.points.filter(p => p.max_open !== null).length);\n"
+    "check('half', study.points.some(p => p.max_open === null));\n"
+    "check('rows', document.querySelectorAll('#rows tr').length === study.points.length);\n"
+    "check('advice', document.querySelectorAll('.advice code').length >= 4);\n"
+    "for (const id of ['error', 'time']) {\n"
+    "  const select = document.getElementById(id), seen = new Set();\n"
+    "  for (let i = 0; i < select.options.length; i++) {\n"
+    "    select.selectedIndex = i; change(select); seen.add(svg.innerHTML); check(id + i, points() > 0); }\n"
+    "  check(id, seen.size === select.options.length);\n"
+    "  select.selectedIndex = 0; change(select); }\n"
+    "for (const box of document.querySelectorAll('#dials input')) {\n"
+    "  const all = points(); box.checked = false; change(box); check('hide ' + box.value, points() < all);\n"
+    "  box.checked = true; change(box); check('show ' + box.value, points() === all); }\n"
+    "document.querySelector('#rows tr').click(); const a = document.getElementById('told').textContent;\n"
+    "check('row', document.querySelector('#rows tr').className === 'chosen');\n"
+    "svg.querySelectorAll('.point')[1].dispatchEvent(new MouseEvent('click', {bubbles: true}));\n"
+    "check('point', a !== document.getElementById('told').textContent);\n"
+    "Promise.all([...document.images].map(i => i.decode().then(() => check('size', i.naturalWidth === 33),\n"
+    "  () => check('picture', false)))).then(() =>\n"
+    "  document.body.setAttribute('data-verdict', verdict.length ? 'failed: ' + verdict : 'every control works'));\n"
+    "</script>\n</body>";
+
+/* In a real browser: $CHROMIUM, or chromium. The milliampere-seconds are so many that an image in 16 bits
+ * overflows: an error that is no number is told as such. */
+START_TEST(page_works_in_a_browser) {
+    if (system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") != 0) {
+        printf("page_works_in_a_browser: skipped, there is no chromium\n");
+        return;
+    }
+    ck_run(0, "cost 'small scene.json' --quick --quiet -o a.html %s --set Source.Beam.mAs=20", disc);
+    char *page = read_page("a.html"), line[1024], profile[] = "/tmp/skg-browser-XXXXXX";
+    char *end = strstr(page, "</body>");
+    ck_assert_ptr_nonnull(end);
+    ck_assert_uint_lt(strlen(page) + sizeof worker, LARGEST_PAGE);
+    strcpy(end, worker);
+    write_text("worked.html", page);
+    free(page);
+    ck_assert_ptr_nonnull(mkdtemp(profile));
+    snprintf(line, sizeof line,
+             "cd %s && HOME=%s timeout 100 \"${CHROMIUM:-chromium}\" --headless --no-sandbox --disable-gpu "
+             "--user-data-dir=%s --virtual-time-budget=5000 --dump-dom 'file://%s/worked.html' "
+             "2>/dev/null >dom.html",
+             folder, profile, profile, folder);
+    int status = system(line);
+    snprintf(line, sizeof line, "rm -rf %s", profile);
+    ck_assert_int_eq(system(line), 0);
+    ck_assert_int_eq(status, 0);
+    page = read_page("dom.html");
+    const char *verdict = strstr(page, "<body data-verdict=\"");
+    ck_assert_msg(verdict != NULL, "the page's script did not end");
+    ck_assert_msg(strncmp(verdict, "<body data-verdict=\"every control works\"", 40) == 0, "%.200s", verdict);
+    free(page);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scene, tear_down);
+    tcase_add_test(tests, an_extended_source_is_swept);
+    tcase_add_test(tests, errors_are_those_of_the_dials_and_advice_holds);
+    tcase_add_test(tests, table_csv_and_page_are_written);
+    tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);
+    tcase_add_test(tests, what_cannot_be_done_is_told);
+    tcase_add_test(tests, page_works_in_a_browser);
+}
+
+SKG_SUITE_MAIN("cost", add_tests)
