@@ -101,8 +101,9 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
     const int areas = plan->options.quantity == SKG_FLUENCE && !skg_plan_is_absolute(&plan->options);
     const double area = areas ? skg_camera_pixel_area(&frame->camera) : 1;
     const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&plan->samples));
-    /* Terms are rounded to a unit of the scale each: a millionth of what a pixel may hold is no rounding. */
-    const double least = -1e-6 * frame->scale.bound - 1e-6;
+    /* A length may be off by some of its bound where a face lies nearly along the ray (contracts 3): a
+     * ten-thousandth is no subtraction. */
+    const double least = -1e-4 * frame->scale.bound - 1e-6;
     const cl_int none = 0;
     skg_image_place place = work->place;
     place.add = sample > 0;
