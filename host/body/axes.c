@@ -23,7 +23,7 @@ static const skg_body_organ *vertebra(const skg_body *body, int number) {
 
 /* A vertebra's body is its front: the mean of the vertices in the first two fifths of its depth. */
 static void body_centre(const skg_body_organ *bone, double centre[3]) {
-    const double *bounds = bone->mesh->health.bounds;
+    const double *bounds = bone->bounds;
     double count = 0;
     memset(centre, 0, 3 * sizeof *centre);
     for (int64_t i = 0; i < bone->vertices; i++)
@@ -78,7 +78,7 @@ int skg_rib_bone_axis(const skg_body *body, const skg_body_organ *rib, double he
 }
 
 /* Principal axes of the surface's inertia, each triangle's area at its centroid: the axis of most spread
- * first. end: the farther back of the two ends of the first. */
+ * first. end: the one of its two ends that is farther back; of a rib, rather the one nearer to the spine. */
 void skg_inertia_axes(const skg_body_organ *o, double axes[9], double end[3]) {
     double mean[3] = {0}, area = 0, scatter[9] = {0}, values[3], least = HUGE_VAL, most = -HUGE_VAL;
     for (int pass = 0; pass < 2; pass++) {
@@ -98,7 +98,8 @@ void skg_inertia_axes(const skg_body_organ *o, double axes[9], double end[3]) {
         if (pass == 0) skg_scale_vector(1 / area, mean, mean);
     }
     skg_eigen(3, scatter, values, axes);
-    if (axes[1] < 0) skg_scale_vector(-1, axes, axes); /* to the back */
+    const double back[3] = {-o->side, o->side ? 0.3 : 1, 0};
+    if (skg_dot(axes, back) < 0) skg_scale_vector(-1, axes, axes);
     for (int64_t i = 0; i < o->vertices; i++) {
         const double at = skg_dot(axes, o->rest + 3 * i) - skg_dot(axes, mean);
         least = fmin(least, at), most = fmax(most, at);

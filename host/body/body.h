@@ -23,11 +23,14 @@ typedef enum {
     ROLE_NEEDLE
 } skg_role;
 
-/* A vertex that follows a point on another organ's triangle. */
+/* A point that follows another organ: one on its triangle, or, fixed to a rigid organ, goes with it as a
+ * whole. */
 typedef struct {
     int32_t organ, corner[3]; /* corner: vertices of that organ */
     double weight[3];
     double part; /* of that displacement, 0 to 1 */
+    int32_t fixed, reserved;
+    double point[3]; /* of fixed ones, at rest */
 } skg_link;
 
 enum { CARRIERS = 12, BLOCK = 32 };
@@ -40,7 +43,8 @@ typedef struct {
     skg_role role;
     int kind, told; /* SKG_ORGAN_; a conflict was warned of */
     int64_t vertices, triangles;
-    double *rest; /* rows of x, y, z, mm */
+    double *rest;     /* rows of x, y, z, mm */
+    double bounds[6]; /* of them: low, high */
     int32_t *corner;
     double *block;    /* bounds of each BLOCK triangles in a row: low, high */
     int32_t *node_of; /* welded vertex: the first one there */
@@ -119,6 +123,7 @@ void skg_inertia_axes(const skg_body_organ *organ, double axes[9], double end[3]
 
 /* tie.c: links that the caller gives. Which organs they go to, and the order that follows. */
 skg_status skg_body_check_ties(skg_body *body);
+void skg_link_fix(const skg_body *body, const double p[3], skg_link *link); /* where the other is rigid */
 double skg_given_link(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link,
                       double *rigid);
 

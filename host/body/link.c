@@ -38,7 +38,7 @@ static double plane_value(const skg_body *body, const double p[3]) {
  */
 static int diaphragm_rule(const skg_body *body, const skg_body_organ *organ, const double p[3],
                           skg_link *link) {
-    const double *bounds = organ->mesh->health.bounds;
+    const double *bounds = organ->bounds;
     *link = (skg_link){.organ = LINK_TENDON, .part = 1};
     if (plane_value(body, p) > 0) return 1;
     if (p[2] > bounds[2] + 0.1 * (bounds[5] - bounds[2])) return 0;
@@ -94,7 +94,9 @@ static int cartilage_rule(const skg_body *body, const skg_body_organ *organ, con
     double to_rib = nearest_of(body, ROLE_RIB, 1, 10, p, reach, link);
     double to_sternum = nearest_of(body, ROLE_STERNUM, 0, 0, p, fmin(to_rib, reach), &sternum);
     if (to_sternum < to_rib) *link = sternum;
-    return fmin(to_rib, to_sternum) < HUGE_VAL;
+    if (fmin(to_rib, to_sternum) == HUGE_VAL) return 0;
+    skg_link_fix(body, p, link);
+    return 1;
 }
 
 static link_rule rule_of(const skg_body_organ *organ) {
@@ -141,6 +143,7 @@ static int64_t find_drivers(const skg_body *body, const skg_body_organ *o, skg_l
         }
         const double distance = skg_given_link(body, o, p, link + i, &rigid);
         how[i] = distance == HUGE_VAL ? FREE : distance <= rigid ? FOLLOWS : HANGS;
+        if (how[i] == FOLLOWS) skg_link_fix(body, p, link + i);
         hanging += how[i] == HANGS;
     }
     return hanging;
@@ -241,7 +244,7 @@ static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
 
 /* How much of the carrier's motion: 1 at the lower end and 0 at the upper one, or the other way round. */
 static skg_status span(skg_body_organ *o, int follows_below) {
-    const double *bounds = o->mesh->health.bounds;
+    const double *bounds = o->bounds;
     for (int64_t i = 0; i < o->vertices; i++) {
         double up = (o->rest[3 * i + 2] - bounds[2]) / (bounds[5] - bounds[2]);
         o->share[i] = follows_below ? 1 - up : up;
@@ -251,7 +254,7 @@ static skg_status span(skg_body_organ *o, int follows_below) {
 
 /* The needle's tip is its end nearer to the liver; it enters where it is nearest to the skin. */
 static skg_status place_needle(skg_body *body, skg_body_organ *o, int32_t liver, int32_t skin) {
-    const double *bounds = body->organ[liver].mesh->health.bounds;
+    const double *bounds = body->organ[liver].bounds;
     double centre[3], d[3], far[3] = {0}, best = HUGE_VAL;
     int64_t tip = 0;
     for (int k = 0; k < 3; k++) centre[k] = 0.5 * (bounds[k] + bounds[3 + k]);
@@ -351,7 +354,7 @@ static void default_plane(skg_body *body) {
     double *plane = body->options.tendon_plane;
     int32_t d = find_organ(body, "diaphragm");
     if (d < 0 || plane[0] != 0 || plane[1] != 0 || plane[2] != 0) return;
-    const double *b = body->organ[d].mesh->health.bounds;
+    const double *b = body->organ[d].bounds;
     /* the upper third, tilted by 45 degrees so that the steep front is muscle */
     plane[1] = 1, plane[2] = 1;
     plane[3] = -0.5 * (b[1] + b[4]) - (b[5] - 0.3 * (b[5] - b[2]));

@@ -103,6 +103,10 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
     for (int64_t i = 0; i < o->vertices; i++) {
         if (!skg_all_finite(o->rest + 3 * i, 3))
             return skg_fail(SKG_ERR_BREATHING, "%s: vertex %" PRId64 " is not finite", o->label, i);
+        for (int k = 0; k < 3; k++) {
+            o->bounds[k] = i == 0 ? o->rest[k] : fmin(o->bounds[k], o->rest[3 * i + k]);
+            o->bounds[3 + k] = i == 0 ? o->rest[k] : fmax(o->bounds[3 + k], o->rest[3 * i + k]);
+        }
         o->node_of[i] = o->mesh->weld ? o->mesh->weld[i] : (int32_t)i;
     }
     SKG_TRY(skg_near_prepare(o));

@@ -10,6 +10,10 @@ void skg_link_follow(const skg_body *body, const skg_link *link, double displace
     if (link->organ == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
     if (link->organ < 0) return;
     const skg_body_organ *o = body->organ + link->organ;
+    if (link->fixed) {
+        skg_rigid_displace(&o->rigid, link->point, displacement);
+        return;
+    }
     for (int c = 0; c < 3; c++)
         skg_add_scaled(displacement, link->part * link->weight[c], o->moved + 3 * link->corner[c],
                        displacement);
@@ -40,7 +44,7 @@ static void pose_turn(skg_body_organ *o, double factor) {
 }
 
 /* The sternum follows the anterior ends of ribs 1 to 7: their vertices farthest from the head. */
-static void fit_sternum(const skg_body *body, skg_rigid *rigid) {
+static void fit_sternum(const skg_body *body, int moves, skg_rigid *rigid) {
     double points[14][3], displacements[14][3];
     int64_t count = 0;
     for (int64_t r = 0; r < body->organs && count < 14; r++) {
@@ -58,7 +62,7 @@ static void fit_sternum(const skg_body *body, skg_rigid *rigid) {
     }
     memset(rigid, 0, sizeof *rigid);
     for (int k = 0; k < 3; k++) rigid->rotation[4 * k] = 1;
-    if (count >= 3) skg_rigid_fit(count, points[0], displacements[0], rigid);
+    if (moves && count >= 3) skg_rigid_fit(count, points[0], displacements[0], rigid);
 }
 
 static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
@@ -190,13 +194,12 @@ static void pose_bones(skg_body *body, double thoracic) {
         if (o->role == ROLE_RIB || o->role == ROLE_RIGID || o->turned)
             pose_turn(o, o->turned ? thoracic - from : share);
     }
-    fit_sternum(body, &sternum);
+    fit_sternum(body, thoracic != from, &sternum);
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
         if (o->role != ROLE_STERNUM || o->turned) continue;
         o->rigid = sternum;
-        if (share != 0) pose_rigid(o);
-        if (share == 0) memset(o->moved, 0, (size_t)(3 * o->vertices) * sizeof(double));
+        pose_rigid(o);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <ctype.h>
 #include <inttypes.h>
+#include <string.h>
 
 static int same_label(const char *a, const char *b) {
     for (; *a && *b; a++, b++)
@@ -46,6 +47,12 @@ static int depends(const skg_body *body, const skg_body_organ *o, const skg_body
     for (int64_t l = 0; l < o->given_count; l++)
         if (leads_to(body, o->given[l].to, other)) return 1;
     return 0;
+}
+
+void skg_link_fix(const skg_body *body, const double p[3], skg_link *link) {
+    const skg_role role = body->organ[link->organ].role;
+    link->fixed = role == ROLE_RIB || role == ROLE_STERNUM || role == ROLE_RIGID;
+    memcpy(link->point, p, sizeof link->point);
 }
 
 skg_status skg_body_check_ties(skg_body *body) {
