@@ -41,13 +41,14 @@ void skg_body_tell_conflicts(skg_body *body) {
         skg_body_organ *o = body->organ + i;
         const char *between[2];
         if (!o->chain || o->told || !(o->report.conflict_mm > told_from_mm)) continue;
-        o->told = 1;
         skg_conflict_partners(body, o, between);
+        if (!between[0]) continue;
+        o->told = 1;
         skg_log(
             body->context, SKG_LOG_WARNING,
-            "%s: %s and %s pull it apart or together by %.1f mm more along %c than its tissue allows, and "
-            "meet halfway; breathe less deeply, or give it a softer tissue or shorter links",
-            o->label, between[0] ? between[0] : "one driver", between[1] ? between[1] : "another",
+            "%s: %s and %s%s ask for %.1f mm more along %c than its tissue allows, and meet halfway; breathe "
+            "less deeply, or give it a softer tissue or other links",
+            o->label, between[0], between[0] == between[1] ? "another place of " : "", between[1],
             o->report.conflict_mm, "xyz"[o->report.axis]);
     }
 }
