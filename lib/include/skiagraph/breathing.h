@@ -83,9 +83,9 @@ SKG_API skg_status skg_breath_at_phase(const skg_breath *breath, double phase, s
 
 /* A thorax at end-expiration, generated. x to the patient's left, y to the back, z up; the origin is the top
  * of the right half of the diaphragm. Sizes from the literature and from aggregates of real bones. Every mesh
- * is closed and outward; two meshes are disjoint or one lies in the other, but for faces that cut into a
- * neighbour by less than 0.5 mm (by 3 mm below 42,000 triangles), and for the needle, which passes through.
- * Labels are English: "rib 5 left", "liver", "lung right", "skin". */
+ * is closed and outward; two meshes are disjoint or one lies in the other (below 42,000 triangles facets may
+ * cut into a neighbour by up to 3 mm), but for the needle, which passes through. Labels are English: "rib 5
+ * left", "liver", "lung right", "skin". */
 typedef struct skg_thorax skg_thorax;
 
 /* Prepare with skg_thorax_options_init. */
