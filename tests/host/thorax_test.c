@@ -1,5 +1,6 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "host/inside.h"
+#include "phantom/thorax.h"
 #include "plan/overlap.h"
 #include "suite.h"
 
@@ -166,6 +167,21 @@ START_TEST(plans_find_no_overlap) {
 }
 END_TEST
 
+START_TEST(
+    the_sternum_is_not_twisted) { /* 11 of at least 13 mm to each side of its middle line, all the way */
+    solid s;
+    make(42000);
+    solid_make(part[find("sternum body")].mesh, &s);
+    for (double z = -15; z <= 80; z += 0.5)
+        for (int side = -1; side <= 1; side += 2) {
+            const double p[3] = {side * 11, skg_cage_front(0, z), z};
+            ck_assert_msg(solid_holds(&s, p), "not at z %g mm, side %d", z, side);
+        }
+    solid_free(&s);
+    skg_thorax_release(&thorax);
+}
+END_TEST
+
 START_TEST(saved_files_hold_the_same) {
     char folder[] = "/tmp/skg-thorax-XXXXXX", path[256];
     ck_assert_ptr_nonnull(mkdtemp(folder));
@@ -215,6 +231,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_mesh_is_closed, 0, 3);
     tcase_add_test(tests, parts_are_where_and_as_large_as_they_should_be);
     tcase_add_test(tests, disjoint_or_nested);
+    tcase_add_test(tests, the_sternum_is_not_twisted);
     tcase_add_loop_test(tests, plans_find_no_overlap, 0, 2);
     tcase_add_test(tests, saved_files_hold_the_same);
     tcase_add_test(tests, bad_arguments);
