@@ -1,6 +1,7 @@
 /* Breathing: the exact solution of Chain Mail against the published queue, and steps of a whole body. */
 #include "breathing/queue.h"
 #include "common/bench.h"
+#include "common/thorax.h"
 
 #include <math.h>
 #include <omp.h>
@@ -99,28 +100,12 @@ static void breathe(void *what) {
     bench_try(skg_body_pose(b->body, &state), "body");
 }
 
-static skg_body *body_of(skg_thorax *thorax, int64_t parts) {
-    skg_body *body;
-    bench_try(skg_body_create(NULL, NULL, &body), "body");
-    for (int64_t i = 0; i < parts; i++) {
-        skg_thorax_part part;
-        skg_organ organ;
-        skg_thorax_part_init(&part);
-        skg_organ_init(&organ);
-        bench_try(skg_thorax_get_part(thorax, i, &part), "thorax");
-        organ.mesh = part.mesh, organ.label = part.label, organ.inside = part.inside;
-        bench_try(skg_body_add(body, &organ, NULL), part.label);
-    }
-    bench_try(skg_body_link(body), "body");
-    return body;
-}
-
-static void steps(skg_thorax *thorax, int64_t parts, int turns, FILE *csv) {
+static void steps(const bench_thorax *thorax, int turns, FILE *csv) {
     int most = omp_get_max_threads();
     for (int threads = 1; threads <= most;
          threads = threads < most && 2 * threads > most ? most : 2 * threads) {
         omp_set_num_threads(threads);
-        breather b = {body_of(thorax, parts), 0};
+        breather b = {thorax_body(thorax), 0};
         bench_times times = {0};
         for (int turn = 0; turn < turns; turn++) bench_turn(breathe, &b, 60, &times);
         printf("%d threads: a step of the body %.3f ms (median; least %.3f): %.0f steps/s\n", threads,
@@ -147,50 +132,25 @@ static void make_frame(void *what) {
     breathe(&f->breather);
 }
 
-/* Five materials, ten energies from 30 to 75 keV, 512 x 512 pixels: the thorax's own detector and source. */
-static skg_plan *fluoroscopy_of(skg_context *context, skg_thorax *thorax, int64_t parts) {
-    static const char *const names[5] = {"Adipose", "Lung", "Muscle", "HU:300", "Needle steel"};
-    double energies[10], photons[10];
-    skg_material *materials[5];
-    skg_scene *scene;
-    skg_spectrum *spectrum;
-    skg_plan *plan;
+/* The thorax's own detector and source. */
+static skg_plan *fluoroscopy_of(skg_context *context, const bench_thorax *thorax) {
+    skg_scene *scene = thorax_scene(context, thorax);
+    skg_spectrum *spectrum = thorax_beam();
+    skg_plan *plan = NULL;
     skg_plan_options options;
+    skg_view view;
     skg_plan_options_init(&options);
     options.overlaps = 0;
-    skg_view view;
-    skg_view_init(&view);
-    view.columns = view.rows = 512;
-    view.source[1] = -860, view.centre[1] = 140, view.source[2] = view.centre[2] = -20;
-    view.column_step[0] = 480.0 / 512, view.row_step[2] = -480.0 / 512;
-    for (int n = 0; n < 10; n++) energies[n] = 30 + 5 * n, photons[n] = 1000;
-    for (int m = 0; m < 5; m++) bench_try(skg_material_named(names[m], &materials[m]), names[m]);
-    bench_try(skg_spectrum_bins(10, energies, photons, &spectrum), "spectrum");
-    bench_try(skg_scene_create(context, &scene), "scene");
-    for (int64_t i = 0; i < parts; i++) {
-        skg_thorax_part from;
-        skg_part part;
-        skg_thorax_part_init(&from);
-        skg_part_init(&part);
-        bench_try(skg_thorax_get_part(thorax, i, &from), "thorax");
-        part.mesh = from.mesh, part.label = from.label, part.inside = from.inside;
-        part.material = materials[!strcmp(from.label, "skin")       ? 0
-                                  : !strncmp(from.label, "lung", 4) ? 1
-                                  : !strcmp(from.label, "needle")   ? 4
-                                  : !from.material                  ? 3
-                                                                    : 2];
-        bench_try(skg_scene_add(scene, &part, NULL), from.label);
-    }
+    thorax_view(512, &view);
     bench_try(skg_plan_create(context, scene, &view, spectrum, &options, &plan), "plan");
-    for (int m = 0; m < 5; m++) skg_material_release(&materials[m]);
     skg_scene_release(&scene);
     skg_spectrum_release(&spectrum);
     return plan;
 }
 
-static void frames(skg_thorax *thorax, int64_t parts, int turns, FILE *csv) {
+static void frames(const bench_thorax *thorax, int turns, FILE *csv) {
     skg_context *context = bench_context(NULL);
-    fluoroscope f = {.breather = {body_of(thorax, parts), 0}, .plan = fluoroscopy_of(context, thorax, parts)};
+    fluoroscope f = {.breather = {thorax_body(thorax), 0}, .plan = fluoroscopy_of(context, thorax)};
     bench_times times = {0};
     skg_output_init(&f.output);
     f.output.data = bench_alloc(512 * 512, sizeof(float));
@@ -222,21 +182,16 @@ int main(int count, char **words) {
     }
     FILE *csv = path ? bench_open(path) : NULL;
     if (csv) fprintf(csv, "organ,tissue,solver,broken_links,worst_mm,from_exact_mm,least_ms,median_ms\n");
-    skg_thorax_options options;
-    skg_thorax_options_init(&options);
-    options.triangles = triangles;
-    skg_thorax *thorax;
-    int64_t parts;
-    bench_try(skg_thorax_create(&options, &thorax), "thorax");
-    bench_try(skg_thorax_size(thorax, &parts), "thorax");
+    bench_thorax thorax;
+    thorax_make(triangles, THORAX_CLOSED, &thorax);
     printf(
         "Top vertex driven by (3, -5, -20) mm; links broken by more than 1e-9 mm.\n\n"
         "| organ      | tissue        | solver       | links broken   | worst, mm | off, mm   | least, ms | median    |\n"
         "|---|---|---|---|---|---|---|---|\n");
-    for (int64_t i = 0; i < parts; i++) {
+    for (int64_t i = 0; i < thorax.parts; i++) {
         skg_thorax_part part;
         skg_thorax_part_init(&part);
-        bench_try(skg_thorax_get_part(thorax, i, &part), "thorax");
+        bench_try(skg_thorax_get_part(thorax.thorax, i, &part), "thorax");
         if (strcmp(part.label, "liver") != 0 && strcmp(part.label, "diaphragm") != 0) continue;
         for (int t = 0; t < 2; t++) {
             const skg_tissue tissue[2] = {{0.7, 1.1, 0.1}, {0.9, 1.02, 0}};
@@ -247,9 +202,9 @@ int main(int count, char **words) {
         }
     }
     printf("\nThe generated thorax, %ld triangles, a breath of 120 steps.\n", triangles);
-    steps(thorax, parts, quick ? 2 : 6, csv);
-    frames(thorax, parts, quick ? 2 : 6, csv);
-    skg_thorax_release(&thorax);
+    steps(&thorax, quick ? 2 : 6, csv);
+    frames(&thorax, quick ? 2 : 6, csv);
+    thorax_free(&thorax);
     if (csv && fclose(csv) != 0) bench_die("%s: not written", path);
     return 0;
 }
