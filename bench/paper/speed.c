@@ -138,10 +138,13 @@ static void find_errors(const paper_study *study, const picture *reference, pict
     p->bad = report.bad_pixels, p->repaired = report.repaired_pixels;
 }
 
-static void print_picture(const paper_study *study, const contender *c, int64_t triangles) {
+/* base: its median is what the others' are parts of. */
+static void print_picture(const paper_study *study, const contender *c, const contender *base,
+                          int64_t triangles) {
     const picture *p = c->what;
-    printf("| %" PRId64 " | %s | %ld x %ld | %.4g | %.4g to %.4g | ", triangles, c->name, study->series,
-           c->images, bench_median(&c->rates), bench_least(&c->rates), greatest(&c->rates));
+    printf("| %" PRId64 " | %s | %ld x %ld | %.4g | %.4g to %.4g | %.2f | ", triangles, c->name,
+           study->series, c->images, bench_median(&c->rates), bench_least(&c->rates), greatest(&c->rates),
+           bench_median(&c->rates) / bench_median(&base->rates));
     if (isnan(p->worst))
         printf("- | - | ");
     else
@@ -167,9 +170,9 @@ static void still(const paper_study *study, long triangles) {
     race(study, count, all);
     for (int k = 0; k < count; k++) {
         picture *p = all[k].what;
-        p->worst = p->rms = NAN;
+        p->worst = p->rms = nan("");
         if (pictures[WAY_DOUBLE].plan) find_errors(study, &pictures[WAY_DOUBLE], p);
-        print_picture(study, &all[k], thorax[0].triangles);
+        print_picture(study, &all[k], &all[WAY_SINGLE], thorax[0].triangles);
     }
     for (int k = 0; k < WAYS; k++) close_picture(&pictures[k]);
     for (int open = 0; open <= THORAX_ALL_OPEN; open++) thorax_free(&thorax[open]);
@@ -251,8 +254,8 @@ void paper_speed(const paper_study *study) {
         "host memory. Open: every hundredth triangle is missing; half takes closed meshes only. Values: so many rates, each "
         "over so many images. Errors are off the image of double; closed, in shares of the open beam. The last column: bad "
         "pixels, of all meshes / how many of them were repaired.\n\n"
-        "| triangles | precision; meshes; correction | values | images/s, median | least to most | worst error | rms error | bad / repaired |\n"
-        "|---:|---|---:|---:|---:|---:|---:|---:|\n",
+        "| triangles | precision; meshes; correction | values | images/s, median | least to most | of single; closed | worst error | rms error | bad / repaired |\n"
+        "|---:|---|---:|---:|---:|---:|---:|---:|---:|\n",
         study->size, study->size);
     for (int i = 0; i < study->sizes; i++) still(study, study->triangles[i]);
     breathing(study);
