@@ -80,67 +80,63 @@ static void begin_picture(const cost_study *study, const float *data, skg_pictur
     picture->data = data;
 }
 
-/* The reference as I/I0, means of blocks of pixels. */
-static int reference_json(const cost_study *study, json_t **uri) {
-    const int64_t columns = study->session.view.columns, rows = study->session.view.rows;
-    const int64_t block = study->thumb_block;
-    const double *image = study->references[0].image;
-    float *data = calloc((size_t)(study->thumb_columns * study->thumb_rows), sizeof *data);
-    if (!data) return cli_error(CLI_DEVICE, "out of host memory");
-    for (int64_t r = 0; r < study->thumb_rows; r++)
-        for (int64_t c = 0; c < study->thumb_columns; c++) {
-            double sum = 0;
-            int64_t count = 0;
-            for (int64_t y = r * block; y < (r + 1) * block && y < rows; y++)
-                for (int64_t x = c * block; x < (c + 1) * block && x < columns; x++, count++)
-                    sum += image[y * columns + x];
-            data[r * study->thumb_columns + c] = (float)(sum / (double)count / study->open);
-        }
+static int small_json(const cost_study *study, const cost_point *point, json_t **uri) {
     skg_picture picture;
-    begin_picture(study, data, &picture);
+    begin_picture(study, point->small, &picture);
     picture.quantity = SKG_TRANSMISSION;
     picture.display = SKG_DISPLAY_RADIOGRAPH;
-    int exit_status = picture_json(&picture, uri);
-    free(data);
-    return exit_status;
+    return picture_json(&picture, uri);
 }
 
-/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range. */
+/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range.
+ * Cube roots between, which the page undoes where it shows them straight: eight bits then tell small ones
+ * too. */
 static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
+    const int64_t places = study->thumb_columns * study->thumb_rows;
     skg_picture picture;
-    float largest = 0;
-    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++)
+    float largest = 0, *roots = calloc((size_t)places, sizeof *roots);
+    if (!roots) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++)
         if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
+    for (int64_t i = 0; i < places && largest > 0; i++) roots[i] = cbrtf(point->difference[i] / largest);
     *range = (double)largest;
-    begin_picture(study, point->difference, &picture);
-    picture.high = largest > 0 ? (double)largest : 1;
-    picture.low = -picture.high;
-    return picture_json(&picture, uri);
+    begin_picture(study, roots, &picture);
+    picture.low = -1;
+    picture.high = 1;
+    int exit_status = picture_json(&picture, uri);
+    free(roots);
+    return exit_status;
 }
 
 /* Pictures are chosen: the frontier, the advice, and every dial other than the rays'. */
 static int is_pictured(const cost_study *study, int index) {
     const cost_point *point = &study->points[index];
     if (point->on_frontier || point->dial == COST_SCENE || point->dial == COST_PRECISION) return 1;
-    if (point->reference != 0) return 1;
+    if (point->reference != COST_OF_RAYS) return 1;
     for (int i = 0; i < COST_TOLERANCES; i++)
         if (study->advice[i].rays == index) return 1;
     return 0;
 }
 
+static int add_point_pictures(const cost_study *study, const cost_point *point, json_t *object) {
+    json_t *uri = NULL;
+    double range = 0;
+    int exit_status = small_json(study, point, &uri);
+    if (exit_status != CLI_DONE) return exit_status;
+    json_object_set_new(object, "image", uri);
+    exit_status = difference_json(study, point, &uri, &range);
+    if (exit_status != CLI_DONE) return exit_status;
+    json_object_set_new(object, "difference", uri);
+    json_object_set_new(object, "range", cli_json_number(range));
+    return CLI_DONE;
+}
+
 static int add_pictures(const cost_study *study, json_t *object) {
-    json_t *uri = NULL, *points = json_object_get(object, "points");
-    int exit_status = reference_json(study, &uri);
-    if (exit_status == CLI_DONE) json_object_set_new(object, "image", uri);
-    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++) {
-        if (!is_pictured(study, i)) continue;
-        double range = 0;
-        json_t *point = json_array_get(points, (size_t)i);
-        exit_status = difference_json(study, &study->points[i], &uri, &range);
-        if (exit_status != CLI_DONE) break;
-        json_object_set_new(point, "difference", uri);
-        json_object_set_new(point, "range", cli_json_number(range));
-    }
+    json_t *points = json_object_get(object, "points");
+    int exit_status = CLI_DONE;
+    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++)
+        if (is_pictured(study, i))
+            exit_status = add_point_pictures(study, &study->points[i], json_array_get(points, (size_t)i));
     return exit_status;
 }
 
