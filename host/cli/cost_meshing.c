@@ -178,7 +178,7 @@ static skg_mesh *mesh_of(const skg_thorax *thorax, const char *label) {
     return NULL;
 }
 
-/* Whether two meshes fill the same box: that of a real organ of this name does not. */
+/* Whether two closed meshes fill the same box: that of a real organ of this name does not. */
 static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
     static const double most_mm = 2; /* the same number of triangles within some per cent gives 0.5 mm */
     skg_mesh_health healths[2];
@@ -186,6 +186,7 @@ static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
     skg_mesh_health_init(&healths[1]);
     if (skg_mesh_get_health(a, &healths[0]) != SKG_OK || skg_mesh_get_health(b, &healths[1]) != SKG_OK)
         return 0;
+    if (!healths[0].closed || !healths[1].closed) return 0;
     for (int k = 0; k < 6; k++)
         if (!(fabs(healths[0].bounds[k] - healths[1].bounds[k]) < most_mm)) return 0;
     return 1;
