@@ -67,7 +67,8 @@ typedef struct {
 typedef struct {
     cost_setting setting;
     double *image;     /* of breath: one for each of COST_PHASES phases */
-    double *positions; /* of breath only: vertices of the parts that move, mm, phase by phase */
+    double *positions; /* of breath only: [COST_PHASES][vertices][3] of the parts that move, mm */
+    int64_t vertices;
 } cost_reference;
 
 enum { COST_PHASES = 4 }; /* of the breath, evenly from end-inspiration */

@@ -105,7 +105,11 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
     skg_status status = begin(&b, setting);
     if (point) point->plan_ms = cli_now_ms() - start;
     if (status >= SKG_OK) status = read_positions(&b, NULL, &vertices);
-    if (status >= SKG_OK) {
+    if (status >= SKG_OK && point && vertices != reference->vertices) {
+        *exit_status =
+            cli_error(CLI_INPUT, "%s: its meshes have changed while it was read again", study->session.path);
+        status = SKG_ERR_MESH;
+    } else if (status >= SKG_OK) {
         images = calloc((size_t)(COST_PHASES * study->pixels), sizeof *images);
         positions = calloc((size_t)(COST_PHASES * 3 * vertices) + 1, sizeof *positions);
         status = images && positions ? run_all(&b, images, positions, vertices) : SKG_ERR_MEMORY;
@@ -113,6 +117,7 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
     if (status >= SKG_OK && !point) {
         reference->image = images;
         reference->positions = positions;
+        reference->vertices = vertices;
         images = positions = NULL;
     } else if (status >= SKG_OK) {
         *exit_status = cost_compare(study, COST_PHASES, images, reference->image, point);

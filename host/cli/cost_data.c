@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 static int32_t repair_of(const cost_study *study, const cost_setting *setting) {
     return setting->repair >= 0 ? setting->repair : study->session.options.repair;
@@ -80,6 +81,9 @@ static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
 }
 
 json_t *cost_json(const cost_study *study) {
+    char date[32];
+    const time_t now = time(NULL);
+    strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now));
     json_t *object = json_object(), *references = json_array(), *points = json_array(),
            *advice = json_array(), *notes = json_array();
     for (int i = 0; i < COST_REFERENCES; i++) {
@@ -95,6 +99,8 @@ json_t *cost_json(const cost_study *study) {
         json_array_append_new(advice, advice_json(study, &study->advice[i]));
     for (int i = 0; i < study->note_count; i++) json_array_append_new(notes, cli_json_text(study->notes[i]));
     json_object_set_new(object, "scene", cli_json_text(study->session.path));
+    json_object_set_new(object, "version", cli_json_text(skg_version()));
+    json_object_set_new(object, "date", cli_json_text(date));
     json_object_set_new(object, "device", cli_json_text(study->session.device.name));
     json_object_set_new(object, "columns", json_integer(study->session.view.columns));
     json_object_set_new(object, "rows", json_integer(study->session.view.rows));

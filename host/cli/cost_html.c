@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+static const float LEAST_SHOWN = 1e-12f; /* of the open beam */
+
 extern const char cost_page[]; /* cost_page.html, as built in */
 
 /* Bytes as "data:image/png;base64,..." (RFC 4648). The caller frees the text; NULL: no memory. */
@@ -80,12 +82,35 @@ static void begin_picture(const cost_study *study, const float *data, skg_pictur
     picture->data = data;
 }
 
-static int small_json(const cost_study *study, const cost_point *point, json_t **uri) {
+/* Values as 256 levels from low to high: what a screen shows, and half the bytes. */
+static int levels_json(const cost_study *study, float *values, double low, double high, json_t **uri) {
     skg_picture picture;
-    begin_picture(study, point->small, &picture);
-    picture.quantity = SKG_TRANSMISSION;
-    picture.display = SKG_DISPLAY_RADIOGRAPH;
+    begin_picture(study, values, &picture);
+    picture.quantity = SKG_ATTENUATION;
+    picture.low = low;
+    picture.high = high;
+    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++) {
+        const double level = round(255 * ((double)values[i] - low) / (high - low));
+        values[i] = (float)(low + (high - low) * fmin(fmax(level, 0), 255) / 255);
+    }
     return picture_json(&picture, uri);
+}
+
+/* -ln(I/I0) of a point's image. low, high: found of the first one, and used for all. */
+static int small_json(const cost_study *study, const cost_point *point, double *low, double *high,
+                      json_t **uri) {
+    const int64_t places = study->thumb_columns * study->thumb_rows;
+    float *dense = calloc((size_t)places, sizeof *dense);
+    skg_picture picture;
+    if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(point->small[i], LEAST_SHOWN));
+    begin_picture(study, dense, &picture);
+    picture.quantity = SKG_ATTENUATION;
+    skg_status status = *high > *low ? SKG_OK : skg_picture_range(&picture, low, high);
+    if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* one value everywhere */
+    int exit_status = status == SKG_OK ? levels_json(study, dense, *low, *high, uri) : cli_fail(status);
+    free(dense);
+    return exit_status;
 }
 
 /* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range.
@@ -93,17 +118,13 @@ static int small_json(const cost_study *study, const cost_point *point, json_t *
  * too. */
 static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
     const int64_t places = study->thumb_columns * study->thumb_rows;
-    skg_picture picture;
     float largest = 0, *roots = calloc((size_t)places, sizeof *roots);
     if (!roots) return cli_error(CLI_DEVICE, "out of host memory");
     for (int64_t i = 0; i < places; i++)
         if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
     for (int64_t i = 0; i < places && largest > 0; i++) roots[i] = cbrtf(point->difference[i] / largest);
     *range = (double)largest;
-    begin_picture(study, roots, &picture);
-    picture.low = -1;
-    picture.high = 1;
-    int exit_status = picture_json(&picture, uri);
+    int exit_status = levels_json(study, roots, -1, 1, uri);
     free(roots);
     return exit_status;
 }
@@ -118,10 +139,11 @@ static int is_pictured(const cost_study *study, int index) {
     return 0;
 }
 
-static int add_point_pictures(const cost_study *study, const cost_point *point, json_t *object) {
+static int add_point_pictures(const cost_study *study, const cost_point *point, double *low, double *high,
+                              json_t *object) {
     json_t *uri = NULL;
     double range = 0;
-    int exit_status = small_json(study, point, &uri);
+    int exit_status = small_json(study, point, low, high, &uri);
     if (exit_status != CLI_DONE) return exit_status;
     json_object_set_new(object, "image", uri);
     exit_status = difference_json(study, point, &uri, &range);
@@ -134,9 +156,11 @@ static int add_point_pictures(const cost_study *study, const cost_point *point, 
 static int add_pictures(const cost_study *study, json_t *object) {
     json_t *points = json_object_get(object, "points");
     int exit_status = CLI_DONE;
+    double low = 0, high = 0;
     for (int i = 0; exit_status == CLI_DONE && i < study->count; i++)
         if (is_pictured(study, i))
-            exit_status = add_point_pictures(study, &study->points[i], json_array_get(points, (size_t)i));
+            exit_status =
+                add_point_pictures(study, &study->points[i], &low, &high, json_array_get(points, (size_t)i));
     return exit_status;
 }
 

@@ -178,9 +178,9 @@ static skg_mesh *mesh_of(const skg_thorax *thorax, const char *label) {
     return NULL;
 }
 
-/* Whether two closed meshes fill the same box: that of a real organ of this name does not. */
+/* Whether two closed meshes fill about the same box: that of a real organ of this name does not. */
 static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
-    static const double most_mm = 2; /* the same number of triangles within some per cent gives 0.5 mm */
+    static const double most_mm = 10; /* what some per cent more triangles change where they are few */
     skg_mesh_health healths[2];
     skg_mesh_health_init(&healths[0]);
     skg_mesh_health_init(&healths[1]);

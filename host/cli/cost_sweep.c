@@ -197,6 +197,7 @@ static int measure(cost_study *study, cost_point *point, double *image, int *kee
     if (!reference->image) return CLI_DONE; /* told by make_reference */
     skg_status status = breathes ? cost_breathe(study, &point->setting, point, &exit_status)
                                  : cost_image(study, &point->setting, image, point);
+    if (exit_status != CLI_DONE) return exit_status;
     *keep = status >= SKG_OK;
     if (status == SKG_ERR_DEVICE || status == SKG_ERR_INTERNAL || status == SKG_ERR_NO_DEVICE)
         return cli_fail(status);
@@ -206,7 +207,7 @@ static int measure(cost_study *study, cost_point *point, double *image, int *kee
         cost_note(study, "%s left out: %s", text, skg_last_error());
         return CLI_DONE;
     }
-    if (breathes) return exit_status;
+    if (breathes) return CLI_DONE;
     exit_status = cost_compare(study, 1, image, reference->image, point);
     const int dial = point->dial;
     if (exit_status == CLI_DONE &&
