@@ -47,7 +47,7 @@ static int ascending(const void *a, const void *b) {
 /* Warm runs until there are enough of them and they took long enough for the clock. */
 skg_status cost_time(const cost_study *study, cost_run run, void *user, cost_point *point) {
     const int64_t least = study->quick ? 3 : 9;
-    const double wish_ms = study->quick ? 50 : 300, limit_ms = study->quick ? 1000 : 3000;
+    const double wish_ms = study->quick ? 20 : 300, limit_ms = study->quick ? 1000 : 3000;
     double ms[MOST_RUNS], begun = cli_now_ms(), passed = 0;
     int64_t n = 0;
     skg_status status = SKG_OK;
