@@ -16,7 +16,7 @@ static const char *const opened[] = {"liver", "heart", "lung left", "lung right"
 static const char *const names[KINDS] = {
     [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
 static const double darkest = 2.5, densest = 7; /* -ln(I/I0), black and white of the images */
-static const double largest = 0.5;            /* of the differences, black and white */
+static const double largest = 0.5;              /* of the differences, black and white */
 
 static int is_opened(const char *label) {
     for (size_t k = 0; k < sizeof opened / sizeof *opened; k++)

@@ -191,8 +191,9 @@ static int list_dial(json_t *study, const char *dial, const char *key, double *v
 /* A sphere's chords fall short of it by the square of their length: twice the sectors, a quarter of the error
  * (a third at most, for the edge's share and since the reference is a polyhedron too). */
 START_TEST(round_parts_are_swept) {
+    static const char grey[] = "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
     double rms[16], rms_mm[16];
-    ck_run(0, "cost 'small scene.json' --quick --json --set Samples.bone.Sphere.0=32");
+    ck_run(0, "cost 'small scene.json' --quick --json %s --set Samples.bone.Sphere.0=32", grey);
     json_t *study = said_json();
     int count = list_dial(study, "triangles", "rms_open", rms);
     ck_assert_int_eq(count, 4); /* 8, 16, 32 and 64 sectors, against 128 */
@@ -205,7 +206,7 @@ START_TEST(round_parts_are_swept) {
         json_string_value(member(json_array_get(member(study, "advice"), 3), "whole_command"));
     ck_assert_ptr_nonnull(strstr(command, " --set Samples.bone.Sphere.0=64"));
     json_decref(study);
-    ck_run(0, "cost 'small scene.json' --quick --json --set Samples.bone.Sphere.0=6");
+    ck_run(0, "cost 'small scene.json' --quick --json %s --set Samples.bone.Sphere.0=6", grey);
     study = said_json();
     ck_assert_int_eq(list_dial(study, "triangles", "rms_open", rms),
                      0); /* six-sided, for all that is known */
