@@ -22,6 +22,10 @@ typedef struct skg_motion skg_motion;
 SKG_API skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **motion);
 SKG_API void skg_motion_release(skg_motion **motion);
 
+/* Whether a set-up's file has the key Breathing (1 or 0), and its body's options, prepared with
+ * skg_body_options_init: what skg_motion_create would use. */
+SKG_API skg_status skg_motion_options(const skg_setup *setup, int32_t *breathes, skg_body_options *options);
+
 /* Poses the scene at a time in s, with the events until then; or at a phase, counted modulo 1, without
  * events: needle and contrast as the meshes have them. */
 SKG_API skg_status skg_motion_at_time(skg_motion *motion, double time_s);
