@@ -1,9 +1,6 @@
 /* One search: from its starts outward over the links, the largest remaining gains first. */
 #include "chainmail/chainmail.h"
 
-#ifndef WIDTH
-#define WIDTH 1.0
-#endif
 enum { UNSEEN = -1, QUIET = -2, BUCKETS = 512 };
 
 skg_status skg_chain_make_front(int64_t nodes, skg_chain_front *f) {
@@ -56,7 +53,8 @@ static inline void lift(skg_chain_front *f, int64_t nodes, int32_t node, double 
     join(f, nodes, node);
 }
 
-/* Buckets as wide as the mean slack, or wider so that they suffice. */
+/* Buckets as wide as the mean slack, or wider so that they suffice. From a tenth to three times that width
+ * made no difference that could be measured on the thorax. */
 static void open_buckets(const skg_chain *chain, int axis, skg_chain_front *f) {
     double low = 0, high = 0;
     for (int64_t n = 0; n < f->found; n++) {
@@ -64,7 +62,7 @@ static void open_buckets(const skg_chain *chain, int axis, skg_chain_front *f) {
         low = gain < low ? gain : low, high = gain > high ? gain : high;
     }
     double width = (high - low) / BUCKETS;
-    if (width < WIDTH * chain->slack[axis]) width = WIDTH * chain->slack[axis];
+    if (width < chain->slack[axis]) width = chain->slack[axis];
     f->top = high, f->per_mm = 1 / width;
     for (int64_t n = 0; n < f->found; n++) join(f, chain->nodes, f->seen[n]);
 }
