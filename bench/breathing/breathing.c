@@ -174,7 +174,9 @@ static void one_after_the_other(void *what) {
     bench_try(skg_job_wait(&f->job), "image");
 }
 
-/* The pose of frame n + 1 is found while frame n is made. */
+/* The pose of frame n + 1 is found while frame n is made. Even where the device is this CPU that hides the
+ * pose: on two AVX2 cores, least breath of 7 to 15, 6.8 ms a frame became 5.8 with 42,000 triangles (pose
+ * alone 0.6), 15.2 became 12.6 with 200,000 (pose alone 3.7). */
 static void overlapped(void *what) {
     fluoroscope *f = what;
     bench_try(skg_plan_submit(f->plan, 1, NULL, f->output, &f->job), "image");
