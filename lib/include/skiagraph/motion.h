@@ -2,7 +2,8 @@
  * says (docs/scene-files.md), and the frames that show them.
  *
  * One call poses, another makes the image (skg_plan_submit copies what it needs), so the next pose may be
- * computed while an image is made. Poses do not depend on those before: any order gives the same bits. */
+ * computed while an image is made, which pays on a CPU device too (bench/breathing). Poses do not depend on
+ * those before: any order gives the same bits. */
 #ifndef SKIAGRAPH_MOTION_H
 #define SKIAGRAPH_MOTION_H
 
