@@ -15,7 +15,8 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, energies, mixed;
+    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, energies,
+        mixed;
 } kernel_key;
 
 struct skg_attenuator {
@@ -88,7 +89,7 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
         "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d -D SKG_SUMS=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
         (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->add, RUNS, (int)key->ranged,
-        (int)key->mixed,         key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+        (int)key->mixed, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
     return skg_kernels_get(attenuator->context, &key->options, key->noise ? 4 : 2, key->noise ? noisy : quiet,
                            more, program);
 }

@@ -51,8 +51,9 @@ typedef struct {
 /* The sums that a frame has left, and how they become planes. */
 typedef struct {
     const skg_raster *raster;
-    double scale;  /* of the sums */
-    int32_t mixed; /* accumulators that planes are mixed from (mix.h); 0: planes are accumulators themselves */
+    double scale; /* of the sums */
+    int32_t
+        mixed; /* accumulators that planes are mixed from (mix.h); 0: planes are accumulators themselves */
     int32_t reserved;
     cl_mem lists; /* [mixed][planes] in the precision of the raster */
 } skg_sums;

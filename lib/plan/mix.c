@@ -47,7 +47,8 @@ skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_plane_weight *w
     int fits = 1;
     *mix = (skg_mix){0};
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *list, "planes of the parts", &list));
-    SKG_TRY_CLEANUP(skg_alloc((int64_t)most * planes, sizeof *mix->lists, "planes of the parts", &mix->lists));
+    SKG_TRY_CLEANUP(
+        skg_alloc((int64_t)most * planes, sizeof *mix->lists, "planes of the parts", &mix->lists));
     SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *mix->writes, "planes of the parts", &mix->writes));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *mix->first_write, "planes of the parts", &mix->first_write));
     for (int64_t p = 0; p < parts && fits; p++) {

@@ -10,7 +10,7 @@
 #include "plan/project.h"
 
 typedef struct {
-    int32_t sums;             /* accumulators; 0: parts add to planes as their lists say */
+    int32_t sums; /* accumulators; 0: parts add to planes as their lists say */
     int32_t reserved;
     double *lists;            /* [sums][planes] what a unit of an accumulator adds to the planes */
     skg_plane_weight *writes; /* at most one a part, to an accumulator */

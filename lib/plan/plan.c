@@ -62,6 +62,7 @@ static void start_report(skg_plan *plan) {
         report->vertices += plan->meshes.meshes[i].mesh->vertices;
     report->open_parts = plan->open_count;
     report->planes = plan->model.planes;
+    report->accumulators = plan->mixed ? plan->mixed : plan->model.planes;
     report->nodes = plan->model.nodes;
     report->bins = plan->model.bins;
     report->bound = plan->model.bound;
@@ -168,6 +169,7 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
     skg_attenuation_release(&plan->attenuation);
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(skg_plan_choose_mix(plan));
+    plan->report.accumulators = plan->mixed ? plan->mixed : plan->model.planes;
     plan->materials = plan->scene->materials;
     return SKG_OK;
 }
