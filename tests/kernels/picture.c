@@ -309,7 +309,7 @@ skg_status picture_take(skg_context *context, const skg_raster_options *options,
     SKG_TRY_CLEANUP(skg_camera_make(view, NULL, 0, 0, &camera));
     SKG_TRY_CLEANUP(skg_raster_create(context, &with_size, &raster));
     SKG_TRY_CLEANUP(project(context, &geometry, &with_size, &camera, bodies, of, scale));
-    SKG_TRY_CLEANUP(skg_raster_run(raster, &geometry, NULL));
+    SKG_TRY_CLEANUP(skg_raster_run(raster, &geometry, NULL, NULL));
     SKG_TRY_CLEANUP(read_lengths(context, raster, &camera, scale, result));
     SKG_TRY_CLEANUP(read_bad_pixels(context, raster, result));
     SKG_TRY_CLEANUP(read_sums(context, raster, options->kernels.bits, result));
