@@ -11,27 +11,30 @@ static const char *driver_name(const skg_body *body, const skg_link *link) {
 }
 
 /* The driver that is overrun most, and the one that overruns it: farther from it than the links between them
- * allow. */
+ * allow. One search from it over the state at rest, lifted so that no gain that matters is below 0. */
 void skg_conflict_partners(const skg_body *body, const skg_body_organ *o, const char *between[2]) {
     skg_chain *chain = o->chain;
     const skg_chain_report *report = &o->report;
     const int axis = report->axis;
     between[0] = between[1] = NULL;
     if (!(report->conflict_mm > 0) || report->driver < 0) return;
-    double most = 0, *source;
+    double most = 0, lift = 0, *rest;
     int64_t partner = report->driver;
-    if (skg_alloc(chain->nodes, sizeof *source, o->label, &source) != SKG_OK) return;
+    if (skg_alloc(chain->nodes, sizeof *rest, o->label, &rest) != SKG_OK) return;
+    for (int64_t d = 0; d < o->links; d++) lift = fmax(lift, 2 * fabs(o->target[3 * d + axis]));
     for (int direction = 1; direction >= -1; direction -= 2) {
-        skg_chain_front *front = chain->front + 2 * axis + (direction < 0);
-        for (int64_t i = 0; i < chain->nodes; i++) source[i] = -direction * HUGE_VAL;
-        source[chain->driver[report->driver]] = o->target[3 * report->driver + axis];
-        skg_chain_bounds(chain, axis, direction, source, front);
+        skg_chain_front *front = chain->front + axis;
+        const double from = direction * o->target[3 * report->driver + axis];
+        skg_chain_forget(front);
+        skg_chain_start(front, chain->driver[report->driver], lift + from);
+        skg_chain_spread(chain, axis, direction, rest, front);
         for (int64_t d = 0; d < o->links; d++) {
-            const double over = front->gain[chain->driver[d]] - direction * o->target[3 * d + axis];
+            const double over = front->gain[chain->driver[d]] - lift - direction * o->target[3 * d + axis];
             if (over > most) most = over, partner = d;
         }
     }
-    skg_free(&source);
+    skg_chain_forget(chain->front + axis);
+    skg_free(&rest);
     between[0] = driver_name(body, o->link + report->driver);
     between[1] = driver_name(body, o->link + partner);
 }

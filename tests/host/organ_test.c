@@ -161,7 +161,7 @@ START_TEST(links_hold_and_give) {
         }
         for (int64_t e = ball->chain->first[node]; e < ball->chain->first[node + 1]; e++)
             for (int k = 0; k < 3; k++)
-                most = fmax(most, fabs(ball->moved[3 * ball->chain->edge[k][e].node + k] - there[k]));
+                most = fmax(most, fabs(ball->moved[3 * ball->chain->node[e] + k] - there[k]));
         gave += most > 0.05;
     }
     ck_assert(rigid > 0 && held > 0 && gave > 0);
@@ -377,7 +377,7 @@ START_TEST(an_organ_is_what_it_is_told_to_be) {
     const double length = sqrt(rib->axis[0] * rib->axis[0] + rib->axis[1] * rib->axis[1]);
     ck_assert_double_eq_tol(length, hypot(3, 2) * degree, 1e-15);
     ck_assert_double_eq_tol(rib->head[0], -other->head[0], 1e-9); /* still about its head */
-    ck_assert_int_ge(cartilage->links, 3); /* of a coarse mesh */
+    ck_assert_int_ge(cartilage->links, 3);                        /* of a coarse mesh */
     ck_assert_int_eq(cartilage->corotates, 1);
     for (int64_t i = 0; i < 3 * stomach->vertices; i++) ck_assert(stomach->moved[i] == 0);
     const skg_body_organ *lung = organ_named("lung left");
