@@ -101,6 +101,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "bad_pixels", json_integer(report.bad_pixels));
     json_object_set_new(object, "repaired_pixels", json_integer(report.repaired_pixels));
     json_object_set_new(object, "negative_pixels", json_integer(report.negative_pixels));
+    json_object_set_new(object, "outside_pixels", json_integer(report.outside_pixels));
     json_object_set_new(object, "overlaps", overlaps_json(plan, session->scene));
     return object;
 }
@@ -185,8 +186,9 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     printf("planes     %" PRId64 " of %" PRId64 " bits for %" PRId64 " parts\n", report.planes,
            report.plane_bits, report.parts - report.open_parts);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
-           " of them repaired; %" PRId64 " with a negative exponent\n",
-           report.bad_pixels, report.repaired_pixels, report.negative_pixels);
+           " of them repaired; %" PRId64 " with a negative exponent; %" PRId64
+           " outside the verified range\n",
+           report.bad_pixels, report.repaired_pixels, report.negative_pixels, report.outside_pixels);
     print_effects(plan);
     print_stages(plan);
     print_overlaps(plan, session->scene);

@@ -20,12 +20,32 @@ typedef struct {
     const skg_scene *scene;
     const double *mu;
     double tolerance;
+    int is_ratio;
     skg_polychromatic beam;
     skg_ranges ranges;
     double *shares, *sums; /* [nodes][channels], [channels] */
     skg_basis basis;
     skg_compression found;
 } compressing;
+
+/* An image over the open beam shows what is left of little where the world lets little pass. */
+static skg_status find_floor(compressing *c, const skg_model *model) {
+    double *lengths = NULL, *exact = NULL;
+    skg_status status = SKG_OK;
+    c->beam.floor = SKG_RELATIVE_FROM;
+    if (!c->is_ratio || model->world_plane < 0) return SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.materials, sizeof *lengths, "nodes", &lengths));
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.sets, sizeof *exact, "nodes", &exact));
+    lengths[model->world_plane] = c->ranges.way;
+    skg_transmit_exact(&c->beam, lengths, exact);
+    for (int32_t s = 0; s < c->beam.sets; s++)
+        if (c->sums[s] > 0)
+            c->beam.floor = fmin(c->beam.floor, SKG_RELATIVE_FROM * fmax(exact[s], exp(-SKG_MOST_EXPONENT)));
+cleanup:
+    skg_free(&lengths);
+    skg_free(&exact);
+    return status;
+}
 
 static skg_status describe(compressing *c, const skg_model *model) {
     const int32_t bins = model->nodes, sets = model->channels;
@@ -41,7 +61,7 @@ static skg_status describe(compressing *c, const skg_model *model) {
                                   .shares = c->shares,
                                   .low = c->ranges.low,
                                   .high = c->ranges.high};
-    return SKG_OK;
+    return find_floor(c, model);
 }
 
 /* --- planes
@@ -176,7 +196,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const doub
                         int is_ratio, skg_model *model) {
     /* A ratio to what the world lets pass has the errors of both. */
     const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
-    compressing c = {.scene = scene, .mu = mu, .tolerance = tolerance / errors};
+    compressing c = {.scene = scene, .mu = mu, .tolerance = tolerance / errors, .is_ratio = is_ratio};
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_ranges_find(scene, view, model, &c.ranges));
     SKG_TRY_CLEANUP(describe(&c, model));

@@ -30,7 +30,7 @@ typedef struct {
  * --------------------------------------------------------------------------------------- */
 
 static double unit_of(const search *s, int64_t point, int32_t set) {
-    return 1 / fmax(s->fit.exact[point * s->beam->sets + set], SKG_RELATIVE_FROM);
+    return 1 / fmax(s->fit.exact[point * s->beam->sets + set], s->beam->floor);
 }
 
 static skg_status make_system(search *s, int32_t set) {

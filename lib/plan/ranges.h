@@ -8,9 +8,10 @@ typedef struct {
     int32_t planes, reserved;
     int64_t rays;
     double *lengths; /* [rays][planes] what a ray adds to the planes, mm times weight */
-    double *low;     /* [planes] mm: range with a margin of a quarter; 0 or less (parts that overlap) */
-    double *high;    /* [planes] mm */
-    double *hits;    /* [parts] mean per ray */
+    double *low;  /* [planes] mm: range with a margin of a quarter, and a fiftieth of it below; 0 or less */
+    double *high; /* [planes] mm */
+    double *hits; /* [parts] mean per ray */
+    double way;   /* of the world: what the longest ray without parts adds to its plane; 0: vacuum */
 } skg_ranges;
 
 /* Rays to 64 x 64 places over the view's detector, and 16 x 16 over each part's own rectangle, so that small

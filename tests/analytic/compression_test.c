@@ -229,9 +229,58 @@ START_TEST(leaving_the_verified_range) {
 }
 END_TEST
 
+/* A closed mesh may fold over itself: a ray that grazes the fold has a length below nothing. Here a cube of
+ * 40 mm and beside it one of 0.5 mm turned inside out, which no coarse ray meets. */
+static skg_mesh *folded(void) {
+    static const int32_t corners[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                           {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    double positions[16][3];
+    int32_t triangles[24][3];
+    skg_mesh *mesh = NULL;
+    for (int v = 0; v < 16; v++)
+        for (int k = 0; k < 3; k++) {
+            const double half = v < 8 ? 20 : 0.25, side = v >> k & 1 ? half : -half;
+            positions[v][k] = side + (v < 8 ? 0 : k == 0 ? 33 : k == 1 ? 11 : 0);
+        }
+    for (int t = 0; t < 24; t++)
+        for (int k = 0; k < 3; k++) triangles[t][k] = t < 12 ? corners[t][k] : 8 + corners[t - 12][2 - k];
+    ck_skg(skg_mesh_create(context, "folded", 16, positions[0], 3, 24, triangles[0], 3, 1, &mesh));
+    return mesh;
+}
+
+START_TEST(a_fold_is_within_the_verified_range) {
+    enum { FINE = 512 };
+    static float pixels[FINE * FINE];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    skg_output output;
+    open_scene(1);
+    view.columns = view.rows = FINE;
+    view.column_step[0] = view.row_step[1] = 0.3;
+    add(folded(), "Bone, Cortical (ICRU-44)", 0, 0, -1);
+    skg_spectrum *spectrum = tube(80);
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-2;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    skg_output_init(&output);
+    output.data = pixels;
+    ck_skg(skg_plan_image(plan, &output));
+    skg_channel channel;
+    skg_channel_init(&channel);
+    ck_skg(skg_plan_channel(plan, 0, &channel));
+    int brighter = 0;
+    for (int k = 0; k < FINE * FINE; k++) brighter += (double)pixels[k] > 1.02 * channel.open;
+    ck_assert_int_gt(brighter, 2); /* the fold is seen */
+    skg_plan_release(&plan);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, random_scenes, 0, 20);
     tcase_add_test(tests, leaving_the_verified_range);
+    tcase_add_test(tests, a_fold_is_within_the_verified_range);
 }
 
 SKG_SUITE_MAIN("compression", add_tests)

@@ -229,6 +229,20 @@ START_TEST(warnings_are_told_unless_quiet) {
 }
 END_TEST
 
+/* A compressed scene says nothing of its bound at the view that it was planned for, and tells what leaves it.
+ */
+START_TEST(the_bound_holds_at_the_own_view) {
+    ck_run(0, "thorax -o .");
+    ck_run(0, "plan thorax.json --json");
+    json_t *object = said_json();
+    ck_assert(json_number_value(member(object, "bound")) > 0);
+    ck_assert_int_eq(json_integer_value(member(object, "outside_pixels")), 0);
+    json_decref(object);
+    ck_run(0, "image thorax.json -o a.mha");
+    ck_assert_ptr_null(strstr(complained, "bound"));
+}
+END_TEST
+
 START_TEST(times_are_printed) {
     ck_run(0, "image scene.json --repeat 3");
     ck_assert_ptr_nonnull(strstr(said, "(3 frames)\n"));
@@ -246,6 +260,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);
     tcase_add_test(tests, warnings_are_told_unless_quiet);
+    tcase_add_test(tests, the_bound_holds_at_the_own_view);
     tcase_add_test(tests, times_are_printed);
 }
 
