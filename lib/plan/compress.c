@@ -47,16 +47,30 @@ cleanup:
     return status;
 }
 
+/* Means of the channels, then their variances where there is noise. */
+static int32_t sets_of(const skg_model *model) {
+    return model->variances ? 2 * model->channels : model->channels;
+}
+
+/* What set s takes of node n. */
+static double *table_of(const skg_model *model, int32_t s) {
+    return s < model->channels ? model->weights : model->variances;
+}
+static double *weight_at(const skg_model *model, int32_t n, int32_t s) {
+    return &table_of(model, s)[n * model->channels + s % model->channels];
+}
+
 static skg_status describe(compressing *c, const skg_model *model) {
-    const int32_t bins = model->nodes, sets = model->channels;
+    const int32_t bins = model->nodes, sets = sets_of(model);
     SKG_TRY(skg_alloc((int64_t)bins * sets, sizeof *c->shares, "nodes", &c->shares));
     SKG_TRY(skg_alloc(sets, sizeof *c->sums, "nodes", &c->sums));
-    for (int32_t k = 0; k < bins * sets; k++) c->sums[k % sets] += model->weights[k];
+    for (int32_t k = 0; k < bins * sets; k++) c->sums[k % sets] += *weight_at(model, k / sets, k % sets);
     for (int32_t k = 0; k < bins * sets; k++)
-        c->shares[k] = c->sums[k % sets] > 0 ? model->weights[k] / c->sums[k % sets] : 0;
+        c->shares[k] = c->sums[k % sets] > 0 ? *weight_at(model, k / sets, k % sets) / c->sums[k % sets] : 0;
     c->beam = (skg_polychromatic){.bins = bins,
                                   .materials = model->planes,
                                   .sets = sets,
+                                  .paired = model->variances != NULL,
                                   .mu = c->mu,
                                   .shares = c->shares,
                                   .low = c->ranges.low,
@@ -174,13 +188,16 @@ static skg_status find_range(const compressing *c, skg_model *model) {
 
 static void rewrite_nodes(const compressing *c, skg_model *model) {
     const skg_nodes *nodes = &c->found.nodes;
-    const int32_t sets = model->channels, bins = c->beam.bins, planes = c->basis.planes;
+    const int32_t sets = c->beam.sets, bins = c->beam.bins, planes = c->basis.planes;
     for (int32_t n = 0; n < nodes->count; n++) {
         const int32_t bin = nodes->bin[n]; /* n or above: nothing is overwritten before it is read */
         double before = 0, after = 0;
         for (int32_t s = 0; s < sets; s++) {
+            const double weight = nodes->shares[n * sets + s] * c->sums[s];
+            *weight_at(model, n, s) = weight;
+            if (s >= model->channels) continue;
             before += c->shares[bin * sets + s] * c->sums[s];
-            after += model->weights[n * sets + s] = nodes->shares[n * sets + s] * c->sums[s];
+            after += weight;
         }
         model->node_kev[n] = model->node_kev[bin];
         model->node_photons[n] = before > 0 ? model->node_photons[bin] * (after / before) : 0;

@@ -12,7 +12,8 @@
 
 /* Exact: every bin. A set is what one channel counts of a bin's photons, as a share of its open beam. */
 typedef struct {
-    int32_t bins, materials, sets, reserved;
+    int32_t bins, materials, sets;
+    int32_t paired;       /* 1: sets k and sets/2 + k have positive weights at the same energies, or none */
     const double *mu;     /* [materials][bins] 1/mm */
     const double *shares; /* [bins][sets], each set sums to 1 */
     const double *low;    /* [materials] mm: range of the lengths */

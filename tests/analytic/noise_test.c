@@ -152,6 +152,37 @@ START_TEST(two_energies_in_iodide) {
 }
 END_TEST
 
+/* Fewer energies stand for the same means and variances, where photons are many and where they are few. */
+START_TEST(compressed_spectra) {
+    static double images[4 * PIXELS];
+    enum { ENERGIES = 60 };
+    double kev[ENERGIES], photons[ENERGIES];
+    skg_plan_options options = noisy();
+    options.response = scintillator;
+    for (int few = 0; few < 2; few++) {
+        skg_plan *plan = NULL;
+        skg_plan_report report;
+        for (int i = 0; i < ENERGIES; i++) {
+            kev[i] = 20.5 + i;
+            photons[i] = (few ? 1e-3 : 1) * (i + 1) * (ENERGIES - i);
+        }
+        skg_spectrum *spectrum = energies(ENERGIES, kev, photons);
+        const truth t = sum_energies(ENERGIES, kev, photons, &options);
+        ck_assert(few ? t.detected > 1 && t.detected < 10 : t.detected > 1000);
+        options.tolerance = 1e-3;
+        skg_plan_report_init(&report);
+        ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+        ck_skg(skg_plan_get_report(plan, &report));
+        ck_assert_int_lt(report.nodes, 16);
+        ck_assert(report.bound > 0 && report.bound <= 1e-3);
+        skg_plan_release(&plan);
+        take(spectrum, &options, 7, 4, images);
+        check_moments(4 * PIXELS, images, &t);
+        skg_spectrum_release(&spectrum);
+    }
+}
+END_TEST
+
 /* One energy, photons counted: whole numbers with Poisson's distribution; DQE(0) = eta A_S follows from mean
  * and variance. */
 START_TEST(few_photons_are_exact) {
@@ -368,6 +399,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_test(tests, two_energies_in_iodide);
+    tcase_add_test(tests, compressed_spectra);
     tcase_add_test(tests, few_photons_are_exact);
     tcase_add_test(tests, detective_quantum_efficiency);
     tcase_add_test(tests, shares_of_an_extended_source);

@@ -111,7 +111,8 @@ typedef struct {
     double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
                          error that fewer energies and planes may make, relative where more than 1e-6 of the
                          open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
-                         that the plan's view meets, and a quarter more */
+                         that the plan's view meets, and a quarter more. With noise the same
+                         holds of its variance; few photons are then drawn at these energies */
     const skg_detector_blur *blur; /* copied; NULL: none */
     double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
                            variance by 1 / swank; 1 (default): every photon gives what the response says */
