@@ -167,6 +167,7 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
     /* OpenCL keeps the old tables until what is enqueued is done. */
     skg_attenuation_release(&plan->attenuation);
     SKG_TRY(make_attenuation(plan));
+    plan->field.known = 0;
     plan->materials = plan->scene->materials;
     return SKG_OK;
 }
@@ -272,6 +273,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
     skg_buffer_release(&plan->gaps);
+    skg_buffer_release(&plan->field.image);
     skg_contest_memory_release(&plan->contest_memory);
 }
 

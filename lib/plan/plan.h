@@ -53,6 +53,16 @@ typedef struct {
 } skg_stage_time;
 enum { SKG_MOST_STAGES = 32 };
 
+/* What the beam gives without parts and noise, where noisy images are shown over it and it differs from pixel
+ * to pixel (field.c). */
+typedef struct {
+    int32_t wanted;
+    int32_t known; /* for this view and type */
+    int32_t is_double, reserved;
+    skg_view view;
+    skg_buffer image; /* [channels][rows][columns] */
+} skg_open_field;
+
 /* Rasterisers compiled so far, by what they can do: sums of 32 or 64 bits, point or parallel beam, ... */
 enum { SKG_MOST_RASTERS = 16 };
 
@@ -79,6 +89,7 @@ struct skg_plan {
     skg_attenuator *attenuator;
     skg_blur *blur;         /* NULL: none */
     skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
+    skg_open_field field;
     int64_t open_count;
     int64_t *open;  /* [open_count] parts that are not closed */
     skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
