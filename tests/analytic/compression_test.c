@@ -277,8 +277,43 @@ START_TEST(a_fold_is_within_the_verified_range) {
 }
 END_TEST
 
+/* The energies that a plan has chosen, given back as a beam of which every one is used. */
+START_TEST(nodes_are_a_beam) {
+    static picture exact, fewer, given;
+    double kev[64], photons[64];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    open_scene(11);
+    add_parts(6);
+    skg_spectrum *spectrum = tube(110), *nodes = NULL;
+    skg_plan_options_init(&options);
+    options.overlaps = 0;
+    options.precision = has_double() ? SKG_DOUBLE : SKG_SINGLE;
+    take(spectrum, &options, &exact);
+    options.tolerance = 1e-3;
+    take(spectrum, &options, &fewer);
+    ck_assert_int_le(fewer.report.nodes, 64);
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    for (int64_t n = 0; n < fewer.report.nodes; n++)
+        ck_skg(skg_plan_node(plan, n, &kev[n], &photons[n], NULL));
+    skg_plan_release(&plan);
+    ck_skg(skg_spectrum_bins(fewer.report.nodes, kev, photons, &nodes));
+    options.tolerance = 0;
+    take(nodes, &options, &given);
+    ck_assert_int_eq(given.report.nodes, fewer.report.nodes);
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        ck_assert_double_le(error_of(&options, given.pixels[k], exact.pixels[k], exact.open[0]), 1e-3);
+        ck_assert_double_le(error_of(&options, given.pixels[k], fewer.pixels[k], exact.open[0]), 1e-3);
+    }
+    skg_spectrum_release(&nodes);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, random_scenes, 0, 20);
+    tcase_add_test(tests, nodes_are_a_beam);
     tcase_add_test(tests, leaving_the_verified_range);
     tcase_add_test(tests, a_fold_is_within_the_verified_range);
 }

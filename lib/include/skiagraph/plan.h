@@ -239,7 +239,10 @@ SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *re
 
 /* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
  * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
- * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. */
+ * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. With one channel and no
+ * noise these energies and photons are a beam (skg_spectrum_bins) that a plan of tolerance 0 makes the same
+ * image of, but for what fewer planes err: so a numerical code may keep its nodes whatever is planned later.
+ */
 SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
                                  double *weights);
 
