@@ -2,6 +2,7 @@
 
 #include "plan/basis.h"
 #include "plan/nodes.h"
+#include "plan/noise.h"
 #include "plan/ranges.h"
 
 #include <math.h>
@@ -209,13 +210,15 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     model->verified = c->found.verified;
 }
 
-skg_status skg_compress(const skg_scene *scene, const skg_view *view, const double *mu, double tolerance,
-                        int is_ratio, skg_model *model) {
+skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
+                        const double *mu, skg_model *model) {
+    const int is_ratio = skg_plan_is_ratio(options);
     /* A ratio to what the world lets pass has the errors of both. */
     const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
-    compressing c = {.scene = scene, .mu = mu, .tolerance = tolerance / errors, .is_ratio = is_ratio};
+    compressing c = {
+        .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, model, &c.ranges));
+    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c.ranges));
     SKG_TRY_CLEANUP(describe(&c, model));
     SKG_TRY_CLEANUP(choose_planes(&c, model));
     SKG_TRY_CLEANUP(

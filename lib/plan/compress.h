@@ -5,9 +5,9 @@
 #include "plan/model.h"
 
 /* Rewrites a model that has a plane per material and a node per bin; leaves it as it is where that meets no
- * lower cost. mu: [planes][nodes] 1/mm, what a mm of a plane attenuates; it is left as it was. tolerance > 0.
- * is_ratio: images are over the open beam. */
-skg_status skg_compress(const skg_scene *scene, const skg_view *view, const double *mu, double tolerance,
-                        int is_ratio, skg_model *model);
+ * lower cost. mu: [planes][nodes] 1/mm, what a mm of a plane attenuates; it is left as it was. options:
+ * tolerance > 0, quantity, further views. */
+skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
+                        const double *mu, skg_model *model);
 
 #endif

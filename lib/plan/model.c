@@ -228,8 +228,7 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
     if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
-        SKG_TRY_CLEANUP(
-            skg_compress(scene, view, m.bases, options->tolerance, skg_plan_is_ratio(options), model));
+        SKG_TRY_CLEANUP(skg_compress(scene, view, options, m.bases, model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);

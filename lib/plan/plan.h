@@ -76,6 +76,7 @@ struct skg_plan {
     int64_t structure; /* of the scene when the plan was made: another one is stale */
     int64_t materials; /* of the scene that the model is of */
     double *band_kev;  /* [bands + 1] */
+    skg_view *views;   /* [view_count] further ones */
 
     skg_plan_meshes meshes;
     skg_geometry geometry;

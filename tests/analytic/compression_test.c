@@ -229,6 +229,65 @@ START_TEST(leaving_the_verified_range) {
 }
 END_TEST
 
+/* Source and detector turned about the y axis through the origin. */
+static skg_view turned(double degrees) {
+    const double pi = acos(-1), c = cos(degrees * pi / 180), s = sin(degrees * pi / 180);
+    skg_view one = view;
+    double *vectors[] = {one.source, one.centre, one.column_step};
+    for (int k = 0; k < 3; k++) {
+        const double x = vectors[k][0], z = vectors[k][2];
+        vectors[k][0] = c * x + s * z, vectors[k][2] = c * z - s * x;
+    }
+    return one;
+}
+
+/* A bar off the axis is thin at first, thick later, and out of the picture in between. */
+START_TEST(views_of_a_scan_stay_within_the_range) {
+    static float pixels[SIDE * SIDE];
+    skg_view views[16];
+    skg_mesh *mesh = NULL;
+    skg_plan_options options;
+    skg_output output;
+    open_scene(1);
+    view.column_step[0] = 3;
+    ck_skg(skg_mesh_cuboid(120, 40, 20, &mesh));
+    add(mesh, "Bone, Cortical (ICRU-44)", 30, 0, -1);
+    ck_skg(skg_mesh_sphere(30, 24, &mesh));
+    add(mesh, "Tissue, Soft (ICRU-44)", -60, 0, -1);
+    skg_spectrum *spectrum = tube(100);
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-3;
+    for (int k = 0; k < 16; k++) views[k] = turned(22.5 * (k + 1));
+    skg_output_init(&output);
+    output.data = pixels;
+    for (int planned = 0; planned < 2; planned++) {
+        skg_plan *plan = NULL;
+        int outside = 0;
+        options.view_count = planned ? 16 : 0, options.views = planned ? views : NULL;
+        ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+        for (int k = 0; k < 36; k++) {
+            const skg_view one = turned(10 * k);
+            ck_skg(skg_plan_move(plan, &one));
+            const skg_status status = skg_plan_image(plan, &output);
+            ck_assert(status == SKG_OK || status == SKG_RANGE);
+            outside += status == SKG_RANGE;
+        }
+        ck_assert(planned ? outside == 0 : outside > 4);
+        skg_plan_release(&plan);
+    }
+    options.view_count = -1;
+    skg_plan *none = NULL;
+    ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &none), SKG_ERR_ARGUMENT,
+                 "-1 further views");
+    options.view_count = 1;
+    views[0].columns = 0;
+    ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &none), SKG_ERR_SCENE,
+                 "0 columns");
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
 /* A closed mesh may fold over itself: a ray that grazes the fold has a length below nothing. Here a cube of
  * 40 mm and beside it one of 0.5 mm turned inside out, which no coarse ray meets. */
 static skg_mesh *folded(void) {
@@ -315,6 +374,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, random_scenes, 0, 20);
     tcase_add_test(tests, nodes_are_a_beam);
     tcase_add_test(tests, leaving_the_verified_range);
+    tcase_add_test(tests, views_of_a_scan_stay_within_the_range);
     tcase_add_test(tests, a_fold_is_within_the_verified_range);
 }
 

@@ -122,6 +122,9 @@ typedef struct {
     int32_t repair;          /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
     int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
                      it */
+    int64_t view_count;    /* 0 to 1024 further views that frames are to have, a sample of them: */
+    const skg_view *views; /* [view_count] the error bound of a tolerance holds for the lengths that these
+                              meet, too. Copied; of no effect where tolerance is 0 */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
