@@ -26,10 +26,8 @@ typedef struct {
     int64_t hits;
 } ray_grid;
 
-static void lay_grid(ray_grid *grid, int64_t most, const double low[2], const double high[2],
-                     const skg_camera *camera) {
-    grid->columns = camera->columns < most ? camera->columns : most;
-    grid->rows = camera->rows < most ? camera->rows : most;
+static void lay_grid(ray_grid *grid, int64_t side, const double low[2], const double high[2]) {
+    grid->columns = grid->rows = side;
     grid->column_step = (high[0] - low[0]) / (double)grid->columns;
     grid->row_step = (high[1] - low[1]) / (double)grid->rows;
     grid->column = low[0] + OFF_COLUMN * grid->column_step;
@@ -175,7 +173,7 @@ static skg_status add_own_rays(const skg_scene_part_data *part, int64_t number, 
     const double low[2] = {fmax(r->low_column, -0.5), fmax(r->low_row, -0.5)};
     const double high[2] = {fmin(r->high_column, (double)camera->columns - 0.5),
                             fmin(r->high_row, (double)camera->rows - 0.5)};
-    lay_grid(grid, OWN_SIDE, low, high, camera);
+    lay_grid(grid, OWN_SIDE, low, high);
     if (!(grid->column_step > 0 && grid->row_step > 0)) return SKG_OK;
     SKG_TRY(measure(camera, part, extent->near_source, grid));
     for (int64_t k = 0; k < grid->columns * grid->rows; k++)
@@ -193,7 +191,7 @@ typedef struct {
 static void lay_over_detector(ray_grid *grid, looking *look) {
     const double low[2] = {-0.5, -0.5};
     const double high[2] = {(double)look->camera.columns - 0.5, (double)look->camera.rows - 0.5};
-    lay_grid(grid, look->side, low, high, &look->camera);
+    lay_grid(grid, look->side, low, high);
     look->rays = grid->columns * grid->rows;
 }
 
