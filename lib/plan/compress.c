@@ -8,10 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Costs per pixel in multiply-adds of the attenuation: a plane written by a hit; a plane read; and how many
- * nodes a plane is multiplied for, as long as that is not known. They only choose between layouts of the same
- * accuracy. */
-static const double COST_OF_WRITE = 50, COST_OF_PLANE = 50, LIKELY_NODES = 12;
+/* How many nodes a plane is multiplied for, as long as that is not known. */
+static const double LIKELY_NODES = 12;
 /* What of the tolerance planes may use, before the doubling of what is found. */
 static const double SHARE_OF_PLANES = 0.125;
 /* Points that planes are chosen by. */
@@ -91,11 +89,11 @@ static void mix_writes(const skg_model *model, const skg_basis *basis, int64_t p
 }
 
 static double cost_of(const compressing *c, const skg_model *model, const skg_basis *basis, double *weights) {
-    double cost = basis->planes * (COST_OF_PLANE + LIKELY_NODES);
+    double cost = basis->planes * (SKG_COST_OF_PLANE + LIKELY_NODES);
     for (int64_t p = 0; p < c->scene->count; p++) {
         mix_writes(model, basis, p, weights);
         for (int32_t k = 0; k < basis->planes; k++)
-            if (weights[k] != 0) cost += COST_OF_WRITE * c->ranges.hits[p];
+            if (weights[k] != 0) cost += SKG_COST_OF_WRITE * c->ranges.hits[p];
     }
     return cost;
 }

@@ -72,6 +72,7 @@ static skg_status report_places(skg_plan *plan) {
     if (plan->contest_possible)
         SKG_TRY_CLEANUP(skg_contest_find(scene, plan->options.clip, extents, &contest));
     report_contest(plan, contest.count);
+    skg_report_costs(plan, extents);
 cleanup:
     skg_contest_release(&contest);
     skg_free(&extents);
@@ -206,6 +207,7 @@ skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effe
     skg_effect ours = {.size = sizeof ours,
                        .on = plan->effects[index].on,
                        .name = names[index],
+                       .cost = plan->effects[index].cost,
                        .reason = plan->effects[index].reason};
     return skg_struct_write(&ours, sizeof ours, "skg_effect", effect);
 }

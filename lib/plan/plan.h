@@ -43,6 +43,7 @@ enum {
 
 typedef struct {
     int32_t on;
+    double cost; /* estimated, in frames without any effect */
     char reason[256];
 } skg_effect_state;
 

@@ -200,6 +200,7 @@ START_TEST(plan_says_what_and_why) {
     ck_assert_ptr_null(strstr(said, "1 tiles"));
     ck_assert_ptr_nonnull(strstr(said, "60 keV, 1000 photons per pixel"));
     ck_assert_ptr_nonnull(strstr(said, "\n  on  nesting "));
+    ck_assert_ptr_null(strstr(said, "\nenergies, keV")); /* one: none was chosen */
     ck_assert_ptr_nonnull(strstr(said, "Directly transmitted photons only."));
     ck_run(0, "plan scene.json --strategy atomics");
     ck_assert_ptr_nonnull(strstr(said, "atomics: the whole detector, 24 triangles\n"));
@@ -237,7 +238,25 @@ START_TEST(the_bound_holds_at_the_own_view) {
     json_t *object = said_json();
     ck_assert(json_number_value(member(object, "bound")) > 0);
     ck_assert_int_eq(json_integer_value(member(object, "outside_pixels")), 0);
+    ck_assert(json_number_value(member(member(object, "stages_ns"), "attenuate")) > 0);
+    ck_assert_int_gt(json_integer_value(member(object, "bins")),
+                     (json_int_t)json_array_size(member(object, "nodes")));
+    size_t index;
+    json_t *effect;
+    json_array_foreach(member(object, "effects"), index, effect) {
+        const char *name = json_string_value(member(effect, "name"));
+        const double cost = json_number_value(member(effect, "cost"));
+        if (strcmp(name, "several energies") == 0)
+            ck_assert_double_gt(cost, 0);
+        else if (strcmp(name, "spectral compression") == 0)
+            ck_assert_double_lt(cost, 0);
+        else
+            ck_assert(cost == 0);
+    }
     json_decref(object);
+    ck_run(0, "plan thorax.json --set Source.Shape='[\"Rectangle\",1,1,\"mm\"]' --set Source.Samples=4");
+    ck_assert_ptr_nonnull(strstr(said, "\n  on  extended source           +")); /* three passes more */
+    ck_assert_ptr_nonnull(strstr(said, "\nenergies, keV: photons per pixel"));
     ck_run(0, "image thorax.json -o a.mha");
     ck_assert_ptr_null(strstr(complained, "bound"));
 }

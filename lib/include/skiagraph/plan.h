@@ -254,6 +254,9 @@ typedef struct {
     int32_t size;
     int32_t on; /* 1 or 0 */
     const char *name, *reason;
+    double cost; /* estimated: what it adds to a frame, in frames of the same scene without any effect (one
+                    energy, a point source, ...); below 0 what it saves. Rough: from counts of operations; 0
+                    also where it costs nothing, or nothing in a frame */
 } skg_effect;
 
 SKG_API void skg_effect_init(skg_effect *effect);
