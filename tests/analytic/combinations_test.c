@@ -135,20 +135,25 @@ typedef struct {
     double all[PIXELS], nearest; /* rays from end to end; the one to the pixel nearest the source */
 } rays;
 
-static void find_rays(const int *on, const skg_view *from, rays *found) {
+static skg_plan *plan_lengths(const skg_plan_options *options) {
     const double one_kev = 60, one_photon = 1;
-    const skg_plan_options options = plain_options(on);
     skg_spectrum *mono = NULL;
     skg_plan *plan = NULL;
+    ck_skg(skg_spectrum_bins(1, &one_kev, &one_photon, &mono));
+    ck_skg(skg_plan_create(context, scene, &view, mono, options, &plan));
+    skg_spectrum_release(&mono);
+    return plan;
+}
+
+static void find_rays(skg_plan *plan, int32_t precision, const skg_view *from, rays *found) {
     skg_output output;
     skg_output_init(&output);
-    output.type = options.precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
-    ck_skg(skg_spectrum_bins(1, &one_kev, &one_photon, &mono));
-    ck_skg(skg_plan_create(context, scene, from, mono, &options, &plan));
+    output.type = precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
+    ck_skg(skg_plan_move(plan, from));
     for (int p = 0; p < PARTS; p++) {
         static float single[PIXELS];
         skg_job *job = NULL;
-        output.data = options.precision == SKG_DOUBLE ? (void *)found->lengths[p] : single;
+        output.data = precision == SKG_DOUBLE ? (void *)found->lengths[p] : single;
         ck_skg(skg_plan_lengths(plan, p, SKG_NET, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int k = 0; k < PIXELS && output.type == SKG_FLOAT32; k++)
@@ -165,8 +170,6 @@ static void find_rays(const int *on, const skg_view *from, rays *found) {
         found->all[k] = sqrt(square);
         found->nearest = fmin(found->nearest, found->all[k]);
     }
-    skg_plan_release(&plan);
-    skg_spectrum_release(&mono);
 }
 
 static double mu_of(const skg_material *material, double energy) {
@@ -228,6 +231,8 @@ static void blur(double *image) {
 static void make_plainly(const int *on, int channels, double *image) {
     static rays found;
     const int side = on[SPOT] ? 2 : 1, pieces = on[SUPERSAMPLING] ? 2 : 1;
+    const skg_plan_options options = plain_options(on);
+    skg_plan *lengths = plan_lengths(&options);
     memset(image, 0, MOST_CHANNELS * PIXELS * sizeof *image);
     for (int s = 0; s < side * side * pieces * pieces; s++) {
         const int spot = s / (pieces * pieces), piece = s % (pieces * pieces);
@@ -239,9 +244,10 @@ static void make_plainly(const int *on, int channels, double *image) {
         one.source[1] += on[SPOT] ? (spot / 2 - 0.5) * spot_width / 2 : 0;
         one.centre[0] += ((piece % pieces + 0.5) / pieces - 0.5) * view.column_step[0];
         one.centre[1] += ((piece / pieces + 0.5) / pieces - 0.5) * view.row_step[1];
-        find_rays(on, &one, &found);
+        find_rays(lengths, options.precision, &one, &found);
         add_rays(on, &found, 1.0 / (side * side * pieces * pieces), channels, image);
     }
+    skg_plan_release(&lengths);
     for (int c = 0; c < channels && on[BLUR]; c++) blur(image + c * PIXELS);
 }
 
