@@ -21,7 +21,8 @@ typedef struct {
 typedef struct {
     skg_camera camera;
     skg_kernel_options kernels;
-    int64_t planes;
+    int64_t planes;                     /* of the raster: accumulators where they are mixed */
+    skg_mix mix;                        /* of an image's planes; none: accumulators are planes */
     skg_geometry_part *parts;           /* [parts] closed ones with their writes, open ones without */
     skg_plane_weight *writes;           /* of lengths */
     int64_t *first_write;               /* [parts + 1] of lengths */
