@@ -68,6 +68,10 @@ skg_status skg_contest_run(skg_plan *plan, skg_job *job, const skg_frame_parts *
 /* Warns once that nothing falls on the detector: which way, how far (unseen.c). */
 void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame);
 
+/* Enqueues the open field of the frame's view into plan->field, where it is wanted and not known (field.c).
+ */
+skg_status skg_field_find(skg_plan *plan, skg_job *job, const skg_frame_work *work);
+
 /* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps (detect.c). */
 skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *work);
 

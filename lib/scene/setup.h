@@ -27,6 +27,8 @@ typedef struct {
     double centre[3]; /* mm, of the rotation */
     double axis[3];   /* of the rotation, length 1 */
     char *folder;     /* OutFolder relative to the scene file's own, or NULL */
+    int64_t view_count;
+    skg_view *views; /* [view_count] a sample of those after the first */
 } skg_scan_section;
 
 /* A value over time: straight between its points (s, value), constant beyond them. */
