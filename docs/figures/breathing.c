@@ -155,6 +155,7 @@ static void say(cairo_t *c, double x, double y, const char *text) {
     cairo_set_source_rgb(c, 0.1, 0.1, 0.1);
     cairo_move_to(c, x, y);
     cairo_show_text(c, text);
+    cairo_new_path(c); /* text leaves a current point, from which the next path would begin */
 }
 
 static void save(cairo_t *c, const char *folder, const char *name) {
