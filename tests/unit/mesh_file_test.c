@@ -271,6 +271,7 @@ START_TEST(damaged_obj_is_told) {
     refuse(file_of("j.obj", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3"), SKG_ERR_MESH, "vertex 1 is at (nan");
     refuse(file_of_bytes("k.obj", "v 0 0 0\0", 9), SKG_ERR_FORMAT, "zero byte");
     refuse(file_of("l.obj", SQUARE "f a b c"), SKG_ERR_FORMAT, "line 5");
+    refuse(file_of("m.obj", SQUARE "g \\\r\\\\ \\\r"), SKG_ERR_MESH, "no triangles"); /* continues nothing */
 }
 END_TEST
 
