@@ -3,6 +3,7 @@
 
 #include "explain.h"
 #include "folder.h"
+#include "interrupt.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -21,8 +22,8 @@ static const cli_flag flag_phase = {"--phase", "P",
                                     "one picture at this phase: 0 end-inspiration, 0.5 about\n"
                                     "expiration; events do not count"};
 static const cli_flag flag_meshes = {"--meshes", "DIR",
-                                     "a PLY file of every part that moves, every frame, with the\n"
-                                     "displacement of each vertex in mm"};
+                                     "a binary PLY file of every part that moves, every frame,\n"
+                                     "with the displacement of each vertex in mm"};
 static const cli_flag flag_outline = {"--outline", "PARTS@P",
                                       "draws the outlines that parts have at phase P, as\n"
                                       "ribs,diaphragm@0"};
@@ -52,6 +53,7 @@ static int read_flags(const cli_arguments *arguments, cli_fluoroscopy *f, sequen
     *s = (sequence){.fps = 30, .phase = (double)NAN};
     s->place = cli_value(arguments, &flag_place);
     s->meshes = cli_value(arguments, &flag_meshes);
+    if (s->meshes) cli_guard_output(s->meshes);
     if (!s->place) return cli_error(CLI_USAGE, "breathe: nowhere to write to; add -o DIR");
     int exit_status = read_positive(arguments, &flag_seconds, &s->seconds);
     if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &flag_fps, &s->fps);
