@@ -290,6 +290,7 @@ static int64_t fail_everywhere(int kind, const effects *with) {
     }
     printf("%lld calls, %lld places tried, %lld of them to no harm\n", (long long)calls, (long long)tried,
            (long long)survived);
+    fflush(stdout);
     return tried;
 }
 
