@@ -119,7 +119,7 @@ static const effects runs[] = {
      .clip = 1},
     /* half, which knows closed meshes only */
     {.file = "scene.json",
-     .settings = {"Precision=half", "Samples.sheet.Path=bone.obj",
+     .settings = {"Precision=half", "World=Vacuum", "Samples.sheet.Path=bone.obj",
                   "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"}},
     /* samples of the source as their tolerance asks for, a table of attenuation */
     {.file = "scene.json",
