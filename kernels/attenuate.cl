@@ -77,6 +77,9 @@ typedef struct {
     int nodes, column, row; /* the work-item's first pixel */
     __constant const skg_real *coefficients, *weights;
     skg_real factor;
+#if SKG_SUMS
+    __constant const skg_real *lists;
+#endif
 #if SKG_WORLD
     int world_plane;
     skg_real4 world;
@@ -108,15 +111,30 @@ typedef struct {
 #define SKG_EACH_CHANNEL SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
 #define SKG_EACH_PLANE(first) SKG_UNROLL for (int p = first; p < SKG_PLANES; p++)
 
-/* Path lengths from the sums. Runs past the end of a row stay in it. */
+/* mm of the planes of run r, from the sums; scaled: mm of a unit. */
+static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, __global const int *used, int at,
+                         skg_realv scaled, skg_pixels *pixels, int r) {
+#if SKG_SUMS
+    SKG_EACH_PLANE(0) pixels->x[p][r] = (skg_realv)(0);
+    SKG_UNROLL for (int s = 0; s < SKG_SUMS; s++) {
+        const skg_realv sum = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, s, pass->row, at)) * scaled;
+        SKG_EACH_PLANE(0)
+        pixels->x[p][r] = fma((skg_realv)(pass->lists[s * SKG_PLANES + p]), sum, pixels->x[p][r]);
+    }
+#else
+    SKG_EACH_PLANE(0)
+    pixels->x[p][r] = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, p, pass->row, at)) * scaled;
+#endif
+}
+
+/* Path lengths. Runs past the end of a row stay in it. */
 static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies, __global const int *used,
                             skg_pixels *pixels) {
     SKG_EACH_RUN {
         const int at = min(pass->column + r * SKG_WIDE, pass->frame->columns - 1);
         const skg_realv length = skg_ray_lengths_v(pass->ray, at, pass->row);
         const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * pass->ray->unit;
-        SKG_EACH_PLANE(0)
-        pixels->x[p][r] = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, p, pass->row, at)) * scaled;
+        skg_read_run(pass, copies, used, at, scaled, pixels, r);
 #if SKG_WORLD
         const skg_realv path = fma((skg_realv)(pass->world.z), (skg_real)at + SKG_LANES,
                                    (skg_realv)(fma(pass->world.w, (skg_real)pass->row, pass->world.y)));
@@ -291,12 +309,16 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  * subtracted for children than their parent has. World: a plane gets `world` for each mm of path, which is |ray| times
  * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. Noise: variances of the nodes as weights; by photons
  * where fewer than `photons` of them are detected, as far as mean and variance tell: mean^2 / variance is never more.
- * Ranged: negative[1] counts the pixels that have a plane outside range[plane], lowest and highest in mm. */
+ * Sums: a unit of accumulator s adds lists[s][p] to plane p. Ranged: negative[1] counts the pixels that have a plane outside range[plane], lowest and highest in mm. */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
                             __constant const skg_real *weights, skg_real factor, skg_real limit,
                             __global int *negative, __global skg_out *output, long offset, long row_stride,
                             long channel_stride
+#if SKG_SUMS
+                            ,
+                            __constant const skg_real *lists
+#endif
 #if SKG_WORLD
                             ,
                             int world_plane, skg_real4 world
@@ -324,6 +346,9 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     pass.coefficients = coefficients;
     pass.weights = weights;
     pass.factor = factor;
+#if SKG_SUMS
+    pass.lists = lists;
+#endif
 #if SKG_WORLD
     pass.world_plane = world_plane;
     pass.world = world;

@@ -12,7 +12,7 @@ static void skg_draw_list(const skg_target *target, skg_batch *batch, __global c
 }
 
 /* scratch: an image of tile_rows + SKG_SPARE_ROWS rows for each plane of each work-group. used[copies]: the band that
- * is claimed next. */
+ * is claimed next; then fields. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_bands(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                  __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
@@ -37,18 +37,22 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
         if (band >= frame.tiles_down) break;
         target.first_row = band * frame.tile_rows;
         target.last_row = min(target.first_row + frame.tile_rows, frame.rows);
-        skg_zero(target.image, frame.planes * target.plane);
+        __global const int *fields = used + SKG_FIELD(frame.copies, 0);
+        skg_zero(&target, fields, frame.planes, target.first_row, target.last_row);
         for (int chunk = 0; chunk * SKG_CHUNK < frame.triangles; chunk++) {
             const int2 piece = pieces[chunk * frame.tiles_down + band];
             skg_draw_list(&target, &batch, blocks, pool + piece.x, piece.y, &range);
         }
         skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range);
         skg_flush(&target, &batch);
-        const int size = (target.last_row - target.first_row) * frame.stride;
         for (int p = 0; p < frame.planes; p++) {
-            __global skg_sum *out =
-                sums + (size_t)p * (size_t)frame.plane + (size_t)target.first_row * (size_t)frame.stride;
-            for (int k = 0; k < size; k++) out[k] = target.image[p * target.plane + k];
+            const int4 field = vload4(p, fields);
+            const int end = min(target.last_row, field.y);
+            for (int row = max(target.first_row, field.x); row < end; row++) {
+                __global const skg_sum *from = target.image + p * target.plane + (row - target.first_row) * frame.stride;
+                __global skg_sum *to = sums + (size_t)p * (size_t)frame.plane + (size_t)row * (size_t)frame.stride;
+                for (int k = field.z; k < field.w; k++) to[k] = from[k];
+            }
         }
     }
 }

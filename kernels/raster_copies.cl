@@ -1,6 +1,6 @@
 /* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and
  * claims runs of triangles until none are left. used[copy]: the copy has been zeroed and counts; used[copies]: the
- * triangle that the next claim begins with. */
+ * triangle that the next claim begins with; then fields (skg_shared.h). */
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_copies(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
@@ -25,7 +25,7 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
         if (triangle >= frame.triangles) break;
         const int end = min(triangle + frame.claim, frame.triangles);
         if (!used[copy]) {
-            skg_zero(target.image, size);
+            skg_zero(&target, used + SKG_FIELD(frame.copies, 0), frame.planes, 0, frame.rows);
             used[copy] = 1;
         }
         int part = skg_part_of_triangle(parts, blocks, triangle);

@@ -22,9 +22,8 @@ void queue_free(queue *q) {
 static int clamp(const skg_chain *chain, int64_t e, int32_t i, int32_t j, double *u) {
     int moved = 0;
     for (int k = 0; k < 3; k++) {
-        const skg_chain_edge *edge = chain->edge[k] + e;
         double here = u[k * chain->nodes + i], *there = u + k * chain->nodes + j;
-        double into = fmin(fmax(*there, here - edge->fall), here + edge->rise);
+        double into = fmin(fmax(*there, here - chain->fall[k][e]), here + chain->rise[k][e]);
         moved |= fabs(into - *there) > 1e-12;
         *there = into;
     }
@@ -44,7 +43,7 @@ int64_t queue_move(const skg_chain *chain, int32_t driver, const double target[3
         head = (head + 1) % room;
         q->queued[i] = 0;
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
-            int32_t j = chain->edge[0][e].node;
+            int32_t j = chain->node[e];
             if (j == driver || (most == 1 && q->visited[j])) continue;
             if (!clamp(chain, e, i, j, u)) continue;
             updates++;

@@ -78,21 +78,6 @@ static double *take(const job *j, int32_t precision, int32_t quantity, int32_t f
 /* --- comparing -------------------------------------------------------------------------------------------
  */
 
-/* Zero-mean normalised cross-correlation. */
-static double correlation(const double *a, const double *b, int64_t count) {
-    double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
-    for (int64_t p = 0; p < count; p++) {
-        mean_a += a[p] / (double)count;
-        mean_b += b[p] / (double)count;
-    }
-    for (int64_t p = 0; p < count; p++) {
-        aa += (a[p] - mean_a) * (a[p] - mean_a);
-        bb += (b[p] - mean_b) * (b[p] - mean_b);
-        ab += (a[p] - mean_a) * (b[p] - mean_b);
-    }
-    return ab / sqrt(aa * bb);
-}
-
 typedef struct {
     double ncc, mean, worst; /* mean and largest |ours / reference - 1| */
 } comparison;
@@ -101,7 +86,7 @@ typedef struct {
  * missed. */
 static int compare(const char *what, const double *ours, const double *reference, int64_t count,
                    double least_ncc, double most, FILE *csv) {
-    comparison c = {.ncc = correlation(ours, reference, count)};
+    comparison c = {.ncc = reference_ncc(ours, reference, count)};
     for (int64_t p = 0; p < count; p++) {
         const double error = fabs(ours[p] / reference[p] - 1);
         c.mean += error / (double)count;
@@ -144,24 +129,13 @@ static void print_scatter(const double *scatter, const double *primary, const do
 /* --- for the drawing -------------------------------------------------------------------------------------
  */
 
-static void write_raw(const char *prefix, const char *name, const double *image, int64_t count) {
-    char path[4096];
-    snprintf(path, sizeof path, "%s%s.raw", prefix, name);
-    FILE *file = bench_open(path);
-    for (int64_t p = 0; p < count; p++) {
-        const float value = (float)image[p];
-        if (fwrite(&value, sizeof value, 1, file) != 1) bench_die("%s: cannot be written", path);
-    }
-    fclose(file);
-}
-
 static void write_drawing(const char *prefix, const job *j, const double *ours, const double *total) {
     double *error = bench_alloc((size_t)j->count, sizeof *error);
     char path[4096];
     for (int64_t p = 0; p < j->count; p++) error[p] = 100 * (ours[p] / total[p] - 1);
-    write_raw(prefix, "ours", ours, j->count);
-    write_raw(prefix, "total", total, j->count);
-    write_raw(prefix, "error", error, j->count);
+    reference_write(prefix, "ours", ours, j->count);
+    reference_write(prefix, "total", total, j->count);
+    reference_write(prefix, "error", error, j->count);
     snprintf(path, sizeof path, "%sprofiles.csv", prefix);
     FILE *file = bench_open(path);
     const int64_t n = j->view.columns, middle = j->view.rows / 2;

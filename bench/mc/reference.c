@@ -3,6 +3,7 @@
 #include "common/bench.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,4 +53,29 @@ double *reference_read(const char *prefix, const char *name, int64_t columns, in
     for (size_t p = 0; p < count; p++) image[p] = (double)narrow[p];
     free(narrow);
     return image;
+}
+
+void reference_write(const char *prefix, const char *name, const double *image, int64_t count) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s%s.raw", prefix, name);
+    FILE *file = bench_open(path);
+    for (int64_t p = 0; p < count; p++) {
+        const float value = (float)image[p];
+        if (fwrite(&value, sizeof value, 1, file) != 1) bench_die("%s: cannot be written", path);
+    }
+    fclose(file);
+}
+
+double reference_ncc(const double *a, const double *b, int64_t count) {
+    double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
+    for (int64_t p = 0; p < count; p++) {
+        mean_a += a[p] / (double)count;
+        mean_b += b[p] / (double)count;
+    }
+    for (int64_t p = 0; p < count; p++) {
+        aa += (a[p] - mean_a) * (a[p] - mean_a);
+        bb += (b[p] - mean_b) * (b[p] - mean_b);
+        ab += (a[p] - mean_a) * (b[p] - mean_b);
+    }
+    return ab / sqrt(aa * bb);
 }

@@ -8,4 +8,10 @@
  * such file and it is not needed. To be freed. */
 double *reference_read(const char *prefix, const char *name, int64_t columns, int64_t rows, int needed);
 
+/* Writes <prefix><name>.raw, float32 without a header. */
+void reference_write(const char *prefix, const char *name, const double *image, int64_t count);
+
+/* Zero-mean normalised cross-correlation. */
+double reference_ncc(const double *a, const double *b, int64_t count);
+
 #endif

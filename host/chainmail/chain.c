@@ -34,9 +34,11 @@ static void fill_edges(skg_chain *chain, const double *rest, int64_t links, cons
         int64_t ab = chain->first[a]++, ba = chain->first[b]++;
         for (int k = 0; k < 3; k++) {
             double rise = slack(t, d, k, 1), fall = slack(t, d, k, -1);
-            chain->edge[k][ab] = (skg_chain_edge){rise, fall, b};
-            chain->edge[k][ba] = (skg_chain_edge){fall, rise, a};
+            chain->rise[k][ab] = chain->fall[k][ba] = rise;
+            chain->fall[k][ab] = chain->rise[k][ba] = fall;
+            chain->slack[k] += 0.5 * (rise + fall) / (double)links;
         }
+        chain->node[ab] = b, chain->node[ba] = a;
     }
     for (int64_t i = chain->nodes; i > 0; i--) chain->first[i] = chain->first[i - 1];
     chain->first[0] = 0;
@@ -61,20 +63,16 @@ static skg_status check_links(const char *name, int64_t nodes, const double *res
     return SKG_OK;
 }
 
-static skg_status make_front(int64_t nodes, skg_chain_front *front) {
-    SKG_TRY(skg_alloc(nodes, sizeof(double), "chain", &front->gain));
-    SKG_TRY(skg_alloc(nodes, sizeof(int32_t), "chain", &front->place));
-    SKG_TRY(skg_alloc(nodes, sizeof *front->heap, "chain", &front->heap));
-    return skg_alloc(nodes, sizeof(int32_t), "chain", &front->seen);
-}
-
 static skg_status allocate(skg_chain *chain, const char *name, int64_t links) {
     SKG_TRY(skg_copy_text(name ? name : "chain", &chain->name));
     SKG_TRY(skg_alloc(chain->nodes + 1, sizeof(int64_t), chain->name, &chain->first));
     SKG_TRY(skg_alloc(chain->nodes, sizeof(int32_t), chain->name, &chain->driver_of));
-    for (int k = 0; k < 3; k++)
-        SKG_TRY(skg_alloc(2 * links, sizeof(skg_chain_edge), chain->name, &chain->edge[k]));
-    for (int f = 0; f < 6; f++) SKG_TRY(make_front(chain->nodes, chain->front + f));
+    SKG_TRY(skg_alloc(2 * links, sizeof(int32_t), chain->name, &chain->node));
+    for (int k = 0; k < 3; k++) {
+        SKG_TRY(skg_alloc(2 * links, sizeof(double), chain->name, &chain->rise[k]));
+        SKG_TRY(skg_alloc(2 * links, sizeof(double), chain->name, &chain->fall[k]));
+        SKG_TRY(skg_chain_make_front(chain->nodes, chain->front + k));
+    }
     return SKG_OK;
 }
 
@@ -99,10 +97,7 @@ skg_status skg_chain_create(const char *name, int64_t nodes, const double *rest,
         if (ends[e] + 1 < nodes) chain->first[ends[e] + 1]++;
     for (int64_t i = 0; i + 1 < nodes; i++) chain->first[i + 1] += chain->first[i];
     fill_edges(chain, rest, links, ends, tissues, kind);
-    for (int64_t i = 0; i < nodes; i++) {
-        chain->driver_of[i] = -1;
-        for (int f = 0; f < 6; f++) chain->front[f].place[i] = -1;
-    }
+    for (int64_t i = 0; i < nodes; i++) chain->driver_of[i] = -1;
     *result = chain;
     return SKG_OK;
 }
@@ -110,16 +105,13 @@ skg_status skg_chain_create(const char *name, int64_t nodes, const double *rest,
 void skg_chain_free(skg_chain **address) {
     skg_chain *chain = *address;
     if (!chain) return;
-    for (int f = 0; f < 6; f++) {
-        skg_free(&chain->front[f].gain);
-        skg_free(&chain->front[f].place);
-        skg_free(&chain->front[f].heap);
-        skg_free(&chain->front[f].seen);
-    }
     for (int k = 0; k < 3; k++) {
-        skg_free(&chain->edge[k]);
+        skg_chain_free_front(chain->front + k);
+        skg_free(&chain->rise[k]);
+        skg_free(&chain->fall[k]);
         skg_free(&chain->target[k]);
     }
+    skg_free(&chain->node);
     skg_free(&chain->driver);
     skg_free(&chain->driver_of);
     skg_free(&chain->first);
@@ -189,9 +181,8 @@ void skg_chain_check(const skg_chain *chain, const double *u, double tolerance, 
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
             double most = -HUGE_VAL;
             for (int k = 0; k < 3; k++) {
-                const skg_chain_edge *edge = chain->edge[k] + e;
-                double stretch = u[k * chain->nodes + edge->node] - u[k * chain->nodes + i];
-                most = fmax(most, stretch - edge->rise); /* the fall is the neighbour's rise */
+                double stretch = u[k * chain->nodes + chain->node[e]] - u[k * chain->nodes + i];
+                most = fmax(most, stretch - chain->rise[k][e]); /* the fall is the neighbour's rise */
             }
             *worst = fmax(*worst, most);
             *broken += most > tolerance;
@@ -209,7 +200,7 @@ skg_status skg_chain_unreached(const skg_chain *chain, int64_t *count) {
         int32_t i = stack[--depth];
         reached++;
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
-            int32_t j = chain->edge[0][e].node;
+            int32_t j = chain->node[e];
             if (!seen[j]) seen[j] = 1, stack[depth++] = j;
         }
     }

@@ -7,7 +7,10 @@
  * per axis. Given the displacements X_s of the driven nodes, the bounds
  *     U_i = min_s X_s + D(s->i),   L_i = max_s X_s - D(i->s)     (D: shortest path)
  * hold for any state that keeps every link, and clamping a state that keeps them to [L, U] keeps them all,
- * meets the drivers, and moves every node as little as possible. Only nodes that move are visited.
+ * meets the drivers, and moves every node as little as possible. Where drivers contradict each other, L > U:
+ * there nodes go halfway, to (L + U) / 2. That keeps every link too: the state is u clamped to [min(L, M),
+ * max(U, M)] with M = (L + U) / 2, and means, minima and maxima of states that keep a link keep it.
+ * Only nodes that move are visited.
  *
  * Weights are >= 0 and rounding is monotone, so the result is the least rounded path sum whatever the order:
  * the same bits for any number of threads and any order of the neighbours. */
@@ -18,38 +21,30 @@
 
 #include <skiagraph/breathing.h>
 
+/* Scratch of one axis: the gains of one search and the nodes that wait in it, by gain. Any order gives the
+ * same gains; descending ones to the width of a bucket spare most second visits. */
 typedef struct {
-    double rise, fall; /* mm: -fall <= u_node - u_here <= rise */
-    int32_t node;
-} skg_chain_edge;
-
-typedef struct {
-    double gain;
-    int32_t node;
-} skg_chain_waiting;
-
-/* Scratch of one axis and one direction: an indexed heap, largest gain first. */
-typedef struct {
-    double *gain;   /* mm, per node: how far it moves in this direction */
-    int32_t *place; /* per node: its place in the heap, or absent, or settled */
-    skg_chain_waiting *heap;
-    int32_t *seen;   /* nodes whose gain was set, in order of discovery */
-    int64_t waiting; /* in the heap */
-    int64_t found;   /* in seen */
-    double conflict; /* mm: most that a driver is overrun */
-    int64_t at;      /* that driver; -1 */
-    double without;  /* gain of nodes that were not seen */
+    double *gain;  /* mm, per node: how far it moves in the direction of the search; 0 where unseen */
+    int32_t *next; /* rings of waiting nodes, the buckets' own places after those of the nodes */
+    int32_t *last; /* the way back */
+    int32_t *seen; /* nodes whose gain was set */
+    int64_t found; /* in seen */
+    double top;    /* mm: gain of the first bucket */
+    double per_mm; /* buckets */
 } skg_chain_front;
 
 typedef struct {
     char *name; /* for messages */
     int64_t nodes, drivers;
-    int64_t *first;           /* nodes + 1: edges of node i are first[i] .. first[i+1]-1 */
-    skg_chain_edge *edge[3];  /* per axis */
+    int64_t *first;  /* nodes + 1: edges of node i are first[i] .. first[i+1]-1 */
+    int32_t *node;   /* per edge: the neighbour */
+    double *rise[3]; /* mm per axis and edge: -fall <= u_node - u_here <= rise */
+    double *fall[3];
+    double slack[3];          /* mm: mean of rise and fall */
     int32_t *driver;          /* node of each driver */
     int32_t *driver_of;       /* per node: its driver, or -1 */
     double *target[3];        /* mm per driver, as solved: midpoints where drivers contradict each other */
-    skg_chain_front front[6]; /* axis * 2 + (direction < 0) */
+    skg_chain_front front[3]; /* per axis */
 } skg_chain;
 
 typedef struct {
@@ -93,9 +88,18 @@ skg_status skg_chain_unreached(const skg_chain *chain, int64_t *count);
 skg_status skg_chain_links(int64_t triangles, const int32_t *corners, const int32_t *node_of, int64_t *links,
                            int32_t **ends);
 
-/* The bounds of every node from the drivers alone: gain of the front becomes direction * bound, -HUGE_VAL
- * where no driver reaches; or, with sources given (one per node, mm), from every node. */
-void skg_chain_bounds(const skg_chain *chain, int axis, int direction, const double *sources,
+/* front.c: gains of one axis in one direction, 1 or -1. */
+skg_status skg_chain_make_front(int64_t nodes, skg_chain_front *front);
+void skg_chain_free_front(skg_chain_front *front);
+
+/* A node gains so much, unless it gains more already. Before the search: all starts of a search. */
+void skg_chain_start(skg_chain_front *front, int32_t node, double gain);
+
+/* Gains over the state u (that axis) of every node that has to move when the starts do. */
+void skg_chain_spread(const skg_chain *chain, int axis, int direction, const double *u,
                       skg_chain_front *front);
+
+/* No node gains. */
+void skg_chain_forget(skg_chain_front *front);
 
 #endif

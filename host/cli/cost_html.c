@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+static const float LEAST_SHOWN = 1e-12f; /* of the open beam */
+
 extern const char cost_page[]; /* cost_page.html, as built in */
 
 /* Bytes as "data:image/png;base64,..." (RFC 4648). The caller frees the text; NULL: no memory. */
@@ -80,67 +82,85 @@ static void begin_picture(const cost_study *study, const float *data, skg_pictur
     picture->data = data;
 }
 
-/* The reference as I/I0, means of blocks of pixels. */
-static int reference_json(const cost_study *study, json_t **uri) {
-    const int64_t columns = study->session.view.columns, rows = study->session.view.rows;
-    const int64_t block = study->thumb_block;
-    const double *image = study->references[0].image;
-    float *data = calloc((size_t)(study->thumb_columns * study->thumb_rows), sizeof *data);
-    if (!data) return cli_error(CLI_DEVICE, "out of host memory");
-    for (int64_t r = 0; r < study->thumb_rows; r++)
-        for (int64_t c = 0; c < study->thumb_columns; c++) {
-            double sum = 0;
-            int64_t count = 0;
-            for (int64_t y = r * block; y < (r + 1) * block && y < rows; y++)
-                for (int64_t x = c * block; x < (c + 1) * block && x < columns; x++, count++)
-                    sum += image[y * columns + x];
-            data[r * study->thumb_columns + c] = (float)(sum / (double)count / study->open);
-        }
+/* Values as 256 levels from low to high: what a screen shows, and half the bytes. */
+static int levels_json(const cost_study *study, float *values, double low, double high, json_t **uri) {
     skg_picture picture;
-    begin_picture(study, data, &picture);
-    picture.quantity = SKG_TRANSMISSION;
-    picture.display = SKG_DISPLAY_RADIOGRAPH;
-    int exit_status = picture_json(&picture, uri);
-    free(data);
+    begin_picture(study, values, &picture);
+    picture.quantity = SKG_ATTENUATION;
+    picture.low = low;
+    picture.high = high;
+    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++) {
+        const double level = round(255 * ((double)values[i] - low) / (high - low));
+        values[i] = (float)(low + (high - low) * fmin(fmax(level, 0), 255) / 255);
+    }
+    return picture_json(&picture, uri);
+}
+
+/* -ln(I/I0) of a point's image. low, high: found of the first one, and used for all. */
+static int small_json(const cost_study *study, const cost_point *point, double *low, double *high,
+                      json_t **uri) {
+    const int64_t places = study->thumb_columns * study->thumb_rows;
+    float *dense = calloc((size_t)places, sizeof *dense);
+    skg_picture picture;
+    if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(point->small[i], LEAST_SHOWN));
+    begin_picture(study, dense, &picture);
+    picture.quantity = SKG_ATTENUATION;
+    skg_status status = *high > *low ? SKG_OK : skg_picture_range(&picture, low, high);
+    if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* one value everywhere */
+    int exit_status = status == SKG_OK ? levels_json(study, dense, *low, *high, uri) : cli_fail(status);
+    free(dense);
     return exit_status;
 }
 
-/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range. */
+/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range.
+ * Cube roots between, which the page undoes where it shows them straight: eight bits then tell small ones
+ * too. */
 static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
-    skg_picture picture;
-    float largest = 0;
-    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++)
+    const int64_t places = study->thumb_columns * study->thumb_rows;
+    float largest = 0, *roots = calloc((size_t)places, sizeof *roots);
+    if (!roots) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++)
         if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
+    for (int64_t i = 0; i < places && largest > 0; i++) roots[i] = cbrtf(point->difference[i] / largest);
     *range = (double)largest;
-    begin_picture(study, point->difference, &picture);
-    picture.high = largest > 0 ? (double)largest : 1;
-    picture.low = -picture.high;
-    return picture_json(&picture, uri);
+    int exit_status = levels_json(study, roots, -1, 1, uri);
+    free(roots);
+    return exit_status;
 }
 
 /* Pictures are chosen: the frontier, the advice, and every dial other than the rays'. */
 static int is_pictured(const cost_study *study, int index) {
     const cost_point *point = &study->points[index];
     if (point->on_frontier || point->dial == COST_SCENE || point->dial == COST_PRECISION) return 1;
-    if (point->reference != 0) return 1;
+    if (point->reference != COST_OF_RAYS) return 1;
     for (int i = 0; i < COST_TOLERANCES; i++)
         if (study->advice[i].rays == index) return 1;
     return 0;
 }
 
+static int add_point_pictures(const cost_study *study, const cost_point *point, double *low, double *high,
+                              json_t *object) {
+    json_t *uri = NULL;
+    double range = 0;
+    int exit_status = small_json(study, point, low, high, &uri);
+    if (exit_status != CLI_DONE) return exit_status;
+    json_object_set_new(object, "image", uri);
+    exit_status = difference_json(study, point, &uri, &range);
+    if (exit_status != CLI_DONE) return exit_status;
+    json_object_set_new(object, "difference", uri);
+    json_object_set_new(object, "range", cli_json_number(range));
+    return CLI_DONE;
+}
+
 static int add_pictures(const cost_study *study, json_t *object) {
-    json_t *uri = NULL, *points = json_object_get(object, "points");
-    int exit_status = reference_json(study, &uri);
-    if (exit_status == CLI_DONE) json_object_set_new(object, "image", uri);
-    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++) {
-        if (!is_pictured(study, i)) continue;
-        double range = 0;
-        json_t *point = json_array_get(points, (size_t)i);
-        exit_status = difference_json(study, &study->points[i], &uri, &range);
-        if (exit_status != CLI_DONE) break;
-        json_object_set_new(point, "difference", uri);
-        json_object_set_new(point, "range", cli_json_number(range));
-    }
+    json_t *points = json_object_get(object, "points");
+    int exit_status = CLI_DONE;
+    double low = 0, high = 0;
+    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++)
+        if (is_pictured(study, i))
+            exit_status =
+                add_point_pictures(study, &study->points[i], &low, &high, json_array_get(points, (size_t)i));
     return exit_status;
 }
 

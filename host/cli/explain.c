@@ -86,6 +86,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "effects", effects_json(plan));
     json_object_set_new(object, "nodes", nodes_json(plan, report.nodes));
     json_object_set_new(object, "planes", json_integer(report.planes));
+    json_object_set_new(object, "accumulators", json_integer(report.accumulators));
     json_object_set_new(object, "plane_bits", json_integer(report.plane_bits));
     json_object_set_new(object, "strategy", cli_json_text(cli_strategy_names[report.strategy]));
     json_object_set_new(object, "tiles", tiles_json(&report));
@@ -182,8 +183,9 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
            (double)report.device_bytes / (1024.0 * 1024.0));
     printf("precision  %s\n", cli_precision_names[report.precision]);
     print_strategy(&report);
-    printf("planes     %" PRId64 " of %" PRId64 " bits for %" PRId64 " parts\n", report.planes,
-           report.plane_bits, report.parts - report.open_parts);
+    printf("planes     %" PRId64 " for %" PRId64 " parts, from %" PRId64 " accumulators of %" PRId64
+           " bits\n",
+           report.planes, report.parts - report.open_parts, report.accumulators, report.plane_bits);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
            " of them repaired; %" PRId64 " with a negative exponent\n",
            report.bad_pixels, report.repaired_pixels, report.negative_pixels);

@@ -229,6 +229,14 @@ skg_status skg_motion_body(const skg_motion *motion, skg_body **body) {
     return SKG_OK;
 }
 
+skg_status skg_motion_options(const skg_setup *setup, int32_t *breathes, skg_body_options *options) {
+    if (!setup || !breathes) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_options: NULL");
+    SKG_TRY(
+        skg_struct_write(&setup->breathing.body, sizeof setup->breathing.body, "skg_body_options", options));
+    *breathes = setup->breathing.is_given;
+    return SKG_OK;
+}
+
 skg_status skg_motion_moves(const skg_motion *motion, int64_t part, int32_t *moves) {
     if (!motion || !moves || part < 0 || part >= motion->setup->scene->count)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_moves: no part %" PRId64, part);

@@ -15,7 +15,8 @@ enum { RUNS = 4 };
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, energies;
+    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, energies,
+        mixed;
 } kernel_key;
 
 struct skg_attenuator {
@@ -81,14 +82,14 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     static const char *const quiet[] = {"exponential.clh", "attenuate.cl"};
     static const char *const noisy[] = {"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"};
-    char more[256];
+    char more[320];
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d%s",
+        "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d -D SKG_SUMS=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
         (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->add, RUNS, (int)key->ranged,
-        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+        (int)key->mixed, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
     return skg_kernels_get(attenuator->context, &key->options, key->noise ? 4 : 2, key->noise ? noisy : quiet,
                            more, program);
 }
@@ -160,7 +161,7 @@ static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key 
 }
 
 static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
-                         const skg_attenuation *attenuation, const skg_image_place *place) {
+                         const skg_attenuation *attenuation, const skg_image_place *place, int32_t mixed) {
     /* Of the raster's abilities only the type of its sums is of interest here. */
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
@@ -175,16 +176,16 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                         .output_double = place->output_double,
                         .energies = raster->options.kernels.half && attenuation->energies,
                         .add = place->add,
+                        .mixed = mixed,
                         .ranged = attenuation->range.memory != NULL};
 }
 
-skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
-                         double scale, const skg_attenuation *attenuation, double factor, double least,
-                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
-                         skg_stage_log *log) {
-    const skg_kernel_options *sums = &raster->options.kernels;
-    const kernel_key key = key_of(raster, camera, attenuation, place);
-    const int single = sums->precision == SKG_SINGLE;
+skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+                         const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
+                         const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log) {
+    const skg_raster *raster = sums->raster;
+    const kernel_key key = key_of(raster, camera, attenuation, place, sums->mixed);
+    const int single = key.options.precision == SKG_SINGLE;
     /* As the kernel counts: powers of two above a limit. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : 1.4426950408889634);
     const float factor_single = (float)factor, limit_single = (float)limit;
@@ -192,7 +193,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
     skg_ray_double ray;
     skg_ray_float ray_single;
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
-    skg_camera_rays(camera, scale, &ray);
+    skg_camera_rays(camera, sums->scale, &ray);
     skg_rays_round(&ray, &ray_single);
     SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
     SKG_TRY(skg_kernel_set(kernel, 1, single ? sizeof ray_single : sizeof ray,
@@ -207,8 +208,10 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, c
                            single ? (const void *)&limit_single : (const void *)&limit));
     SKG_TRY(skg_kernel_set(kernel, 9, sizeof negative, &negative));
     SKG_TRY(set_place(kernel, place));
-    SKG_TRY(set_effects(kernel, 14, &key, camera, attenuation, noise, SKG_FEW_PHOTONS * factor));
-    const int64_t lanes = skg_kernel_lanes(raster->context, sums->precision) * RUNS;
+    if (sums->mixed) SKG_TRY(skg_kernel_set(kernel, 14, sizeof sums->lists, &sums->lists));
+    SKG_TRY(set_effects(kernel, sums->mixed ? 15 : 14, &key, camera, attenuation, noise,
+                        SKG_FEW_PHOTONS * factor));
+    const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision) * RUNS;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
                               padded(raster->frame.rows, 16)};
@@ -221,7 +224,7 @@ skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster 
     const cl_int size[3] = {raster->frame.columns, raster->frame.rows, attenuation->channels};
     const cl_long offset = place->offset, row = place->row_stride, channel = place->channel_stride;
     const skg_camera no_camera = {0};
-    const kernel_key key = key_of(raster, &no_camera, attenuation, place);
+    const kernel_key key = key_of(raster, &no_camera, attenuation, place, 0);
     cl_program program = NULL;
     cl_kernel kernel = NULL;
     skg_status status = SKG_OK;

@@ -48,17 +48,26 @@ typedef struct {
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
+/* The sums that a frame has left, and how they become planes. */
+typedef struct {
+    const skg_raster *raster;
+    double scale; /* of the sums */
+    int32_t
+        mixed; /* accumulators that planes are mixed from (mix.h); 0: planes are accumulators themselves */
+    int32_t reserved;
+    cl_mem lists; /* [mixed][planes] in the precision of the raster */
+} skg_sums;
+
 /* Below so many detected photons in a pixel, quantum noise is drawn photon by photon. */
 #define SKG_FEW_PHOTONS 50.0
 
-/* Enqueues one image. scale: of the sums; factor: of intensities; with noise, of photons: the share of a
+/* Enqueues one image. factor: of intensities; with noise, of photons: the share of a
  * sample of the source, whose draws add up to one of all photons; least: exponents below it are counted into
  * negative[0], pixels outside the attenuation's range into negative[1]. noise: its key, where there is noise.
  */
-skg_status skg_attenuate(skg_attenuator *attenuator, const skg_raster *raster, const skg_camera *camera,
-                         double scale, const skg_attenuation *attenuation, double factor, double least,
-                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
-                         skg_stage_log *log);
+skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+                         const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
+                         const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
 
 /* Enqueues -ln of a finished mean, in place. */
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* What a frame knows of its parts, one for each. */
 struct skg_frame_room {
@@ -37,6 +38,7 @@ cleanup:
 static void release_parts(skg_frame_parts *frame) {
     skg_free(&frame->writes);
     skg_free(&frame->first_write);
+    skg_mix_release(&frame->mix);
     skg_contest_release(&frame->contest);
 }
 
@@ -66,6 +68,25 @@ static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, 
     frame->firsts = plan->model.first_write;
     frame->planes = plan->model.planes;
     return SKG_OK;
+}
+
+/* Parts that add alike share an accumulator, where that pays and there are not more kinds than planned. */
+static skg_status mix_planes(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    if (work->lengths_of >= 0 || !plan->mixed) return SKG_OK;
+    SKG_TRY(skg_mix_find(plan->scene->count, plan->model.planes, frame->all_writes, frame->firsts,
+                         plan->mixed, &frame->mix));
+    if (!frame->mix.sums) return SKG_OK; /* matter of many kinds in this frame */
+    frame->all_writes = frame->mix.writes;
+    frame->firsts = frame->mix.first_write;
+    frame->planes = plan->mixed;
+    return SKG_OK;
+}
+
+/* Whether some part adds to more than one plane. */
+static int has_lists(const skg_frame_parts *frame, int64_t parts) {
+    for (int64_t p = 0; p < parts; p++)
+        if (frame->firsts[p + 1] - frame->firsts[p] > 1) return 1;
+    return 0;
 }
 
 static double largest_weight(const skg_frame_parts *frame, int64_t part) {
@@ -122,6 +143,28 @@ static skg_status upload(skg_plan *plan, skg_job *job) {
     return SKG_OK;
 }
 
+/* The lists of the frame's accumulators, brought to the device where they differ from those it has. */
+static skg_status upload_lists(skg_plan *plan, skg_job *job, const skg_frame_parts *frame) {
+    const int64_t count = (int64_t)plan->mixed * plan->model.planes;
+    const int is_double = plan->options.precision == SKG_DOUBLE;
+    void *staged = NULL;
+    if (!frame->mix.sums) return SKG_OK;
+    if (plan->mix_sent && memcmp(plan->mix_sent, frame->mix.lists, (size_t)count * sizeof(double)) == 0)
+        return SKG_OK;
+    if (!plan->mix_sent) SKG_TRY(skg_alloc(count, sizeof(double), "planes of the parts", &plan->mix_sent));
+    SKG_TRY(skg_job_stage(job, count, is_double ? sizeof(double) : sizeof(float), "planes", &staged));
+    for (int64_t i = 0; i < count; i++)
+        if (is_double)
+            ((double *)staged)[i] = frame->mix.lists[i];
+        else
+            ((float *)staged)[i] = (float)frame->mix.lists[i];
+    const int64_t bytes = count * (int64_t)(is_double ? sizeof(double) : sizeof(float));
+    SKG_TRY(skg_buffer_reserve(plan->context, &plan->mix_lists, bytes, CL_MEM_READ_ONLY, "planes"));
+    SKG_TRY(skg_stage_write(plan->context, "upload", plan->mix_lists.memory, 0, bytes, staged, &job->log));
+    memcpy(plan->mix_sent, frame->mix.lists, (size_t)count * sizeof(double));
+    return SKG_OK;
+}
+
 static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *work, int64_t sample,
                           const skg_frame_parts *frame) {
     const int lengths = work->lengths_of >= 0;
@@ -139,7 +182,12 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
                                    sizeof none, 0, NULL, NULL));
     skg_noise_args noise = work->noise;
     noise.sample = sample > 0 ? (cl_int)sample : 0;
-    return skg_attenuate(plan->attenuator, plan->main, &frame->camera, frame->scale.scale,
+    SKG_TRY(upload_lists(plan, job, frame));
+    const skg_sums sums = {.raster = plan->main,
+                           .scale = frame->scale.scale,
+                           .mixed = frame->mix.sums ? plan->mixed : 0,
+                           .lists = plan->mix_lists.memory};
+    return skg_attenuate(plan->attenuator, &sums, &frame->camera,
                          lengths ? &plan->lengths : &plan->attenuation, factor, least, plan->negative.memory,
                          &noise, &place, &job->log);
 }
@@ -161,6 +209,7 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     if (sample >= 0) skg_samples_at(&plan->samples, work->view, sample, source, shift);
     SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &frame->camera));
     SKG_TRY(list_writes(plan, work, frame));
+    SKG_TRY(mix_planes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
     SKG_TRY(find_contest(plan, work, frame));
     frame->kernels.precision = plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE;
@@ -168,7 +217,7 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     frame->kernels.bits =
         frame->kernels.half ? 32 : frame->scale.bits; /* half: 2^-24 m, whatever the scene */
     frame->kernels.parallel = frame->camera.parallel;
-    frame->kernels.listed_writes = frame->planes > 1 || frame->kernels.half;
+    frame->kernels.listed_writes = frame->kernels.half || has_lists(frame, plan->scene->count);
     SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes,
                             plan->open_count > 0 || plan->contest_possible, &plan->main));
     plan->report.plane_bits = frame->scale.bits;
@@ -184,9 +233,38 @@ skg_status skg_frame_prepare(skg_plan *plan) {
     return status;
 }
 
+/* Rows by which fields grow, so that what moves a little does not change them. */
+enum { FIELD_ROWS = 16 };
+
+/* The fields of the raster's planes: what the rectangles of their parts cover, and 2 pixels for rounding. */
+static skg_status find_fields(const skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
+                              cl_int **fields) {
+    const double rows = (double)frame->camera.rows, columns = (double)frame->camera.columns;
+    SKG_TRY(skg_job_stage(job, 4 * frame->planes, sizeof **fields, "fields", fields));
+    for (int64_t p = 0; p < plan->scene->count; p++) {
+        const skg_scale_part *at = &frame->extents[p].scale;
+        const cl_int first_row = (cl_int)fmin(fmax(at->low_row - 2, 0), rows) & -FIELD_ROWS;
+        const cl_int end_row =
+            (cl_int)fmin(fmax(at->high_row + 2 + FIELD_ROWS, 0), rows + FIELD_ROWS) & -FIELD_ROWS;
+        const cl_int first = (cl_int)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS;
+        const cl_int last = (cl_int)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS;
+        for (int64_t w = frame->firsts[p]; w < frame->firsts[p + 1]; w++) {
+            cl_int *field = *fields + 4 * frame->all_writes[w].plane;
+            const int known = field[1] > 0;
+            field[0] = known && field[0] < first_row ? field[0] : first_row;
+            field[1] = known && field[1] > end_row ? field[1] : end_row; /* may lie beyond the last row */
+            field[2] = known && field[2] < first * SKG_FIELD_COLUMNS ? field[2] : first * SKG_FIELD_COLUMNS;
+            field[3] = known && field[3] > (last + 1) * SKG_FIELD_COLUMNS ? field[3]
+                                                                          : (last + 1) * SKG_FIELD_COLUMNS;
+        }
+    }
+    return SKG_OK;
+}
+
 /* One pass: from the vertices to the image of one sample. */
 static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_work *work, int64_t sample) {
     skg_frame_parts frame = {0};
+    cl_int *fields = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(prepare(plan, work, sample, &frame));
     skg_warn_unseen(plan, &frame);
@@ -194,7 +272,8 @@ static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_wor
     SKG_TRY_CLEANUP(skg_geometry_project(plan->context, &plan->geometry, &frame.kernels, &frame.camera,
                                          frame.parts, frame.scale.scale, &job->log));
     if (frame.kernels.half) skg_raster_set_rays(plan->main, &frame.camera);
-    SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, &job->log));
+    SKG_TRY_CLEANUP(find_fields(plan, job, &frame, &fields));
+    SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, fields, &job->log));
     if (frame.contest.count) SKG_TRY_CLEANUP(skg_contest_run(plan, job, &frame, plan->main));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
     SKG_TRY_CLEANUP(resolve(plan, job, work, sample, &frame));

@@ -21,9 +21,9 @@ typedef struct {
 typedef struct {
     skg_camera camera;
     skg_kernel_options kernels;
-    int64_t planes;
-    skg_geometry_part
-        *parts; /* [parts], in the plan's room: closed ones with their writes, open ones without */
+    int64_t planes;                     /* of the raster: accumulators where they are mixed */
+    skg_mix mix;                        /* of an image's planes; none: accumulators are planes */
+    skg_geometry_part *parts;           /* [parts], room of the plan's: closed ones with their writes */
     skg_plane_weight *writes;           /* of lengths */
     int64_t *first_write;               /* [parts + 1] of lengths */
     const skg_plane_weight *all_writes; /* what every part adds, open ones too: */

@@ -17,7 +17,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
                                           "triangle.clh", "parts.clh",    "sums.clh"};
     enum { HEADERS = sizeof headers / sizeof *headers, MOST = 7 };
     const char *all[HEADERS + MOST];
-    char text[512];
+    char text[768];
     if (files > MOST) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", names[0]);
     for (int32_t i = 0; i < HEADERS; i++) all[i] = headers[i];
     for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];

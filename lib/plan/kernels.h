@@ -11,7 +11,7 @@ typedef struct {
     int32_t parallel;      /* parallel beam */
     int32_t source_plane;  /* some part may reach the source, or the plane where parallel paths start */
     int32_t half;          /* distances are rounded to 16 bits; precision is single */
-    int32_t listed_writes; /* 0: every part adds to plane 0, without bias; 1: as its list says */
+    int32_t listed_writes; /* 0: every part adds to one plane, without bias; 1: as its list says */
 } skg_kernel_options;
 
 /* Lanes that kernels with wide vectors use on this device. */

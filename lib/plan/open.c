@@ -72,7 +72,7 @@ static skg_status run_batch(skg_plan *plan, skg_job *job, const skg_frame_parts 
     SKG_TRY(skg_plan_raster(plan, &kernels, plan->strategy, batch->planes, 0, &raster));
     SKG_TRY(skg_geometry_project(plan->context, &plan->geometry, &kernels, &frame->camera, batch->parts,
                                  frame->scale.scale, &job->log));
-    SKG_TRY(skg_raster_run(raster, &plan->geometry, &job->log));
+    SKG_TRY(skg_raster_run(raster, &plan->geometry, NULL, &job->log));
     const int64_t bytes = 3 * batch->count * (int64_t)sizeof *batch->moves;
     SKG_TRY_CLEANUP(
         skg_buffer_reserve(plan->context, &moves, bytes, CL_MEM_READ_ONLY, "planes of open parts"));

@@ -62,6 +62,7 @@ static void start_report(skg_plan *plan) {
         report->vertices += plan->meshes.meshes[i].mesh->vertices;
     report->open_parts = plan->open_count;
     report->planes = plan->model.planes;
+    report->accumulators = plan->mixed ? plan->mixed : plan->model.planes;
     report->nodes = plan->model.nodes;
     report->bins = plan->model.bins;
     report->bound = plan->model.bound;
@@ -167,6 +168,8 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
     /* OpenCL keeps the old tables until what is enqueued is done. */
     skg_attenuation_release(&plan->attenuation);
     SKG_TRY(make_attenuation(plan));
+    SKG_TRY(skg_plan_choose_mix(plan));
+    plan->report.accumulators = plan->mixed ? plan->mixed : plan->model.planes;
     plan->materials = plan->scene->materials;
     return SKG_OK;
 }
@@ -197,6 +200,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(make_attenuation(plan));
     SKG_TRY(make_lengths(plan));
     SKG_TRY(skg_scale_grid_create(plan->view.columns, plan->view.rows, &plan->grid));
+    SKG_TRY(skg_plan_choose_mix(plan));
     SKG_TRY(skg_plan_choose_strategy(plan));
     start_report(plan);
     SKG_TRY(skg_report_overlaps(plan));
@@ -272,6 +276,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
     skg_buffer_release(&plan->gaps);
+    skg_buffer_release(&plan->mix_lists);
     skg_contest_memory_release(&plan->contest_memory);
 }
 
@@ -289,6 +294,7 @@ void skg_plan_release(skg_plan **plan) {
     skg_frame_room_release(&last->room);
     skg_free(&last->channel_names);
     skg_free(&last->band_kev);
+    skg_free(&last->mix_sent);
     skg_model_release(&last->model);
     skg_plan_meshes_release(&last->meshes);
     skg_response_release(&last->options.response);

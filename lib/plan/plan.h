@@ -7,6 +7,7 @@
 #include "plan/caps.h"
 #include "plan/job.h"
 #include "plan/meshes.h"
+#include "plan/mix.h"
 #include "plan/model.h"
 #include "plan/noise.h"
 #include "plan/overlap.h"
@@ -79,6 +80,9 @@ struct skg_plan {
         char text[64];
     } * channel_names; /* [channels] */
     skg_samples samples;
+    int32_t mixed;               /* accumulators that the planes of images are mixed from; 0: they are not */
+    skg_buffer mix_lists;        /* as the last image's frame had them; on the host: */
+    double *mix_sent;            /* [mixed][planes] NULL: nothing was sent so far */
     skg_attenuation attenuation; /* of images */
     skg_attenuation lengths;     /* of path lengths: the plane itself */
     skg_attenuator *attenuator;
@@ -125,6 +129,10 @@ skg_status skg_plan_renew_model(skg_plan *plan);
 
 /* SKG_STALE where a view has another size than the plan's. */
 skg_status skg_plan_check_size(const skg_plan *plan, const skg_view *view);
+
+/* Decides whether planes are mixed; depends on the model alone, so that frames of a renewed plan have the
+ * bits of a new one's. */
+skg_status skg_plan_choose_mix(skg_plan *plan);
 
 /* Decides the strategy for the plan's view (rasters.c). */
 skg_status skg_plan_choose_strategy(skg_plan *plan);

@@ -2,6 +2,8 @@
 
 #include <skiagraph/plan.h>
 
+#include <string.h>
+
 enum {
     CACHE_BYTES = 256 * 1024, /* of a band: half of the level 2 cache of common CPUs */
     MOST_BAND_ROWS = 256,
@@ -93,7 +95,8 @@ static skg_status allocate(skg_raster *raster) {
     SKG_TRY(reserve(raster, &raster->sums,
                     (int64_t)frame->copies * frame->planes * frame->plane * sum_bytes(raster),
                     "accumulators"));
-    SKG_TRY(reserve(raster, &raster->used, (frame->copies + 1) * of_int, "accumulators in use"));
+    SKG_TRY(reserve(raster, &raster->used, SKG_FIELD(frame->copies, frame->planes) * of_int,
+                    "accumulators in use"));
     if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
         SKG_TRY(reserve(raster, &raster->queue, (2 * (int64_t)frame->queue + 2) * of_int,
                         "queue of large triangles"));
@@ -110,6 +113,35 @@ static skg_status allocate(skg_raster *raster) {
                    (int64_t)raster->workers * frame->planes * frame->stride *
                        (frame->tile_rows + (int64_t)SKG_SPARE_ROWS) * sum_bytes(raster),
                    "bands");
+}
+
+static skg_status fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,
+                       int64_t bytes) {
+    SKG_CL_TRY(clEnqueueFillBuffer(raster->context->device->queue, buffer->memory, &value, sizeof value,
+                                   (size_t)from, (size_t)bytes, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+/* Fields of the whole detector; on the device, where nothing is known of a frame. */
+static skg_status make_fields(skg_raster *raster) {
+    const skg_frame_args *frame = &raster->frame;
+    SKG_TRY(skg_alloc(8 * (int64_t)frame->planes, sizeof *raster->whole, "fields", &raster->whole));
+    raster->sent = raster->whole + 4 * frame->planes;
+    for (int32_t p = 0; p < frame->planes; p++)
+        raster->whole[4 * p + 1] = frame->rows, raster->whole[4 * p + 3] = frame->stride;
+    return fill(raster, &raster->used, 1, 0, raster->used.bytes);
+}
+
+static skg_status send_fields(skg_raster *raster, const cl_int *fields, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const size_t bytes = 4 * (size_t)frame->planes * sizeof *fields;
+    if (!fields) fields = raster->whole;
+    if (memcmp(fields, raster->sent, bytes) == 0) return SKG_OK;
+    SKG_TRY(skg_stage_write(raster->context, "upload", raster->used.memory,
+                            SKG_FIELD(frame->copies, 0) * (int64_t)sizeof *fields, (int64_t)bytes, fields,
+                            log));
+    memcpy(raster->sent, fields, bytes);
+    return SKG_OK;
 }
 
 static skg_status compile(skg_raster *raster) {
@@ -150,13 +182,6 @@ static skg_status compile(skg_raster *raster) {
     return skg_kernel_create(program, "skg_source_plane", &raster->kernels[SKG_RASTER_SOURCE]);
 }
 
-static skg_status fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,
-                       int64_t bytes) {
-    SKG_CL_TRY(clEnqueueFillBuffer(raster->context->device->queue, buffer->memory, &value, sizeof value,
-                                   (size_t)from, (size_t)bytes, 0, NULL, NULL));
-    return SKG_OK;
-}
-
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster) {
     skg_raster *made = NULL;
     skg_status status = SKG_OK;
@@ -167,7 +192,7 @@ skg_status skg_raster_create(skg_context *context, const skg_raster_options *opt
     SKG_TRY_CLEANUP(lay_out(made));
     SKG_TRY_CLEANUP(allocate(made));
     SKG_TRY_CLEANUP(compile(made));
-    SKG_TRY_CLEANUP(fill(made, &made->used, 1, 0, made->used.bytes));
+    SKG_TRY_CLEANUP(make_fields(made));
     *raster = made;
     return SKG_OK;
 cleanup:
@@ -186,6 +211,7 @@ void skg_raster_release(skg_raster **raster) {
                                    &r->list, &r->for_all, &r->queue,   &r->rows_bad};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     for (int i = 0; i < SKG_RASTER_KERNELS; i++) release_kernel(r->kernels[i]);
+    skg_free(&r->whole);
     release_kernel(r->bad_rows);
     release_kernel(r->bad);
     skg_free(raster);
@@ -308,7 +334,8 @@ static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stag
     return skg_kernel_run(raster->context, kernel, "source plane", 2, global, local, log);
 }
 
-skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log) {
+skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *fields,
+                          skg_stage_log *log) {
     skg_frame_args *frame = &raster->frame;
     frame->parts = (SKG_INT)geometry->parts;
     frame->vertices = (SKG_INT)geometry->vertices;
@@ -316,6 +343,7 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_
     frame->claim = claim_size(geometry->triangles, raster->workers - 1);
     if (geometry->triangles > raster->options.triangles)
         return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
+    SKG_TRY(send_fields(raster, fields, log));
     if (raster->options.kernels.half) return run_half(raster, geometry, log);
     if (raster->options.strategy == SKG_STRATEGY_COPIES)
         SKG_TRY(run_copies(raster, geometry, log));

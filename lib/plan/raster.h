@@ -29,8 +29,11 @@ void skg_raster_release(skg_raster **raster);
 /* Rays of the frames to come: only sums in half precision need them. */
 void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
 
-/* Enqueues a frame: what skg_geometry_project has projected is added up. Nothing is waited for. */
-skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
+/* Enqueues a frame: what skg_geometry_project has projected is added up. Nothing is waited for. fields:
+ * [planes][4] rows from, to, columns from, to outside which nothing is added to a plane (skg_shared.h); they
+ * must stay until the frame is done. NULL: not known. */
+skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *fields,
+                          skg_stage_log *log);
 
 /* Enqueues the verdict on a count plane into int result[1 + SKG_FIRST_BAD]: how many pixels do not cancel,
  * then the first ones, row * columns + column, ascending. */

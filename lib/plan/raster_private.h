@@ -21,7 +21,8 @@ struct skg_raster {
     skg_ray_float rays; /* half */
     int32_t workers;    /* persistent work-groups, where the strategy has such */
     skg_buffer sums;
-    skg_buffer used;                          /* copies that count; then the counter of claims */
+    skg_buffer used;                          /* copies that count, the counter of claims, fields */
+    cl_int *whole, *sent;                     /* [planes][4] fields: of everything; as the device has them */
     skg_buffer scratch;                       /* bands: an image for each worker */
     skg_buffer counts, starts, list, for_all; /* tiles; of bands: counters, pieces, pool and list for all */
     skg_buffer queue;                         /* atomics: strips of large triangles */

@@ -24,6 +24,14 @@ static double mean_box(const skg_plan *plan, const skg_camera *camera) {
     return triangles > 0 ? pixels / triangles : 0;
 }
 
+skg_status skg_plan_choose_mix(skg_plan *plan) {
+    const skg_model *model = &plan->model;
+    plan->mixed = 0;
+    skg_free(&plan->mix_sent);                              /* the next frame sends its own */
+    if (plan->options.precision == SKG_HALF) return SKG_OK; /* as the paper's buffers */
+    return skg_mix_choose(plan->scene->count, model->planes, model->writes, model->first_write, &plan->mixed);
+}
+
 skg_status skg_plan_choose_strategy(skg_plan *plan) {
     const skg_device_info *info = &plan->context->device->info;
     skg_camera camera;
@@ -31,7 +39,8 @@ skg_status skg_plan_choose_strategy(skg_plan *plan) {
     const skg_raster_facts facts = {
         .is_gpu = info->is_gpu,
         .workers = info->compute_units,
-        .image_bytes = plan->view.rows * plan->view.columns * plan->model.planes *
+        .image_bytes = plan->view.rows * plan->view.columns *
+                       (plan->mixed ? plan->mixed : plan->model.planes) *
                        (plan->options.precision == SKG_DOUBLE ? 8 : 4),
         .triangles = plan->geometry.triangles,
         .triangle_pixels = mean_box(plan, &camera),

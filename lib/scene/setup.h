@@ -41,7 +41,8 @@ typedef struct {
     skg_body_options body;
     double *samples;
     skg_breath_hold *holds;
-    int32_t lung_density, reserved; /* 1: keeps the lungs' mass */
+    int32_t lung_density; /* 1: keeps the lungs' mass */
+    int32_t is_given;     /* 1: the file has it */
     int64_t organ_count;
     struct skg_breathing_organ {
         int64_t part;

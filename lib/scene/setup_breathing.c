@@ -219,6 +219,7 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     skg_body_options_init(&section->body);
     section->lung_density = 1;
     if (!node->value || json_is_null(node->value)) return SKG_OK;
+    section->is_given = 1;
     SKG_TRY(
         skg_json_read_object(node, breathing_keys, sizeof breathing_keys / sizeof *breathing_keys, &object));
     SKG_TRY(read_waveform(section, &object));

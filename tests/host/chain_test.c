@@ -1,35 +1,11 @@
-/* Chain Mail against closed forms and against all shortest paths (P1-P15 of the design). */
+/* Chain Mail against closed forms and all shortest paths: P1, P2, P4 to P6, P14, P15 of the design. */
 #include "host/graph.h"
 #include "suite.h"
 
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
-/* Sums of at most 60 terms below 1e3 mm. */
-static const double rounding = 60 * 1e3 * 2.3e-16;
-
 enum { TRIALS = 60 };
-
-static void random_drivers(uint64_t *s, int64_t nodes, int64_t count, double size, int32_t *node,
-                           double *target) {
-    for (int64_t d = 0; d < count; d++) {
-        int twice;
-        do {
-            twice = 0;
-            node[d] = (int32_t)(graph_random(s) * (double)nodes);
-            for (int64_t e = 0; e < d; e++) twice |= node[e] == node[d];
-        } while (twice);
-        for (int k = 0; k < 3; k++) target[3 * d + k] = size * (2 * graph_random(s) - 1);
-    }
-}
-
-static void assert_links(const skg_chain *chain, const double *u) {
-    int64_t broken;
-    double worst;
-    skg_chain_check(chain, u, 1e-9, &broken, &worst);
-    ck_assert_msg(broken == 0, "%d links broken, by up to %g mm", (int)broken, worst);
-}
 
 START_TEST(closed_form_on_random_graphs) { /* P1, P2, P6: every trial has its own graph */
     graph g;
@@ -42,83 +18,38 @@ START_TEST(closed_form_on_random_graphs) { /* P1, P2, P6: every trial has its ow
     for (int axis = 0; axis < 3; axis++) graph_distances(&g, axis, distance[axis]);
     for (int step = 0; step < 5; step++) { /* each from where the last one ended */
         int64_t count = 1 + (_i + step) % 4, n = g.nodes;
-        random_drivers(&s, n, count, 30, node, target);
+        graph_drivers(&s, n, count, 30, node, target);
         ck_skg(skg_chain_drive(chain, count, node));
         memcpy(before, u, sizeof u);
         skg_chain_report report;
         ck_skg(skg_chain_move(chain, target, u, &report));
-        assert_links(chain, u);
+        graph_assert_links(chain, u);
         double conflict = 0;
         for (int axis = 0; axis < 3; axis++) {
             const double *D = distance[axis];
-            double x[4], most = 0;
-            for (int64_t d = 0; d < count; d++) { /* midpoints of the bounds where drivers contradict */
-                double low = -HUGE_VAL, high = HUGE_VAL;
-                for (int64_t e = 0; e < count; e++) {
-                    low = fmax(low, target[3 * e + axis] - D[node[d] * n + node[e]]);
-                    high = fmin(high, target[3 * e + axis] + D[node[e] * n + node[d]]);
-                }
-                most = fmax(most, low - high);
-                x[d] = low > high ? 0.5 * (low + high) : target[3 * d + axis];
-            }
-            conflict = fmax(conflict, most);
+            double most = 0;
             for (int64_t i = 0; i < n; i++) {
                 double low = -HUGE_VAL, high = HUGE_VAL;
                 for (int64_t d = 0; d < count; d++) {
-                    low = fmax(low, x[d] - D[i * n + node[d]]);
-                    high = fmin(high, x[d] + D[node[d] * n + i]);
+                    low = fmax(low, target[3 * d + axis] - D[i * n + node[d]]);
+                    high = fmin(high, target[3 * d + axis] + D[node[d] * n + i]);
                 }
-                double expected = fmin(fmax(before[axis * n + i], low), high);
-                ck_assert_double_le(fabs(u[axis * n + i] - expected), rounding);
+                most = fmax(most, low - high);
+                double expected = /* halfway where the drivers contradict each other */
+                    low > high ? 0.5 * (low + high) : fmin(fmax(before[axis * n + i], low), high);
+                ck_assert_double_le(fabs(u[axis * n + i] - expected), graph_rounding);
             }
+            conflict = fmax(conflict, most);
             for (int64_t d = 0; d < count; d++) { /* P15: drivers are missed by half the conflict at most */
                 double miss = fabs(u[axis * n + node[d]] - target[3 * d + axis]);
-                ck_assert_double_le(miss, 0.5 * most + rounding);
-                if (most <= rounding) ck_assert_double_eq(miss, 0);
+                ck_assert_double_le(miss, 0.5 * most + graph_rounding);
+                if (most <= graph_rounding) ck_assert_double_eq(miss, 0);
             }
         }
-        ck_assert_double_le(fabs(report.conflict_mm - conflict), rounding);
+        ck_assert_double_le(fabs(report.conflict_mm - conflict), graph_rounding);
         for (int f = 0; f < 6; f++) ck_assert_int_le(report.settled[f], n);
     }
     skg_chain_free(&chain);
-}
-END_TEST
-
-START_TEST(same_bits_whatever_the_order) { /* P3 */
-    graph g, h;
-    uint64_t s = (uint64_t)_i + 5;
-    graph_make((uint64_t)_i + 900, 60, 150, &g);
-    h = g;
-    int32_t label[GRAPH_NODES], node[3], renamed[3];
-    double target[9], u[3 * GRAPH_NODES] = {0}, v[3 * GRAPH_NODES] = {0}, w[3 * GRAPH_NODES] = {0};
-    for (int i = 0; i < 60; i++) label[i] = i;
-    for (int i = 59; i > 0; i--) {
-        int j = (int)(graph_random(&s) * (i + 1)), old = label[i];
-        label[i] = label[j], label[j] = old;
-    }
-    for (int i = 0; i < 60; i++)
-        for (int k = 0; k < 3; k++) h.rest[3 * label[i] + k] = g.rest[3 * i + k];
-    for (int64_t l = 0; l < g.links; l++) { /* links backwards, each turned round */
-        int64_t m = g.links - 1 - l;
-        h.ends[2 * l] = label[g.ends[2 * m + 1]], h.ends[2 * l + 1] = label[g.ends[2 * m]];
-        h.kind[l] = g.kind[m];
-    }
-    random_drivers(&s, 60, 3, 40, node, target);
-    for (int d = 0; d < 3; d++) renamed[d] = label[node[d]];
-    skg_chain *one = graph_chain(&g), *other = graph_chain(&h);
-    ck_skg(skg_chain_drive(one, 3, node));
-    ck_skg(skg_chain_drive(other, 3, renamed));
-    omp_set_num_threads(1);
-    ck_skg(skg_chain_move(one, target, u, NULL));
-    omp_set_num_threads(1 + _i % 8);
-    ck_skg(skg_chain_move(one, target, w, NULL));
-    ck_skg(skg_chain_move(other, target, v, NULL));
-    ck_assert_mem_eq(u, w, sizeof u);
-    for (int i = 0; i < 60; i++)
-        for (int axis = 0; axis < 3; axis++)
-            ck_assert_mem_eq(&u[axis * 60 + i], &v[axis * 60 + label[i]], sizeof(double));
-    skg_chain_free(&one);
-    skg_chain_free(&other);
 }
 END_TEST
 
@@ -173,127 +104,6 @@ START_TEST(reach_of_the_papers_tendon) { /* 20 mm in the paper's muscle: 67 mm p
 }
 END_TEST
 
-START_TEST(axes_scale_shift_mirror) { /* P7, P8, P9, P11 */
-    graph g, h;
-    uint64_t s = 31 + (uint64_t)_i;
-    graph_make((uint64_t)_i + 40, 50, 100, &g);
-    h = g;
-    for (int64_t i = 0; i < g.nodes; i++) { /* halved, moved by what doubles add exactly, x mirrored */
-        h.rest[3 * i] = -0.5 * g.rest[3 * i];
-        h.rest[3 * i + 1] = 0.5 * g.rest[3 * i + 1];
-        h.rest[3 * i + 2] = 0.5 * g.rest[3 * i + 2];
-    }
-    int32_t node[2];
-    double target[6], other[6], u[3 * GRAPH_NODES] = {0}, v[3 * GRAPH_NODES] = {0}, x[3 * GRAPH_NODES] = {0};
-    random_drivers(&s, g.nodes, 2, 25, node, target);
-    skg_chain *one = graph_chain(&g), *two = graph_chain(&h);
-    ck_skg(skg_chain_drive(one, 2, node));
-    ck_skg(skg_chain_drive(two, 2, node));
-    ck_skg(skg_chain_move(one, (double[6]){0}, x, NULL));
-    for (int i = 0; i < 3 * GRAPH_NODES; i++) ck_assert_double_eq(x[i], 0);
-    for (int i = 0; i < 6; i++) other[i] = 0.5 * (i % 3 ? 1 : -1) * target[i];
-    ck_skg(skg_chain_move(one, target, u, NULL));
-    ck_skg(skg_chain_move(two, other, v, NULL));
-    for (int64_t i = 0; i < g.nodes; i++)
-        for (int k = 0; k < 3; k++)
-            ck_assert_double_eq(v[k * g.nodes + i], 0.5 * (k ? 1 : -1) * u[k * g.nodes + i]);
-    double flat[6] = {target[0], 0, 0, target[3], 0, 0};
-    ck_skg(skg_chain_move(one, flat, x, NULL));
-    for (int64_t i = 0; i < g.nodes; i++) {
-        ck_assert_double_eq(x[i], u[i]);
-        ck_assert_double_eq(x[g.nodes + i], 0);
-    }
-    for (int64_t i = 0; i < 3 * g.nodes; i++) h.rest[i] = g.rest[i] + 1024;
-    skg_chain_free(&two);
-    two = graph_chain(&h);
-    ck_skg(skg_chain_drive(two, 2, node));
-    memset(v, 0, sizeof v);
-    ck_skg(skg_chain_move(two, target, v, NULL));
-    for (int64_t i = 0; i < 3 * g.nodes; i++) ck_assert_double_eq_tol(u[i], v[i], 60 * 1e3 * 2.3e-16);
-    skg_chain_free(&one);
-    skg_chain_free(&two);
-}
-END_TEST
-
-START_TEST(subdivided_links_change_nothing) { /* P10 */
-    graph g;
-    static double rest[3 * (GRAPH_NODES + GRAPH_LINKS)];
-    static int32_t ends[4 * GRAPH_LINKS], kind[2 * GRAPH_LINKS];
-    uint64_t s = 3 + (uint64_t)_i;
-    graph_make((uint64_t)_i + 300, 40, 80, &g);
-    int64_t fine = g.nodes + g.links;
-    memcpy(rest, g.rest, sizeof g.rest);
-    for (int64_t l = 0; l < g.links; l++) {
-        int32_t middle = (int32_t)(g.nodes + l);
-        for (int k = 0; k < 3; k++)
-            rest[3 * middle + k] = 0.5 * (g.rest[3 * g.ends[2 * l] + k] + g.rest[3 * g.ends[2 * l + 1] + k]);
-        ends[4 * l] = g.ends[2 * l], ends[4 * l + 1] = ends[4 * l + 2] = middle;
-        ends[4 * l + 3] = g.ends[2 * l + 1];
-        kind[2 * l] = kind[2 * l + 1] = g.kind[l];
-    }
-    int32_t node[2];
-    double target[6], u[3 * GRAPH_NODES] = {0};
-    static double v[3 * (GRAPH_NODES + GRAPH_LINKS)];
-    random_drivers(&s, g.nodes, 2, 25, node, target);
-    skg_chain *coarse = graph_chain(&g), *finer;
-    ck_skg(skg_chain_create("fine", fine, rest, 2 * g.links, ends, g.tissues, 4, kind, &finer));
-    ck_skg(skg_chain_drive(coarse, 2, node));
-    ck_skg(skg_chain_drive(finer, 2, node));
-    ck_skg(skg_chain_move(coarse, target, u, NULL));
-    ck_skg(skg_chain_move(finer, target, v, NULL));
-    for (int k = 0; k < 3; k++)
-        for (int64_t i = 0; i < g.nodes; i++)
-            ck_assert_double_eq_tol(u[k * g.nodes + i], v[k * fine + i], 2 * rounding);
-    skg_chain_free(&coarse);
-    skg_chain_free(&finer);
-}
-END_TEST
-
-START_TEST(softer_tissue_moves_less) { /* P12 */
-    graph g, h;
-    uint64_t s = 8 + (uint64_t)_i;
-    graph_make((uint64_t)_i + 500, 50, 60, &g);
-    h = g;
-    for (int t = 0; t < 4; t++) {
-        h.tissues[t].alpha_min *= 0.9;
-        h.tissues[t].alpha_max *= 1.1;
-        h.tissues[t].beta += 0.05;
-    }
-    int32_t node[1];
-    double target[3], u[3 * GRAPH_NODES] = {0}, v[3 * GRAPH_NODES] = {0};
-    random_drivers(&s, g.nodes, 1, 30, node, target);
-    skg_chain *stiff = graph_chain(&g), *soft = graph_chain(&h);
-    ck_skg(skg_chain_drive(stiff, 1, node));
-    ck_skg(skg_chain_drive(soft, 1, node));
-    ck_skg(skg_chain_move(stiff, target, u, NULL));
-    ck_skg(skg_chain_move(soft, target, v, NULL));
-    for (int64_t i = 0; i < 3 * g.nodes; i++) ck_assert_double_le(fabs(v[i]), fabs(u[i]));
-    skg_chain_free(&stiff);
-    skg_chain_free(&soft);
-}
-END_TEST
-
-START_TEST(one_step_is_many) { /* P13: drivers that go straight on */
-    graph g;
-    uint64_t s = 12 + (uint64_t)_i;
-    graph_make((uint64_t)_i + 700, 60, 100, &g);
-    int32_t node[1];
-    double target[3], u[3 * GRAPH_NODES] = {0}, v[3 * GRAPH_NODES] = {0};
-    random_drivers(&s, g.nodes, 1, 30, node, target);
-    skg_chain *chain = graph_chain(&g);
-    ck_skg(skg_chain_drive(chain, 1, node));
-    ck_skg(skg_chain_move(chain, target, u, NULL));
-    for (int step = 1; step <= 50; step++) {
-        double part[3];
-        for (int k = 0; k < 3; k++) part[k] = target[k] * step / 50.0;
-        ck_skg(skg_chain_move(chain, part, v, NULL));
-        assert_links(chain, v);
-    }
-    for (int64_t i = 0; i < 3 * g.nodes; i++) ck_assert_double_eq_tol(u[i], v[i], 3e-12);
-    skg_chain_free(&chain);
-}
-END_TEST
-
 START_TEST(loops_are_play_operators) { /* P14: loop width A + B, same states from the second cycle on */
     double rest[3 * 11], u[3 * 11] = {0}, inhale[2][11], exhale[2][11];
     skg_chain *chain = row(10, 2, (skg_tissue){0.8, 1.1, 0.1}, rest);
@@ -323,7 +133,7 @@ START_TEST(conflict_is_told_and_halved) { /* P15, drivers that never overrun eac
     ck_assert_int_eq(report.axis, 0);
     ck_assert_double_eq_tol(u[0], -0.75, 1e-12);
     ck_assert_double_eq_tol(u[10], 0.25, 1e-12);
-    assert_links(chain, u);
+    graph_assert_links(chain, u);
     skg_chain_free(&chain);
 }
 END_TEST
@@ -334,14 +144,14 @@ START_TEST(relaxation_keeps_links_and_drivers) {
     graph_make((uint64_t)_i + 60, 60, 150, &g);
     int32_t node[2];
     double target[6], u[3 * GRAPH_NODES] = {0}, v[3 * GRAPH_NODES];
-    random_drivers(&s, g.nodes, 2, 8, node, target);
+    graph_drivers(&s, g.nodes, 2, 8, node, target);
     for (int k = 0; k < 3; k++) target[3 + k] = target[k]; /* compatible */
     skg_chain *chain = graph_chain(&g);
     ck_skg(skg_chain_drive(chain, 2, node));
     ck_skg(skg_chain_move(chain, target, u, NULL));
     memcpy(v, u, sizeof u);
     ck_skg(skg_chain_relax(chain, 3, 0.5, v));
-    assert_links(chain, v);
+    graph_assert_links(chain, v);
     for (int k = 0; k < 3; k++)
         for (int d = 0; d < 2; d++) ck_assert_double_eq(v[k * g.nodes + node[d]], target[3 * d + k]);
     double moved = 0;
@@ -402,13 +212,8 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, closed_form_on_random_graphs, 0, TRIALS);
-    tcase_add_loop_test(tests, same_bits_whatever_the_order, 0, 16);
     tcase_add_test(tests, chain_of_links);
     tcase_add_test(tests, reach_of_the_papers_tendon);
-    tcase_add_loop_test(tests, axes_scale_shift_mirror, 0, 10);
-    tcase_add_loop_test(tests, subdivided_links_change_nothing, 0, 10);
-    tcase_add_loop_test(tests, softer_tissue_moves_less, 0, 10);
-    tcase_add_loop_test(tests, one_step_is_many, 0, 10);
     tcase_add_test(tests, loops_are_play_operators);
     tcase_add_test(tests, conflict_is_told_and_halved);
     tcase_add_loop_test(tests, relaxation_keeps_links_and_drivers, 0, 10);

@@ -48,3 +48,22 @@ void graph_distances(const graph *g, int axis, double *distance) {
             for (int64_t j = 0; j < n; j++)
                 distance[i * n + j] = fmin(distance[i * n + j], distance[i * n + k] + distance[k * n + j]);
 }
+
+void graph_drivers(uint64_t *s, int64_t nodes, int64_t count, double size, int32_t *node, double *target) {
+    for (int64_t d = 0; d < count; d++) {
+        int twice;
+        do {
+            twice = 0;
+            node[d] = (int32_t)(graph_random(s) * (double)nodes);
+            for (int64_t e = 0; e < d; e++) twice |= node[e] == node[d];
+        } while (twice);
+        for (int k = 0; k < 3; k++) target[3 * d + k] = size * (2 * graph_random(s) - 1);
+    }
+}
+
+void graph_assert_links(const skg_chain *chain, const double *u) {
+    int64_t broken;
+    double worst;
+    skg_chain_check(chain, u, 1e-9, &broken, &worst);
+    ck_assert_msg(broken == 0, "%d links broken, by up to %g mm", (int)broken, worst);
+}

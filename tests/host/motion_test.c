@@ -79,6 +79,20 @@ START_TEST(the_key_is_read) {
 }
 END_TEST
 
+START_TEST(its_options_can_be_asked_for) {
+    skg_body_options options;
+    int32_t breathes = -1;
+    skg_body_options_init(&options);
+    ck_skg(load(""));
+    ck_skg(skg_motion_options(setup, &breathes, &options));
+    ck_assert(breathes == 0 && options.relaxation == 0 && options.hysteresis == 0);
+    ck_skg(load("{\"Relaxation\": 3, \"Hysteresis\": 0.25}"));
+    ck_skg(skg_motion_options(setup, &breathes, &options));
+    ck_assert(breathes == 1 && options.relaxation == 3 && options.hysteresis == 0.25);
+    ck_assert_int_eq(skg_motion_options(NULL, &breathes, &options), SKG_ERR_ARGUMENT);
+}
+END_TEST
+
 START_TEST(what_the_key_cannot_say) {
     static const struct {
         const char *breathing, *text;
@@ -203,6 +217,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, the_key_is_read);
+    tcase_add_test(tests, its_options_can_be_asked_for);
     tcase_add_test(tests, what_the_key_cannot_say);
     tcase_add_test(tests, parts_move_as_they_are_told);
     tcase_add_test(tests, a_scene_of_real_organs_breathes);

@@ -261,8 +261,8 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
         status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
                                         &attenuation);
         if (status == SKG_OK)
-            status = skg_attenuate(attenuator, raster, camera, scale, &attenuation, 1, -HUGE_VAL,
-                                   negative.memory, NULL, &place, NULL);
+            status = skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale}, camera,
+                                   &attenuation, 1, -HUGE_VAL, negative.memory, NULL, &place, NULL);
         skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;
         SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, output.memory, CL_TRUE, 0,
@@ -309,7 +309,7 @@ skg_status picture_take(skg_context *context, const skg_raster_options *options,
     SKG_TRY_CLEANUP(skg_camera_make(view, NULL, 0, 0, &camera));
     SKG_TRY_CLEANUP(skg_raster_create(context, &with_size, &raster));
     SKG_TRY_CLEANUP(project(context, &geometry, &with_size, &camera, bodies, of, scale));
-    SKG_TRY_CLEANUP(skg_raster_run(raster, &geometry, NULL));
+    SKG_TRY_CLEANUP(skg_raster_run(raster, &geometry, NULL, NULL));
     SKG_TRY_CLEANUP(read_lengths(context, raster, &camera, scale, result));
     SKG_TRY_CLEANUP(read_bad_pixels(context, raster, result));
     SKG_TRY_CLEANUP(read_sums(context, raster, options->kernels.bits, result));

@@ -29,8 +29,9 @@ static void close_all(void) {
     run_close();
 }
 
-/* Water with bone in it, in a world of thin water; two energies. */
-static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material *world) {
+/* Water with two bones in it, in a world of thin water; two energies. */
+static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material *other,
+                           skg_material *world) {
     static const double kev[2] = {30, 80}, photons[2] = {1, 2};
     skg_scene *scene;
     skg_spectrum *spectrum;
@@ -46,6 +47,8 @@ static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material
     part.mesh = outer, part.material = water, part.label = "outer";
     ck_skg(skg_scene_add(scene, &part, NULL));
     part.mesh = inner, part.material = bone, part.label = "inner", part.inside = 0;
+    ck_skg(skg_scene_add(scene, &part, NULL));
+    part.material = other, part.label = "other", part.pose[3] = 25, part.pose[11] = 25;
     ck_skg(skg_scene_add(scene, &part, NULL));
     ck_skg(skg_spectrum_bins(2, kev, photons, &spectrum));
     ck_skg(skg_plan_create(run_context, scene, &view, spectrum, &options, &plan));
@@ -87,14 +90,16 @@ static void ck_like(const float *image, const float *expected) {
 
 START_TEST(density_is_that_of_other_materials) {
     static float image[PIXELS], expected[PIXELS];
-    static const int64_t ids[2] = {0, 1};
-    static const double density[2] = {0.5, 1.5};
-    for (int worldly = 0; worldly < 2; worldly++) {
-        skg_material *world = worldly ? dense("Water", 0.02) : NULL;
+    static const int64_t ids[3] = {0, 1, 2};
+    for (int which = 0; which < 4; which++) {
+        /* Bones of one density add alike; of two densities they are of more kinds than planned for. */
+        const double density[3] = {0.5, 1.5, which & 2 ? 1.25 : 1.5};
+        skg_material *world = which & 1 ? dense("Water", 0.02) : NULL;
         skg_material *water = dense("Water", 1), *bone = dense("Bone", 1.92);
         skg_material *thin = dense("Water", 0.5), *hard = dense("Bone", 2.88);
-        skg_plan *plan = make_plan(water, bone, world), *other = make_plan(thin, hard, world);
-        ck_skg(submit(plan, 2, ids, density, NULL, image));
+        skg_material *third = dense("Bone", 1.92 * density[2]);
+        skg_plan *plan = make_plan(water, bone, bone, world), *other = make_plan(thin, hard, third, world);
+        ck_skg(submit(plan, 3, ids, density, NULL, image));
         ck_skg(submit(other, 0, NULL, NULL, NULL, expected));
         ck_like(image, expected);
         ck_skg(submit(plan, 0, NULL, NULL, NULL, expected)); /* and only in that frame */
@@ -106,6 +111,7 @@ START_TEST(density_is_that_of_other_materials) {
         skg_material_release(&bone);
         skg_material_release(&thin);
         skg_material_release(&hard);
+        skg_material_release(&third);
         skg_material_release(&world);
     }
 }
@@ -116,7 +122,7 @@ START_TEST(what_is_there_in_part_leaves_its_place_to_what_it_lies_in) {
     static const int64_t id = 1;
     double share = 0, one = 1;
     skg_material *water = dense("Water", 1), *bone = dense("Bone", 1.92);
-    skg_plan *plan = make_plan(water, bone, NULL), *empty = make_plan(water, water, NULL);
+    skg_plan *plan = make_plan(water, bone, bone, NULL), *empty = make_plan(water, water, bone, NULL);
     ck_skg(submit(plan, 1, &id, NULL, &share, none));
     ck_skg(submit(empty, 0, NULL, NULL, NULL, expected));
     ck_like(none, expected);
@@ -139,15 +145,15 @@ START_TEST(matter_that_cannot_be) {
     int64_t id = 1;
     double number = 2;
     skg_material *water = dense("Water", 1), *bone = dense("Bone", 1.92);
-    skg_plan *plan = make_plan(water, bone, NULL);
+    skg_plan *plan = make_plan(water, bone, bone, NULL);
     ck_skg_fails(submit(plan, 1, NULL, &number, NULL, image), SKG_ERR_ARGUMENT, "no ids");
     ck_skg_fails(submit(plan, 1, &id, NULL, &number, image), SKG_ERR_ARGUMENT, "inner: a share of 2");
     number = (double)NAN;
     ck_skg_fails(submit(plan, 1, &id, &number, NULL, image), SKG_ERR_ARGUMENT, "inner");
     id = 0, number = 0.5;
     ck_skg_fails(submit(plan, 1, &id, NULL, &number, image), SKG_ERR_UNSUPPORTED, "inner lies inside");
-    id = 2;
-    ck_skg_fails(submit(plan, 1, &id, &number, NULL, image), SKG_ERR_ARGUMENT, "part 2 of 2");
+    id = 3;
+    ck_skg_fails(submit(plan, 1, &id, &number, NULL, image), SKG_ERR_ARGUMENT, "part 3 of 3");
     skg_plan_release(&plan);
     skg_material_release(&water);
     skg_material_release(&bone);

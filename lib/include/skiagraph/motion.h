@@ -2,7 +2,8 @@
  * says (docs/scene-files.md), and the frames that show them.
  *
  * One call poses, another makes the image (skg_plan_submit copies what it needs), so the next pose may be
- * computed while an image is made. Poses do not depend on those before: any order gives the same bits. */
+ * computed while an image is made, which pays on a CPU device too (bench/breathing). Poses do not depend on
+ * those before: any order gives the same bits. */
 #ifndef SKIAGRAPH_MOTION_H
 #define SKIAGRAPH_MOTION_H
 
@@ -21,6 +22,10 @@ typedef struct skg_motion skg_motion;
  * parts). The caller releases the motion. */
 SKG_API skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **motion);
 SKG_API void skg_motion_release(skg_motion **motion);
+
+/* Whether a set-up's file has the key Breathing (1 or 0), and its body's options, prepared with
+ * skg_body_options_init: what skg_motion_create would use. */
+SKG_API skg_status skg_motion_options(const skg_setup *setup, int32_t *breathes, skg_body_options *options);
 
 /* Poses the scene at a time in s, with the events until then; or at a phase, counted modulo 1, without
  * events: needle and contrast as the meshes have them. */

@@ -214,7 +214,7 @@ typedef struct {
     int32_t precision, strategy, quantity;
     int64_t parts, triangles, vertices; /* vertices: those of meshes, each mesh once */
     int64_t open_parts;                 /* with planes of their own */
-    int64_t planes, plane_bits;         /* accumulator planes that parts share, and their width: 32 or 64 */
+    int64_t planes, plane_bits;         /* that exponents are made of; width of an accumulator: 32 or 64 */
     int64_t tile_columns,
         tile_rows; /* shape of a tile in pixels; the whole detector for copies and atomics */
     int64_t tiles;
@@ -231,6 +231,8 @@ typedef struct {
     int64_t verified;        /* number of points (lengths of all materials) on which it was looked for */
     int64_t repaired_pixels; /* of the last frame: of the bad ones; the others are without their part */
     int64_t outside_pixels;  /* of the last job: lengths outside the range that the bound was verified for */
+    int64_t accumulators; /* that parts add to, and the planes are made of: the planes themselves, or one for
+                             all parts of like matter in like matter, where that is fewer additions */
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
