@@ -1,5 +1,5 @@
-/* Whether surfaces meet. The regions that shape the organs keep gaps where they are sampled; between the
- * samples a facet may still cut into a neighbour's. */
+/* Whether surfaces meet, each other or themselves. The regions that shape the organs keep gaps where they are
+ * sampled; between the samples a facet may still cut into a neighbour's. */
 #include "phantom/shape.h"
 
 #include "scene/vector.h"
@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const double clearance = 0.2; /* mm, about; kept from the other surfaces */
-enum { MOST_STEPS = 60 };
+enum { MOST_PASSES = 60 };
 
 /* Triangles in cells of a grid, as rows of nine coordinates. */
 typedef struct {
@@ -32,30 +32,34 @@ static int apart(const double *low, const double *high, const double *others_low
     return 0;
 }
 
-/* Adds the triangles of a mesh that reach into a box. */
-static skg_status gather(const skg_mesh *mesh, const double low[3], const double high[3],
+/* Adds the triangles that reach into a box. */
+static skg_status gather(const skg_mesh_arrays *a, const double low[3], const double high[3],
                          triangle_grid *grid) {
-    int64_t vertices, triangles, found = grid->count;
-    double *positions = NULL;
-    int32_t *corners = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_mesh_size(mesh, &vertices, &triangles));
-    SKG_TRY_CLEANUP(skg_alloc(3 * vertices, sizeof *positions, "thorax", &positions));
-    SKG_TRY_CLEANUP(skg_alloc(3 * triangles, sizeof *corners, "thorax", &corners));
-    SKG_TRY_CLEANUP(skg_mesh_read_positions(mesh, positions, 0));
-    SKG_TRY_CLEANUP(skg_mesh_read_triangles(mesh, corners, 0));
-    SKG_TRY_CLEANUP(skg_realloc(9 * (found + triangles), sizeof *grid->corner, "thorax", &grid->corner));
-    for (int64_t t = 0; t < triangles; t++) {
+    int64_t found = grid->count;
+    SKG_TRY(skg_realloc(9 * (found + a->triangles), sizeof *grid->corner, "thorax", &grid->corner));
+    for (int64_t t = 0; t < a->triangles; t++) {
         double *row = grid->corner + 9 * found, from[3], to[3];
         for (int c = 0; c < 3; c++)
-            memcpy(row + 3 * c, positions + 3 * (int64_t)corners[3 * t + c], 3 * sizeof *row);
+            memcpy(row + 3 * c, a->positions + 3 * (int64_t)a->corners[3 * t + c], 3 * sizeof *row);
         bounds_of(3, row, 0, from, to);
         found += !apart(from, to, low, high);
     }
     grid->count = found;
+    return SKG_OK;
+}
+
+static skg_status gather_mesh(const skg_mesh *mesh, const double low[3], const double high[3],
+                              triangle_grid *grid) {
+    skg_mesh_arrays a = {0};
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_mesh_size(mesh, &a.vertices, &a.triangles));
+    SKG_TRY_CLEANUP(skg_alloc(3 * a.vertices, sizeof *a.positions, "thorax", &a.positions));
+    SKG_TRY_CLEANUP(skg_alloc(3 * a.triangles, sizeof *a.corners, "thorax", &a.corners));
+    SKG_TRY_CLEANUP(skg_mesh_read_positions(mesh, a.positions, 0));
+    SKG_TRY_CLEANUP(skg_mesh_read_triangles(mesh, a.corners, 0));
+    SKG_TRY_CLEANUP(gather(&a, low, high, grid));
 cleanup:
-    skg_free(&positions);
-    skg_free(&corners);
+    skg_mesh_arrays_free(&a);
     return status;
 }
 
@@ -118,7 +122,8 @@ static int pierces(const double *p, const double *q, const double *triangle) {
     skg_add_scaled(q, -1, a, aq);
     skg_cross(ab, ac, n);
     const double from = skg_dot(n, ap), to = skg_dot(n, aq);
-    if ((from > 0) == (to > 0)) return 0;
+    const double level = 1e-9 * skg_length(n); /* mm3 of 1e-9 mm: rounding of points in the plane */
+    if (fabs(from) <= level || fabs(to) <= level || (from > 0) == (to > 0)) return 0;
     skg_add_scaled(q, -1, p, way);
     skg_cross(way, ap, cross); /* weights of b and c: as Moeller and Trumbore, J. Graph. Tools 2 (1997) 21 */
     const double all = skg_dot(n, way), v = skg_dot(ac, cross) / all, w = -skg_dot(ab, cross) / all;
@@ -182,6 +187,12 @@ static int any_meets(const triangle_grid *grid, const skg_mesh_arrays *a, const 
     return any;
 }
 
+static void free_grid(triangle_grid *grid) {
+    skg_free(&grid->corner);
+    skg_free(&grid->first);
+    skg_free(&grid->list);
+}
+
 skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *others,
                            const skg_mesh_arrays *arrays, int *meets) {
     triangle_grid grid = {0};
@@ -190,7 +201,7 @@ skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *oth
     bounds_of(arrays->vertices, arrays->positions, 2 * clearance, low, high);
     for (int64_t i = 0; i < count; i++) {
         const double *bounds = others[i]->health.bounds;
-        if (!apart(low, high, bounds, bounds + 3)) SKG_TRY_CLEANUP(gather(others[i], low, high, &grid));
+        if (!apart(low, high, bounds, bounds + 3)) SKG_TRY_CLEANUP(gather_mesh(others[i], low, high, &grid));
     }
     if (grid.count > 0) {
         SKG_TRY_CLEANUP(fill_grid(low, high, &grid));
@@ -200,8 +211,96 @@ skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *oth
     *meets = grid.count > 0 && any_meets(&grid, arrays, normal);
 cleanup:
     skg_free(&normal);
-    skg_free(&grid.corner);
-    skg_free(&grid.first);
-    skg_free(&grid.list);
+    free_grid(&grid);
+    return status;
+}
+
+/* Whether two facets of one surface meet: those with a common edge do not, those with a common corner by the
+ * edges opposite to it. */
+static int folded(const triangle_grid *grid, const int32_t *corners, int64_t t, int64_t u) {
+    const double *a = grid->corner + 9 * t, *b = grid->corner + 9 * u;
+    int common = 0, i = 0, j = 0;
+    for (int k = 0; k < 9; k++)
+        if (corners[3 * t + k / 3] == corners[3 * u + k % 3]) common++, i = k / 3, j = k % 3;
+    if (common == 0) return meet(a, b);
+    return common == 1 && (pierces(a + 3 * ((i + 1) % 3), a + 3 * ((i + 2) % 3), b) ||
+                           pierces(b + 3 * ((j + 1) % 3), b + 3 * ((j + 2) % 3), a));
+}
+
+static int is_folded(const triangle_grid *grid, const int32_t *corners, int64_t t) {
+    double low[3], high[3], there_low[3], there_high[3];
+    int64_t from[3], to[3];
+    bounds_of(3, grid->corner + 9 * t, 0, low, high);
+    cells_of(grid, low, high, from, to);
+    for (int64_t z = from[2]; z <= to[2]; z++)
+        for (int64_t y = from[1]; y <= to[1]; y++)
+            for (int64_t x = from[0]; x <= to[0]; x++) {
+                const int64_t cell = (z * grid->size[1] + y) * grid->size[0] + x;
+                for (int64_t i = grid->first[cell]; i < grid->first[cell + 1]; i++) {
+                    const int64_t other = grid->list[i];
+                    bounds_of(3, grid->corner + 9 * other, 0, there_low, there_high);
+                    if (other != t && !apart(low, high, there_low, there_high) &&
+                        folded(grid, corners, t, other))
+                        return 1;
+                }
+            }
+    return 0;
+}
+
+skg_status skg_shape_folds(const skg_mesh_arrays *a, int64_t *count, char *fold) {
+    triangle_grid grid = {0};
+    double low[3], high[3];
+    int64_t found = 0;
+    skg_status status = SKG_OK;
+    bounds_of(a->vertices, a->positions, 0, low, high);
+    SKG_TRY_CLEANUP(gather(a, low, high, &grid));
+    SKG_TRY_CLEANUP(fill_grid(low, high, &grid));
+#pragma omp parallel for schedule(dynamic, 256) reduction(+ : found)
+    for (int64_t t = 0; t < a->triangles; t++) {
+        fold[t] = (char)is_folded(&grid, a->corners, t);
+        found += fold[t];
+    }
+    *count = found;
+cleanup:
+    free_grid(&grid);
+    return status;
+}
+
+/* Moves the corners of folded facets, and of those that were, halfway to the mean of their neighbours; where
+ * it folds still, also those neighbours, so that wide folds of small facets go as soon as narrow ones. */
+static void smooth_folds(const skg_mesh_arrays *a, const char *fold, char *moves, double *sum) {
+    memset(sum, 0, (size_t)(4 * a->vertices) * sizeof *sum);
+    for (int64_t k = 0; k < 3 * a->triangles; k++)
+        if (fold[k / 3]) moves[a->corners[k]] |= 2;
+    for (int64_t k = 0; k < 3 * a->triangles; k++) {
+        const int64_t here = a->corners[k], next = a->corners[k - k % 3 + (k + 1) % 3];
+        if (moves[here] & 2) moves[next] |= 1;
+        skg_add_scaled(sum + 4 * here, 1, a->positions + 3 * next, sum + 4 * here);
+        sum[4 * here + 3]++;
+    }
+    for (int64_t i = 0; i < a->vertices; i++) {
+        for (int k = 0; moves[i] && k < 3; k++)
+            a->positions[3 * i + k] = 0.5 * (a->positions[3 * i + k] + sum[4 * i + k] / sum[4 * i + 3]);
+        moves[i] = moves[i] != 0;
+    }
+}
+
+skg_status skg_shape_unfold(const char *name, const skg_mesh_arrays *a) {
+    char *fold = NULL, *moves = NULL;
+    double *sum = NULL;
+    int64_t folds = 1;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(a->triangles, sizeof *fold, name, &fold));
+    SKG_TRY_CLEANUP(skg_alloc(a->vertices, sizeof *moves, name, &moves));
+    SKG_TRY_CLEANUP(skg_alloc(4 * a->vertices, sizeof *sum, name, &sum));
+    for (int pass = 0; pass < MOST_PASSES; pass++) {
+        SKG_TRY_CLEANUP(skg_shape_folds(a, &folds, fold));
+        if (folds == 0) break;
+        smooth_folds(a, fold, moves, sum);
+    }
+cleanup:
+    skg_free(&fold);
+    skg_free(&moves);
+    skg_free(&sum);
     return status;
 }

@@ -93,8 +93,11 @@ static skg_status rib_line(int k, skg_rib *rib) {
     double a, b, centre;
     section(p[1][2], 0, &a, &b, &centre);
     p[1][1] = centre + b * pow(1 - pow(p[1][0] / a, roundness), 1 / roundness);
-    for (int i = 2; i < 5; i++) skg_cage_project(p[i]);
-    SKG_TRY(skg_shape_spline((const double(*)[3])p, 5, RIB_POINTS, rib->line));
+    int points = 5;
+    if (k >= 10)
+        memcpy(p[3], p[4], sizeof p[3]), points = 4; /* the ends are so near that the rib would fold */
+    for (int i = 2; i < points; i++) skg_cage_project(p[i]);
+    SKG_TRY(skg_shape_spline((const double(*)[3])p, points, RIB_POINTS, rib->line));
     int behind = 1;
     for (int i = 0; i < RIB_POINTS; i++) {
         behind = behind && rib->line[i][0] < p[1][0];

@@ -61,10 +61,23 @@ static double recess(double x, double y) {
     return skg_dome_rim_height(azimuth) + 70 - 26 * back * exp(-behind * behind);
 }
 
+/* Height of a ball's upper side that rolls under the diaphragm's middle: `radius` mm clear of it, also where
+ * it is steep. */
+static double clear_of_dome(const skg_thorax_plan *plan, double x, double y, double radius) {
+    enum { CIRCLES = 3, AROUND = 12 };
+    double most = skg_dome_height(plan, x, y) + radius;
+    for (int c = 1; c <= CIRCLES; c++)
+        for (int i = 0; i < AROUND; i++) {
+            double angle = 2 * pi * (i + 0.5 * (c % 2)) / AROUND, d = (double)c / CIRCLES;
+            double z = skg_dome_height(plan, x + d * radius * cos(angle), y + d * radius * sin(angle));
+            most = fmax(most, z + radius * sqrt(1 - d * d));
+        }
+    return most;
+}
+
 /* z over a point of the base: above the diaphragm, and no lower than the recess reaches. */
 static double base_height(const lung *l, double x, double y) {
-    double dome = skg_dome_height(l->plan, x, y), floor = recess(x, y);
-    double over = dome + fmin((1.5 + 3.4 * l->gap) * skg_dome_steepness(l->plan, x, y), 110);
+    double over = clear_of_dome(l->plan, x, y, 1.5 + 3.4 * l->gap), floor = recess(x, y);
     double d = over - floor; /* the larger, rounded over 8 mm */
     return floor + 0.5 * (d + sqrt(d * d + 64));
 }
@@ -169,6 +182,7 @@ static skg_status make_lung(const char *label, void *shape, skg_mesh_arrays *arr
         counts[r] = r == 0 || r == rings - 1 ? 1 : r >= l->base ? l->around : part > 5 ? part : 5;
     }
     SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, l, arrays));
+    SKG_TRY_CLEANUP(skg_shape_unfold(label, arrays));
 cleanup:
     skg_free(&counts);
     skg_free(&radius);

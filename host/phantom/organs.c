@@ -49,6 +49,7 @@ static skg_status diaphragm(const skg_thorax_plan *plan, int64_t skin, skg_thora
     }
     skg_mesh_arrays arrays = {0};
     skg_status status = skg_shape_rings("diaphragm", rings, counts, sheet_place, &s, &arrays);
+    if (status == SKG_OK) status = skg_shape_unfold("diaphragm", &arrays);
     if (status == SKG_OK) status = skg_thorax_add(thorax, "diaphragm", 50, skin, &arrays);
     skg_free(&counts);
     skg_mesh_arrays_free(&arrays);

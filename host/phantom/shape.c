@@ -107,6 +107,7 @@ skg_status skg_shape_cord(const char *name, const double (*curve)[3], int64_t po
         ring[i].height = taper * height, ring[i].width = taper * width;
     }
     skg_status status = skg_shape_tube(name, rings, ring, 0.5 * fmin(height, width), around, arrays);
+    if (status == SKG_OK) status = skg_shape_unfold(name, arrays);
     skg_free(&ring);
     return status;
 }

@@ -49,6 +49,13 @@ skg_status skg_shape_star(const char *name, skg_region region, const void *shape
 skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *others,
                            const skg_mesh_arrays *arrays, int *meets);
 
+/* Which facets of a closed surface meet others of it that are not their neighbours: how many, and 1 or 0 per
+ * triangle (apart.c). */
+skg_status skg_shape_folds(const skg_mesh_arrays *arrays, int64_t *count, char *fold);
+
+/* Smooths a surface where it folds over itself, until it does not. */
+skg_status skg_shape_unfold(const char *name, const skg_mesh_arrays *arrays);
+
 /* Smooths the radii of a ring, downwards only: what was allowed stays allowed. `passes` times over, none
  * exceeds the mean of its neighbours' and its own. */
 void skg_shape_smooth(double *radius, int64_t count, int passes);
