@@ -1,5 +1,5 @@
 /* Whether surfaces meet, each other or themselves. The regions that shape the organs keep gaps where they are
- * sampled; between the samples a facet may still cut into a neighbour's. */
+ * sampled; between the samples a facet may still cut into a neighbour's, and then draws back from it. */
 #include "phantom/shape.h"
 
 #include "scene/vector.h"
@@ -7,7 +7,9 @@
 #include <string.h>
 
 static const double clearance = 0.2; /* mm, about; kept from the other surfaces */
-enum { MOST_PASSES = 60 };
+static const double step = 0.25;     /* mm that what meets them draws back at once */
+static const double slope = 0.5;     /* of what draws back, against what does not */
+enum { MOST_STEPS = 60, MOST_PASSES = 60 };
 
 /* Triangles in cells of a grid, as rows of nine coordinates. */
 typedef struct {
@@ -172,19 +174,72 @@ static void find_normals(const skg_mesh_arrays *a, double *normal) {
     }
 }
 
-/* Whether a facet meets another surface's where it would be with the clearance added. */
-static int any_meets(const triangle_grid *grid, const skg_mesh_arrays *a, const double *normal) {
+/* How far the vertices have drawn back from the surface as it was made. */
+typedef struct {
+    const skg_mesh_arrays *mesh;
+    const double *normal; /* [vertices][3] as made */
+    double *back;         /* [vertices] mm */
+    char *meets;          /* [vertices] of a facet that meets another surface */
+} retreat;
+
+static void place_at(const retreat *r, int64_t v, double outwards, double place[3]) {
+    skg_add_scaled(r->mesh->positions + 3 * v, outwards - r->back[v], r->normal + 3 * v, place);
+}
+
+/* Marks the vertices of facets that meet another surface where they would be with the clearance added. */
+static int find_meeting(const triangle_grid *grid, const retreat *r) {
+    const skg_mesh_arrays *a = r->mesh;
     int any = 0;
 #pragma omp parallel for schedule(dynamic, 256) reduction(| : any)
     for (int64_t t = 0; t < a->triangles; t++) {
         double grown[9];
+        for (int c = 0; c < 3; c++) place_at(r, a->corners[3 * t + c], clearance, grown + 3 * c);
+        if (!meets_any(grid, grown)) continue;
+        any = 1;
         for (int c = 0; c < 3; c++) {
-            const int64_t v = a->corners[3 * t + c];
-            skg_add_scaled(a->positions + 3 * v, clearance, normal + 3 * v, grown + 3 * c);
+#pragma omp atomic write
+            r->meets[a->corners[3 * t + c]] = 1;
         }
-        any |= meets_any(grid, grown);
     }
     return any;
+}
+
+/* Draws the marked vertices back by a step, and what is near them so far that the surface keeps a slope. */
+static void draw_back(const retreat *r) {
+    const skg_mesh_arrays *a = r->mesh;
+    for (int64_t v = 0; v < a->vertices; v++) {
+        if (r->meets[v]) r->back[v] += step;
+        r->meets[v] = 0;
+    }
+    for (int changed = 1; changed;) {
+        changed = 0;
+        for (int64_t t = 0; t < a->triangles; t++)
+            for (int c = 0; c < 3; c++) {
+                const int64_t v = a->corners[3 * t + c], w = a->corners[3 * t + (c + 1) % 3];
+                double edge[3];
+                skg_add_scaled(a->positions + 3 * v, -1, a->positions + 3 * w, edge);
+                const double least = r->back[v] - slope * skg_length(edge);
+                if (r->back[w] < least - 1e-9) r->back[w] = least, changed = 1;
+            }
+    }
+}
+
+static skg_status retreat_from(const char *name, const triangle_grid *grid, skg_mesh_arrays *arrays) {
+    double *normal = NULL, *back = NULL;
+    char *meets = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(3 * arrays->vertices, sizeof *normal, name, &normal));
+    SKG_TRY_CLEANUP(skg_alloc(arrays->vertices, sizeof *back, name, &back));
+    SKG_TRY_CLEANUP(skg_alloc(arrays->vertices, 1, name, &meets));
+    find_normals(arrays, normal);
+    const retreat r = {arrays, normal, back, meets};
+    for (int k = 0; k < MOST_STEPS && find_meeting(grid, &r); k++) draw_back(&r);
+    for (int64_t v = 0; v < arrays->vertices; v++) place_at(&r, v, 0, arrays->positions + 3 * v);
+cleanup:
+    skg_free(&normal);
+    skg_free(&back);
+    skg_free(&meets);
+    return status;
 }
 
 static void free_grid(triangle_grid *grid) {
@@ -193,24 +248,20 @@ static void free_grid(triangle_grid *grid) {
     skg_free(&grid->list);
 }
 
-skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *others,
-                           const skg_mesh_arrays *arrays, int *meets) {
+skg_status skg_shape_retreat(const char *name, int64_t count, skg_mesh *const *others,
+                             skg_mesh_arrays *arrays) {
     triangle_grid grid = {0};
-    double low[3], high[3], *normal = NULL;
+    double low[3], high[3];
     skg_status status = SKG_OK;
     bounds_of(arrays->vertices, arrays->positions, 2 * clearance, low, high);
     for (int64_t i = 0; i < count; i++) {
         const double *bounds = others[i]->health.bounds;
         if (!apart(low, high, bounds, bounds + 3)) SKG_TRY_CLEANUP(gather_mesh(others[i], low, high, &grid));
     }
-    if (grid.count > 0) {
-        SKG_TRY_CLEANUP(fill_grid(low, high, &grid));
-        SKG_TRY_CLEANUP(skg_alloc(3 * arrays->vertices, sizeof *normal, name, &normal));
-        find_normals(arrays, normal);
-    }
-    *meets = grid.count > 0 && any_meets(&grid, arrays, normal);
+    if (grid.count == 0) goto cleanup;
+    SKG_TRY_CLEANUP(fill_grid(low, high, &grid));
+    SKG_TRY_CLEANUP(retreat_from(name, &grid, arrays));
 cleanup:
-    skg_free(&normal);
     free_grid(&grid);
     return status;
 }

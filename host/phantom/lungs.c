@@ -168,8 +168,8 @@ static void find_radii(const lung *l, double *radius) {
     }
 }
 
-static skg_status make_lung(const char *label, void *shape, skg_mesh_arrays *arrays) {
-    lung *l = shape;
+static skg_status add_lung(const char *label, int64_t skin, lung *l, skg_thorax *thorax) {
+    skg_mesh_arrays arrays = {0};
     double *radius = NULL;
     int64_t *counts = NULL, rings = l->base + l->sides + 1;
     skg_status status = SKG_OK;
@@ -181,9 +181,11 @@ static skg_status make_lung(const char *label, void *shape, skg_mesh_arrays *arr
         int64_t part = l->around * r / l->base;
         counts[r] = r == 0 || r == rings - 1 ? 1 : r >= l->base ? l->around : part > 5 ? part : 5;
     }
-    SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, l, arrays));
-    SKG_TRY_CLEANUP(skg_shape_unfold(label, arrays));
+    SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, l, &arrays));
+    SKG_TRY_CLEANUP(skg_shape_unfold(label, &arrays));
+    SKG_TRY_CLEANUP(skg_thorax_fit(thorax, label, -790, skin, &arrays));
 cleanup:
+    skg_mesh_arrays_free(&arrays);
     skg_free(&counts);
     skg_free(&radius);
     return status;
@@ -195,8 +197,7 @@ skg_status skg_thorax_lungs(const skg_thorax_plan *plan, int64_t skin, skg_thora
         l.base = skg_shape_count(plan->resolution, 15, 4);
         l.sides = skg_shape_count(plan->resolution, 29, 8);
         l.around = skg_shape_count(plan->resolution, 46, 12);
-        SKG_TRY(
-            skg_thorax_fit(thorax, side > 0 ? "lung left" : "lung right", -790, skin, make_lung, &l, &l.gap));
+        SKG_TRY(add_lung(side > 0 ? "lung left" : "lung right", skin, &l, thorax));
     }
     return SKG_OK;
 }

@@ -115,25 +115,17 @@ static double heart_region(const void *shape, const double p[3]) {
     return fmax(most, fmax(skg_spine_inside(p, o->gap), o->gap - skg_airway_distance(p)));
 }
 
-/* A star about a centre. */
-typedef struct {
-    skg_region region;
-    const void *shape;
-    const double *centre;
-    int64_t rings;
-} star;
-
-static skg_status make_star(const char *label, void *shape, skg_mesh_arrays *arrays) {
-    const star *s = shape;
-    return skg_shape_star(label, s->region, s->shape, s->centre, 250, s->rings, arrays);
-}
-
-/* shape begins with an organ. */
+/* A star about a centre; shape begins with an organ. */
 static skg_status add_star(const char *label, double hounsfield, int64_t inside, skg_region region,
-                           void *shape, const double centre[3], double standard_rings, skg_thorax *thorax) {
-    organ *o = shape;
-    star s = {region, shape, centre, skg_shape_count(o->plan->resolution, standard_rings, 8)};
-    return skg_thorax_fit(thorax, label, hounsfield, inside, make_star, &s, &o->gap);
+                           const void *shape, const double centre[3], double standard_rings,
+                           skg_thorax *thorax) {
+    const organ *o = shape;
+    const int64_t rings = skg_shape_count(o->plan->resolution, standard_rings, 8);
+    skg_mesh_arrays arrays = {0};
+    skg_status status = skg_shape_star(label, region, shape, centre, 250, rings, &arrays);
+    if (status == SKG_OK) status = skg_thorax_fit(thorax, label, hounsfield, inside, &arrays);
+    skg_mesh_arrays_free(&arrays);
+    return status;
 }
 
 enum { DUCTS = 8 };

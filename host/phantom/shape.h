@@ -45,9 +45,10 @@ double skg_shape_exit(skg_region region, const void *shape, const double from[3]
 skg_status skg_shape_star(const char *name, skg_region region, const void *shape, const double centre[3],
                           double far, int64_t rings, skg_mesh_arrays *arrays);
 
-/* Whether the surface meets those of meshes as they were made, or comes nearer than 0.05 mm (apart.c). */
-skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *others,
-                           const skg_mesh_arrays *arrays, int *meets);
+/* Draws the surface back, near where it meets those of meshes as they were made or comes nearer than some 0.2
+ * mm, until it does not; at most 15 mm (apart.c). */
+skg_status skg_shape_retreat(const char *name, int64_t count, skg_mesh *const *others,
+                             skg_mesh_arrays *arrays);
 
 /* Which facets of a closed surface meet others of it that are not their neighbours: how many, and 1 or 0 per
  * triangle (apart.c). */

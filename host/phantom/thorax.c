@@ -42,27 +42,17 @@ static void set_tissue(skg_thorax *thorax, int64_t i) {
         }
 }
 
-/* A mesh with a gap of its own is made again with a larger one until it meets none of those before it; not
- * where triangles are so large that it would shrink to be apart. */
 skg_status skg_thorax_fit(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
-                          skg_thorax_maker maker, void *shape, double *gap) {
-    const double growth = 1.25, widest_standard = 1.5 + 1e-9; /* mm; of 42,000 triangles */
+                          skg_mesh_arrays *arrays) {
     skg_mesh **others = NULL;
-    skg_mesh_arrays arrays = {0};
     int64_t count = 0;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(thorax->parts, sizeof *others, label, &others));
     for (int64_t i = 0; i < thorax->parts; i++)
         if (thorax->part[i].inside == inside) others[count++] = thorax->part[i].mesh;
-    const double most = *gap > widest_standard ? *gap : 12; /* mm */
-    for (int meets = 1; meets && *gap <= most; *gap *= growth) {
-        skg_mesh_arrays_free(&arrays);
-        SKG_TRY_CLEANUP(maker(label, shape, &arrays));
-        SKG_TRY_CLEANUP(skg_shape_meets(label, count, others, &arrays, &meets));
-    }
-    SKG_TRY_CLEANUP(skg_thorax_add(thorax, label, hounsfield, inside, &arrays));
+    SKG_TRY_CLEANUP(skg_shape_retreat(label, count, others, arrays));
+    SKG_TRY_CLEANUP(skg_thorax_add(thorax, label, hounsfield, inside, arrays));
 cleanup:
-    skg_mesh_arrays_free(&arrays);
     skg_free(&others);
     return status;
 }
