@@ -21,4 +21,8 @@ void skg_pixel_list_release(skg_pixel_list *list);
 skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps,
                       const double *pose, const skg_pixel_list *pixels, double *paths);
 
+/* Sets marks [rows][columns] to 1 where a ray passes a cap, or may pass it as the device rounds. */
+void skg_recast_mark(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps, const double *pose,
+                     int32_t *marks);
+
 #endif
