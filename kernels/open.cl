@@ -14,6 +14,11 @@ static size_t skg_place(const skg_frame_args *frame, int plane, int row, int col
     return (size_t)plane * (size_t)frame->plane + (size_t)row * (size_t)frame->stride + (size_t)column;
 }
 
+/* The first of own, own + step, ... that is not left of a column. */
+static int skg_first_column(int column, int own, int step) {
+    return own + max(column - own + step - 1, 0) / step * step;
+}
+
 /* Items along a row take vectors by turns, and each takes the parts one after another: no two add to one pixel. */
 __kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                            __global const int *table, __global skg_sum *shared) {
@@ -24,8 +29,7 @@ __kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies,
         const int4 field = vload4(0, used + SKG_FIELD(frame.copies, counts));
         if (row < field.x || row >= field.y) continue;
         const int own = SKG_WIDE * (int)get_global_id(0);
-        const int from = own + max(field.z - own + step - 1, 0) / step * step;
-        for (int column = from; column < field.w; column += step) {
+        for (int column = skg_first_column(field.z, own, step); column < field.w; column += step) {
             const skg_sumv hits = skg_field_sums_v(&frame, copies, used, counts, row, column);
             const skg_sumv valid = SKG_AS_SUM_V(hits == (skg_sumv)(0));
             for (int plane = first; plane < counts; plane++) {
@@ -40,22 +44,21 @@ __kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies,
 /* No valid pixel: far from any. */
 #define SKG_FAR 0x40000000
 
-/* gaps[part][row][column]: pixels to the nearest valid one of the row, 0 where the pixel itself is; only in rows with
- * bad pixels (rows_bad as skg_count_bad_rows leaves it), and within the part's field. One item a row of a part. */
+/* gaps[part][row][column]: pixels to the nearest valid one of the row, 0 where the pixel itself is; only in the columns
+ * of a row that rows_bad (as skg_count_bad_rows leaves it) names. One item a row of a part. */
 __kernel void skg_open_gaps(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                             __global const int *table, __global const int *rows_bad, __global int *gaps) {
     const int row = (int)get_global_id(0), part = (int)get_global_id(1);
-    if (row >= frame.rows || part >= parts || rows_bad[part * frame.rows + row] == 0) return;
-    const int4 field = vload4(0, used + SKG_FIELD(frame.copies, table[part]));
-    const int end = min(field.w, frame.columns);
+    if (row >= frame.rows || part >= parts) return;
+    const int3 bad = vload3((size_t)(part * frame.rows + row), rows_bad);
     __global int *gap = gaps + ((size_t)part * (size_t)frame.rows + (size_t)row) * (size_t)frame.columns;
-    int near = field.z > 0 ? 0 : SKG_FAR; /* beside the field all are valid */
-    for (int column = field.z; column < end; column++) {
+    int near = bad.y > 0 ? 0 : SKG_FAR; /* beside the bad ones all are valid */
+    for (int column = bad.y; column < bad.z; column++) {
         near = skg_sum_of(&frame, copies, used, table[part], row, column) != 0 ? min(near + 1, SKG_FAR) : 0;
         gap[column] = near;
     }
-    near = end < frame.columns ? 0 : SKG_FAR;
-    for (int column = end - 1; column >= field.z; column--) {
+    near = bad.z < frame.columns ? 0 : SKG_FAR;
+    for (int column = bad.z - 1; column >= bad.y; column--) {
         near = gap[column] ? min(near + 1, SKG_FAR) : 0;
         gap[column] = min(gap[column], near);
     }
@@ -63,12 +66,12 @@ __kernel void skg_open_gaps(skg_frame_args frame, __global const skg_sum *copies
 
 /* Of one part: as above. */
 typedef struct {
-    int from, to; /* columns of its field */
     __global const int *rows_bad, *gaps;
 } skg_marks;
 
 static int skg_gap(const skg_frame_args *frame, const skg_marks *marks, int row, int column) {
-    if (marks->rows_bad[row] == 0 || column < marks->from || column >= marks->to) return 0;
+    const int3 bad = vload3((size_t)row, marks->rows_bad);
+    if (column < bad.y || column >= bad.z) return 0;
     return marks->gaps[(size_t)row * (size_t)frame->columns + (size_t)column];
 }
 
@@ -113,15 +116,11 @@ __kernel void skg_open_repair(skg_frame_args frame, __global const skg_sum *copi
     const int own = (int)get_global_id(0), row = (int)get_global_id(1), step = (int)get_global_size(0);
     if (row >= frame.rows) return;
     for (int part = 0; part < parts; part++) {
-        if (rows_bad[part * frame.rows + row] == 0) continue;
-        const int4 field = vload4(0, used + SKG_FIELD(frame.copies, table[part]));
+        const int3 bad = vload3((size_t)(part * frame.rows + row), rows_bad);
         skg_marks marks;
-        marks.from = field.z;
-        marks.to = field.w;
-        marks.rows_bad = rows_bad + part * frame.rows;
+        marks.rows_bad = rows_bad + 3 * part * frame.rows;
         marks.gaps = gaps + (size_t)part * (size_t)frame.rows * (size_t)frame.columns;
-        const int from = own + max(field.z - own + step - 1, 0) / step * step;
-        for (int column = from; column < min(field.w, frame.columns); column += step) {
+        for (int column = skg_first_column(bad.y, own, step); column < bad.z; column += step) {
             if (skg_gap(&frame, &marks, row, column) == 0) continue;
             const int reach = skg_reach(&frame, &marks, row, column);
             if (reach >= SKG_FAR) continue;

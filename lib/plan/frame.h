@@ -51,7 +51,6 @@ typedef struct {
     const int64_t *open;      /* [parts] numbers in plan->open */
     skg_raster *raster;       /* of their planes: each part's sums in the order of its writes, its count */
     const skg_raster *shared; /* that their sums join */
-    const cl_int *counts, *fields; /* [parts] count planes; [planes][4] fields */
 } skg_open_batch;
 
 /* Enqueues the repair of their bad pixels, as the plan's options have it, after verdicts and sums (repair.c).

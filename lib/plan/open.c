@@ -132,8 +132,6 @@ static skg_status run_batch(const batching *b, int64_t first, skg_open_batch *ba
     SKG_TRY(skg_job_stage(job, batch->parts + planes, sizeof *table, "open parts", &table));
     SKG_TRY(skg_job_stage(job, 4 * b->planes, sizeof *fields, "fields", &fields));
     fill_batch(b, batch, table, fields);
-    batch->counts = table;
-    batch->fields = fields;
     const int64_t bytes = (batch->parts + planes) * (int64_t)sizeof *table;
     SKG_TRY(skg_buffer_reserve(plan->context, &plan->open_table, bytes, CL_MEM_READ_ONLY,
                                "planes of open parts"));

@@ -16,7 +16,7 @@ static skg_status get_bad_kernels(skg_raster *raster) {
 
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem planes, int64_t first,
                                  cl_mem verdicts, skg_stage_log *log) {
-    const int64_t row_bytes = raster->frame.rows * (int64_t)sizeof(cl_int);
+    const int64_t row_bytes = 3 * raster->frame.rows * (int64_t)sizeof(cl_int);
     const cl_int first_verdict = (cl_int)first;
     SKG_TRY(get_bad_kernels(raster));
     SKG_TRY(skg_buffer_reserve(raster->context, &raster->rows_bad, count * row_bytes, CL_MEM_READ_WRITE,

@@ -54,7 +54,7 @@ typedef struct {
     skg_job *job;
     const skg_frame_parts *frame;
     const skg_open_batch *batch;
-    cl_int *rows_bad; /* [parts][rows] */
+    cl_int *rows_bad; /* [parts][rows][3] as counts.cl leaves it */
     cl_int *marks;    /* [rows][columns] pixels of the part at hand that are cast anew; else 0 */
     cl_kernel put;
 } casting;
@@ -69,18 +69,17 @@ static skg_status read_now(const casting *c, cl_mem memory, int64_t first, int64
 /* Marks the bad pixels of a part. */
 static skg_status mark_bad(const casting *c, int64_t part) {
     const skg_frame_args *layout = &c->batch->raster->frame;
-    const cl_int *field = c->batch->fields + 4 * c->batch->counts[part];
-    const cl_int *rows_bad = c->rows_bad + part * layout->rows;
+    const cl_int *rows_bad = c->rows_bad + 3 * part * layout->rows;
     const int64_t columns = layout->columns;
     int64_t first = 0, end = layout->rows;
-    while (first < end && !rows_bad[first]) first++;
-    while (first < end && !rows_bad[end - 1]) end--;
+    while (first < end && !rows_bad[3 * first]) first++;
+    while (first < end && !rows_bad[3 * (end - 1)]) end--;
     if (first == end) return SKG_OK;
     SKG_TRY(read_now(c, c->plan->gaps.memory, (part * layout->rows + first) * columns,
                      (end - first) * columns, c->marks + first * columns));
     for (int64_t r = first; r < end; r++) /* what skg_open_gaps leaves as it is */
         for (int64_t k = 0; k < columns; k++)
-            if (!rows_bad[r] || k < field[2] || k >= field[3]) c->marks[r * columns + k] = 0;
+            if (k < rows_bad[3 * r + 1] || k >= rows_bad[3 * r + 2]) c->marks[r * columns + k] = 0;
     return SKG_OK;
 }
 
@@ -172,15 +171,16 @@ static skg_status cast_part(const casting *c, int64_t part) {
 static skg_status cast_anew(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
                             const skg_open_batch *batch) {
     const skg_frame_args *layout = &batch->raster->frame;
+    const int64_t rows = batch->parts * layout->rows;
     casting c = {.plan = plan, .job = job, .frame = frame, .batch = batch};
     int any = 0;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_open_kernel(plan, batch, "skg_open_put", &c.put));
-    SKG_TRY_CLEANUP(skg_alloc(batch->parts * layout->rows, sizeof *c.rows_bad, "bad pixels", &c.rows_bad));
+    SKG_TRY_CLEANUP(skg_alloc(rows, 3 * sizeof *c.rows_bad, "bad pixels", &c.rows_bad));
     SKG_TRY_CLEANUP(
         skg_alloc((int64_t)layout->rows * layout->columns, sizeof *c.marks, "bad pixels", &c.marks));
-    SKG_TRY_CLEANUP(read_now(&c, batch->raster->rows_bad.memory, 0, batch->parts * layout->rows, c.rows_bad));
-    for (int64_t k = 0; k < batch->parts * layout->rows; k++) any |= c.rows_bad[k] != 0;
+    SKG_TRY_CLEANUP(read_now(&c, batch->raster->rows_bad.memory, 0, 3 * rows, c.rows_bad));
+    for (int64_t k = 0; k < rows; k++) any |= c.rows_bad[3 * k] != 0;
     if (any) SKG_TRY_CLEANUP(find_gaps(plan, job, batch));
     for (int64_t part = 0; part < batch->parts; part++) SKG_TRY_CLEANUP(cast_part(&c, part));
 cleanup:
