@@ -18,14 +18,15 @@ typedef struct {
     int turned;
 } casting;
 
-skg_status skg_pixel_list_make(int64_t columns, int64_t rows, const int32_t *marks, skg_pixel_list *list) {
+skg_status skg_pixel_list_make(int64_t columns, int64_t rows, int64_t first, int64_t end,
+                               const int32_t *marks, skg_pixel_list *list) {
     skg_status status = SKG_OK;
     *list = (skg_pixel_list){0};
-    for (int64_t k = 0; k < rows * columns; k++) list->count += marks[k] != 0;
+    for (int64_t k = first * columns; k < end * columns; k++) list->count += marks[k] != 0;
     SKG_TRY_CLEANUP(skg_alloc(rows + 1, sizeof *list->first, "bad pixels", &list->first));
     SKG_TRY_CLEANUP(skg_alloc(list->count, sizeof *list->columns, "bad pixels", &list->columns));
     for (int64_t r = 0, k = 0; r < rows; r++) {
-        for (int64_t c = 0; c < columns; c++)
+        for (int64_t c = 0; c < columns && r >= first && r < end; c++)
             if (marks[r * columns + c]) list->columns[k++] = (int32_t)c;
         list->first[r + 1] = k;
     }

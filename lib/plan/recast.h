@@ -12,8 +12,9 @@ typedef struct {
     int32_t *columns; /* [count] ascending within a row */
 } skg_pixel_list;
 
-/* The pixels that are not 0 in marks [rows][columns]. */
-skg_status skg_pixel_list_make(int64_t columns, int64_t rows, const int32_t *marks, skg_pixel_list *list);
+/* The pixels that are not 0 in marks [rows][columns], of rows first to end - 1. */
+skg_status skg_pixel_list_make(int64_t columns, int64_t rows, int64_t first, int64_t end,
+                               const int32_t *marks, skg_pixel_list *list);
 void skg_pixel_list_release(skg_pixel_list *list);
 
 /* paths[k]: of the ray to pixel k of the list the part of its length that lies in the mesh, 0 to 1 where the

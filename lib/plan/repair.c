@@ -131,7 +131,8 @@ cleanup:
 }
 
 /* The marked rays of a part. */
-static skg_status cast_marked(const casting *c, int64_t part, const skg_caps *caps) {
+static skg_status cast_marked(const casting *c, int64_t part, int64_t first, int64_t end,
+                              const skg_caps *caps) {
     const skg_frame_parts *frame = c->frame;
     const int64_t number = c->plan->open[c->batch->open[part]];
     const int64_t writes = frame->firsts[number + 1] - frame->firsts[number];
@@ -140,7 +141,7 @@ static skg_status cast_marked(const casting *c, int64_t part, const skg_caps *ca
     cl_int *pixels = NULL;
     cl_long *values = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY(skg_pixel_list_make(frame->camera.columns, frame->camera.rows, c->marks, &list));
+    SKG_TRY(skg_pixel_list_make(frame->camera.columns, frame->camera.rows, first, end, c->marks, &list));
     if (list.count == 0) goto cleanup;
     SKG_TRY_CLEANUP(skg_alloc(list.count, sizeof *paths, "repair", &paths));
     SKG_TRY_CLEANUP(skg_recast(&frame->camera, c->plan->scene->parts[number].mesh, caps,
@@ -160,12 +161,17 @@ static skg_status cast_part(const casting *c, int64_t part) {
     const skg_frame_args *layout = &c->batch->raster->frame;
     const int64_t open = c->batch->open[part], number = c->plan->open[open];
     const skg_caps *caps = NULL;
+    cl_int field[4];
     SKG_TRY(get_caps(c->plan, open, &caps));
-    memset(c->marks, 0, (size_t)layout->rows * (size_t)layout->columns * sizeof *c->marks);
+    skg_extent_field(&c->frame->camera, &c->frame->extents[number], field);
+    const int64_t first = field[0], end = field[1] < layout->rows ? field[1] : layout->rows;
+    if (first >= end) return SKG_OK;
+    memset(c->marks + first * layout->columns, 0,
+           (size_t)(end - first) * (size_t)layout->columns * sizeof *c->marks);
     SKG_TRY(mark_bad(c, part));
     skg_recast_mark(&c->frame->camera, c->plan->scene->parts[number].mesh, caps, c->frame->parts[number].pose,
                     c->marks);
-    return cast_marked(c, part, caps);
+    return cast_marked(c, part, first, end, caps);
 }
 
 static skg_status cast_anew(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
