@@ -314,8 +314,7 @@ START_TEST(in_through_one_hole_and_out_through_another) {
             take(&broken, NULL, &w, &left_out);
             ck_assert_mem_eq(left_out.mm, exact.mm, sizeof exact.mm);
         }
-        /* Single: terms are rounded to 2^-24 of their depth from the middle of the box, 30 mm, and rays that
-         * hit the rim on one side of it are as many as those on the other. */
+        /* Single: the most that a ray may err by anywhere, along the box's sides. */
         wish single = {.repair = SKG_REPAIR_EXACT};
         take(&closed, NULL, &single, &truth);
         take(&broken, NULL, &single, &exact);
@@ -426,6 +425,55 @@ START_TEST(what_is_told) {
 }
 END_TEST
 
+static int warnings;
+
+static void count_warnings(int32_t level, const char *message, void *user) {
+    (void)user;
+    warnings += level == SKG_LOG_WARNING && strstr(message, "is open") != NULL;
+}
+
+/* Once for a part; again where it is ten times as bad as it was, not where it is better. */
+START_TEST(what_is_told_once) {
+    static const double z[] = {0, 0, -800, 0, -800};
+    static const int told_by[] = {1, 1, 2, 2, 2};
+    static soup broken;
+    static picture image;
+    static const int64_t first = 0;
+    skg_scene *scene = NULL;
+    skg_plan *plan = NULL;
+    skg_part part;
+    skg_output output;
+    int64_t few = 0;
+    fill_sphere(&broken);
+    remove_triangle(&broken, triangle_at(&broken, 5, 3, -40));
+    ck_skg(skg_scene_create(context, &scene));
+    skg_part_init(&part);
+    part.mesh = mesh_of(&broken), part.material = water;
+    ck_skg(skg_scene_add(scene, &part, NULL));
+    skg_mesh_release(&part.mesh);
+    ck_skg(skg_plan_create(context, scene, &view, beam, NULL, &plan));
+    ck_skg(skg_context_set_log(context, count_warnings, NULL));
+    skg_output_init(&output);
+    output.type = SKG_FLOAT64, output.data = image.mm;
+    for (int k = 0; k < 5; k++) {
+        skg_frame frame;
+        skg_job *job = NULL;
+        double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z[k], 0, 0, 0, 1};
+        skg_frame_init(&frame);
+        frame.posed = 1, frame.posed_ids = &first, frame.posed_poses = pose;
+        ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+        ck_skg(skg_job_wait(&job));
+        skg_plan_report_init(&image.report);
+        ck_skg(skg_plan_get_report(plan, &image.report));
+        if (k == 0) few = image.report.bad_pixels;
+        ck_assert_int_gt(image.report.bad_pixels, z[k] < 0 ? 10 * few : 0); /* told of every frame */
+        ck_assert_int_eq(warnings, told_by[k]);
+    }
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
     tcase_add_test(tests, a_missing_triangle);
@@ -438,6 +486,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, strategies_agree);
     tcase_add_test(tests, no_valid_pixel);
     tcase_add_test(tests, what_is_told);
+    tcase_add_test(tests, what_is_told_once);
 }
 
 SKG_SUITE_MAIN("repair", add_tests)
