@@ -288,7 +288,7 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
         value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_open_beam(pass, c, pixels->world[r], top)));
 #endif
 #elif SKG_RATIO
-        value = value / skg_open_beam(pass, c, pixels->world[r], top) * skg_exp2_v(-top);
+        value = value / skg_open_beam(pass, c, pixels->world[r], top) * skg_exp2_v(-top) * all;
 #else
         value *= all;
 #endif

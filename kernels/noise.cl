@@ -1,10 +1,16 @@
 /* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
  * shown. In place, in the type of skg_real. */
 /* electronic: standard deviation in keV; step in keV; factor of the channel times `all`: from keV or photons per pixel to
- * what is shown. One work-item SKG_WIDE pixels of a row of a channel. */
+ * what is shown. field: [channels][rows][columns] that values are divided by. One work-item SKG_WIDE pixels of a row of a
+ * channel. */
 __kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
                          int rows, skg_noise_args key, skg_real electronic, skg_real step,
-                         __constant const skg_real *factor, skg_real all) {
+                         __constant const skg_real *factor, skg_real all
+#if SKG_OVER_FIELD
+                         ,
+                         __global const skg_real *field
+#endif
+) {
     const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
     const int channel = (int)get_global_id(2), pixels = columns - column;
     if (pixels <= 0 || row >= rows) return;
@@ -26,6 +32,12 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     value = rint(value / step) * step;
 #endif
     value *= factor[channel] * all;
+#if SKG_OVER_FIELD
+    skg_real open[SKG_WIDE];
+    field += ((long)channel * rows + row) * columns + column;
+    for (int k = 0; k < SKG_WIDE; k++) open[k] = field[min(k, pixels - 1)];
+    value /= SKG_LOAD_V(0, open);
+#endif
     if (pixels >= SKG_WIDE) {
         SKG_STORE_V(value, 0, image);
         return;

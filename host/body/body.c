@@ -15,7 +15,9 @@ void skg_body_options_init(skg_body_options *options) {
 }
 
 void skg_organ_init(skg_organ *organ) {
-    *organ = (skg_organ){.size = (int32_t)sizeof *organ, .inside = -1};
+    const double unknown = (double)NAN;
+    *organ =
+        (skg_organ){.size = (int32_t)sizeof *organ, .inside = -1, .centre_mm = {unknown, unknown, unknown}};
 }
 
 static skg_status check_options(const skg_body_options *o) {
@@ -54,8 +56,13 @@ skg_status skg_body_create(skg_context *context, const skg_body_options *options
 static void free_organ(skg_body_organ *o) {
     skg_mesh_release(&o->mesh);
     skg_chain_free(&o->chain);
-    void *block[] = {&o->label, &o->rest,  &o->corner, &o->node_of, &o->moved,       &o->link, &o->target,
-                     &o->block, &o->state, &o->memory, &o->near,    &o->near_weight, &o->share};
+    for (int64_t l = 0; l < o->given_count; l++) {
+        char *to = (char *)(uintptr_t)o->given[l].to; /* ours, as skg_copy_text made it */
+        skg_free(&to);
+    }
+    void *block[] = {&o->label,  &o->rest,   &o->corner, &o->node_of,     &o->moved,
+                     &o->link,   &o->anchor, &o->target, &o->block,       &o->state,
+                     &o->memory, &o->near,   &o->given,  &o->near_weight, &o->share};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 
@@ -66,34 +73,6 @@ void skg_body_release(skg_body **body) {
     skg_free(&(*body)->loop_state);
     skg_context_release(&(*body)->context);
     skg_free(body);
-}
-
-static skg_status fill_organ(const skg_organ *given, skg_body_organ *o) {
-    SKG_TRY(skg_mesh_retain(given->mesh));
-    o->mesh = given->mesh;
-    SKG_TRY(skg_copy_text(given->label, &o->label));
-    o->inside = given->inside;
-    o->role = skg_role_of(o->label, &o->number, &o->side);
-    const skg_tissue *t = &given->tissue;
-    o->tissue = t->alpha_min == 0 && t->alpha_max == 0 && t->beta == 0 ? skg_tissue_of(o->label) : *t;
-    SKG_TRY(skg_mesh_size(o->mesh, &o->vertices, &o->triangles));
-    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->rest));
-    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->moved));
-    SKG_TRY(skg_alloc(3 * o->triangles, sizeof(int32_t), o->label, &o->corner));
-    SKG_TRY(skg_alloc(o->vertices, sizeof(int32_t), o->label, &o->node_of));
-    SKG_TRY(skg_mesh_read_positions(o->mesh, o->rest, 0));
-    SKG_TRY(skg_mesh_read_triangles(o->mesh, o->corner, 0));
-    for (int64_t i = 0; i < o->vertices; i++) {
-        if (!skg_all_finite(o->rest + 3 * i, 3))
-            return skg_fail(SKG_ERR_BREATHING, "%s: vertex %" PRId64 " is not finite", o->label, i);
-        o->node_of[i] = o->mesh->weld ? o->mesh->weld[i] : (int32_t)i;
-    }
-    SKG_TRY(skg_near_prepare(o));
-    skg_mesh_health health;
-    skg_mesh_health_init(&health);
-    SKG_TRY(skg_mesh_get_health(o->mesh, &health));
-    o->volume = health.volume;
-    return SKG_OK;
 }
 
 skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
@@ -113,7 +92,7 @@ skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
     }
     skg_body_organ *o = body->organ + body->organs;
     memset(o, 0, sizeof *o);
-    skg_status status = fill_organ(&ours, o);
+    skg_status status = skg_body_fill_organ(&ours, o);
     if (status != SKG_OK) {
         free_organ(o);
         return status;
@@ -134,7 +113,7 @@ skg_status skg_body_link(skg_body *body) {
     SKG_TRY(skg_body_find_links(body));
     int64_t deformable = 0;
     for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == ROLE_LINKED) deformable += body->organ[i].vertices;
+        if (body->organ[i].chain && body->organ[i].role == ROLE_LINKED) deformable += body->organ[i].vertices;
     body->large = deformable >= THREADS_FROM;
     body->linked = 1;
     return SKG_OK;

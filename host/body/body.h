@@ -12,6 +12,7 @@
 /* How an organ moves. */
 typedef enum {
     ROLE_STATIC,
+    ROLE_RIGID, /* turns as it is told */
     ROLE_RIB,
     ROLE_STERNUM,
     ROLE_CARTILAGE,
@@ -22,11 +23,14 @@ typedef enum {
     ROLE_NEEDLE
 } skg_role;
 
-/* A vertex that follows a point on another organ's triangle. */
+/* A point that follows another organ: one on its triangle, or, fixed to a rigid organ, goes with it as a
+ * whole. */
 typedef struct {
     int32_t organ, corner[3]; /* corner: vertices of that organ */
     double weight[3];
     double part; /* of that displacement, 0 to 1 */
+    int32_t fixed, reserved;
+    double point[3]; /* of fixed ones, at rest */
 } skg_link;
 
 enum { CARRIERS = 12, BLOCK = 32 };
@@ -37,8 +41,10 @@ typedef struct {
     int64_t inside;
     skg_tissue tissue;
     skg_role role;
+    int kind, told; /* SKG_ORGAN_; a conflict was warned of */
     int64_t vertices, triangles;
-    double *rest; /* rows of x, y, z, mm */
+    double *rest;     /* rows of x, y, z, mm */
+    double bounds[6]; /* of them: low, high */
     int32_t *corner;
     double *block;    /* bounds of each BLOCK triangles in a row: low, high */
     int32_t *node_of; /* welded vertex: the first one there */
@@ -46,12 +52,18 @@ typedef struct {
     int changed;      /* by the last pose */
     int number, side; /* of ribs and cartilage: 1 to 12; 1 left, -1 right */
     /* rigid */
+    int turned, centred;     /* axis is the caller's, at weight 1; head is the caller's */
     double head[3], axis[3]; /* of a rib: rotation vector at full inspiration, rad */
-    skg_rigid rigid;         /* now, of ribs and sternum */
+    skg_rigid rigid;         /* now, of ribs, sternum and rigid organs */
     /* deformable: links[d] moves driver d; those of organ -1 stay (anchors) or are tendon (-2) */
-    skg_chain *chain;
+    skg_chain *chain; /* of the vertices, and of the far ends of links that are not rigid */
     int64_t links;
     skg_link *link;
+    double *anchor;        /* per driver: where it is at rest */
+    skg_organ_link *given; /* the caller's, in the place of the label's rule */
+    int64_t given_count;
+    int stage;      /* is posed after those of lower ones */
+    int corotates;  /* boxes turn with the drivers */
     double *target; /* per driver */
     double *state;  /* axis by axis, as the chain has it */
     double *memory; /* with hysteresis: the state that remembers */
@@ -98,9 +110,32 @@ skg_status skg_near_prepare(skg_body_organ *organ);
 double skg_nearest(const skg_body_organ *organ, const double point[3], double reach, skg_link *link);
 
 /* ribs.c */
-skg_status skg_rib_prepare(skg_body_organ *rib);
+skg_status skg_rib_prepare(const skg_body *body, skg_body_organ *rib);
 double skg_rib_fraction(double weight); /* of the rotation at full inspiration */
 void skg_rib_plane(const skg_body_organ *rib, const double *displacements, double *pump, double *bucket);
+
+/* organ.c: what the caller says of an organ, copied and checked. */
+skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *organ);
+
+/* axes.c: all but the solving of angles. Vectors have length 1. */
+int skg_rib_bone_axis(const skg_body *body, const skg_body_organ *rib, double head[3], double along[3]);
+void skg_inertia_axes(const skg_body_organ *organ, double axes[9], double end[3]);
+
+/* tie.c: links that the caller gives. Which organs they go to, and the order that follows. */
+skg_status skg_body_check_ties(skg_body *body);
+void skg_link_fix(const skg_body *body, const double p[3], skg_link *link); /* where the other is rigid */
+double skg_given_link(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link,
+                      double *rigid);
+
+/* conflict.c */
+void skg_conflict_partners(const skg_body *body, const skg_body_organ *organ, const char *between[2]);
+void skg_body_tell_conflicts(skg_body *body);
+
+/* corotate.c */
+int skg_corotates(const skg_body *body, const skg_body_organ *organ);
+int skg_drivers_frame(const skg_body_organ *organ, skg_rigid *frame); /* 0: no driver moves */
+void skg_frame_enter(const skg_rigid *frame, const double rest[3], const double u[3], double v[3]);
+void skg_frame_leave(const skg_rigid *frame, const double rest[3], const double v[3], double u[3]);
 
 /* link.c */
 skg_status skg_body_find_links(skg_body *body);

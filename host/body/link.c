@@ -38,7 +38,7 @@ static double plane_value(const skg_body *body, const double p[3]) {
  */
 static int diaphragm_rule(const skg_body *body, const skg_body_organ *organ, const double p[3],
                           skg_link *link) {
-    const double *bounds = organ->mesh->health.bounds;
+    const double *bounds = organ->bounds;
     *link = (skg_link){.organ = LINK_TENDON, .part = 1};
     if (plane_value(body, p) > 0) return 1;
     if (p[2] > bounds[2] + 0.1 * (bounds[5] - bounds[2])) return 0;
@@ -85,9 +85,24 @@ static int skin_rule(const skg_body *body, const skg_body_organ *organ, const do
     return least < far;
 }
 
+/* Cartilage grows on the ends of ribs and on the edge of the sternum. */
+static int cartilage_rule(const skg_body *body, const skg_body_organ *organ, const double p[3],
+                          skg_link *link) {
+    const double reach = 5; /* mm: a joint and half a bone's thickness (a choice) */
+    skg_link sternum;
+    (void)organ;
+    double to_rib = nearest_of(body, ROLE_RIB, 1, 10, p, reach, link);
+    double to_sternum = nearest_of(body, ROLE_STERNUM, 0, 0, p, fmin(to_rib, reach), &sternum);
+    if (to_sternum < to_rib) *link = sternum;
+    if (fmin(to_rib, to_sternum) == HUGE_VAL) return 0;
+    skg_link_fix(body, p, link);
+    return 1;
+}
+
 static link_rule rule_of(const skg_body_organ *organ) {
     if (organ->role == ROLE_DIAPHRAGM) return diaphragm_rule;
     if (skg_label_begins(organ->label, "lung")) return lung_rule;
+    if (skg_label_begins(organ->label, "cartilage")) return cartilage_rule;
     return skg_label_begins(organ->label, "skin") ? skin_rule : tendon_rule;
 }
 
@@ -109,30 +124,95 @@ static skg_status add_struts(skg_body_organ *o, int64_t *links, int32_t **ends) 
     return SKG_OK;
 }
 
-static skg_status make_chain(skg_body *body, skg_body_organ *o) {
-    int64_t links = 0;
-    int32_t *ends = NULL, *nodes = NULL;
-    skg_status status = skg_chain_links(o->triangles, o->corner, o->node_of, &links, &ends);
-    if (status == SKG_OK && o->role == ROLE_DIAPHRAGM) status = add_struts(o, &links, &ends);
-    if (status == SKG_OK)
-        status =
-            skg_chain_create(o->label, o->vertices, o->rest, links, ends, &o->tissue, 1, NULL, &o->chain);
-    if (status == SKG_OK) status = skg_alloc(o->vertices, sizeof *o->link, o->label, &o->link);
-    if (status == SKG_OK) status = skg_alloc(o->vertices, sizeof *nodes, o->label, &nodes);
-    if (status == SKG_OK) status = skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->state);
-    if (status == SKG_OK) status = skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->memory);
-    if (status == SKG_OK) {
-        link_rule rule = rule_of(o);
-#pragma omp parallel for schedule(dynamic, 64)
-        for (int64_t i = 0; i < o->vertices; i++)
-            nodes[i] = o->node_of[i] == i && rule(body, o, o->rest + 3 * i, o->link + i);
-        for (int64_t i = 0; i < o->vertices; i++)
-            if (nodes[i]) o->link[o->links] = o->link[i], nodes[o->links++] = (int32_t)i;
-        status = skg_chain_drive(o->chain, o->links, nodes);
+/* How a vertex is driven. */
+enum { FREE, FOLLOWS, HANGS };
+
+/* Which vertices follow what, by the caller's links or by the label's rule. */
+static int64_t find_drivers(const skg_body *body, const skg_body_organ *o, skg_link *link, int32_t *how) {
+    const link_rule rule = rule_of(o);
+    int64_t hanging = 0;
+#pragma omp parallel for schedule(dynamic, 64) reduction(+ : hanging)
+    for (int64_t i = 0; i < o->vertices; i++) {
+        const double *p = o->rest + 3 * i;
+        double rigid = 0;
+        how[i] = FREE;
+        if (o->node_of[i] != i) continue;
+        if (o->given_count == 0) {
+            how[i] = rule(body, o, p, link + i) ? FOLLOWS : FREE;
+            continue;
+        }
+        const double distance = skg_given_link(body, o, p, link + i, &rigid);
+        how[i] = distance == HUGE_VAL ? FREE : distance <= rigid ? FOLLOWS : HANGS;
+        if (how[i] == FOLLOWS) skg_link_fix(body, p, link + i);
+        hanging += how[i] == HANGS;
     }
-    if (status == SKG_OK) status = skg_alloc(3 * o->links, sizeof(double), o->label, &o->target);
-    skg_free(&nodes);
-    skg_free(&ends);
+    return hanging;
+}
+
+static void point_on(const skg_body *body, const skg_link *link, double p[3]) {
+    memset(p, 0, 3 * sizeof *p);
+    for (int c = 0; c < 3; c++)
+        skg_add_scaled(p, link->weight[c], body->organ[link->organ].rest + 3 * (int64_t)link->corner[c], p);
+}
+
+/* What a chain is made of, until it is. A vertex that hangs does so by one more link, from a node of its own
+ * at the other organ. */
+typedef struct {
+    int64_t nodes, links;
+    double *rest;
+    int32_t *ends, *how, *driven;
+} chain_parts;
+
+static skg_status add_hanging(const skg_body *body, skg_body_organ *o, int64_t hanging, chain_parts *c) {
+    SKG_TRY(skg_alloc(3 * (o->vertices + hanging), sizeof *c->rest, o->label, &c->rest));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *c->driven, o->label, &c->driven));
+    SKG_TRY(skg_realloc(2 * (c->links + hanging), sizeof *c->ends, o->label, &c->ends));
+    memcpy(c->rest, o->rest, (size_t)(3 * o->vertices) * sizeof *c->rest);
+    c->nodes = o->vertices;
+    for (int64_t i = 0; i < o->vertices; i++) {
+        if (c->how[i] == FREE) continue;
+        int32_t node = (int32_t)i;
+        if (c->how[i] == HANGS) {
+            node = (int32_t)c->nodes++;
+            point_on(body, o->link + i, c->rest + 3 * (int64_t)node);
+            c->ends[2 * c->links] = (int32_t)i, c->ends[2 * c->links++ + 1] = node;
+        }
+        o->link[o->links] = o->link[i], c->driven[o->links++] = node;
+    }
+    return SKG_OK;
+}
+
+static skg_status build_chain(skg_body *body, skg_body_organ *o, chain_parts *c) {
+    SKG_TRY(skg_chain_links(o->triangles, o->corner, o->node_of, &c->links, &c->ends));
+    if (o->role == ROLE_DIAPHRAGM) SKG_TRY(add_struts(o, &c->links, &c->ends));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->link, o->label, &o->link));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *c->how, o->label, &c->how));
+    SKG_TRY(add_hanging(body, o, find_drivers(body, o, o->link, c->how), c));
+    SKG_TRY(skg_chain_create(o->label, c->nodes, c->rest, c->links, c->ends, &o->tissue, 1, NULL, &o->chain));
+    SKG_TRY(skg_chain_drive(o->chain, o->links, c->driven));
+    SKG_TRY(skg_alloc(3 * c->nodes, sizeof(double), o->label, &o->state));
+    SKG_TRY(skg_alloc(3 * c->nodes, sizeof(double), o->label, &o->memory));
+    SKG_TRY(skg_alloc(3 * o->links, sizeof(double), o->label, &o->target));
+    SKG_TRY(skg_alloc(3 * o->links, sizeof(double), o->label, &o->anchor));
+    for (int64_t d = 0; d < o->links; d++)
+        memcpy(o->anchor + 3 * d, c->rest + 3 * (int64_t)c->driven[d], 3 * sizeof(double));
+    o->corotates = skg_corotates(body, o);
+    if (o->links == 0)
+        skg_log(
+            body->context, SKG_LOG_WARNING,
+            "%s: deformable, but nothing that it is linked to is near enough; it stays where it is (longer "
+            "links, or another organ to follow)",
+            o->label);
+    return SKG_OK;
+}
+
+static skg_status make_chain(skg_body *body, skg_body_organ *o) {
+    chain_parts c = {0};
+    skg_status status = build_chain(body, o, &c);
+    skg_free(&c.rest);
+    skg_free(&c.ends);
+    skg_free(&c.how);
+    skg_free(&c.driven);
     return status;
 }
 
@@ -164,7 +244,7 @@ static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
 
 /* How much of the carrier's motion: 1 at the lower end and 0 at the upper one, or the other way round. */
 static skg_status span(skg_body_organ *o, int follows_below) {
-    const double *bounds = o->mesh->health.bounds;
+    const double *bounds = o->bounds;
     for (int64_t i = 0; i < o->vertices; i++) {
         double up = (o->rest[3 * i + 2] - bounds[2]) / (bounds[5] - bounds[2]);
         o->share[i] = follows_below ? 1 - up : up;
@@ -174,7 +254,7 @@ static skg_status span(skg_body_organ *o, int follows_below) {
 
 /* The needle's tip is its end nearer to the liver; it enters where it is nearest to the skin. */
 static skg_status place_needle(skg_body *body, skg_body_organ *o, int32_t liver, int32_t skin) {
-    const double *bounds = body->organ[liver].mesh->health.bounds;
+    const double *bounds = body->organ[liver].bounds;
     double centre[3], d[3], far[3] = {0}, best = HUGE_VAL;
     int64_t tip = 0;
     for (int k = 0; k < 3; k++) centre[k] = 0.5 * (bounds[k] + bounds[3 + k]);
@@ -200,6 +280,7 @@ static skg_status place_needle(skg_body *body, skg_body_organ *o, int32_t liver,
 
 /* Parts without a rule: with what they lie in, if that deforms; else they stay. */
 static skg_status adopt(skg_body *body, skg_body_organ *o) {
+    if (o->kind == SKG_ORGAN_STATIC) return SKG_OK;
     skg_role outer = o->inside >= 0 ? body->organ[o->inside].role : ROLE_STATIC;
     int skin = o->inside >= 0 && skg_label_begins(body->organ[o->inside].label, "skin");
     if (outer == ROLE_LINKED && !skin) {
@@ -273,7 +354,7 @@ static void default_plane(skg_body *body) {
     double *plane = body->options.tendon_plane;
     int32_t d = find_organ(body, "diaphragm");
     if (d < 0 || plane[0] != 0 || plane[1] != 0 || plane[2] != 0) return;
-    const double *b = body->organ[d].mesh->health.bounds;
+    const double *b = body->organ[d].bounds;
     /* the upper third, tilted by 45 degrees so that the steep front is muscle */
     plane[1] = 1, plane[2] = 1;
     plane[3] = -0.5 * (b[1] + b[4]) - (b[5] - 0.3 * (b[5] - b[2]));
@@ -282,14 +363,17 @@ static void default_plane(skg_body *body) {
 skg_status skg_body_find_links(skg_body *body) {
     default_plane(body);
     for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == ROLE_RIB) SKG_TRY(skg_rib_prepare(body->organ + i));
+        if (body->organ[i].role == ROLE_RIB) SKG_TRY(skg_rib_prepare(body, body->organ + i));
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
-        if (o->role == ROLE_DIAPHRAGM || o->role == ROLE_LINKED) SKG_TRY(make_chain(body, o));
         if (o->role == ROLE_CARTILAGE) SKG_TRY(tie_cartilage(body, o));
         if (o->role == ROLE_CARRIED || o->role == ROLE_SPANNED || o->role == ROLE_NEEDLE)
             SKG_TRY(follow(body, o));
         if (o->role == ROLE_STATIC) SKG_TRY(adopt(body, o));
     }
+    SKG_TRY(skg_body_check_ties(body));
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].role == ROLE_DIAPHRAGM || body->organ[i].role == ROLE_LINKED)
+            SKG_TRY(make_chain(body, body->organ + i));
     return SKG_OK;
 }

@@ -76,7 +76,7 @@ static void measure_diaphragm(const skg_body_organ *o, skg_body_measure *m) {
     }
 }
 
-static void measure_organ(const skg_body_organ *o, skg_body_measure *m) {
+static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_body_measure *m) {
     for (int64_t t = 0; t < o->triangles; t++) {
         double before[3], after[3];
         normal_of(o, t, 0, before);
@@ -90,7 +90,11 @@ static void measure_organ(const skg_body_organ *o, skg_body_measure *m) {
     }
     if (o->role == ROLE_DIAPHRAGM) measure_diaphragm(o, m);
     if (!o->chain) return;
-    m->conflict_mm = fmax(m->conflict_mm, o->report.conflict_mm);
+    if (o->report.conflict_mm > m->conflict_mm) {
+        m->conflict_mm = o->report.conflict_mm;
+        m->conflict[0] = o->label;
+        skg_conflict_partners(body, o, m->conflict + 1);
+    }
     int64_t broken;
     double worst;
     skg_chain_check(o->chain, o->state, 1e-9, &broken, &worst);
@@ -103,7 +107,7 @@ skg_status skg_body_get_measure(const skg_body *body, skg_body_measure *theirs) 
     skg_body_measure_init(&m);
     double lung_rest;
     m.liver_volume_ratio = 1;
-    for (int64_t i = 0; i < body->organs; i++) measure_organ(body->organ + i, &m);
+    for (int64_t i = 0; i < body->organs; i++) measure_organ(body, body->organ + i, &m);
     measure_lungs(body, &m.lung_ml, &lung_rest);
     m.lung_density_ratio = skg_body_lung_ratio(body);
     m.tidal_ml = m.lung_ml - lung_rest;

@@ -73,7 +73,7 @@ static void nearest_of_block(const skg_body_organ *o, int64_t block, const doubl
 double skg_nearest(const skg_body_organ *organ, const double p[3], double reach, skg_link *link) {
     double least = reach * reach;
     int found = 0;
-    if (box_distance(organ->mesh->health.bounds, p) > least) return HUGE_VAL;
+    if (box_distance(organ->bounds, p) > least) return HUGE_VAL;
     for (int64_t block = 0; block * BLOCK < organ->triangles; block++)
         if (box_distance(organ->block + 6 * block, p) <= least)
             nearest_of_block(organ, block, p, &least, &found, link);

@@ -10,6 +10,10 @@ void skg_link_follow(const skg_body *body, const skg_link *link, double displace
     if (link->organ == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
     if (link->organ < 0) return;
     const skg_body_organ *o = body->organ + link->organ;
+    if (link->fixed) {
+        skg_rigid_displace(&o->rigid, link->point, displacement);
+        return;
+    }
     for (int c = 0; c < 3; c++)
         skg_add_scaled(displacement, link->part * link->weight[c], o->moved + 3 * link->corner[c],
                        displacement);
@@ -29,9 +33,10 @@ static void pose_rigid(skg_body_organ *o) {
         skg_rigid_displace(&o->rigid, o->rest + 3 * i, o->moved + 3 * i);
 }
 
-static void pose_rib(skg_body_organ *o, double angle) {
+/* Rotation vector times a factor, about the head. */
+static void pose_turn(skg_body_organ *o, double factor) {
     double vector[3];
-    skg_scale_vector(angle, o->axis, vector);
+    skg_scale_vector(factor, o->axis, vector);
     skg_rotation(vector, o->rigid.rotation);
     memcpy(o->rigid.centre, o->head, sizeof o->head);
     memset(o->rigid.shift, 0, sizeof o->rigid.shift);
@@ -39,7 +44,7 @@ static void pose_rib(skg_body_organ *o, double angle) {
 }
 
 /* The sternum follows the anterior ends of ribs 1 to 7: their vertices farthest from the head. */
-static void fit_sternum(const skg_body *body, skg_rigid *rigid) {
+static void fit_sternum(const skg_body *body, int moves, skg_rigid *rigid) {
     double points[14][3], displacements[14][3];
     int64_t count = 0;
     for (int64_t r = 0; r < body->organs && count < 14; r++) {
@@ -57,7 +62,7 @@ static void fit_sternum(const skg_body *body, skg_rigid *rigid) {
     }
     memset(rigid, 0, sizeof *rigid);
     for (int k = 0; k < 3; k++) rigid->rotation[4 * k] = 1;
-    if (count >= 3) skg_rigid_fit(count, points[0], displacements[0], rigid);
+    if (moves && count >= 3) skg_rigid_fit(count, points[0], displacements[0], rigid);
 }
 
 static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
@@ -71,20 +76,27 @@ static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
 }
 
 static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
-    double blend = body->options.hysteresis;
+    const double blend = body->options.hysteresis;
+    const int64_t nodes = o->chain->nodes;
+    skg_rigid frame;
     for (int64_t d = 0; d < o->links; d++) skg_link_follow(body, o->link + d, o->target + 3 * d);
-    memset(o->state, 0, (size_t)(3 * o->vertices) * sizeof(double));
+    const int turns = o->corotates && skg_drivers_frame(o, &frame);
+    for (int64_t d = 0; turns && d < o->links; d++)
+        skg_frame_enter(&frame, o->anchor + 3 * d, o->target + 3 * d, o->target + 3 * d);
+    memset(o->state, 0, (size_t)(3 * nodes) * sizeof(double));
     SKG_TRY(skg_chain_move(o->chain, o->target, o->state, &o->report));
     if (body->options.relaxation > 0)
         SKG_TRY(skg_chain_relax(o->chain, body->options.relaxation, 0.5, o->state));
     if (blend > 0) SKG_TRY(skg_chain_move(o->chain, o->target, o->memory, &o->report));
-    for (int64_t i = 0; i < o->vertices; i++)
+    for (int64_t i = 0; i < o->vertices; i++) {
+        double *moved = o->moved + 3 * i;
         for (int k = 0; k < 3; k++) {
-            int64_t at = k * o->vertices + o->node_of[i];
-            double u = o->state[at];
-            if (blend > 0) u += blend * (o->memory[at] - u);
-            o->moved[3 * i + k] = u;
+            const int64_t at = k * nodes + o->node_of[i];
+            moved[k] = o->state[at];
+            if (blend > 0) moved[k] += blend * (o->memory[at] - moved[k]);
         }
+        if (turns) skg_frame_leave(&frame, o->rest + 3 * i, moved, moved);
+    }
     return SKG_OK;
 }
 
@@ -152,12 +164,16 @@ static skg_status write_mesh(skg_body_organ *o) {
     return differs ? skg_mesh_moved(o->mesh) : SKG_OK;
 }
 
-/* Organs of one role do not follow each other. */
-static skg_status pose_role(skg_body *body, skg_role role) {
+static int is_of(const skg_body_organ *o, skg_role role, int stage) {
+    return o->role == role && o->stage == stage;
+}
+
+/* Organs of one role and stage do not follow each other. */
+static skg_status pose_role(skg_body *body, skg_role role, int stage) {
     skg_status status = SKG_OK;
 #pragma omp parallel for schedule(dynamic, 1) if (role == ROLE_LINKED && body->large)
     for (int64_t i = 0; i < body->organs; i++) {
-        if (body->organ[i].role != role) continue;
+        if (!is_of(body->organ + i, role, stage)) continue;
         skg_status one = pose_one(body, body->organ + i);
 #pragma omp critical(skg_body_status)
         if (one != SKG_OK) status = one;
@@ -168,26 +184,41 @@ static skg_status pose_role(skg_body *body, skg_role role) {
     return status;
 }
 
+/* Bones: by Wilson's share of full inspiration, or as they were told, with the weight. */
+static void pose_bones(skg_body *body, double thoracic) {
+    const double from = body->options.reference_thoracic;
+    const double share = skg_rib_fraction(thoracic) - skg_rib_fraction(from);
+    skg_rigid sternum;
+    for (int64_t i = 0; i < body->organs; i++) {
+        skg_body_organ *o = body->organ + i;
+        if (o->role == ROLE_RIB || o->role == ROLE_RIGID || o->turned)
+            pose_turn(o, o->turned ? thoracic - from : share);
+    }
+    fit_sternum(body, thoracic != from, &sternum);
+    for (int64_t i = 0; i < body->organs; i++) {
+        skg_body_organ *o = body->organ + i;
+        if (o->role != ROLE_STERNUM || o->turned) continue;
+        o->rigid = sternum;
+        pose_rigid(o);
+    }
+}
+
 /* All organs in memory; meshes are written by the caller. */
 static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic) {
     const skg_body_options *options = &body->options;
-    double angle = skg_rib_fraction(thoracic) - skg_rib_fraction(options->reference_thoracic);
-    double descent = diaphragmatic - options->reference_diaphragmatic;
-    skg_scale_vector(descent, options->tendon_mm, body->tendon);
-    skg_rigid sternum;
+    int stages = 0;
+    skg_scale_vector(diaphragmatic - options->reference_diaphragmatic, options->tendon_mm, body->tendon);
     for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == ROLE_RIB) pose_rib(body->organ + i, angle);
-    fit_sternum(body, &sternum);
-    for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == ROLE_STERNUM) {
-            body->organ[i].rigid = sternum;
-            if (angle != 0) pose_rigid(body->organ + i);
-            if (angle == 0)
-                memset(body->organ[i].moved, 0, (size_t)(3 * body->organ[i].vertices) * sizeof(double));
-        }
-    static const skg_role order[] = {ROLE_CARTILAGE, ROLE_DIAPHRAGM, ROLE_LINKED,
-                                     ROLE_CARRIED,   ROLE_SPANNED,   ROLE_NEEDLE};
-    for (size_t r = 0; r < sizeof order / sizeof *order; r++) SKG_TRY(pose_role(body, order[r]));
+        stages = body->organ[i].stage > stages ? body->organ[i].stage : stages;
+    pose_bones(body, thoracic);
+    SKG_TRY(pose_role(body, ROLE_CARTILAGE, 0));
+    for (int stage = 0; stage <= stages; stage++) {
+        SKG_TRY(pose_role(body, ROLE_DIAPHRAGM, stage));
+        SKG_TRY(pose_role(body, ROLE_LINKED, stage));
+    }
+    static const skg_role followers[] = {ROLE_CARRIED, ROLE_SPANNED, ROLE_NEEDLE};
+    for (size_t r = 0; r < sizeof followers / sizeof *followers; r++)
+        SKG_TRY(pose_role(body, followers[r], 0));
     return SKG_OK;
 }
 
@@ -197,9 +228,9 @@ static void copy_memories(skg_body *body, int step, int out) {
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
         if (!o->chain) continue;
-        size_t size = (size_t)(3 * o->vertices) * sizeof(double);
+        size_t size = (size_t)(3 * o->chain->nodes) * sizeof(double);
         memcpy(out ? at : o->memory, out ? o->memory : at, size);
-        at += 3 * o->vertices;
+        at += 3 * o->chain->nodes;
     }
 }
 
@@ -209,8 +240,8 @@ skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
     body->loop = 0, body->loop_size = 0;
     for (int64_t i = 0; i < body->organs; i++)
         if (body->organ[i].chain) {
-            body->loop_size += 3 * body->organ[i].vertices;
-            memset(body->organ[i].memory, 0, (size_t)(3 * body->organ[i].vertices) * sizeof(double));
+            body->loop_size += 3 * body->organ[i].chain->nodes;
+            memset(body->organ[i].memory, 0, (size_t)(3 * body->organ[i].chain->nodes) * sizeof(double));
         }
     SKG_TRY(skg_realloc(LOOP_STEPS * body->loop_size, sizeof(double), "breathing loop", &body->loop_state));
     for (int cycle = 0; cycle < 2; cycle++) /* periodic from the second cycle on */
@@ -240,5 +271,6 @@ skg_status skg_body_pose(skg_body *body, const skg_breath_state *theirs) {
     }
     SKG_TRY(pose_all(body, state.thoracic, state.diaphragmatic));
     for (int64_t i = 0; i < body->organs; i++) SKG_TRY(write_mesh(body->organ + i));
+    skg_body_tell_conflicts(body);
     return SKG_OK;
 }

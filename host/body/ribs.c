@@ -1,4 +1,4 @@
-/* Ribs: a plane each, an axis in the transverse plane through the head, one angle. */
+/* Ribs: a plane each, an axis through the head, one angle. */
 #include "body/body.h"
 
 #include "scene/vector.h"
@@ -52,10 +52,11 @@ void skg_rib_plane(const skg_body_organ *rib, const double *displacements, doubl
     angles(n, pump, bucket);
 }
 
-/* Fall of the angles when the normal turns about (x, y, 0), own-side frame. */
-static void fall_of(const double normal[3], const double turn[2], double fall[2]) {
-    double before[2], after[2], rotation[9], n[3];
-    const double vector[3] = {turn[0], turn[1], 0};
+/* Fall of the angles when the normal turns about the sum of two vectors, own-side frame. */
+static void fall_of(const double normal[3], const double basis[6], const double turn[2], double fall[2]) {
+    double before[2], after[2], rotation[9], n[3], vector[3];
+    skg_scale_vector(turn[0], basis, vector);
+    skg_add_scaled(vector, turn[1], basis + 3, vector);
     skg_rotation(vector, rotation);
     for (int i = 0; i < 3; i++) n[i] = skg_dot(rotation + 3 * i, normal);
     angles(normal, before, before + 1);
@@ -79,22 +80,28 @@ static void find_head(skg_body_organ *rib) {
     skg_scale_vector(1 / count, rib->head, rib->head);
 }
 
-/* The horizontal rotation vector that gives the table's falls: Newton from the small-angle answer, in which
- * the pump angle falls by the part across the midplane and the bucket angle by the part along it. */
-skg_status skg_rib_prepare(skg_body_organ *rib) {
-    double normal[3], wanted[2], turn[2];
-    find_head(rib);
+/* From the body's frame to the own-side one, a mirror image of it on the left, and back. Axial: of rotation
+ * vectors, which a mirror image turns round. */
+static void to_own_side(const skg_body_organ *rib, int axial, const double from[3], double to[3]) {
+    const double sign = axial ? -rib->side : 1; /* det M of M = (side, -1, 1) */
+    to[0] = sign * rib->side * from[0], to[1] = -sign * from[1], to[2] = sign * from[2];
+}
+
+/* The rotation vector in the span of a basis (own-side frame) that gives the table's falls: Newton from the
+ * least answer, as the pump angle falls by the part across the midplane and the bucket angle by the part
+ * along it. */
+static skg_status solve_turn(skg_body_organ *rib, const double basis[6]) {
+    double normal[3], wanted[2], turn[2] = {0}, sum[3];
     plane_normal(rib, NULL, normal);
     for (int k = 0; k < 2; k++) wanted[k] = degree * full_range[rib->number - 1][k];
-    turn[0] = wanted[0], turn[1] = -wanted[1];
     for (int step = 0; step < 20; step++) {
         const double h = 1e-6;
         double fall[2], slope[2][2];
-        fall_of(normal, turn, fall);
+        fall_of(normal, basis, turn, fall);
         for (int k = 0; k < 2; k++) {
             double other[2] = {turn[0], turn[1]}, there[2];
             other[k] += h;
-            fall_of(normal, other, there);
+            fall_of(normal, basis, other, there);
             for (int j = 0; j < 2; j++) slope[j][k] = (there[j] - fall[j]) / h;
         }
         double det = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
@@ -104,10 +111,49 @@ skg_status skg_rib_prepare(skg_body_organ *rib) {
         turn[0] += (slope[1][1] * miss[0] - slope[0][1] * miss[1]) / det;
         turn[1] += (slope[0][0] * miss[1] - slope[1][0] * miss[0]) / det;
     }
-    /* to the body's frame, a mirror image of the own-side one on the left: det M = -side, M = (side, -1, 1)
-     */
-    rib->axis[0] = -turn[0];
-    rib->axis[1] = rib->side * turn[1];
-    rib->axis[2] = 0;
+    skg_scale_vector(turn[0], basis, sum);
+    skg_add_scaled(sum, turn[1], basis + 3, sum);
+    to_own_side(rib, 1, sum, rib->axis);
+    return SKG_OK;
+}
+
+/* One rotation of the table's two angles about an axis: the way round that raises the rib. */
+static void turn_about(skg_body_organ *rib, const double along[3]) {
+    const double *range = full_range[rib->number - 1];
+    double mean[3] = {0}, lever[3], motion[3];
+    for (int64_t i = 0; i < rib->vertices; i++)
+        skg_add_scaled(mean, 1 / (double)rib->vertices, rib->rest + 3 * i, mean);
+    skg_add_scaled(mean, -1, rib->head, lever);
+    skg_cross(along, lever, motion);
+    skg_scale_vector((motion[2] < 0 ? -1 : 1) * degree * hypot(range[0], range[1]), along, rib->axis);
+}
+
+/* By the bones: Wilson's two angles about one axis from head to tubercle, else about the two longer principal
+ * axes of inertia. */
+static skg_status prepare_by_bones(const skg_body *body, skg_body_organ *rib, double head[3]) {
+    double along[3], axes[9], basis[6];
+    if (skg_rib_bone_axis(body, rib, head, along)) {
+        turn_about(rib, along);
+        return SKG_OK;
+    }
+    skg_inertia_axes(rib, axes, head);
+    for (int k = 0; k < 2; k++) to_own_side(rib, 1, axes + 3 * k, basis + 3 * k);
+    return solve_turn(rib, basis);
+}
+
+skg_status skg_rib_prepare(const skg_body *body, skg_body_organ *rib) {
+    static const double horizontal[6] = {1, 0, 0, 0, 1, 0};
+    const int by_bones = body->options.rib_axes == SKG_RIB_AXES_BONES;
+    double given[2][3], head[3];
+    memcpy(given[0], rib->axis, sizeof given[0]);
+    memcpy(given[1], rib->head, sizeof given[1]);
+    find_head(rib);
+    if (by_bones)
+        SKG_TRY(prepare_by_bones(body, rib, head));
+    else
+        SKG_TRY(solve_turn(rib, horizontal));
+    if (by_bones) memcpy(rib->head, head, sizeof head);
+    if (rib->turned) memcpy(rib->axis, given[0], sizeof given[0]);
+    if (rib->centred) memcpy(rib->head, given[1], sizeof given[1]);
     return SKG_OK;
 }

@@ -49,6 +49,7 @@ skg_role skg_role_of(const char *label, int *number, int *side) {
         if (rule[i].role == ROLE_RIB || rule[i].role == ROLE_CARTILAGE) {
             const char *digits = label + strcspn(label, "0123456789");
             long value = strtol(digits, NULL, 10);
+            if (rule[i].role == ROLE_CARTILAGE && !*digits) return ROLE_LINKED; /* all of a side in one */
             if (value < 1 || value > 12 || *side == 0) return ROLE_STATIC;
             *number = (int)value;
         }
@@ -69,11 +70,9 @@ skg_tissue skg_tissue_of(const char *label) {
     static const struct {
         const char *word;
         skg_tissue tissue;
-    } known[] = {{"diaphragm", {0.7, 1.1, 0.1}},
-                 {"lung", {0.5, 1.6, 0.3}},
-                 {"liver", {0.97, 1.05, 0.03}},
-                 {"heart", {0.7, 1.3, 0.1}},
-                 {"skin", {0.75, 1.3, 0.25}}};
+    } known[] = {{"diaphragm", {0.7, 1.1, 0.1}},    {"lung", {0.5, 1.6, 0.3}},
+                 {"liver", {0.97, 1.05, 0.03}},     {"heart", {0.7, 1.3, 0.1}},
+                 {"cartilage", {0.85, 1.15, 0.15}}, {"skin", {0.75, 1.3, 0.25}}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (skg_label_begins(label, known[i].word)) return known[i].tissue;
     return (skg_tissue){0.8, 1.2, 0.1};

@@ -3,6 +3,7 @@
 
 #include "explain.h"
 #include "folder.h"
+#include "interrupt.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -14,22 +15,27 @@ static const double RANGE_HIGHEST = 32; /* -ln(I/I0) */
 
 static const cli_flag flag_place = {"-o", "DIR",
                                     "folder of the frames, made where it is missing; with --phase\n"
-                                    "the picture itself, .png, .tif or .mha"};
+                                    "or --at the picture itself, .png, .tif or .mha"};
 static const cli_flag flag_seconds = {"--seconds", "T", "how long; default: one breath"};
 static const cli_flag flag_fps = {"--fps", "N", "frames a second, of the patient's time; 30"};
 static const cli_flag flag_phase = {"--phase", "P",
                                     "one picture at this phase: 0 end-inspiration, 0.5 about\n"
-                                    "expiration; events do not count"};
+                                    "expiration; without events, as they have times and a phase\n"
+                                    "comes back in every breath"};
+static const cli_flag flag_at = {"--at", "T",
+                                 "one picture at this time in s, with the events until then: the\n"
+                                 "frame that a sequence has there"};
 static const cli_flag flag_meshes = {"--meshes", "DIR",
-                                     "a PLY file of every part that moves, every frame, with the\n"
-                                     "displacement of each vertex in mm"};
+                                     "a binary PLY file of every part that moves, every frame,\n"
+                                     "with the displacement of each vertex in mm"};
 static const cli_flag flag_outline = {"--outline", "PARTS@P",
                                       "draws the outlines that parts have at phase P, as\n"
                                       "ribs,diaphragm@0"};
 
 /* What was asked for, and what came of it. */
 typedef struct {
-    double seconds, fps, phase;
+    double seconds, fps;
+    double phase, at; /* of one picture; NaN: not asked for */
     int64_t frames;
     const char *place, *meshes;
     double plan_ms, sequence_ms;
@@ -46,20 +52,35 @@ static int read_positive(const cli_arguments *arguments, const cli_flag *flag, d
     return CLI_DONE;
 }
 
-static int read_flags(const cli_arguments *arguments, cli_fluoroscopy *f, sequence *s) {
-    const char *phase = cli_value(arguments, &flag_phase);
+static int is_one(const sequence *s) {
+    return !isnan(s->phase) || !isnan(s->at);
+}
+
+static int read_moment(const cli_arguments *arguments, const cli_flag *flag, double *number) {
+    const char *value = cli_value(arguments, flag);
     char *end = NULL;
-    *s = (sequence){.fps = 30, .phase = (double)NAN};
+    *number = (double)NAN;
+    if (!value) return CLI_DONE;
+    *number = strtod(value, &end);
+    if (end == value || *end || !isfinite(*number))
+        return cli_error(CLI_USAGE, "%s %s is not a number", flag->name, value);
+    return CLI_DONE;
+}
+
+static int read_flags(const cli_arguments *arguments, cli_fluoroscopy *f, sequence *s) {
+    *s = (sequence){.fps = 30};
     s->place = cli_value(arguments, &flag_place);
     s->meshes = cli_value(arguments, &flag_meshes);
+    if (s->meshes) cli_guard_output(s->meshes);
     if (!s->place) return cli_error(CLI_USAGE, "breathe: nowhere to write to; add -o DIR");
     int exit_status = read_positive(arguments, &flag_seconds, &s->seconds);
     if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &flag_fps, &s->fps);
     if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &f->low, &f->high);
-    if (exit_status != CLI_DONE || !phase) return exit_status;
-    s->phase = strtod(phase, &end);
-    if (end == phase || *end || !isfinite(s->phase))
-        return cli_error(CLI_USAGE, "--phase %s is not a number", phase);
+    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &flag_phase, &s->phase);
+    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &flag_at, &s->at);
+    if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
+    if (!isnan(s->phase) && !isnan(s->at))
+        return cli_error(CLI_USAGE, "--phase and --at are two ways to choose one picture; give one of them");
     skg_status status = skg_picture_check_path(s->place);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -87,8 +108,9 @@ static int make_image(cli_fluoroscopy *f, int which) {
 }
 
 static int pose(cli_fluoroscopy *f, const sequence *s, int64_t frame) {
-    skg_status status = isnan(s->phase) ? skg_motion_at_time(f->motion, (double)frame / s->fps)
-                                        : skg_motion_at_phase(f->motion, s->phase);
+    const double time = isnan(s->at) ? (double)frame / s->fps : s->at;
+    skg_status status =
+        isnan(s->phase) ? skg_motion_at_time(f->motion, time) : skg_motion_at_phase(f->motion, s->phase);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -211,8 +233,9 @@ static int print(const cli_arguments *arguments, const cli_fluoroscopy *f, const
         return cli_json_print(object);
     }
     if (cli_is_quiet()) return CLI_DONE;
-    if (!isnan(s->phase)) {
-        printf("phase %.6g; wrote %s\n", s->phase, s->place);
+    if (is_one(s)) {
+        printf("%s %.6g%s; wrote %s\n", isnan(s->at) ? "phase" : "at", isnan(s->at) ? s->phase : s->at,
+               isnan(s->at) ? "" : " s", s->place);
         return CLI_DONE;
     }
     printf("%" PRId64
@@ -236,7 +259,7 @@ static int prepare(const cli_arguments *arguments, cli_fluoroscopy *f, sequence 
     if (status == SKG_OK) status = skg_motion_period(f->motion, &period);
     if (status != SKG_OK) return cli_fail(status);
     if (!(s->seconds > 0)) s->seconds = period;
-    const double frames = isnan(s->phase) ? fmax(1, floor(s->seconds * s->fps + 0.5)) : 1;
+    const double frames = is_one(s) ? 1 : fmax(1, floor(s->seconds * s->fps + 0.5));
     if (frames > MOST_FRAMES)
         return cli_error(CLI_USAGE, "%g frames are too many; %d at most", frames, MOST_FRAMES);
     s->frames = (int64_t)frames;
@@ -251,13 +274,13 @@ static int prepare(const cli_arguments *arguments, cli_fluoroscopy *f, sequence 
 static int work(const cli_arguments *arguments, cli_fluoroscopy *f) {
     sequence s;
     int exit_status = read_flags(arguments, f, &s);
-    if (exit_status == CLI_DONE && isnan(s.phase)) exit_status = cli_make_folder(s.place);
+    if (exit_status == CLI_DONE && !is_one(&s)) exit_status = cli_make_folder(s.place);
     if (exit_status == CLI_DONE && s.meshes) exit_status = cli_make_folder(s.meshes);
     if (exit_status == CLI_DONE) exit_status = prepare(arguments, f, &s);
     if (exit_status == CLI_DONE && f->low == 0 && f->high == 0) exit_status = find_range(f, &s);
     if (exit_status == CLI_DONE) exit_status = run_sequence(f, &s);
     if (exit_status != CLI_DONE) return exit_status;
-    if (isnan(s.phase)) {
+    if (!is_one(&s)) {
         exit_status = write_sequence(f, &s);
     } else {
         if (s.meshes) exit_status = cli_write_meshes(f, s.meshes, 0);
@@ -278,9 +301,10 @@ static int run(const cli_arguments *arguments) {
 }
 
 static const cli_flag *const flags[] = {
-    &flag_place,        &flag_seconds,   &flag_fps,        &flag_phase,         &flag_outline,
-    &flag_meshes,       &cli_flag_range, &cli_flag_device, &cli_flag_precision, &cli_flag_tolerance,
-    &cli_flag_strategy, &cli_flag_set,   &cli_flag_json,   &cli_flag_quiet,     NULL};
+    &flag_place,      &flag_seconds,       &flag_fps,           &flag_phase,
+    &flag_at,         &flag_outline,       &flag_meshes,        &cli_flag_range,
+    &cli_flag_device, &cli_flag_precision, &cli_flag_tolerance, &cli_flag_strategy,
+    &cli_flag_set,    &cli_flag_json,      &cli_flag_quiet,     NULL};
 
 const cli_verb cli_breathe = {
     "breathe",

@@ -3,6 +3,7 @@
 #include "frames.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) {
@@ -27,6 +28,7 @@ static json_t *effects_json(const skg_plan *plan) {
         json_object_set_new(object, "name", cli_json_text(effect.name));
         json_object_set_new(object, "on", json_boolean(effect.on));
         json_object_set_new(object, "reason", cli_json_text(effect.reason));
+        json_object_set_new(object, "cost", cli_json_number(effect.cost));
         json_array_append_new(list, object);
     }
     return list;
@@ -41,6 +43,20 @@ static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
             json_array_append_new(list, cli_json_numbers(node, 2));
     }
     return list;
+}
+
+/* Device time of each stage of the last frame, where it was taken. */
+static json_t *stages_json(const skg_plan *plan) {
+    json_t *object = json_object();
+    int64_t count = 0;
+    skg_plan_stages(plan, &count);
+    for (int64_t i = 0; i < count; i++) {
+        skg_stage stage;
+        skg_stage_init(&stage);
+        if (skg_plan_stage(plan, i, &stage) != SKG_OK) break;
+        json_object_set_new(object, stage.name, cli_json_number(stage.ns));
+    }
+    return object;
 }
 
 static const char *label_of(const skg_scene *scene, int64_t id) {
@@ -102,19 +118,33 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "bad_pixels", json_integer(report.bad_pixels));
     json_object_set_new(object, "repaired_pixels", json_integer(report.repaired_pixels));
     json_object_set_new(object, "negative_pixels", json_integer(report.negative_pixels));
+    json_object_set_new(object, "outside_pixels", json_integer(report.outside_pixels));
+    json_object_set_new(object, "bins", json_integer(report.bins));
+    json_object_set_new(object, "samples", json_integer(report.samples));
+    json_object_set_new(object, "sample_error", cli_json_number(report.sample_error));
+    json_object_set_new(object, "stages_ns", stages_json(plan));
     json_object_set_new(object, "overlaps", overlaps_json(plan, session->scene));
     return object;
+}
+
+static void print_cost(const skg_effect *effect) {
+    if (fabs(effect->cost) < 0.005)
+        printf("%9s", effect->on ? "-" : "");
+    else
+        printf("%+9.2f", effect->cost);
 }
 
 static void print_effects(const skg_plan *plan) {
     int64_t count = 0;
     skg_plan_effects(plan, &count);
-    printf("\neffects\n");
+    printf("\neffects, with what they cost: estimated, in frames of this scene without any\n");
     for (int64_t i = 0; i < count; i++) {
         skg_effect effect;
         skg_effect_init(&effect);
         if (skg_plan_effect(plan, i, &effect) != SKG_OK) break;
-        printf("  %-3s %-22s %s\n", effect.on ? "on" : "off", effect.name, effect.reason);
+        printf("  %-3s %-22s", effect.on ? "on" : "off", effect.name);
+        print_cost(&effect);
+        printf("  %s\n", effect.reason);
     }
 }
 
@@ -127,6 +157,20 @@ static void print_stages(const skg_plan *plan) {
         skg_stage_init(&stage);
         if (skg_plan_stage(plan, i, &stage) != SKG_OK) break;
         printf("  %-26s %.3f\n", stage.name, stage.ns * 1e-6);
+    }
+}
+
+/* Those chosen of many, with the photons that they stand for. */
+static void print_nodes(const skg_plan *plan, const skg_plan_report *report) {
+    if (report->verified == 0) return;
+    printf("\nenergies, keV: photons per pixel of the open beam; error at most %.2g, verified on %" PRId64
+           " points\n",
+           report->bound, report->verified);
+    for (int64_t i = 0; i < report->nodes; i++) {
+        double kev, photons;
+        if (skg_plan_node(plan, i, &kev, &photons, NULL) != SKG_OK) break;
+        printf("%s%8.6g: %-10.6g%s", i % 4 ? "" : "  ", kev, photons,
+               i % 4 == 3 || i + 1 == report->nodes ? "\n" : "");
     }
 }
 
@@ -187,9 +231,11 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
            " bits\n",
            report.planes, report.parts - report.open_parts, report.accumulators, report.plane_bits);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
-           " of them repaired; %" PRId64 " with a negative exponent\n",
-           report.bad_pixels, report.repaired_pixels, report.negative_pixels);
+           " of them repaired; %" PRId64 " with a negative exponent; %" PRId64
+           " outside the verified range\n",
+           report.bad_pixels, report.repaired_pixels, report.negative_pixels, report.outside_pixels);
     print_effects(plan);
+    print_nodes(plan, &report);
     print_stages(plan);
     print_overlaps(plan, session->scene);
     printf(

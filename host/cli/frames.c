@@ -46,7 +46,7 @@ int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, co
         if (noted < SKG_OK) status = noted;
         cli_progress("frames", i + 1, times->repeats, begun);
     }
-    if (status == SKG_RANGE) cli_warn("%s", skg_status_text(status));
+    if (status == SKG_RANGE) cli_warn("%s", skg_last_error());
     return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);
 }
 

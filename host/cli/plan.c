@@ -45,9 +45,9 @@ const cli_verb cli_plan = {
     "SCENE",
     "what would be simulated, and why",
     "Plans a scene, makes one frame without writing it, and tells what was decided: strategy, tiles, planes,\n"
-    "precision, every effect that is on or off with the reason, what each stage took, parts that overlap, and\n"
-    "what is not simulated. --json prints {effects, nodes, planes, strategy, tiles, bound, ...}; nodes are\n"
-    "[keV, photons per pixel].",
+    "precision, every effect that is on or off with the reason and an estimate of its cost, what each stage took,\n"
+    "parts that overlap, and what is not simulated. --json prints {effects, nodes, planes, strategy, tiles, bound,\n"
+    "stages_ns, ...}; nodes are [keV, photons per pixel], and may be given as a Beam with tolerance 0.",
     1,
     1,
     flags,

@@ -29,18 +29,13 @@ void skg_motion_state_init(skg_motion_state *state) {
 }
 
 static skg_status add_organ(skg_motion *motion, int64_t part) {
-    const skg_breathing_section *section = &motion->setup->breathing;
     const skg_scene_part_data *from = &motion->setup->scene->parts[part];
     skg_organ organ;
     skg_organ_init(&organ);
     organ.mesh = from->mesh;
     organ.label = from->label;
     organ.inside = from->inside < 0 ? -1 : motion->organ[from->inside];
-    for (int64_t i = 0; i < section->organ_count; i++) {
-        if (section->organs[i].part != part) continue;
-        organ.tissue = section->organs[i].tissue;
-        if (section->organs[i].as) organ.label = section->organs[i].as;
-    }
+    skg_setup_describe_organ(&motion->setup->breathing, part, &organ);
     return skg_body_add(motion->body, &organ, &motion->organ[part]);
 }
 

@@ -13,8 +13,8 @@ static const struct {
     const char *label;
     double from[3], to[3], radius;
 } airway[AIRWAYS] = {{"trachea", {0, -56, 200}, {0, -40, 102}, 8.5},
-                     {"bronchus left", {10, -39, 88}, {25, -36, 74}, 5.5},
-                     {"bronchus right", {-10, -39, 87}, {-24, -36, 70}, 6}};
+                     {"bronchus left", {10, -39, 88}, {21, -37, 77}, 5.5},
+                     {"bronchus right", {-10, -39, 87}, {-19, -37, 75}, 6}};
 
 double skg_airway_distance(const double point[3]) {
     double least = HUGE_VAL;
@@ -91,10 +91,10 @@ static double lung_region(const void *shape, const double flat[3]) {
     const double p[3] = {flat[0], flat[1], height_of(l, at->level, flat[0], flat[1])};
     double most = skg_cage_inside(p, 9.5 + l->gap);
     /* apart from the other lung: vessels, thymus, oesophagus; and from the bronchus at its root */
-    double up = (p[2] - 78) / 24, across = (p[1] + 37) / 22;
+    double up = (p[2] - 78) / 28, across = (p[1] + 37) / 28;
     most = fmax(most, 11 + 32 * exp(-up * up - across * across) - l->side * p[0]);
     /* beside the spine, the diaphragm's rim has a fold that the lung does not fill */
-    double fold = 11 / (1 + exp((p[2] - 15) / 12));
+    double fold = 15 / (1 + exp((p[2] - 15) / 12));
     most = fmax(most, skg_spine_inside(p, l->gap + fold));
     most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->gap + 0.5));
     most = fmax(most, l->gap - skg_airway_distance(p));
@@ -155,34 +155,34 @@ static void find_radii(const lung *l, double *radius) {
     }
 }
 
-static skg_status make_lung(const skg_thorax_plan *plan, double side, const char *label, int64_t skin,
-                            skg_thorax *thorax) {
-    lung l = {.plan = plan, .side = side, .gap = fmax(1.2, 1.5 / plan->resolution)};
-    l.base = skg_shape_count(plan->resolution, 15, 4);
-    l.sides = skg_shape_count(plan->resolution, 29, 8);
-    l.around = skg_shape_count(plan->resolution, 46, 12);
+static skg_status make_lung(const char *label, void *shape, skg_mesh_arrays *arrays) {
+    lung *l = shape;
     double *radius = NULL;
-    int64_t *counts = NULL, rings = l.base + l.sides + 1;
-    skg_mesh_arrays arrays = {0};
+    int64_t *counts = NULL, rings = l->base + l->sides + 1;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(l.sides * l.around, sizeof *radius, label, &radius));
+    SKG_TRY_CLEANUP(skg_alloc(l->sides * l->around, sizeof *radius, label, &radius));
     SKG_TRY_CLEANUP(skg_alloc(rings, sizeof *counts, label, &counts));
-    l.radius = radius;
-    find_radii(&l, radius);
+    l->radius = radius;
+    find_radii(l, radius);
     for (int64_t r = 0; r < rings; r++) {
-        int64_t part = l.around * r / l.base;
-        counts[r] = r == 0 || r == rings - 1 ? 1 : r >= l.base ? l.around : part > 5 ? part : 5;
+        int64_t part = l->around * r / l->base;
+        counts[r] = r == 0 || r == rings - 1 ? 1 : r >= l->base ? l->around : part > 5 ? part : 5;
     }
-    SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, &l, &arrays));
-    SKG_TRY_CLEANUP(skg_thorax_add(thorax, label, -790, skin, &arrays));
+    SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, l, arrays));
 cleanup:
-    skg_mesh_arrays_free(&arrays);
     skg_free(&counts);
     skg_free(&radius);
     return status;
 }
 
 skg_status skg_thorax_lungs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
-    SKG_TRY(make_lung(plan, 1, "lung left", skin, thorax));
-    return make_lung(plan, -1, "lung right", skin, thorax);
+    for (double side = 1; side >= -1; side -= 2) {
+        lung l = {.plan = plan, .side = side, .gap = fmax(1.2, 1.5 / plan->resolution)};
+        l.base = skg_shape_count(plan->resolution, 15, 4);
+        l.sides = skg_shape_count(plan->resolution, 29, 8);
+        l.around = skg_shape_count(plan->resolution, 46, 12);
+        SKG_TRY(
+            skg_thorax_fit(thorax, side > 0 ? "lung left" : "lung right", -790, skin, make_lung, &l, &l.gap));
+    }
+    return SKG_OK;
 }

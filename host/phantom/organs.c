@@ -71,7 +71,7 @@ typedef struct {
 
 /* Height over the liver's underside: it rises to the left, and to the front a little. */
 static double over_liver_floor(const double p[3]) {
-    return p[2] - (-157 + 0.80 * (p[0] + 95) - 0.10 * (p[1] + 60));
+    return p[2] - (-159.5 + 0.80 * (p[0] + 95) - 0.10 * (p[1] + 60));
 }
 
 static double liver_region(const void *shape, const double p[3]) {
@@ -114,15 +114,25 @@ static double heart_region(const void *shape, const double p[3]) {
     return fmax(most, fmax(skg_spine_inside(p, o->gap), o->gap - skg_airway_distance(p)));
 }
 
-static skg_status star(const skg_thorax_plan *plan, const char *label, double hounsfield, int64_t inside,
-                       skg_region region, const void *shape, const double centre[3], double standard_rings,
-                       skg_thorax *thorax) {
-    skg_mesh_arrays arrays = {0};
-    skg_status status = skg_shape_star(label, region, shape, centre, 250,
-                                       skg_shape_count(plan->resolution, standard_rings, 8), &arrays);
-    if (status == SKG_OK) status = skg_thorax_add(thorax, label, hounsfield, inside, &arrays);
-    skg_mesh_arrays_free(&arrays);
-    return status;
+/* A star about a centre. */
+typedef struct {
+    skg_region region;
+    const void *shape;
+    const double *centre;
+    int64_t rings;
+} star;
+
+static skg_status make_star(const char *label, void *shape, skg_mesh_arrays *arrays) {
+    const star *s = shape;
+    return skg_shape_star(label, s->region, s->shape, s->centre, 250, s->rings, arrays);
+}
+
+/* shape begins with an organ. */
+static skg_status add_star(const char *label, double hounsfield, int64_t inside, skg_region region,
+                           void *shape, const double centre[3], double standard_rings, skg_thorax *thorax) {
+    organ *o = shape;
+    star s = {region, shape, centre, skg_shape_count(o->plan->resolution, standard_rings, 8)};
+    return skg_thorax_fit(thorax, label, hounsfield, inside, make_star, &s, &o->gap);
 }
 
 enum { DUCTS = 8 };
@@ -137,7 +147,7 @@ static const struct {
     {{{-62, -62, -70}, {-68, -66, -52}, {-70, -66, -34}}, 1.3},  /* upward */
     {{{-90, -84, -79}, {-93, -80, -92}, {-92, -74, -106}}, 1.1}, /* anterior, downward */
     {{{-26, -64, -88}, {-10, -72, -74}, {4, -80, -62}}, 1.8},    /* left hepatic duct */
-    {{{8, -81, -59}, {20, -82, -52}, {32, -82, -44}}, 1.3},      /* left lateral */
+    {{{8, -81, -60}, {19, -82, -55}, {29, -82, -49}}, 1.3},      /* left lateral */
     {{{2, -85, -66}, {0, -93, -66}, {-4, -104, -68}}, 1.2},      /* left medial */
 };
 
@@ -168,12 +178,13 @@ skg_status skg_thorax_organs(const skg_thorax_plan *plan, int64_t skin, skg_thor
     static const double liver_centre[3] = {-58, -58, -72}, stomach_centre[3] = {62, -72, -80};
     static const double heart_centre[3] = {18, -79, 42};
     const organ common = {plan, fmax(1.2, 1.5 / plan->resolution)};
-    SKG_TRY(star(plan, "heart", 45, skin, heart_region, &common, heart_centre, 17, thorax));
+    organ heart = common, liver_shape = common, stomach = common;
     SKG_TRY(diaphragm(plan, skin, thorax));
-    SKG_TRY(star(plan, "liver", 60, skin, liver_region, &common, liver_centre, 30, thorax));
+    SKG_TRY(add_star("heart", 45, skin, heart_region, &heart, heart_centre, 17, thorax));
+    SKG_TRY(add_star("liver", 60, skin, liver_region, &liver_shape, liver_centre, 30, thorax));
     int64_t liver = thorax->parts - 1;
     SKG_TRY(ducts(plan, liver, skin, thorax));
-    SKG_TRY(star(plan, "stomach", 30, skin, stomach_region, &common, stomach_centre, 15, thorax));
+    SKG_TRY(add_star("stomach", 30, skin, stomach_region, &stomach, stomach_centre, 15, thorax));
     const struct {
         const char *label;
         const skg_ellipsoid *ellipsoid;
@@ -184,9 +195,9 @@ skg_status skg_thorax_organs(const skg_thorax_plan *plan, int64_t skin, skg_thor
                   {"kidney right", &kidney_right, 35, below_diaphragm},
                   {"spleen", &spleen, 45, spleen_region}};
     for (size_t i = 0; i < sizeof simple / sizeof *simple; i++) {
-        const simple_organ shape = {common, simple[i].ellipsoid};
-        SKG_TRY(star(plan, simple[i].label, simple[i].hounsfield, skin, simple[i].region, &shape,
-                     simple[i].ellipsoid->centre, 11, thorax));
+        simple_organ shape = {common, simple[i].ellipsoid};
+        SKG_TRY(add_star(simple[i].label, simple[i].hounsfield, skin, simple[i].region, &shape,
+                         simple[i].ellipsoid->centre, 11, thorax));
     }
     return SKG_OK;
 }

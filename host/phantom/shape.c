@@ -57,6 +57,7 @@ typedef struct {
     int64_t rings;
     const skg_tube_ring *ring;
     double pole;
+    int upright; /* as a whole: one choice, or rings would turn against each other */
 } tube;
 
 static void tube_place(const void *shape, int64_t r, double azimuth, double point[3]) {
@@ -68,7 +69,7 @@ static void tube_place(const void *shape, int64_t r, double azimuth, double poin
     double along[3], across[3], up[3] = {0, 0, 1};
     skg_add_scaled(after, -1, before, along);
     unit(along);
-    if (fabs(along[2]) > 0.95) up[1] = 1, up[2] = 0; /* an upright tube: its height is to the back */
+    if (t->upright) up[1] = 1, up[2] = 0; /* its height is to the back */
     skg_cross(up, along, across);
     unit(across);
     skg_cross(along, across, up);
@@ -85,8 +86,10 @@ skg_status skg_shape_tube(const char *name, int64_t rings, const skg_tube_ring *
     int64_t *counts;
     SKG_TRY(skg_alloc(rings + 2, sizeof *counts, name, &counts));
     for (int64_t r = 0; r < rings + 2; r++) counts[r] = r == 0 || r == rings + 1 ? 1 : around;
-    skg_status status =
-        skg_shape_rings(name, rings + 2, counts, tube_place, &(tube){rings, ring, pole}, arrays);
+    double way[3];
+    skg_add_scaled(ring[rings - 1].centre, -1, ring[0].centre, way);
+    const tube t = {rings, ring, pole, fabs(way[2]) > 0.93 * skg_length(way)};
+    skg_status status = skg_shape_rings(name, rings + 2, counts, tube_place, &t, arrays);
     skg_free(&counts);
     return status;
 }

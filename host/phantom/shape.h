@@ -45,6 +45,10 @@ double skg_shape_exit(skg_region region, const void *shape, const double from[3]
 skg_status skg_shape_star(const char *name, skg_region region, const void *shape, const double centre[3],
                           double far, int64_t rings, skg_mesh_arrays *arrays);
 
+/* Whether the surface meets those of meshes as they were made, or comes nearer than 0.05 mm (apart.c). */
+skg_status skg_shape_meets(const char *name, int64_t count, skg_mesh *const *others,
+                           const skg_mesh_arrays *arrays, int *meets);
+
 /* Smooths the radii of a ring, downwards only: what was allowed stays allowed. `passes` times over, none
  * exceeds the mean of its neighbours' and its own. */
 void skg_shape_smooth(double *radius, int64_t count, int passes);

@@ -42,6 +42,31 @@ static void set_tissue(skg_thorax *thorax, int64_t i) {
         }
 }
 
+/* A mesh with a gap of its own is made again with a larger one until it meets none of those before it; not
+ * where triangles are so large that it would shrink to be apart. */
+skg_status skg_thorax_fit(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
+                          skg_thorax_maker maker, void *shape, double *gap) {
+    const double growth = 1.25, widest_standard = 1.5 + 1e-9; /* mm; of 42,000 triangles */
+    skg_mesh **others = NULL;
+    skg_mesh_arrays arrays = {0};
+    int64_t count = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(thorax->parts, sizeof *others, label, &others));
+    for (int64_t i = 0; i < thorax->parts; i++)
+        if (thorax->part[i].inside == inside) others[count++] = thorax->part[i].mesh;
+    const double most = *gap > widest_standard ? *gap : 12; /* mm */
+    for (int meets = 1; meets && *gap <= most; *gap *= growth) {
+        skg_mesh_arrays_free(&arrays);
+        SKG_TRY_CLEANUP(maker(label, shape, &arrays));
+        SKG_TRY_CLEANUP(skg_shape_meets(label, count, others, &arrays, &meets));
+    }
+    SKG_TRY_CLEANUP(skg_thorax_add(thorax, label, hounsfield, inside, &arrays));
+cleanup:
+    skg_mesh_arrays_free(&arrays);
+    skg_free(&others);
+    return status;
+}
+
 skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
                           skg_mesh_arrays *arrays) {
     if (thorax->parts == thorax->room) {
@@ -65,10 +90,10 @@ static skg_status fill(double resolution, skg_thorax *thorax) {
     SKG_TRY(skg_alloc(1, sizeof *plan, "thorax", &plan));
     skg_status status = skg_cage_plan(resolution, plan);
     if (status == SKG_OK) status = skg_thorax_skin(plan, thorax);
-    if (status == SKG_OK) status = skg_thorax_lungs(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_bones(plan, 0, thorax); /* what gives way least comes first */
     if (status == SKG_OK) status = skg_thorax_airways(plan, 0, thorax);
     if (status == SKG_OK) status = skg_thorax_organs(plan, 0, thorax);
-    if (status == SKG_OK) status = skg_thorax_bones(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_lungs(plan, 0, thorax);
     if (status == SKG_OK) status = skg_thorax_needle(plan, thorax);
     skg_free(&plan);
     return status;

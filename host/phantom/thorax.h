@@ -63,6 +63,9 @@ double skg_ellipsoid_inside(const skg_ellipsoid *ellipsoid, const double point[3
 /* Makers: each adds parts to the thorax. */
 skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
                           skg_mesh_arrays *arrays);
+typedef skg_status (*skg_thorax_maker)(const char *label, void *shape, skg_mesh_arrays *arrays);
+skg_status skg_thorax_fit(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
+                          skg_thorax_maker maker, void *shape, double *gap); /* gap: of the shape, mm */
 skg_status skg_thorax_bones(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
 skg_status skg_thorax_lungs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
 skg_status skg_thorax_organs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);

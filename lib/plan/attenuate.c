@@ -4,6 +4,7 @@
 
 #include <skiagraph/plan.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -216,6 +217,19 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
                               padded(raster->frame.rows, 16)};
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
+}
+
+skg_status skg_attenuate_open(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+                              const skg_attenuation *attenuation, double factor, cl_mem negative,
+                              const skg_image_place *place, skg_stage_log *log) {
+    skg_raster nothing = *sums->raster;
+    skg_sums no_sums = *sums;
+    skg_attenuation quiet = *attenuation;
+    nothing.frame.copies = 0; /* sums over no copies are 0 */
+    no_sums.raster = &nothing;
+    quiet.noise = 0;
+    quiet.range = (skg_buffer){0};
+    return skg_attenuate(attenuator, &no_sums, camera, &quiet, factor, -HUGE_VAL, negative, NULL, place, log);
 }
 
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,

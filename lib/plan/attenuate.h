@@ -69,6 +69,12 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
 
+/* Enqueues the open field: what would be shown without parts and noise. sums: of a frame of the same shape;
+ * they are not read. */
+skg_status skg_attenuate_open(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+                              const skg_attenuation *attenuation, double factor, cl_mem negative,
+                              const skg_image_place *place, skg_stage_log *log);
+
 /* Enqueues -ln of a finished mean, in place. */
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
                                    const skg_attenuation *attenuation, const skg_image_place *place,

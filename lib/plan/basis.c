@@ -24,7 +24,7 @@ static skg_status weigh_bins(const skg_polychromatic *beam, const skg_lengths *p
         skg_transmit(beam, beam->mu, points->lengths + p * beam->materials, passed);
         for (int32_t b = 0; b < beam->bins; b++)
             for (int32_t s = 0; s < beam->sets; s++)
-                weight[b] += passed[b] * beam->shares[b * beam->sets + s] / fmax(exact[s], SKG_RELATIVE_FROM);
+                weight[b] += passed[b] * beam->shares[b * beam->sets + s] / fmax(exact[s], beam->floor);
     }
     for (int32_t b = 0; b < beam->bins; b++) greatest = fmax(greatest, weight[b]);
     for (int32_t b = 0; b < beam->bins; b++) weight[b] = sqrt(fmax(weight[b], LEAST_WEIGHT * greatest));

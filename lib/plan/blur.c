@@ -31,6 +31,10 @@ void skg_detector_blur_init(skg_detector_blur *blur) {
     if (blur) *blur = (skg_detector_blur){.size = (int32_t)sizeof *blur};
 }
 
+int64_t skg_blur_samples(const skg_blur *blur) {
+    return blur->separable ? blur->columns + blur->rows : blur->columns * blur->rows;
+}
+
 static skg_status check_count(const char *what, int64_t count) {
     if (count < 1)
         return skg_fail(SKG_ERR_ARGUMENT, "the %s has %" PRId64 " samples; give at least one", what, count);

@@ -20,6 +20,9 @@ void skg_blur_release(skg_blur **blur);
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
                         int64_t channels, skg_stage_log *log);
 
+/* Samples that a pixel is summed from. */
+int64_t skg_blur_samples(const skg_blur *blur);
+
 /* What was given: "a point spread function of 5 x 5 samples"; valid as long as the blur. */
 const char *skg_blur_kind(const skg_blur *blur);
 

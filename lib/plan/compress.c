@@ -2,15 +2,14 @@
 
 #include "plan/basis.h"
 #include "plan/nodes.h"
+#include "plan/noise.h"
 #include "plan/ranges.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Costs per pixel in multiply-adds of the attenuation: a plane written by a hit; a plane read; and how many
- * nodes a plane is multiplied for, as long as that is not known. They only choose between layouts of the same
- * accuracy. */
-static const double COST_OF_WRITE = 50, COST_OF_PLANE = 50, LIKELY_NODES = 12;
+/* How many nodes a plane is multiplied for, as long as that is not known. */
+static const double LIKELY_NODES = 12;
 /* What of the tolerance planes may use, before the doubling of what is found. */
 static const double SHARE_OF_PLANES = 0.125;
 /* Points that planes are chosen by. */
@@ -20,6 +19,7 @@ typedef struct {
     const skg_scene *scene;
     const double *mu;
     double tolerance;
+    int is_ratio;
     skg_polychromatic beam;
     skg_ranges ranges;
     double *shares, *sums; /* [nodes][channels], [channels] */
@@ -27,21 +27,54 @@ typedef struct {
     skg_compression found;
 } compressing;
 
+/* An image over the open beam shows what is left of little where the world lets little pass. */
+static skg_status find_floor(compressing *c, const skg_model *model) {
+    double *lengths = NULL, *exact = NULL;
+    skg_status status = SKG_OK;
+    c->beam.floor = SKG_RELATIVE_FROM;
+    if (!c->is_ratio || model->world_plane < 0) return SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.materials, sizeof *lengths, "nodes", &lengths));
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.sets, sizeof *exact, "nodes", &exact));
+    lengths[model->world_plane] = c->ranges.way;
+    skg_transmit_exact(&c->beam, lengths, exact);
+    for (int32_t s = 0; s < c->beam.sets; s++)
+        if (c->sums[s] > 0)
+            c->beam.floor = fmin(c->beam.floor, SKG_RELATIVE_FROM * fmax(exact[s], exp(-SKG_MOST_EXPONENT)));
+cleanup:
+    skg_free(&lengths);
+    skg_free(&exact);
+    return status;
+}
+
+/* Means of the channels, then their variances where there is noise. */
+static int32_t sets_of(const skg_model *model) {
+    return model->variances ? 2 * model->channels : model->channels;
+}
+
+/* What set s takes of node n. */
+static double *table_of(const skg_model *model, int32_t s) {
+    return s < model->channels ? model->weights : model->variances;
+}
+static double *weight_at(const skg_model *model, int32_t n, int32_t s) {
+    return &table_of(model, s)[n * model->channels + s % model->channels];
+}
+
 static skg_status describe(compressing *c, const skg_model *model) {
-    const int32_t bins = model->nodes, sets = model->channels;
+    const int32_t bins = model->nodes, sets = sets_of(model);
     SKG_TRY(skg_alloc((int64_t)bins * sets, sizeof *c->shares, "nodes", &c->shares));
     SKG_TRY(skg_alloc(sets, sizeof *c->sums, "nodes", &c->sums));
-    for (int32_t k = 0; k < bins * sets; k++) c->sums[k % sets] += model->weights[k];
+    for (int32_t k = 0; k < bins * sets; k++) c->sums[k % sets] += *weight_at(model, k / sets, k % sets);
     for (int32_t k = 0; k < bins * sets; k++)
-        c->shares[k] = c->sums[k % sets] > 0 ? model->weights[k] / c->sums[k % sets] : 0;
+        c->shares[k] = c->sums[k % sets] > 0 ? *weight_at(model, k / sets, k % sets) / c->sums[k % sets] : 0;
     c->beam = (skg_polychromatic){.bins = bins,
                                   .materials = model->planes,
                                   .sets = sets,
+                                  .paired = model->variances != NULL,
                                   .mu = c->mu,
                                   .shares = c->shares,
                                   .low = c->ranges.low,
                                   .high = c->ranges.high};
-    return SKG_OK;
+    return find_floor(c, model);
 }
 
 /* --- planes
@@ -56,11 +89,11 @@ static void mix_writes(const skg_model *model, const skg_basis *basis, int64_t p
 }
 
 static double cost_of(const compressing *c, const skg_model *model, const skg_basis *basis, double *weights) {
-    double cost = basis->planes * (COST_OF_PLANE + LIKELY_NODES);
+    double cost = basis->planes * (SKG_COST_OF_PLANE + LIKELY_NODES);
     for (int64_t p = 0; p < c->scene->count; p++) {
         mix_writes(model, basis, p, weights);
         for (int32_t k = 0; k < basis->planes; k++)
-            if (weights[k] != 0) cost += COST_OF_WRITE * c->ranges.hits[p];
+            if (weights[k] != 0) cost += SKG_COST_OF_WRITE * c->ranges.hits[p];
     }
     return cost;
 }
@@ -154,13 +187,16 @@ static skg_status find_range(const compressing *c, skg_model *model) {
 
 static void rewrite_nodes(const compressing *c, skg_model *model) {
     const skg_nodes *nodes = &c->found.nodes;
-    const int32_t sets = model->channels, bins = c->beam.bins, planes = c->basis.planes;
+    const int32_t sets = c->beam.sets, bins = c->beam.bins, planes = c->basis.planes;
     for (int32_t n = 0; n < nodes->count; n++) {
         const int32_t bin = nodes->bin[n]; /* n or above: nothing is overwritten before it is read */
         double before = 0, after = 0;
         for (int32_t s = 0; s < sets; s++) {
+            const double weight = nodes->shares[n * sets + s] * c->sums[s];
+            *weight_at(model, n, s) = weight;
+            if (s >= model->channels) continue;
             before += c->shares[bin * sets + s] * c->sums[s];
-            after += model->weights[n * sets + s] = nodes->shares[n * sets + s] * c->sums[s];
+            after += weight;
         }
         model->node_kev[n] = model->node_kev[bin];
         model->node_photons[n] = before > 0 ? model->node_photons[bin] * (after / before) : 0;
@@ -172,13 +208,15 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     model->verified = c->found.verified;
 }
 
-skg_status skg_compress(const skg_scene *scene, const skg_view *view, const double *mu, double tolerance,
-                        int is_ratio, skg_model *model) {
+skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
+                        const double *mu, skg_model *model) {
+    const int is_ratio = skg_plan_is_ratio(options);
     /* A ratio to what the world lets pass has the errors of both. */
     const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
-    compressing c = {.scene = scene, .mu = mu, .tolerance = tolerance / errors};
+    compressing c = {
+        .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, model, &c.ranges));
+    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c.ranges));
     SKG_TRY_CLEANUP(describe(&c, model));
     SKG_TRY_CLEANUP(choose_planes(&c, model));
     SKG_TRY_CLEANUP(

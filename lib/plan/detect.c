@@ -21,21 +21,17 @@ skg_status skg_plan_check_detector(const skg_plan_options *options) {
         return skg_fail(SKG_ERR_ARGUMENT,
                         "electronic noise and quantisation are in keV, but photons are counted; take "
                         "another quantity or leave them out");
-    if (skg_plan_is_absolute(options) && skg_plan_is_ratio(options) && (options->world || options->falloff))
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "with noise, an image over the open beam is not simulated yet where falloff or a world make that "
-            "beam differ from pixel to pixel; take the energy and divide");
     return SKG_OK;
 }
 
 /* The stage after the blur, where anything is left to do there. */
 static skg_status make_last_stage(skg_plan *plan) {
     const skg_plan_options *options = &plan->options;
+    const int ratio = skg_plan_is_ratio(options), areas = options->quantity == SKG_FLUENCE;
     const skg_detection detection = {.electronic = options->electronic_kev,
                                      .step = options->quantum_step_kev,
-                                     .channels = plan->model.channels};
-    const int ratio = skg_plan_is_ratio(options), areas = options->quantity == SKG_FLUENCE;
+                                     .channels = plan->model.channels,
+                                     .over_field = ratio && (options->world || options->falloff)};
     double factors[SKG_MOST_CHANNELS];
     if (!skg_plan_is_absolute(options)) return SKG_OK;
     if (!ratio && !areas && !(detection.electronic > 0) && !(detection.step > 0)) return SKG_OK;
@@ -44,8 +40,9 @@ static skg_status make_last_stage(skg_plan *plan) {
             return skg_fail(SKG_ERR_BEAM,
                             "channel %d records nothing of the open beam, so there is no ratio to it",
                             (int)c);
-        factors[c] = ratio ? 1 / plan->model.open[c] : 1;
+        factors[c] = ratio && !detection.over_field ? 1 / plan->model.open[c] : 1;
     }
+    plan->field.wanted = detection.over_field;
     return skg_detector_create(plan->context, &detection, factors, &plan->detector);
 }
 
@@ -67,5 +64,7 @@ skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *w
     if (!plan->detector) return SKG_OK;
     SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
     const double factor = plan->options.quantity == SKG_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
-    return skg_detector_run(plan->detector, &work->noise, factor, image, columns, rows, &job->log);
+    SKG_TRY(skg_field_find(plan, job, work));
+    return skg_detector_run(plan->detector, &work->noise, factor, plan->field.image.memory, image, columns,
+                            rows, &job->log);
 }

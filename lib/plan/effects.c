@@ -72,6 +72,7 @@ static skg_status report_places(skg_plan *plan) {
     if (plan->contest_possible)
         SKG_TRY_CLEANUP(skg_contest_find(scene, plan->options.clip, extents, &contest));
     report_contest(plan, contest.count);
+    skg_report_costs(plan, extents);
 cleanup:
     skg_contest_release(&contest);
     skg_free(&extents);
@@ -127,12 +128,11 @@ static void tell_compression(skg_plan *plan) {
     if (model->verified > 0)
         set(plan, effect, 1,
             "%" PRId32 " of %" PRId32 " energies and %" PRId32 " planes for %" PRId32
-            " materials; error of transmissions at most %.2g, verified on %" PRId64 " points",
-            model->nodes, model->bins, model->planes, model->materials, model->bound, model->verified);
+            " materials; error of transmissions%s at most %.2g, verified on %" PRId64 " points",
+            model->nodes, model->bins, model->planes, model->materials,
+            model->variances ? " and variances" : "", model->bound, model->verified);
     else if (model->bins == 1)
         set(plan, effect, 0, "the beam has one energy");
-    else if (plan->options.noise)
-        set(plan, effect, 0, "noise counts the photons of every energy");
     else if (plan->options.precision == SKG_HALF)
         set(plan, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
     else if (plan->options.tolerance > 0)
@@ -207,6 +207,7 @@ skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effe
     skg_effect ours = {.size = sizeof ours,
                        .on = plan->effects[index].on,
                        .name = names[index],
+                       .cost = plan->effects[index].cost,
                        .reason = plan->effects[index].reason};
     return skg_struct_write(&ours, sizeof ours, "skg_effect", effect);
 }

@@ -227,10 +227,8 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(list_writes(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
-    /* Photons of every bin count by themselves for the variance. */
-    if (options->tolerance > 0 && !options->noise && !is_unweighted(&m) && model->nodes > 2 &&
-        model->materials > 0)
-        SKG_TRY_CLEANUP(skg_compress(scene, view, m.bases, options->tolerance, shows_ratio(&m), model));
+    if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
+        SKG_TRY_CLEANUP(skg_compress(scene, view, options, m.bases, model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);

@@ -32,8 +32,9 @@ typedef struct {
     int64_t verified;     /* points of the range of lengths on which it was found */
 } skg_model;
 
-/* options: quantity, response, world, bands, tolerance, noise (every bin is used; weights are those of
- * photons in a pixel, not of a ratio). view: whose lengths a compression has to hold for. */
+/* options: quantity, response, world, bands, tolerance, noise (variances, too; weights are those of
+ * photons in a pixel, not of a ratio). view, and options->views: whose lengths a compression has to hold for.
+ */
 skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model);
 void skg_model_release(skg_model *model);

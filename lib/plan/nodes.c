@@ -30,7 +30,7 @@ typedef struct {
  * --------------------------------------------------------------------------------------- */
 
 static double unit_of(const search *s, int64_t point, int32_t set) {
-    return 1 / fmax(s->fit.exact[point * s->beam->sets + set], SKG_RELATIVE_FROM);
+    return 1 / fmax(s->fit.exact[point * s->beam->sets + set], s->beam->floor);
 }
 
 static skg_status make_system(search *s, int32_t set) {
@@ -132,37 +132,62 @@ static void shift(search *s) {
 /* --- weights
  * ----------------------------------------------------------------------------------------------------- */
 
-/* Errors at the points that weights are fitted to, of one set; the greatest is returned. */
-static double find_rest(search *s, const double *columns, int32_t set, const double *x) {
+/* Errors at the points that weights are fitted to, of one set with weights s->x of the nodes in s->trial; the
+ * greatest is returned. */
+static double find_rest(search *s, const double *columns, int32_t set, int32_t used) {
+    const int64_t points = s->fit.count;
     double worst = 0;
-    for (int64_t p = 0; p < s->fit.count; p++) {
+    for (int64_t p = 0; p < points; p++) {
         double sum = -s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
-        for (int32_t j = 0; j < s->count; j++) sum += x[j] * columns[j * s->fit.count + p];
+        for (int32_t j = 0; j < used; j++) sum += s->x[j] * columns[s->trial[j] * points + p];
         s->rest[p] = fabs(sum);
         worst = fmax(worst, s->rest[p]);
     }
     return worst;
 }
 
-/* Weights of one set towards the smallest greatest error, into s->nodes; that error is returned. columns:
- * [nodes] [points], in units of the errors. */
-static double fit_set(search *s, int32_t set, const double *columns, skg_least_squares *system) {
+static void keep_weights(search *s, int32_t set, int32_t used) {
+    const int32_t sets = s->beam->sets;
+    for (int32_t j = 0; j < s->count; j++) s->nodes.shares[j * sets + set] = 0;
+    for (int32_t j = 0; j < used; j++) s->nodes.shares[s->trial[j] * sets + set] = s->x[j];
+}
+
+/* What weights are fitted with. */
+typedef struct {
+    skg_least_squares system;
+    double *columns; /* [nodes][points], in units of the errors of a set */
+    double *passed;  /* [bins] */
+} fitting;
+
+static void find_columns(search *s, int32_t set, fitting *f) {
+    const int64_t points = s->fit.count;
+    for (int64_t p = 0; p < points; p++) {
+        skg_transmit(s->beam, s->mu, s->fit.lengths + p * s->beam->materials, f->passed);
+        for (int32_t j = 0; j < s->count; j++)
+            f->columns[j * points + p] = f->passed[s->bins[j]] * unit_of(s, p, set);
+    }
+}
+
+/* Weights of one set, of the nodes in s->trial, towards the smallest greatest error, into s->nodes; that
+ * error is returned. */
+static double fit_set(search *s, int32_t set, int32_t used, fitting *f) {
     const int64_t points = s->fit.count;
     double best = HUGE_VAL;
-    for (int32_t j = 0; j < s->count; j++) s->trial[j] = j;
+    find_columns(s, set, f);
     for (int64_t p = 0; p < points; p++) s->row_weight[p] = 1;
-    start_even(s->x, s->count);
+    start_even(s->x, used);
     for (int step = 0; step < REWEIGHTINGS; step++) {
         for (int64_t p = 0; p < points; p++) {
             const double root = sqrt(s->row_weight[p]);
-            for (int32_t j = 0; j < s->count; j++) system->a[j * points + p] = root * columns[j * points + p];
-            system->b[p] = root * s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
+            for (int32_t j = 0; j < s->count; j++)
+                f->system.a[j * points + p] = root * f->columns[j * points + p];
+            f->system.b[p] = root * s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
         }
-        skg_nnls(system, s->count, s->trial, 0, s->x);
-        const double worst = find_rest(s, columns, set, s->x);
+        skg_nnls(&f->system, used, s->trial, 0, s->x);
+        const double worst = find_rest(s, f->columns, set, used);
         if (worst < best) {
             best = worst;
-            for (int32_t j = 0; j < s->count; j++) s->nodes.shares[j * s->beam->sets + set] = s->x[j];
+            keep_weights(s, set, used);
         }
         if (best < 0.5 * s->aim || best > 20 * s->aim) break; /* good enough, or hopeless */
         for (int64_t p = 0; p < points; p++) s->row_weight[p] *= s->rest[p] / worst + 0.05;
@@ -170,36 +195,51 @@ static double fit_set(search *s, int32_t set, const double *columns, skg_least_s
     return best;
 }
 
+/* Leaves the nodes in s->trial that both sets of a pair have taken. */
+static int32_t keep_common(search *s, int32_t set, int32_t used) {
+    const int32_t sets = s->beam->sets;
+    int32_t common = 0;
+    for (int32_t j = 0; j < used; j++) {
+        const double *shares = s->nodes.shares + s->trial[j] * sets;
+        if (shares[set] > 0 && shares[set + sets / 2] > 0) s->trial[common++] = s->trial[j];
+    }
+    return common;
+}
+
+/* A set, or a pair of them: fitted anew with the nodes that both take until they take the same. */
+static double fit_sets(search *s, int32_t set, fitting *f) {
+    for (int32_t j = 0; j < s->count; j++) s->trial[j] = j;
+    if (!s->beam->paired) return fit_set(s, set, s->count, f);
+    for (int32_t used = s->count;;) {
+        const double error = fmax(fit_set(s, set, used, f), fit_set(s, set + s->beam->sets / 2, used, f));
+        const int32_t common = keep_common(s, set, used);
+        if (common == used) return error;
+        used = common;
+    }
+}
+
 /* Weights of all sets for s->bins; *error: the greatest at the points fitted to. */
 static skg_status fit_weights(search *s, double *error) {
     const int64_t points = s->fit.count;
-    const int32_t bins = s->beam->bins;
-    skg_least_squares system = {0};
-    double *columns = NULL, *passed = NULL;
+    const int32_t heads = s->beam->paired ? s->beam->sets / 2 : s->beam->sets;
+    fitting f = {.columns = NULL};
     skg_status status = SKG_OK;
     if (s->row_room < points) {
         s->row_room = 2 * points;
         SKG_TRY(skg_realloc(s->row_room, sizeof *s->row_weight, "nodes", &s->row_weight));
         SKG_TRY(skg_realloc(s->row_room, sizeof *s->rest, "nodes", &s->rest));
     }
-    SKG_TRY_CLEANUP(skg_least_squares_create(points, s->count, &system));
-    SKG_TRY_CLEANUP(skg_alloc(points * s->count, sizeof *columns, "nodes", &columns));
-    SKG_TRY_CLEANUP(skg_alloc(bins, sizeof *passed, "nodes", &passed));
+    SKG_TRY_CLEANUP(skg_least_squares_create(points, s->count, &f.system));
+    SKG_TRY_CLEANUP(skg_alloc(points * s->count, sizeof *f.columns, "nodes", &f.columns));
+    SKG_TRY_CLEANUP(skg_alloc(s->beam->bins, sizeof *f.passed, "nodes", &f.passed));
     s->nodes.count = s->count;
     memcpy(s->nodes.bin, s->bins, (size_t)s->count * sizeof *s->bins);
     *error = 0;
-    for (int32_t set = 0; set < s->beam->sets; set++) {
-        for (int64_t p = 0; p < points; p++) {
-            skg_transmit(s->beam, s->mu, s->fit.lengths + p * s->beam->materials, passed);
-            for (int32_t j = 0; j < s->count; j++)
-                columns[j * points + p] = passed[s->bins[j]] * unit_of(s, p, set);
-        }
-        *error = fmax(*error, fit_set(s, set, columns, &system));
-    }
+    for (int32_t set = 0; set < heads; set++) *error = fmax(*error, fit_sets(s, set, &f));
 cleanup:
-    skg_least_squares_release(&system);
-    skg_free(&columns);
-    skg_free(&passed);
+    skg_least_squares_release(&f.system);
+    skg_free(&f.columns);
+    skg_free(&f.passed);
     return status;
 }
 

@@ -71,8 +71,8 @@ static skg_status get_type(skg_detector *detector, int is_double, detector_type 
     for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
     SKG_TRY(skg_buffer_write(detector->context, &type->factor, detection->channels * (int64_t)element,
                              is_double ? (const void *)detector->factor : rounded, "detector"));
-    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d", detection->electronic > 0,
-             detection->step > 0);
+    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d -D SKG_OVER_FIELD=%d",
+             detection->electronic > 0, detection->step > 0, (int)detection->over_field);
     SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, more, &program));
     return skg_kernel_create(program, "skg_detect", &type->kernel);
 }
@@ -83,7 +83,7 @@ static skg_status set_real(cl_kernel kernel, cl_uint index, int is_double, doubl
                      : skg_kernel_set(kernel, index, sizeof single, &single);
 }
 
-skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor,
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor, cl_mem field,
                             const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log) {
     const int is_double = image->output_double != 0;
     const cl_long strides[3] = {image->offset, image->row_stride, image->channel_stride};
@@ -99,6 +99,7 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
     SKG_TRY(set_real(type->kernel, 8, is_double, detector->detection.step));
     SKG_TRY(skg_kernel_set_memory(type->kernel, 9, 1, &type->factor.memory));
     SKG_TRY(set_real(type->kernel, 10, is_double, factor));
+    if (detector->detection.over_field) SKG_TRY(skg_kernel_set_memory(type->kernel, 11, 1, &field));
     const int64_t lanes = skg_kernel_lanes(detector->context, is_double ? SKG_DOUBLE : SKG_SINGLE);
     const size_t local[3] = {8, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[3] = {(size_t)((columns + 8 * lanes - 1) / (8 * lanes) * 8),

@@ -20,7 +20,8 @@ int skg_plan_is_ratio(const skg_plan_options *options);
 typedef struct {
     double electronic; /* standard deviation, keV per pixel; 0: none */
     double step;       /* keV per pixel; 0: any value */
-    int32_t channels, reserved;
+    int32_t channels;
+    int32_t over_field; /* 1: values are divided by those of an open field */
 } skg_detection;
 
 typedef struct skg_detector skg_detector;
@@ -30,8 +31,9 @@ skg_status skg_detector_create(skg_context *context, const skg_detection *detect
                                skg_detector **detector);
 void skg_detector_release(skg_detector **detector);
 
-/* Enqueues it for an image of columns x rows, in place. factor: of this frame, for all channels. */
-skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor,
+/* Enqueues it for an image of columns x rows, in place. factor: of this frame, for all channels. field:
+ * [channels][rows][columns] of the image's type, where the detection is over it. */
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor, cl_mem field,
                             const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log);
 
 int64_t skg_detector_bytes(const skg_detector *detector);

@@ -169,6 +169,7 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
     /* OpenCL keeps the old tables until what is enqueued is done. */
     skg_attenuation_release(&plan->attenuation);
     SKG_TRY(make_attenuation(plan));
+    plan->field.known = 0;
     SKG_TRY(skg_plan_choose_mix(plan));
     plan->report.accumulators = plan->mixed ? plan->mixed : plan->model.planes;
     plan->materials = plan->scene->materials;
@@ -210,12 +211,32 @@ static skg_status make(skg_plan *plan) {
     return skg_report_effects(plan);
 }
 
+enum { MOST_VIEWS = 1024 };
+
+static skg_status keep_views(skg_plan *plan) {
+    skg_plan_options *options = &plan->options;
+    const skg_view *given = options->views;
+    if (options->view_count < 0 || options->view_count > MOST_VIEWS || (options->view_count > 0 && !given))
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " further views; 0 to %d, with the views",
+                        options->view_count, MOST_VIEWS);
+    SKG_TRY(skg_alloc(options->view_count, sizeof *plan->views, "views", &plan->views));
+    for (int64_t v = 0; v < options->view_count; v++) {
+        const void *one = (const char *)given + v * given->size;
+        skg_view_init(&plan->views[v]);
+        SKG_TRY(skg_view_check(one));
+        SKG_TRY(skg_struct_read(one, "skg_view", &plan->views[v], sizeof *plan->views));
+    }
+    options->views = plan->views;
+    return SKG_OK;
+}
+
 /* The caller's handles are retained, its arrays copied. */
 static skg_status keep_options(skg_plan *plan) {
     skg_plan_options *options = &plan->options;
     const double *edges = options->band_kev;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
+    SKG_TRY(keep_views(plan));
     if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS || (options->bands > 0 && !edges))
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
                         options->bands, SKG_MOST_CHANNELS);
@@ -278,6 +299,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->bad);
     skg_buffer_release(&plan->open_table);
     skg_buffer_release(&plan->gaps);
+    skg_buffer_release(&plan->field.image);
     skg_buffer_release(&plan->mix_lists);
     skg_contest_memory_release(&plan->contest_memory);
 }
@@ -294,8 +316,10 @@ void skg_plan_release(skg_plan **plan) {
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);
+    skg_frame_room_release(&last->room);
     skg_free(&last->channel_names);
     skg_free(&last->band_kev);
+    skg_free(&last->views);
     skg_free(&last->mix_sent);
     skg_model_release(&last->model);
     skg_plan_meshes_release(&last->meshes);

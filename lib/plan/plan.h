@@ -44,6 +44,7 @@ enum {
 
 typedef struct {
     int32_t on;
+    double cost; /* estimated, in frames without any effect */
     char reason[256];
 } skg_effect_state;
 
@@ -54,8 +55,23 @@ typedef struct {
 } skg_stage_time;
 enum { SKG_MOST_STAGES = 32 };
 
+/* What the beam gives without parts and noise, where noisy images are shown over it and it differs from pixel
+ * to pixel (field.c). */
+typedef struct {
+    int32_t wanted;
+    int32_t known; /* for this view and type */
+    int32_t is_double, reserved;
+    skg_view view;
+    skg_buffer image; /* [channels][rows][columns] */
+} skg_open_field;
+
 /* Rasterisers compiled so far, by what they can do: sums of 32 or 64 bits, point or parallel beam, ... */
 enum { SKG_MOST_RASTERS = 16 };
+
+/* Memory for what a frame knows of its parts: a million of them take as long to allocate as to fill
+ * (frame.c). */
+typedef struct skg_frame_room skg_frame_room;
+void skg_frame_room_release(skg_frame_room **room);
 
 struct skg_plan {
     skg_refs refs;
@@ -67,6 +83,7 @@ struct skg_plan {
     int64_t structure; /* of the scene when the plan was made: another one is stale */
     int64_t materials; /* of the scene that the model is of */
     double *band_kev;  /* [bands + 1] */
+    skg_view *views;   /* [view_count] further ones */
 
     skg_plan_meshes meshes;
     skg_geometry geometry;
@@ -83,12 +100,14 @@ struct skg_plan {
     skg_attenuator *attenuator;
     skg_blur *blur;         /* NULL: none */
     skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
+    skg_open_field field;
     int64_t open_count;
     int64_t *open;  /* [open_count] parts that are not closed */
     skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
     int32_t *told;  /* [open_count] digits of the most bad pixels that were warned of; NULL: of none so far */
     skg_scale_grid grid;
-    int32_t strategy; /* decided */
+    skg_frame_room *room; /* what frames use one after the other; NULL before the first */
+    int32_t strategy;     /* decided */
     const char *strategy_reason;
     int32_t raster_count, next_raster;
     skg_raster *rasters[SKG_MOST_RASTERS];

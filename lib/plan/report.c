@@ -209,7 +209,8 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_get_report: no plan");
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
-                        plan->bad.bytes + plan->gaps.bytes + skg_contest_memory_bytes(&plan->contest_memory) +
+                        plan->bad.bytes + plan->gaps.bytes + plan->field.image.bytes +
+                        skg_contest_memory_bytes(&plan->contest_memory) +
                         plan->attenuation.coefficients.bytes + plan->attenuation.weights.bytes +
                         plan->attenuation.variances.bytes + plan->attenuation.range.bytes +
                         plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;

@@ -3,10 +3,14 @@
 #ifndef SKG_REPORT_H
 #define SKG_REPORT_H
 
+#include "plan/extent.h"
 #include "plan/plan.h"
 
 /* Fills the effects of a new plan. */
 skg_status skg_report_effects(skg_plan *plan);
+
+/* Estimates what the effects of a plan cost; extents: [parts], at its view (effect_costs.c). */
+void skg_report_costs(skg_plan *plan, const skg_extent *extents);
 
 /* Finds overlaps and warns of them, where asked for. */
 skg_status skg_report_overlaps(skg_plan *plan);

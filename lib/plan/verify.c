@@ -28,7 +28,7 @@ void skg_transmit(const skg_polychromatic *beam, const double *mu, const double 
     for (int32_t b = 0; b < beam->bins; b++) passed[b] = exp(-exponent_at(beam, mu, lengths, b));
 }
 
-static void find_exact(const skg_polychromatic *beam, const double *lengths, double *exact) {
+void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact) {
     memset(exact, 0, (size_t)beam->sets * sizeof *exact);
     for (int32_t b = 0; b < beam->bins; b++) {
         const double passed = exp(-exponent_at(beam, beam->mu, lengths, b));
@@ -57,7 +57,7 @@ skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths,
     double *at = points->lengths + points->count * beam->materials;
     memmove(at, lengths, (size_t)beam->materials * sizeof *at);
     cap(beam, at);
-    find_exact(beam, at, points->exact + points->count * beam->sets);
+    skg_transmit_exact(beam, at, points->exact + points->count * beam->sets);
     points->count++;
     return SKG_OK;
 }
@@ -124,7 +124,7 @@ double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const sk
         }
         for (int32_t s = 0; s < sets; s++) {
             const double truth = exact[first + s];
-            worst = fmax(worst, fabs(found[s] - truth) / fmax(truth, SKG_RELATIVE_FROM));
+            worst = fmax(worst, fabs(found[s] - truth) / fmax(truth, beam->floor));
         }
     }
     return worst;
@@ -140,7 +140,7 @@ typedef struct {
 
 static double look(climb *c, const double *lengths) {
     c->looks++;
-    find_exact(c->beam, lengths, c->exact);
+    skg_transmit_exact(c->beam, lengths, c->exact);
     return skg_nodes_error(c->beam, c->mu, c->nodes, lengths, c->exact);
 }
 

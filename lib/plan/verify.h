@@ -1,22 +1,24 @@
 /* The transmission of a beam of several energies through lengths of materials, what it becomes with fewer
  * energies and planes, and where that is worst. Private.
  *
- * Errors are relative where a transmission exceeds 1e-6, and shares of 1e-6 of the open beam below. */
+ * Errors are relative where a transmission exceeds 1e-6 of the open beam's, and shares of that below. */
 #ifndef SKG_VERIFY_H
 #define SKG_VERIFY_H
 
 #include "core/core.h"
 
-#define SKG_RELATIVE_FROM 1e-6 /* transmission */
+#define SKG_RELATIVE_FROM 1e-6 /* of the transmission of the open beam */
 #define SKG_MOST_EXPONENT 80   /* of the energy that passes best */
 
 /* Exact: every bin. A set is what one channel counts of a bin's photons, as a share of its open beam. */
 typedef struct {
-    int32_t bins, materials, sets, reserved;
+    int32_t bins, materials, sets;
+    int32_t paired;       /* 1: sets k and sets/2 + k have positive weights at the same energies, or none */
     const double *mu;     /* [materials][bins] 1/mm */
     const double *shares; /* [bins][sets], each set sums to 1 */
     const double *low;    /* [materials] mm: range of the lengths */
     const double *high;
+    double floor; /* transmission from which on errors are relative */
 } skg_polychromatic;
 
 /* Few energies: bins, each with a weight per set. */
@@ -34,6 +36,9 @@ typedef struct {
 
 void skg_nodes_release(skg_nodes *nodes);
 void skg_lengths_release(skg_lengths *points);
+
+/* Transmission of each set through lengths [materials]: exact [sets]. */
+void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact);
 
 /* exp(-sum of lengths times mu), [bins]; mu: [materials][bins]. */
 void skg_transmit(const skg_polychromatic *beam, const double *mu, const double *lengths, double *passed);

@@ -143,6 +143,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_material_release(&(*setup)->world);
     skg_free(&(*setup)->blur_samples);
     skg_free(&(*setup)->scan.folder);
+    skg_free(&(*setup)->scan.views);
     skg_breathing_section_free(&(*setup)->breathing);
     skg_free(setup);
 }
@@ -177,6 +178,7 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
+    if (setup->scan.view_count) ours.view_count = setup->scan.view_count, ours.views = setup->scan.views;
     if (setup->blur.columns > 0) ours.blur = &setup->blur;
     if (setup->noise.quantum || setup->noise.electronic_kev > 0 || setup->noise.step_kev > 0) {
         ours.noise = setup->noise.quantum;

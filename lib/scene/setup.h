@@ -27,6 +27,8 @@ typedef struct {
     double centre[3]; /* mm, of the rotation */
     double axis[3];   /* of the rotation, length 1 */
     char *folder;     /* OutFolder relative to the scene file's own, or NULL */
+    int64_t view_count;
+    skg_view *views; /* [view_count] a sample of those after the first */
 } skg_scan_section;
 
 /* A value over time: straight between its points (s, value), constant beyond them. */
@@ -46,8 +48,10 @@ typedef struct {
     int64_t organ_count;
     struct skg_breathing_organ {
         int64_t part;
-        char *as; /* label whose rule it follows; NULL: its own */
-        skg_tissue tissue;
+        char *as;        /* label whose rule it follows; NULL: its own */
+        skg_organ organ; /* kind, tissue, rotation and links; no mesh */
+        char **to;       /* of the links, which point to them */
+        skg_organ_link *links;
     } * organs;
     skg_curve weight; /* factor on both channels */
     skg_curve needle; /* depth below the skin, mm */
@@ -102,6 +106,15 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
 /* node->value may be absent; after Samples, whose labels it names (setup_breathing.c). */
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);
 void skg_breathing_section_free(skg_breathing_section *section);
+
+/* The key Organs of it (setup_organs.c); what it says of a part goes into that part's organ. */
+skg_status skg_setup_read_organs(skg_setup_reader *reader, const skg_json_node *node);
+void skg_setup_describe_organ(const skg_breathing_section *section, int64_t part, skg_organ *organ);
+void skg_setup_organs_free(skg_breathing_section *section);
+
+/* The number of the sample with this label, which stands at a node. */
+skg_status skg_setup_find_part(const skg_setup_reader *reader, const skg_json_node *node, const char *label,
+                               int64_t *part);
 
 /* Shape of a source and how it is sampled (setup_spot.c). */
 skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,

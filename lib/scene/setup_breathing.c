@@ -13,10 +13,8 @@ static const skg_json_key breathing_keys[] = {
     {"Tendon", NULL, SKG_KEY_READ},      {"TendonPlane", NULL, SKG_KEY_READ},
     {"Hysteresis", NULL, SKG_KEY_READ},  {"Relaxation", NULL, SKG_KEY_READ},
     {"LungDensity", NULL, SKG_KEY_READ}, {"Organs", NULL, SKG_KEY_READ},
-    {"Events", NULL, SKG_KEY_READ},
+    {"Events", NULL, SKG_KEY_READ},      {"RibAxes", NULL, SKG_KEY_READ},
 };
-
-static const skg_json_key organ_keys[] = {{"As", NULL, SKG_KEY_READ}, {"Tissue", NULL, SKG_KEY_READ}};
 
 static const skg_json_key event_keys[] = {
     {"Hold", NULL, SKG_KEY_READ},     {"Weight", NULL, SKG_KEY_READ}, {"Needle", NULL, SKG_KEY_READ},
@@ -26,11 +24,10 @@ static const skg_json_key event_keys[] = {
 static const char *const points_example = "[[0, 0], [2.5, 110]]: seconds, value";
 
 void skg_breathing_section_free(skg_breathing_section *section) {
-    for (int64_t i = 0; i < section->organ_count; i++) skg_free(&section->organs[i].as);
+    skg_setup_organs_free(section);
     for (int64_t i = 0; i < section->contrast_count; i++) skg_free(&section->contrasts[i].share.points);
     skg_free(&section->samples);
     skg_free(&section->holds);
-    skg_free(&section->organs);
     skg_free(&section->contrasts);
     skg_free(&section->weight.points);
     skg_free(&section->needle.points);
@@ -92,7 +89,9 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     skg_json_node relaxation = skg_json_member(object, "Relaxation");
     skg_json_node density = skg_json_member(object, "LungDensity");
     skg_json_node reference = skg_json_member(object, "Reference");
-    int64_t passes = 0;
+    static const char *const rib_axes[] = {"Literature", "Bones"}; /* as SKG_RIB_AXES_ */
+    skg_json_node axes = skg_json_member(object, "RibAxes");
+    int64_t passes = 0, choice = SKG_RIB_AXES_LITERATURE;
     double amplitude = 0;
     if (reference.value) SKG_TRY(skg_json_number(&reference, &amplitude));
     if (!(amplitude >= 0 && amplitude <= 1))
@@ -105,41 +104,11 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     if (plane.value) SKG_TRY(skg_json_numbers(&plane, "[0, 1, 1, 20]", 4, body->tendon_plane));
     if (relaxation.value) SKG_TRY(skg_json_integer(&relaxation, 0, 20, &passes));
     body->relaxation = (int32_t)passes;
+    if (axes.value) SKG_TRY(skg_json_choice(&axes, "kind of rib axes", rib_axes, 2, &choice));
+    body->rib_axes = (int32_t)choice;
     section->lung_density = 1;
     if (density.value) SKG_TRY(skg_json_flag(&density, &section->lung_density));
     return read_number(object, "Hysteresis", &body->hysteresis);
-}
-
-static skg_status find_part(const skg_setup_reader *reader, const skg_json_node *node, const char *label,
-                            int64_t *part) {
-    skg_status status = skg_scene_find(reader->setup->scene, label, part);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
-}
-
-/* {"envelope": {"As": "skin", "Tissue": [0.8, 1.2, 0.1]}} */
-static skg_status read_organs(skg_setup_reader *reader, const skg_json_node *node) {
-    skg_breathing_section *section = &reader->setup->breathing;
-    if (!json_is_object(node->value))
-        return skg_json_fail(node, SKG_ERR_FORMAT, "is no object; give {\"envelope\": {\"As\": \"skin\"}}");
-    SKG_TRY(skg_alloc((int64_t)json_object_size(node->value), sizeof *section->organs, "organs",
-                      &section->organs));
-    const char *label;
-    json_t *value;
-    json_object_foreach(node->value, label, value) {
-        skg_json_node own = {.file = node->file, .up = node, .key = label, .value = value};
-        skg_json_object object;
-        double limits[3] = {0, 0, 0};
-        const char *as = NULL;
-        struct skg_breathing_organ *organ = &section->organs[section->organ_count++];
-        SKG_TRY(find_part(reader, &own, label, &organ->part));
-        SKG_TRY(skg_json_read_object(&own, organ_keys, sizeof organ_keys / sizeof *organ_keys, &object));
-        skg_json_node alias = skg_json_member(&object, "As"), tissue = skg_json_member(&object, "Tissue");
-        if (alias.value) SKG_TRY(skg_json_text(&alias, &as));
-        SKG_TRY(skg_copy_text(as, &organ->as));
-        if (tissue.value) SKG_TRY(skg_json_numbers(&tissue, "[0.7, 1.1, 0.1]", 3, limits));
-        organ->tissue = (skg_tissue){limits[0], limits[1], limits[2]};
-    }
-    return SKG_OK;
 }
 
 static skg_status read_curve(const skg_json_node *node, double lowest, double highest, skg_curve *curve) {
@@ -190,7 +159,7 @@ static skg_status read_event(skg_setup_reader *reader, const skg_json_node *node
     const char *label = NULL;
     struct skg_breathing_contrast *filling = &section->contrasts[section->contrast_count++];
     SKG_TRY(skg_json_text(&contrast, &label));
-    SKG_TRY(find_part(reader, &contrast, label, &filling->part));
+    SKG_TRY(skg_setup_find_part(reader, &contrast, label, &filling->part));
     return read_curve(&share, 0, 1, &filling->share);
 }
 
@@ -225,7 +194,7 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     SKG_TRY(read_waveform(section, &object));
     SKG_TRY(read_body(section, &object));
     skg_json_node organs = skg_json_member(&object, "Organs"), events = skg_json_member(&object, "Events");
-    if (organs.value) SKG_TRY(read_organs(reader, &organs));
+    if (organs.value) SKG_TRY(skg_setup_read_organs(reader, &organs));
     if (events.value) SKG_TRY(read_events(reader, &events));
     skg_status status = skg_breath_check(&section->breath);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());

@@ -5,6 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Of a full turn every 22.5 degrees: flat things along the axes are seen edge-on. */
+enum { SAMPLED_VIEWS = 16 };
+
 static const double RADIANS = 3.14159265358979323846 / 180;
 
 static const skg_json_key scan_keys[] = {
@@ -55,9 +58,9 @@ static skg_status read_rotation(const skg_json_object *object, const skg_view *v
 }
 
 /* Samples turned by an angle look the same as source and detector turned back by it. */
-static void turn_view(skg_view *view, const skg_scan_section *scan) {
+static void turn_view(skg_view *view, const skg_scan_section *scan, double degrees) {
     double turn[16];
-    skg_pose_rotation(-scan->start * RADIANS, scan->axis, turn);
+    skg_pose_rotation(-degrees * RADIANS, scan->axis, turn);
     double *points[] = {view->source, view->centre}, *steps[] = {view->column_step, view->row_step};
     for (int k = 0; k < 2; k++) {
         int is_point = k == 1 || view->projection != SKG_PARALLEL_FROM_INFINITY;
@@ -66,6 +69,22 @@ static void turn_view(skg_view *view, const skg_scan_section *scan) {
         if (is_point) skg_add_scaled(points[k], 1, scan->centre, points[k]);
         skg_pose_point(turn, steps[k], steps[k]);
     }
+}
+
+/* A sample of the projections, evenly over all that they turn by: what a plan has to hold for. */
+static skg_status list_views(skg_scan_section *scan, const skg_view *first) {
+    const double turns = scan->has_step && scan->projections > 0
+                             ? scan->step * (double)(scan->projections - 1)
+                         : scan->has_final ? scan->final - scan->start
+                                           : 0;
+    if (turns == 0) return SKG_OK;
+    SKG_TRY(skg_alloc(SAMPLED_VIEWS, sizeof *scan->views, "views of a scan", &scan->views));
+    scan->view_count = SAMPLED_VIEWS;
+    for (int64_t v = 0; v < SAMPLED_VIEWS; v++) {
+        scan->views[v] = *first;
+        turn_view(&scan->views[v], scan, turns * (double)(v + 1) / SAMPLED_VIEWS);
+    }
+    return SKG_OK;
 }
 
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node) {
@@ -88,6 +107,6 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
         SKG_TRY(skg_json_text(&folder, &text));
         SKG_TRY(skg_setup_resolve(reader, text, &scan->folder));
     }
-    if (scan->start != 0) turn_view(&reader->setup->view, scan);
-    return SKG_OK;
+    if (scan->start != 0) turn_view(&reader->setup->view, scan, scan->start);
+    return list_views(scan, &reader->setup->view);
 }

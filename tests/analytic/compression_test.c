@@ -229,9 +229,153 @@ START_TEST(leaving_the_verified_range) {
 }
 END_TEST
 
+/* Source and detector turned about the y axis through the origin. */
+static skg_view turned(double degrees) {
+    const double pi = acos(-1), c = cos(degrees * pi / 180), s = sin(degrees * pi / 180);
+    skg_view one = view;
+    double *vectors[] = {one.source, one.centre, one.column_step};
+    for (int k = 0; k < 3; k++) {
+        const double x = vectors[k][0], z = vectors[k][2];
+        vectors[k][0] = c * x + s * z, vectors[k][2] = c * z - s * x;
+    }
+    return one;
+}
+
+/* A bar off the axis is thin at first, thick later, and out of the picture in between. */
+START_TEST(views_of_a_scan_stay_within_the_range) {
+    static float pixels[SIDE * SIDE];
+    skg_view views[16];
+    skg_mesh *mesh = NULL;
+    skg_plan_options options;
+    skg_output output;
+    open_scene(1);
+    view.column_step[0] = 3;
+    ck_skg(skg_mesh_cuboid(120, 40, 20, &mesh));
+    add(mesh, "Bone, Cortical (ICRU-44)", 30, 0, -1);
+    ck_skg(skg_mesh_sphere(30, 24, &mesh));
+    add(mesh, "Tissue, Soft (ICRU-44)", -60, 0, -1);
+    skg_spectrum *spectrum = tube(100);
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-3;
+    for (int k = 0; k < 16; k++) views[k] = turned(22.5 * (k + 1));
+    skg_output_init(&output);
+    output.data = pixels;
+    for (int planned = 0; planned < 2; planned++) {
+        skg_plan *plan = NULL;
+        int outside = 0;
+        options.view_count = planned ? 16 : 0, options.views = planned ? views : NULL;
+        ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+        for (int k = 0; k < 36; k++) {
+            const skg_view one = turned(10 * k);
+            ck_skg(skg_plan_move(plan, &one));
+            const skg_status status = skg_plan_image(plan, &output);
+            ck_assert(status == SKG_OK || status == SKG_RANGE);
+            outside += status == SKG_RANGE;
+        }
+        ck_assert(planned ? outside == 0 : outside > 4);
+        skg_plan_release(&plan);
+    }
+    options.view_count = -1;
+    skg_plan *none = NULL;
+    ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &none), SKG_ERR_ARGUMENT,
+                 "-1 further views");
+    options.view_count = 1;
+    views[0].columns = 0;
+    ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &none), SKG_ERR_SCENE,
+                 "0 columns");
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
+/* A closed mesh may fold over itself: a ray that grazes the fold has a length below nothing. Here a cube of
+ * 40 mm and beside it one of 0.5 mm turned inside out, which no coarse ray meets. */
+static skg_mesh *folded(void) {
+    static const int32_t corners[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                           {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    double positions[16][3];
+    int32_t triangles[24][3];
+    skg_mesh *mesh = NULL;
+    for (int v = 0; v < 16; v++)
+        for (int k = 0; k < 3; k++) {
+            const double half = v < 8 ? 20 : 0.25, side = v >> k & 1 ? half : -half;
+            positions[v][k] = side + (v < 8 ? 0 : k == 0 ? 33 : k == 1 ? 11 : 0);
+        }
+    for (int t = 0; t < 24; t++)
+        for (int k = 0; k < 3; k++) triangles[t][k] = t < 12 ? corners[t][k] : 8 + corners[t - 12][2 - k];
+    ck_skg(skg_mesh_create(context, "folded", 16, positions[0], 3, 24, triangles[0], 3, 1, &mesh));
+    return mesh;
+}
+
+START_TEST(a_fold_is_within_the_verified_range) {
+    enum { FINE = 512 };
+    static float pixels[FINE * FINE];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    skg_output output;
+    open_scene(1);
+    view.columns = view.rows = FINE;
+    view.column_step[0] = view.row_step[1] = 0.3;
+    add(folded(), "Bone, Cortical (ICRU-44)", 0, 0, -1);
+    skg_spectrum *spectrum = tube(80);
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-2;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    skg_output_init(&output);
+    output.data = pixels;
+    ck_skg(skg_plan_image(plan, &output));
+    skg_channel channel;
+    skg_channel_init(&channel);
+    ck_skg(skg_plan_channel(plan, 0, &channel));
+    int brighter = 0;
+    for (int k = 0; k < FINE * FINE; k++) brighter += (double)pixels[k] > 1.02 * channel.open;
+    ck_assert_int_gt(brighter, 2); /* the fold is seen */
+    skg_plan_release(&plan);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
+/* The energies that a plan has chosen, given back as a beam of which every one is used. */
+START_TEST(nodes_are_a_beam) {
+    static picture exact, fewer, given;
+    double kev[64], photons[64];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    open_scene(11);
+    add_parts(6);
+    skg_spectrum *spectrum = tube(110), *nodes = NULL;
+    skg_plan_options_init(&options);
+    options.overlaps = 0;
+    options.precision = has_double() ? SKG_DOUBLE : SKG_SINGLE;
+    take(spectrum, &options, &exact);
+    options.tolerance = 1e-3;
+    take(spectrum, &options, &fewer);
+    ck_assert_int_le(fewer.report.nodes, 64);
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    for (int64_t n = 0; n < fewer.report.nodes; n++)
+        ck_skg(skg_plan_node(plan, n, &kev[n], &photons[n], NULL));
+    skg_plan_release(&plan);
+    ck_skg(skg_spectrum_bins(fewer.report.nodes, kev, photons, &nodes));
+    options.tolerance = 0;
+    take(nodes, &options, &given);
+    ck_assert_int_eq(given.report.nodes, fewer.report.nodes);
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        ck_assert_double_le(error_of(&options, given.pixels[k], exact.pixels[k], exact.open[0]), 1e-3);
+        ck_assert_double_le(error_of(&options, given.pixels[k], fewer.pixels[k], exact.open[0]), 1e-3);
+    }
+    skg_spectrum_release(&nodes);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, random_scenes, 0, 20);
+    tcase_add_test(tests, nodes_are_a_beam);
     tcase_add_test(tests, leaving_the_verified_range);
+    tcase_add_test(tests, views_of_a_scan_stay_within_the_range);
+    tcase_add_test(tests, a_fold_is_within_the_verified_range);
 }
 
 SKG_SUITE_MAIN("compression", add_tests)

@@ -152,6 +152,37 @@ START_TEST(two_energies_in_iodide) {
 }
 END_TEST
 
+/* Fewer energies stand for the same means and variances, where photons are many and where they are few. */
+START_TEST(compressed_spectra) {
+    static double images[4 * PIXELS];
+    enum { ENERGIES = 60 };
+    double kev[ENERGIES], photons[ENERGIES];
+    skg_plan_options options = noisy();
+    options.response = scintillator;
+    for (int few = 0; few < 2; few++) {
+        skg_plan *plan = NULL;
+        skg_plan_report report;
+        for (int i = 0; i < ENERGIES; i++) {
+            kev[i] = 20.5 + i;
+            photons[i] = (few ? 1e-3 : 1) * (i + 1) * (ENERGIES - i);
+        }
+        skg_spectrum *spectrum = energies(ENERGIES, kev, photons);
+        const truth t = sum_energies(ENERGIES, kev, photons, &options);
+        ck_assert(few ? t.detected > 1 && t.detected < 10 : t.detected > 1000);
+        options.tolerance = 1e-3;
+        skg_plan_report_init(&report);
+        ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+        ck_skg(skg_plan_get_report(plan, &report));
+        ck_assert_int_lt(report.nodes, 16);
+        ck_assert(report.bound > 0 && report.bound <= 1e-3);
+        skg_plan_release(&plan);
+        take(spectrum, &options, 7, 4, images);
+        check_moments(4 * PIXELS, images, &t);
+        skg_spectrum_release(&spectrum);
+    }
+}
+END_TEST
+
 /* One energy, photons counted: whole numbers with Poisson's distribution; DQE(0) = eta A_S follows from mean
  * and variance. */
 START_TEST(few_photons_are_exact) {
@@ -346,6 +377,60 @@ START_TEST(quantities) {
 }
 END_TEST
 
+/* Over an open beam that differs from pixel to pixel: the noisy image of the same key over what the same
+ * chain, blur and samples of the source included, makes of a scene whose only part is not in the picture. */
+static void check_over_the_open_field(skg_plan_options options, const skg_spectrum *spectrum) {
+    static double energy[2 * PIXELS], field[2 * PIXELS], ratio[2 * PIXELS];
+    const int64_t channels = options.bands ? options.bands : 1;
+    const double pose[16] = {1, 0, 0, 9000, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const double home[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    skg_plan_options quiet = options;
+    options.quantity = SKG_ENERGY;
+    take(spectrum, &options, 5, channels > 1 ? 1 : 2, energy);
+    options.quantity = SKG_TRANSMISSION;
+    take(spectrum, &options, 5, channels > 1 ? 1 : 2, ratio);
+    quiet.noise = 0, quiet.electronic_kev = 0;
+    ck_skg(skg_scene_set_pose(scene, 0, pose));
+    take(spectrum, &quiet, 5, 1, field);
+    ck_skg(skg_scene_set_pose(scene, 0, home));
+    ck_assert_double_gt(field[PIXELS / 2 + SIDE / 2], 1.001 * field[0]);
+    /* a few roundings, of single precision where images are */
+    const double bar = options.precision == SKG_DOUBLE ? 1e-12 : 16 * 0x1p-24;
+    for (int i = 0; i < 2 * PIXELS; i++) { /* two frames, or two channels */
+        const double expected = energy[i] / field[channels > 1 ? i : i % PIXELS];
+        ck_assert_double_eq_tol(ratio[i], expected, bar * fabs(expected));
+    }
+}
+
+START_TEST(over_the_open_field) {
+    const double photons[2] = {3000, 2000}, line[3] = {0.2, 0.5, 0.3}, one = 1, edges[3] = {10, 60, 100};
+    const skg_detector_blur blur = {
+        .size = sizeof blur, .columns = 3, .rows = 1, .along_row = line, .along_column = &one};
+    skg_plan_options options = noisy();
+    skg_spectrum *spectrum = energies(2, two_kev, photons);
+    skg_material *water = NULL;
+    skg_spot spot;
+    ck_skg(skg_material_named("water", &water));
+    view.projection = SKG_POINT;
+    view.source[2] = -60;
+    view.column_step[0] = view.row_step[1] = 1;
+    options.electronic_kev = 10;
+    options.falloff = 1;
+    check_over_the_open_field(options, spectrum);
+    options.world = water;
+    check_over_the_open_field(options, spectrum);
+    options.blur = &blur;
+    skg_spot_init(&spot);
+    spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 4;
+    options.spot = &spot;
+    options.bands = 2, options.band_kev = edges;
+    options.precision = SKG_DOUBLE;
+    check_over_the_open_field(options, spectrum);
+    skg_material_release(&water);
+    skg_spectrum_release(&spectrum);
+}
+END_TEST
+
 START_TEST(refused) {
     skg_plan *plan = NULL;
     const double kev = 60, photons = 100;
@@ -368,6 +453,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_test(tests, two_energies_in_iodide);
+    tcase_add_test(tests, compressed_spectra);
     tcase_add_test(tests, few_photons_are_exact);
     tcase_add_test(tests, detective_quantum_efficiency);
     tcase_add_test(tests, shares_of_an_extended_source);
@@ -375,6 +461,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, noise_power_follows_the_transfer_function);
     tcase_add_test(tests, electronics);
     tcase_add_test(tests, quantities);
+    tcase_add_test(tests, over_the_open_field);
     tcase_add_test(tests, refused);
 }
 

@@ -45,6 +45,21 @@ static void ck_same_files(const char *a, const char *b) {
                   b);
 }
 
+enum {
+    PHASE = 1,
+    AMPLITUDE = 2,
+    LUNG = 5,
+    TIDAL = 6,
+    HU = 7,
+    RIGHT = 9,
+    LIVER_Z = 12,
+    CONFLICT = 15,
+    BROKEN = 16,
+    NEEDLE = 17
+};
+
+static char conflict[200];
+
 /* Columns of a line of motion.csv. */
 static void read_line(const char *name, int line, int columns, double *values) {
     static char bytes[MOST_BYTES + 1];
@@ -57,9 +72,10 @@ static void read_line(const char *name, int line, int columns, double *values) {
     }
     for (int c = 0; c < columns; c++) {
         values[c] = strtod(at, &at);
-        ck_assert(*at == (c + 1 < 18 ? ',' : '\n'));
+        ck_assert(*at == ',');
         at++;
     }
+    snprintf(conflict, sizeof conflict, "%.*s", (int)strcspn(at, "\n"), at); /* the last column */
 }
 
 /* Head up, the patient's right on the viewer's left: the liver is there, in the lower half. */
@@ -83,6 +99,34 @@ START_TEST(the_liver_is_on_the_left) {
 }
 END_TEST
 
+/* A moment between events, needle half in: as in sequence, where other moments come before. */
+START_TEST(a_moment_alone_is_the_moment_in_sequence) {
+    ck_run(0, "breathe thorax.json %s --fps 0.25 --seconds 12 --range 0:8 -o f --quiet", SMALL);
+    ck_run(0, "breathe thorax.json %s --at 4 --range 0:8 -o one.png", SMALL);
+    ck_same_files("f/frame-0001.png", "one.png");
+    ck_run(0, "breathe thorax.json %s --at 8 --range 0:8 -o one.png --quiet", SMALL);
+    ck_same_files("f/frame-0002.png", "one.png");
+}
+END_TEST
+
+START_TEST(conflicts_are_told) { /* too deep a breath for stiff organs */
+    double values[18];
+    ck_run(0,
+           "breathe thorax.json %s --fps 0.25 -o f "
+           "--set Breathing='{\"Pattern\":\"deep\",\"Organs\":{\"liver\":{\"Tissue\":[1,1,0.01],"
+           "\"Links\":[{\"To\":\"diaphragm\",\"Distance\":[9,\"mm\"]},"
+           "{\"To\":\"spine\",\"Distance\":[20,\"mm\"]}]}}}'",
+           SMALL);
+    read_line("f/motion.csv", 1, 18, values);
+    ck_assert(values[CONFLICT] > 1 && values[BROKEN] == 0);
+    ck_assert(strstr(conflict, "\"liver: ") && strstr(conflict, "diaphragm"));
+    ck_assert(strstr(complained, "liver: ") && strstr(complained, "meet halfway"));
+    ck_run(0, "breathe thorax.json %s --fps 0.25 -o f %s --quiet", SMALL, PLAIN);
+    read_line("f/motion.csv", 1, 18, values);
+    ck_assert(values[CONFLICT] < 0.5);
+}
+END_TEST
+
 /* Phase 0.25 is the second of four frames of a breath, and the last of one frame a second from phase 0.25 on.
  */
 START_TEST(a_phase_alone_is_the_phase_in_sequence) {
@@ -98,18 +142,6 @@ START_TEST(a_phase_alone_is_the_phase_in_sequence) {
     ck_assert(has_file("f/frame-0003.png") && !has_file("f/frame-0004.png") && has_file("f/contact.png"));
 }
 END_TEST
-
-enum {
-    PHASE = 1,
-    AMPLITUDE = 2,
-    LUNG = 5,
-    TIDAL = 6,
-    HU = 7,
-    RIGHT = 9,
-    LIVER_Z = 12,
-    BROKEN = 16,
-    NEEDLE = 17
-};
 
 /* A breath: the tidal volume of quiet breathing, mass of the lungs, a diaphragm that goes down with the
  * liver. */
@@ -163,8 +195,14 @@ END_TEST
 START_TEST(meshes_have_displacements) {
     static char bytes[MOST_BYTES + 1];
     ck_run(0, "breathe thorax.json %s %s --phase 0 -o a.mha --meshes m --quiet", SMALL, PLAIN);
-    bytes[read_file("m/liver-0000.ply", bytes)] = '\0';
-    ck_assert_ptr_nonnull(strstr(bytes, "property float displacement\n"));
+    const size_t size = read_file("m/liver-0000.ply", bytes);
+    bytes[size] = '\0';
+    const char *vertices = strstr(bytes, "element vertex "), *faces = strstr(bytes, "element face ");
+    const char *end = strstr(bytes, "end_header\n");
+    ck_assert_ptr_nonnull(strstr(bytes, "property double z\nproperty float displacement\n"));
+    ck_assert(vertices && faces && end);
+    ck_assert_uint_eq(size, (size_t)(end + 11 - bytes) + 28 * strtoul(vertices + 15, NULL, 10) +
+                                13 * strtoul(faces + 13, NULL, 10));
     ck_assert(!has_file("m/spine-0000.ply"));
     ck_run(0, "mesh m/liver-0000.ply m/diaphragm-0000.ply --quiet"); /* closed as they move */
 }
@@ -176,6 +214,8 @@ START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(2, "-o DIR", "breathe thorax.json");
     ck_run_fails(2, "above 0", "breathe thorax.json -o f --fps 0");
     ck_run_fails(2, "not a number", "breathe thorax.json -o a.png --phase x");
+    ck_run_fails(2, "not a number", "breathe thorax.json -o a.png --at nan");
+    ck_run_fails(2, "one of them", "breathe thorax.json -o a.png --phase 0 --at 1");
     ck_run_fails(2, "no part", "breathe thorax.json %s -o f --quiet --outline hats", SMALL);
     ck_run_fails(3, "has a Transform",
                  "breathe thorax.json -o f --set Samples.liver.Transform='[[\"Scaling\",1,1,2]]'");
@@ -188,6 +228,8 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_thorax, tear_down_thorax);
     tcase_add_test(tests, the_liver_is_on_the_left);
     tcase_add_test(tests, a_phase_alone_is_the_phase_in_sequence);
+    tcase_add_test(tests, a_moment_alone_is_the_moment_in_sequence);
+    tcase_add_test(tests, conflicts_are_told);
     tcase_add_test(tests, motion_is_told);
     tcase_add_test(tests, events_happen);
     tcase_add_test(tests, contrast_fills);

@@ -200,6 +200,7 @@ START_TEST(plan_says_what_and_why) {
     ck_assert_ptr_null(strstr(said, "1 tiles"));
     ck_assert_ptr_nonnull(strstr(said, "60 keV, 1000 photons per pixel"));
     ck_assert_ptr_nonnull(strstr(said, "\n  on  nesting "));
+    ck_assert_ptr_null(strstr(said, "\nenergies, keV")); /* one: none was chosen */
     ck_assert_ptr_nonnull(strstr(said, "Directly transmitted photons only."));
     ck_run(0, "plan scene.json --strategy atomics");
     ck_assert_ptr_nonnull(strstr(said, "atomics: the whole detector, 24 triangles\n"));
@@ -229,6 +230,38 @@ START_TEST(warnings_are_told_unless_quiet) {
 }
 END_TEST
 
+/* A compressed scene says nothing of its bound at the view that it was planned for, and tells what leaves it.
+ */
+START_TEST(the_bound_holds_at_the_own_view) {
+    ck_run(0, "thorax -o .");
+    ck_run(0, "plan thorax.json --json");
+    json_t *object = said_json();
+    ck_assert(json_number_value(member(object, "bound")) > 0);
+    ck_assert_int_eq(json_integer_value(member(object, "outside_pixels")), 0);
+    ck_assert(json_number_value(member(member(object, "stages_ns"), "attenuate")) > 0);
+    ck_assert_int_gt(json_integer_value(member(object, "bins")),
+                     (json_int_t)json_array_size(member(object, "nodes")));
+    size_t index;
+    json_t *effect;
+    json_array_foreach(member(object, "effects"), index, effect) {
+        const char *name = json_string_value(member(effect, "name"));
+        const double cost = json_number_value(member(effect, "cost"));
+        if (strcmp(name, "several energies") == 0)
+            ck_assert_double_gt(cost, 0);
+        else if (strcmp(name, "spectral compression") == 0)
+            ck_assert_double_lt(cost, 0);
+        else
+            ck_assert(cost == 0);
+    }
+    json_decref(object);
+    ck_run(0, "plan thorax.json --set Source.Shape='[\"Rectangle\",1,1,\"mm\"]' --set Source.Samples=4");
+    ck_assert_ptr_nonnull(strstr(said, "\n  on  extended source           +")); /* three passes more */
+    ck_assert_ptr_nonnull(strstr(said, "\nenergies, keV: photons per pixel"));
+    ck_run(0, "image thorax.json -o a.mha");
+    ck_assert_ptr_null(strstr(complained, "bound"));
+}
+END_TEST
+
 START_TEST(times_are_printed) {
     ck_run(0, "image scene.json --repeat 3");
     ck_assert_ptr_nonnull(strstr(said, "(3 frames)\n"));
@@ -246,6 +279,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);
     tcase_add_test(tests, warnings_are_told_unless_quiet);
+    tcase_add_test(tests, the_bound_holds_at_the_own_view);
     tcase_add_test(tests, times_are_printed);
 }
 

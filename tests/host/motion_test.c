@@ -73,9 +73,73 @@ START_TEST(the_key_is_read) {
     ck_assert(section->body.reference_thoracic == 0.5 && section->body.reference_diaphragmatic == 2.5);
     ck_assert(section->body.tendon_mm[1] == 10 && section->body.tendon_plane[3] == 20);
     ck_assert(section->body.hysteresis == 0.5 && section->body.relaxation == 2 && section->lung_density == 0);
-    ck_assert(section->organs[0].part == 1 && section->organs[0].tissue.alpha_max == 1.2);
+    ck_assert(section->organs[0].part == 1 && section->organs[0].organ.tissue.alpha_max == 1.2);
     ck_assert(section->breath.hold_count == 1 && section->breath.holds[0].to == 2);
     ck_assert(section->needle.count == 2 && section->contrasts[0].part == 2);
+}
+END_TEST
+
+START_TEST(organs_are_read) {
+    ck_skg(load("{\"RibAxes\": \"bones\", \"Organs\": {"
+                "\"flat\": {\"As\": \"rib 5 left\", \"Kind\": \"Rigid\", \"Gamma\": 3, \"Lambda\": -2},"
+                "\"inside\": {\"Kind\": \"Rigid\", \"Axis\": [0, 0, 2], \"Angle\": 90,"
+                "\"Centre\": [1, 2, 3, \"cm\"]},"
+                "\"lung right\": {\"Kind\": \"deformable\", \"Links\": [{\"To\": \"flat\", \"Distance\": "
+                "[2, \"cm\"], \"RigidDistance\": [5, \"mm\"]}, {\"To\": \"rib\", \"Distance\": [7, "
+                "\"mm\"]}]}}}"));
+    const skg_breathing_section *section = &setup->breathing;
+    const double degree = 3.14159265358979323846 / 180;
+    ck_assert_int_eq(section->body.rib_axes, SKG_RIB_AXES_BONES);
+    for (int64_t i = 0; i < 3; i++) {
+        skg_organ organ;
+        skg_organ_init(&organ);
+        organ.label = "its own", organ.inside = 7;
+        skg_setup_describe_organ(section, i, &organ);
+        ck_assert_int_eq(organ.inside, 7);
+        if (i == 0) {
+            ck_assert(organ.kind == SKG_ORGAN_DEFORMABLE && organ.link_count == 2);
+            ck_assert_str_eq(organ.links[0].to, "flat");
+            ck_assert(organ.links[0].distance_mm == 20 && organ.links[0].rigid_mm == 5);
+            ck_assert(organ.links[1].distance_mm == 7 && organ.links[1].rigid_mm == 7);
+        }
+        if (i == 1) {
+            ck_assert_str_eq(organ.label, "rib 5 left");
+            ck_assert(organ.kind == SKG_ORGAN_RIGID && isnan(organ.centre_mm[0]));
+            ck_assert(organ.gamma_rad == 3 * degree && organ.lambda_rad == -2 * degree);
+        }
+        if (i == 2) {
+            ck_assert_str_eq(organ.label, "its own");
+            ck_assert(organ.turn_rad[2] == 90 * degree && organ.centre_mm[1] == 20);
+        }
+    }
+}
+END_TEST
+
+START_TEST(organs_move_as_they_are_told) { /* a quarter turn about z through the origin: x becomes y */
+    int64_t n, t;
+    double before[600], after[600];
+    skg_part found;
+    skg_part_init(&found);
+    ck_skg(load("{\"Waveform\": \"Sine\", \"Organs\": {\"flat\": {\"Kind\": \"Rigid\", \"Axis\": [0, 0, "
+                "3], \"Angle\": 90, \"Centre\": [0, 0, 0, \"mm\"]}, \"lung right\": {\"Kind\": "
+                "\"Static\"}}}"));
+    ck_skg(skg_motion_create(NULL, setup, &motion));
+    ck_skg(skg_scene_part(setup->scene, 1, &found));
+    ck_skg(skg_mesh_size(found.mesh, &n, &t));
+    ck_assert_int_le(n, 200);
+    ck_skg(skg_mesh_read_positions(found.mesh, before, 0));
+    ck_skg(skg_motion_at_phase(motion, 0));
+    ck_skg(skg_mesh_read_positions(found.mesh, after, 0));
+    for (int64_t i = 0; i < n; i++) { /* floats of some 100 mm */
+        ck_assert_double_eq_tol(after[3 * i], -before[3 * i + 1], 1e-4);
+        ck_assert_double_eq_tol(after[3 * i + 1], before[3 * i], 1e-4);
+        ck_assert_double_eq_tol(after[3 * i + 2], before[3 * i + 2], 1e-4);
+    }
+    ck_skg(load("{\"Organs\": {\"flat\": {\"Kind\": \"Rigid\"}}}"));
+    ck_skg_fails(skg_motion_create(NULL, setup, &motion), SKG_ERR_BREATHING, "flat: rigid");
+    ck_skg(load("{\"Organs\": {\"flat\": {\"Kind\": \"Deformable\", \"Links\": [{\"To\": \"ribs\", "
+                "\"Distance\": [9, \"mm\"]}]}}}"));
+    ck_skg_fails(skg_motion_create(NULL, setup, &motion), SKG_ERR_BREATHING, "flat: linked to \"ribs\"");
 }
 END_TEST
 
@@ -104,6 +168,17 @@ START_TEST(what_the_key_cannot_say) {
         {"{\"Waveform\": [1, 2, 0]}", "a sample is 2"},
         {"{\"Organs\": {\"flt\": {}}}", "flat"},
         {"{\"Organs\": [1]}", "is no object"},
+        {"{\"RibAxes\": \"bone\"}", "Bones"},
+        {"{\"Organs\": {\"flat\": {\"Kind\": \"stiff\"}}}", "Breathing.Organs.flat.Kind"},
+        {"{\"Organs\": {\"flat\": {\"Axis\": [0, 0, 1]}}}", "give both"},
+        {"{\"Organs\": {\"flat\": {\"Gamma\": 200}}}", "-180 to 180"},
+        {"{\"Organs\": {\"flat\": {\"Tissue\": [1.1, 1.1, 0]}}}", "alpha_min <= 1"},
+        {"{\"Organs\": {\"flat\": {\"Links\": []}}}", "is empty"},
+        {"{\"Organs\": {\"flat\": {\"Links\": [{\"To\": \"rib\"}]}}}", "Distance"},
+        {"{\"Organs\": {\"flat\": {\"Links\": [{\"To\": \"rib\", \"Distance\": [0, \"mm\"]}]}}}", "above 0"},
+        {"{\"Organs\": {\"flat\": {\"Links\": [{\"To\": \"rib\", \"Distance\": [5, \"mm\"], "
+         "\"RigidDistance\": [6, \"mm\"]}]}}}",
+         "0 to Distance"},
         {"{\"Events\": [{\"Hold\": [2, 1]}]}", "hold 0"},
         {"{\"Events\": [{\"Hold\": [1, 2], \"Needle\": [[0, 0]]}]}", "is no event"},
         {"{\"Events\": [{\"Contrast\": \"inside\"}]}", "is no event"},
@@ -217,6 +292,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, the_key_is_read);
+    tcase_add_test(tests, organs_are_read);
+    tcase_add_test(tests, organs_move_as_they_are_told);
     tcase_add_test(tests, its_options_can_be_asked_for);
     tcase_add_test(tests, what_the_key_cannot_say);
     tcase_add_test(tests, parts_move_as_they_are_told);

@@ -1,5 +1,7 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "host/inside.h"
+#include "phantom/thorax.h"
+#include "plan/overlap.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -135,6 +137,51 @@ START_TEST(disjoint_or_nested) {
 }
 END_TEST
 
+/* By the method of plans, whose columns cross the whole scene: nothing but the needle, which passes through.
+ */
+START_TEST(plans_find_no_overlap) {
+    const int64_t sizes[] = {42000, 80000};
+    skg_solid s[MOST_PARTS];
+    skg_overlap_pair *pairs = NULL;
+    int64_t found = 0;
+    make(sizes[_i]);
+    for (int64_t i = 0; i < parts; i++) {
+        ck_skg(skg_mesh_size(part[i].mesh, &s[i].vertices, &s[i].triangles));
+        double *positions = malloc((size_t)s[i].vertices * 3 * sizeof *positions);
+        int32_t *corners = malloc((size_t)s[i].triangles * 3 * sizeof *corners);
+        ck_skg(skg_mesh_read_positions(part[i].mesh, positions, 0));
+        ck_skg(skg_mesh_read_triangles(part[i].mesh, corners, 0));
+        s[i].positions = positions, s[i].corners = corners, s[i].inside = part[i].inside;
+    }
+    ck_skg(skg_overlaps_find(parts, s, &found, &pairs));
+    for (int64_t p = 0; p < found; p++)
+        ck_assert_msg(pairs[p].part == find("needle") || pairs[p].other == find("needle"),
+                      "%s and %s: %g mm3", part[pairs[p].part].label, part[pairs[p].other].label,
+                      pairs[p].volume);
+    for (int64_t i = 0; i < parts; i++) {
+        free((void *)(uintptr_t)s[i].positions);
+        free((void *)(uintptr_t)s[i].corners);
+    }
+    skg_free(&pairs);
+    skg_thorax_release(&thorax);
+}
+END_TEST
+
+START_TEST(
+    the_sternum_is_not_twisted) { /* 11 of at least 13 mm to each side of its middle line, all the way */
+    solid s;
+    make(42000);
+    solid_make(part[find("sternum body")].mesh, &s);
+    for (double z = -15; z <= 80; z += 0.5)
+        for (int side = -1; side <= 1; side += 2) {
+            const double p[3] = {side * 11, skg_cage_front(0, z), z};
+            ck_assert_msg(solid_holds(&s, p), "not at z %g mm, side %d", z, side);
+        }
+    solid_free(&s);
+    skg_thorax_release(&thorax);
+}
+END_TEST
+
 START_TEST(saved_files_hold_the_same) {
     char folder[] = "/tmp/skg-thorax-XXXXXX", path[256];
     ck_assert_ptr_nonnull(mkdtemp(folder));
@@ -184,6 +231,8 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_mesh_is_closed, 0, 3);
     tcase_add_test(tests, parts_are_where_and_as_large_as_they_should_be);
     tcase_add_test(tests, disjoint_or_nested);
+    tcase_add_test(tests, the_sternum_is_not_twisted);
+    tcase_add_loop_test(tests, plans_find_no_overlap, 0, 2);
     tcase_add_test(tests, saved_files_hold_the_same);
     tcase_add_test(tests, bad_arguments);
 }

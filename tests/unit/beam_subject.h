@@ -47,7 +47,8 @@ static void take_subject(subject *s, double kvp, int materials, const char *cons
         s->low[m] = 0, s->high[m] = most[m];
         skg_material_release(&material);
     }
-    s->beam = (skg_polychromatic){(int32_t)bins, materials, sets, 0, s->mu, s->shares, s->low, s->high};
+    s->beam = (skg_polychromatic){(int32_t)bins, materials,        sets, 0, s->mu, s->shares, s->low,
+                                  s->high,       SKG_RELATIVE_FROM};
     skg_spectrum_release(&spectrum);
     skg_material_release(&aluminium);
 }

@@ -102,6 +102,31 @@ START_TEST(random_scenes) {
 }
 END_TEST
 
+/* Means and variances of two bands: a node has both of a band, or neither. */
+START_TEST(pairs_have_the_same_nodes) {
+    static subject s;
+    skg_compression c;
+    uint64_t random = 5;
+    double sums[4] = {0};
+    const double tolerance = _i ? 1e-4 : 1e-2;
+    take_subject(&s, 120, 6, thorax, thick, 4);
+    for (int32_t b = 0; b < s.beam.bins; b++) {
+        const double mean = s.shares[4 * b], second = s.shares[4 * b + 1];
+        const int high = b > s.beam.bins / 2;
+        for (int k = 0; k < 4; k++)
+            sums[k] += s.shares[4 * b + k] = k % 2 == high ? (k < 2 ? mean : second) : 0;
+    }
+    for (int32_t k = 0; k < 4 * s.beam.bins; k++) s.shares[k] /= sums[k % 4];
+    s.beam.paired = 1;
+    ck_skg(skg_nodes_find(&s.beam, s.mu, tolerance, 0, NULL, &c));
+    check_nodes(&s, &c, tolerance, &random);
+    for (int32_t n = 0; n < c.nodes.count; n++)
+        for (int k = 0; k < 2; k++)
+            ck_assert((c.nodes.shares[4 * n + k] > 0) == (c.nodes.shares[4 * n + 2 + k] > 0));
+    skg_nodes_release(&c.nodes);
+}
+END_TEST
+
 START_TEST(twice_the_same) {
     static subject s;
     skg_compression a, b;
@@ -182,6 +207,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, targets_of_a_thorax);
     tcase_add_loop_test(tests, random_scenes, 0, 20);
+    tcase_add_loop_test(tests, pairs_have_the_same_nodes, 0, 2);
     tcase_add_test(tests, twice_the_same);
     tcase_add_test(tests, emptiness);
     tcase_add_test(tests, nothing_beyond_rounding);

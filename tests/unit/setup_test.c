@@ -297,6 +297,14 @@ START_TEST(a_scan_gives_its_first_projection) {
     check_vector(setup->view.centre, 200, 100, 0);
     check_vector(setup->view.column_step, 0, 1, 0);
     check_vector(setup->view.row_step, 0, 0, -2);
+    skg_plan_options options;
+    skg_plan_options_init(&options);
+    ck_skg(skg_setup_options(setup, &options)); /* 270 degrees on, and a sixteenth of it */
+    ck_assert_int_eq(options.view_count, 16);
+    check_vector(options.views[15].source, 0, -400, 0);
+    const double angle = (180 - 270 / 16.0) * acos(-1) / 180;
+    check_vector(options.views[0].source, 100 + 400 * cos(angle) + 100 * sin(angle),
+                 400 * sin(angle) - 100 * cos(angle), 0);
 }
 END_TEST
 

@@ -83,9 +83,9 @@ SKG_API skg_status skg_breath_at_phase(const skg_breath *breath, double phase, s
 
 /* A thorax at end-expiration, generated. x to the patient's left, y to the back, z up; the origin is the top
  * of the right half of the diaphragm. Sizes from the literature and from aggregates of real bones. Every mesh
- * is closed and outward; two meshes are disjoint or one lies in the other, but for faces that cut into a
- * neighbour by less than 0.5 mm (by 3 mm below 42,000 triangles), and for the needle, which passes through.
- * Labels are English: "rib 5 left", "liver", "lung right", "skin". */
+ * is closed and outward; two meshes are disjoint or one lies in the other (below 42,000 triangles facets may
+ * cut into a neighbour by up to 3 mm), but for the needle, which passes through. Labels are English: "rib 5
+ * left", "liver", "lung right", "skin". */
 typedef struct skg_thorax skg_thorax;
 
 /* Prepare with skg_thorax_options_init. */
@@ -126,7 +126,8 @@ SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder)
  * - "rib N left" (or right; or rib_l05): turns about an axis through its head, by the angles of Wilson et
  * al., J. Appl. Physiol. 62 (1987) 1872 for ribs 3 to 7; the others are extrapolated (an assumption);
  * - "sternum ...": rigid, fitted to the anterior ends of ribs 1 to 7;
- * - "cartilage N left": between its rib and the sternum or the next rib above;
+ * - "cartilage N left": between its rib and the sternum or the next rib above; without a number, all of one
+ * side: deformable, linked to ribs and sternum, its boxes turning with them;
  * - "diaphragm": tendon rigid above a plane, muscle below it deformable, rim with the ribs;
  * - "lung ...", "liver", "heart", "skin": deformable, linked to the diaphragm, the ribs or both;
  * - "gallbladder": with the liver; "common bile duct": its upper end with the liver;
@@ -139,6 +140,14 @@ SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder)
  * the back, z to the head. */
 typedef struct skg_body skg_body;
 
+/* Axes of the ribs. All go through the rib's head.
+ * LITERATURE: horizontal; pump and bucket angle change as Wilson measured. BONES: from the head, where the
+ * rib is nearest to the bodies of vertebrae T_k and T_k-1, to the tubercle, where it is nearest to the
+ * transverse process of T_k ("vertebra t05"), and Wilson's angles make one; where T_k is not in the body, an
+ * axis in the plane of the rib's two longest principal axes of inertia, about the posterior end of the
+ * longest, turned so that Wilson's angles come out. */
+enum { SKG_RIB_AXES_LITERATURE = 0, SKG_RIB_AXES_BONES = 1 };
+
 /* Prepare with skg_body_options_init. */
 typedef struct {
     int32_t size;
@@ -148,18 +157,41 @@ typedef struct {
     double reference_thoracic; /* weights at which the meshes were made: there every vertex is the file's; */
     double reference_diaphragmatic; /* 0, 0: end-expiration */
     double hysteresis; /* 0 to 1; 0: the state depends on the phase's weights only; 1: the paper's */
+    int32_t rib_axes;  /* SKG_RIB_AXES_ */
+    int32_t reserved;  /* 0 */
 } skg_body_options;
 
 SKG_API void skg_body_options_init(skg_body_options *options);
 
+/* How an organ moves: by its label's rule; not at all; rigid, turning with the ribs; deformable. */
+enum { SKG_ORGAN_BY_LABEL = 0, SKG_ORGAN_STATIC = 1, SKG_ORGAN_RIGID = 2, SKG_ORGAN_DEFORMABLE = 3 };
+
+/* Ties a deformable organ to another: vertices within rigid_mm of it at rest go with it; those beyond, within
+ * distance_mm, hang on it by a link of the organ's own tissue. The other organ is not moved by it. */
+typedef struct {
+    const char *to;     /* an organ's label, or the word that labels begin with: "rib" */
+    double distance_mm; /* above 0 to 1000 */
+    double rigid_mm;    /* 0 to distance_mm */
+} skg_organ_link;
+
 /* One organ. Prepare with skg_organ_init. */
 typedef struct {
     int32_t size;
-    int32_t reserved;  /* 0 */
+    int32_t kind;      /* SKG_ORGAN_ */
     int64_t inside;    /* number of the organ that it lies in, added before it; -1: none */
     skg_mesh *mesh;    /* retained; the body writes its positions */
     const char *label; /* copied */
     skg_tissue tissue; /* all 0: by label */
+    /* Of a rigid one: the rotation at thoracic weight 1 is the exponential of one vector, and goes with the
+     * weight. The vector is turn_rad plus the paper's two angles: gamma about the axis from back to front
+     * (raises the side), lambda about the axis from left to right (raises the front), both counted alike on
+     * either side of the body. All 0 are for ribs and sternum only: by label. */
+    double turn_rad[3], gamma_rad, lambda_rad; /* each angle at most pi */
+    double
+        centre_mm[3]; /* NaN (default): the rib's head; else the posterior end of the longest axis of inertia
+                       */
+    const skg_organ_link *links; /* of a deformable one, the nearest organ counts; none: by label; copied */
+    int64_t link_count;
 } skg_organ;
 
 SKG_API void skg_organ_init(skg_organ *organ);
@@ -169,19 +201,22 @@ SKG_API void skg_organ_init(skg_organ *organ);
 SKG_API skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **body);
 SKG_API void skg_body_release(skg_body **body);
 
-/* Adds an organ; *id: its number from 0 (NULL: not wanted). */
+/* Adds an organ; *id: its number from 0 (NULL: not wanted). SKG_ERR_BREATHING names the organ and what of it
+ * is out of range or does not fit its kind. */
 SKG_API skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id);
 
 /* Finds links, axes and regions in the meshes as they lie; to be called once, after the last organ.
- * SKG_ERR_BREATHING: no organ that moves. */
+ * SKG_ERR_BREATHING: no organ that moves; a link to no organ, to one that cannot be followed, or in a
+ * circle. */
 SKG_API skg_status skg_body_link(skg_body *body);
 
 /* With hysteresis only: goes round the breath until it repeats itself and keeps the loop, from which
  * skg_body_pose then starts at any phase. */
 SKG_API skg_status skg_body_breathe(skg_body *body, const skg_breath *breath);
 
-/* Poses all organs: writes the meshes that move. The same state gives the same bits, whatever came before
- * (with hysteresis: after the same skg_body_breathe). state: as skg_breath_at_time gives it. */
+/* Poses all organs, and warns the first time that an organ's drivers contradict each other by more than 1 mm:
+ * writes the meshes that move. The same state gives the same bits, whatever came before (with hysteresis:
+ * after the same skg_body_breathe). state: as skg_breath_at_time gives it. */
 SKG_API skg_status skg_body_pose(skg_body *body, const skg_breath_state *state);
 
 /* From the next pose on, the needle is drawn back along its axis by so many mm from where its file has it
@@ -196,10 +231,11 @@ typedef struct {
     double lung_density_ratio; /* V0/V: density against the reference, mass kept */
     double diaphragm_mm[2];    /* descent of the top of each half: left, right */
     double liver_mm[3];        /* mean displacement */
-    double conflict_mm;        /* largest contradiction between drivers of one organ */
+    double conflict_mm;        /* largest contradiction between drivers of one organ; they meet halfway */
     double liver_volume_ratio; /* V/V0 */
     int64_t broken_links;      /* by more than 1e-9 mm; 0 */
     int64_t flipped_triangles; /* whose normal turned by more than 90 degrees, over all organs */
+    const char *conflict[3];   /* that organ, and the two that pull at it; NULL: none. As long as the body */
 } skg_body_measure;
 
 SKG_API void skg_body_measure_init(skg_body_measure *measure);

@@ -112,7 +112,8 @@ typedef struct {
     double tolerance; /* 0 (default): every energy of the spectrum, a plane per material; above, to below 1:
                          error that fewer energies and planes may make, relative where more than 1e-6 of the
                          open beam arrives, a share of 1e-6 of the open beam where less does, over the lengths
-                         that the plan's view meets, and a quarter more */
+                         that the plan's view meets, and a quarter more. With noise the same
+                         holds of its variance; few photons are then drawn at these energies */
     const skg_detector_blur *blur; /* copied; NULL: none */
     double swank;       /* Swank factor of the scintillator, above 0 to 1: its pulse heights widen the noise's
                            variance by 1 / swank; 1 (default): every photon gives what the response says */
@@ -122,6 +123,9 @@ typedef struct {
     int32_t repair;          /* of open meshes: SKG_REPAIR_NEIGHBOURS (default), ... */
     int32_t clip; /* 1: a part counts only where its parent is; 0 (default): what leaves the parent subtracts
                      it */
+    int64_t view_count;    /* 0 to 1024 further views that frames are to have, a sample of them: */
+    const skg_view *views; /* [view_count] the error bound of a tolerance holds for the lengths that these
+                              meet, too. Copied; of no effect where tolerance is 0 */
 } skg_plan_options;
 
 SKG_API void skg_plan_options_init(skg_plan_options *options);
@@ -241,7 +245,10 @@ SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *re
 
 /* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
  * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
- * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. */
+ * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. With one channel and no
+ * noise these energies and photons are a beam (skg_spectrum_bins) that a plan of tolerance 0 makes the same
+ * image of, but for what fewer planes err: so a numerical code may keep its nodes whatever is planned later.
+ */
 SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
                                  double *weights);
 
@@ -250,6 +257,9 @@ typedef struct {
     int32_t size;
     int32_t on; /* 1 or 0 */
     const char *name, *reason;
+    double cost; /* estimated: what it adds to a frame, in frames of the same scene without any effect (one
+                    energy, a point source, ...); below 0 what it saves. Rough: from counts of operations; 0
+                    also where it costs nothing, or nothing in a frame */
 } skg_effect;
 
 SKG_API void skg_effect_init(skg_effect *effect);
