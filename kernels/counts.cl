@@ -1,25 +1,43 @@
-/* Count planes of open meshes: a pixel is bad where the signed hits do not cancel. */
+/* Count planes of open meshes: a pixel is bad where the signed hits do not cancel. Planes: numbers of `count` of them. */
 
-/* rows_bad[row]: bad pixels of the row. */
+/* rows_bad[count][rows][3]: bad pixels of each row, and columns from, to outside which none is. One item a row of a
+ * plane. */
 __kernel void skg_count_bad_rows(skg_frame_args frame, __global const skg_sum *copies, __global const int *used,
-                                 int plane, __global int *rows_bad) {
-    const int row = (int)get_global_id(0);
+                                 __global const int *planes, __global int *rows_bad) {
+    const int row = (int)get_global_id(0), k = (int)get_global_id(1);
     if (row >= frame.rows) return;
-    int bad = 0;
-    for (int column = 0; column < frame.columns; column++)
-        bad += skg_sum_of(&frame, copies, used, plane, row, column) != 0;
-    rows_bad[row] = bad;
+    const int4 field = vload4(0, used + SKG_FIELD(frame.copies, planes[k]));
+    skg_sumv bad = (skg_sumv)(0);
+    int from = 0, to = 0;
+    if (row >= field.x && row < field.y) /* columns of the row's end that are none are 0 */
+        for (int column = field.z; column < field.w; column += SKG_WIDE) {
+            const skg_sumv hits = skg_field_sums_v(&frame, copies, used, planes[k], row, column);
+            if (!skg_any(SKG_TO_INT_V(hits != (skg_sumv)(0)))) continue;
+            bad -= SKG_AS_SUM_V(hits != (skg_sumv)(0));
+            from = to > 0 ? from : column;
+            to = min(column + SKG_WIDE, frame.columns);
+        }
+    skg_sum lanes[SKG_WIDE];
+    int total = 0;
+    SKG_STORE_V(bad, 0, lanes);
+    for (int lane = 0; lane < SKG_WIDE; lane++) total += (int)lanes[lane];
+    vstore3((int3)(total, from, to), (size_t)(k * frame.rows + row), rows_bad);
 }
 
-/* result[0]: bad pixels; then the first SKG_FIRST_BAD of them, row * columns + column, in this order. One item. */
-__kernel void skg_count_bad(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int plane,
-                            __global const int *rows_bad, __global int *result) {
+/* verdicts[first...][1 + SKG_FIRST_BAD]: bad pixels; then the first of them, row * columns + column, in this order. One
+ * item a plane. */
+__kernel void skg_count_bad(skg_frame_args frame, __global const skg_sum *copies, __global const int *used,
+                            __global const int *planes, __global const int *rows_bad, int first,
+                            __global int *verdicts) {
+    const int k = (int)get_global_id(0);
+    __global int *verdict = verdicts + (first + k) * (1 + SKG_FIRST_BAD);
     int total = 0;
     for (int row = 0; row < frame.rows; row++) {
-        for (int column = 0, found = 0; found < rows_bad[row] && total + found < SKG_FIRST_BAD; column++)
-            if (skg_sum_of(&frame, copies, used, plane, row, column) != 0)
-                result[1 + total + found++] = row * frame.columns + column;
-        total += rows_bad[row];
+        const int3 bad = vload3((size_t)(k * frame.rows + row), rows_bad);
+        for (int column = bad.y, found = 0; found < bad.x && total + found < SKG_FIRST_BAD; column++)
+            if (skg_sum_of(&frame, copies, used, planes[k], row, column) != 0)
+                verdict[1 + total + found++] = row * frame.columns + column;
+        total += bad.x;
     }
-    result[0] = total;
+    verdict[0] = total;
 }

@@ -1,50 +1,86 @@
 /* Open meshes have planes and a count of their own; where the count is 0 their signed hits cancel, and their sums go
- * into the planes that all parts share. Elsewhere they are left out, or repaired. */
+ * into the planes that all parts share. Elsewhere they are left out, or repaired.
+ *
+ * A batch is `parts` open parts in one raster. table: [parts] the count plane of each, which stands after the planes of
+ * its sums, parts one after another; then for each plane of the raster the shared plane that it joins. shared: first
+ * copy of the other raster, whose planes have the same layout. */
 
-/* moves: [count][3] plane of the open part, its count plane, and the shared plane. Both rasters have the same
- * layout of a plane; shared: the first copy of the other. One work-item a run of SKG_WIDE pixels of a row. */
-__kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int count,
-                           __constant const int *moves, __global skg_sum *shared) {
-    const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
-    if (column >= frame.columns || row >= frame.rows) return;
-    for (int k = 0; k < count; k++) {
-        const skg_sumv hits = skg_sums_v(&frame, copies, used, moves[3 * k + 1], row, column);
-        const skg_sumv sums = skg_sums_v(&frame, copies, used, moves[3 * k], row, column);
-        __global skg_sum *place = shared + (size_t)moves[3 * k + 2] * (size_t)frame.plane +
-                                  (size_t)row * (size_t)frame.stride + (size_t)column;
-        const skg_sumv valid = SKG_AS_SUM_V(hits == (skg_sumv)(0));
-        SKG_STORE_V(SKG_LOAD_V(0, place) + (sums & valid), 0, place);
+/* The first plane of a part's sums. */
+static int skg_first_plane(__global const int *table, int part) {
+    return part > 0 ? table[part - 1] + 1 : 0;
+}
+
+static size_t skg_place(const skg_frame_args *frame, int plane, int row, int column) {
+    return (size_t)plane * (size_t)frame->plane + (size_t)row * (size_t)frame->stride + (size_t)column;
+}
+
+/* The first of own, own + step, ... that is not left of a column. */
+static int skg_first_column(int column, int own, int step) {
+    return own + max(column - own + step - 1, 0) / step * step;
+}
+
+/* Items along a row take vectors by turns, and each takes the parts one after another: no two add to one pixel. */
+__kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+                           __global const int *table, __global skg_sum *shared) {
+    const int row = (int)get_global_id(1), step = SKG_WIDE * (int)get_global_size(0);
+    if (row >= frame.rows) return;
+    for (int part = 0; part < parts; part++) {
+        const int first = skg_first_plane(table, part), counts = table[part];
+        const int4 field = vload4(0, used + SKG_FIELD(frame.copies, counts));
+        if (row < field.x || row >= field.y) continue;
+        const int own = SKG_WIDE * (int)get_global_id(0);
+        for (int column = skg_first_column(field.z, own, step); column < field.w; column += step) {
+            const skg_sumv hits = skg_field_sums_v(&frame, copies, used, counts, row, column);
+            const skg_sumv valid = SKG_AS_SUM_V(hits == (skg_sumv)(0));
+            for (int plane = first; plane < counts; plane++) {
+                const skg_sumv sums = skg_field_sums_v(&frame, copies, used, plane, row, column);
+                __global skg_sum *place = shared + skg_place(&frame, table[parts + plane], row, column);
+                SKG_STORE_V(SKG_LOAD_V(0, place) + (sums & valid), 0, place);
+            }
+        }
     }
 }
 
 /* No valid pixel: far from any. */
 #define SKG_FAR 0x40000000
 
-/* gaps[row][column]: pixels to the nearest valid one of the row, 0 where the pixel itself is. One item a row. */
-__kernel void skg_open_gaps(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int plane,
-                            __global int *gaps) {
-    const int row = (int)get_global_id(0);
-    if (row >= frame.rows) return;
-    __global int *gap = gaps + (size_t)row * (size_t)frame.columns;
-    int near = SKG_FAR;
-    for (int column = 0; column < frame.columns; column++) {
-        near = skg_sum_of(&frame, copies, used, plane, row, column) != 0 ? min(near + 1, SKG_FAR) : 0;
+/* gaps[part][row][column]: pixels to the nearest valid one of the row, 0 where the pixel itself is; only in the columns
+ * of a row that rows_bad (as skg_count_bad_rows leaves it) names. One item a row of a part. */
+__kernel void skg_open_gaps(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+                            __global const int *table, __global const int *rows_bad, __global int *gaps) {
+    const int row = (int)get_global_id(0), part = (int)get_global_id(1);
+    if (row >= frame.rows || part >= parts) return;
+    const int3 bad = vload3((size_t)(part * frame.rows + row), rows_bad);
+    __global int *gap = gaps + ((size_t)part * (size_t)frame.rows + (size_t)row) * (size_t)frame.columns;
+    int near = bad.y > 0 ? 0 : SKG_FAR; /* beside the bad ones all are valid */
+    for (int column = bad.y; column < bad.z; column++) {
+        near = skg_sum_of(&frame, copies, used, table[part], row, column) != 0 ? min(near + 1, SKG_FAR) : 0;
         gap[column] = near;
     }
-    near = SKG_FAR;
-    for (int column = frame.columns - 1; column >= 0; column--) {
+    near = bad.z < frame.columns ? 0 : SKG_FAR;
+    for (int column = bad.z - 1; column >= bad.y; column--) {
         near = gap[column] ? min(near + 1, SKG_FAR) : 0;
         gap[column] = min(gap[column], near);
     }
 }
 
+/* Of one part: as above. */
+typedef struct {
+    __global const int *rows_bad, *gaps;
+} skg_marks;
+
+static int skg_gap(const skg_frame_args *frame, const skg_marks *marks, int row, int column) {
+    const int3 bad = vload3((size_t)row, marks->rows_bad);
+    if (column < bad.y || column >= bad.z) return 0;
+    return marks->gaps[(size_t)row * (size_t)frame->columns + (size_t)column];
+}
+
 /* Side steps to the nearest valid pixel: half the side of the smallest square about the pixel that holds one. */
-static int skg_reach(const skg_frame_args *frame, __global const int *gaps, int row, int column) {
-    __global const int *gap = gaps + column;
-    int reach = gap[row * frame->columns];
+static int skg_reach(const skg_frame_args *frame, const skg_marks *marks, int row, int column) {
+    int reach = skg_gap(frame, marks, row, column);
     for (int d = 1; d < reach && d < frame->rows; d++) {
-        if (row >= d) reach = min(reach, max(d, gap[(row - d) * frame->columns]));
-        if (row + d < frame->rows) reach = min(reach, max(d, gap[(row + d) * frame->columns]));
+        if (row >= d) reach = min(reach, max(d, skg_gap(frame, marks, row - d, column)));
+        if (row + d < frame->rows) reach = min(reach, max(d, skg_gap(frame, marks, row + d, column)));
     }
     return reach;
 }
@@ -52,13 +88,13 @@ static int skg_reach(const skg_frame_args *frame, __global const int *gaps, int 
 /* Mean over the valid pixels of a square's border, rounded to nearest; inside it none is valid. Quotients and
  * remainders are summed each for themselves, so that nothing overflows. */
 static skg_sum skg_border_mean(const skg_frame_args *frame, __global const skg_sum *copies, __global const int *used,
-                               __global const int *gaps, int plane, int row, int column, int reach) {
+                               const skg_marks *marks, int plane, int row, int column, int reach) {
     long valid = 0, whole = 0, rest = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int j = max(row - reach, 0); j <= min(row + reach, frame->rows - 1); j++) {
             const int step = abs(j - row) == reach ? 1 : 2 * reach;
             for (int i = column - reach; i <= column + reach; i += step) {
-                if (i < 0 || i >= frame->columns || gaps[j * frame->columns + i]) continue;
+                if (i < 0 || i >= frame->columns || skg_gap(frame, marks, j, i)) continue;
                 if (pass == 0) {
                     valid++;
                     continue;
@@ -72,23 +108,41 @@ static skg_sum skg_border_mean(const skg_frame_args *frame, __global const skg_s
     return (skg_sum)(whole + twice / (2 * valid) - (twice % (2 * valid) < 0));
 }
 
-/* Bad pixels of one part get the mean of their neighbourhood, which is grown until it holds valid ones (Vidal and
- * Villard 2016, 3.2.7). moves: as above, all of the one part. */
-__kernel void skg_open_repair(skg_frame_args frame, __global const skg_sum *copies, __global const int *used,
-                              int first, int count, __constant const int *moves, __global const int *gaps,
+/* Bad pixels of each part get the mean of their neighbourhood, which is grown until it holds valid ones (Vidal and
+ * Villard 2016, 3.2.7). Items as those of skg_open_add, pixels instead of vectors. */
+__kernel void skg_open_repair(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+                              __global const int *table, __global const int *rows_bad, __global const int *gaps,
                               __global skg_sum *shared) {
-    const int column = (int)get_global_id(0), row = (int)get_global_id(1);
-    if (column >= frame.columns || row >= frame.rows || gaps[row * frame.columns + column] == 0) return;
-    const int reach = skg_reach(&frame, gaps, row, column);
-    if (reach >= SKG_FAR) return;
-    for (int k = first; k < first + count; k++)
-        shared[(size_t)moves[3 * k + 2] * (size_t)frame.plane + (size_t)row * (size_t)frame.stride + (size_t)column] +=
-            skg_border_mean(&frame, copies, used, gaps, moves[3 * k], row, column, reach);
+    const int own = (int)get_global_id(0), row = (int)get_global_id(1), step = (int)get_global_size(0);
+    if (row >= frame.rows) return;
+    for (int part = 0; part < parts; part++) {
+        const int3 bad = vload3((size_t)(part * frame.rows + row), rows_bad);
+        skg_marks marks;
+        marks.rows_bad = rows_bad + 3 * part * frame.rows;
+        marks.gaps = gaps + (size_t)part * (size_t)frame.rows * (size_t)frame.columns;
+        for (int column = skg_first_column(bad.y, own, step); column < bad.z; column += step) {
+            if (skg_gap(&frame, &marks, row, column) == 0) continue;
+            const int reach = skg_reach(&frame, &marks, row, column);
+            if (reach >= SKG_FAR) continue;
+            for (int plane = skg_first_plane(table, part); plane < table[part]; plane++)
+                shared[skg_place(&frame, table[parts + plane], row, column)] +=
+                    skg_border_mean(&frame, copies, used, &marks, plane, row, column, reach);
+        }
+    }
 }
 
-/* Adds values[item] to the accumulator places[item]; no place comes twice. */
-__kernel void skg_open_put(int count, __global const int *places, __global const long *values,
-                           __global skg_sum *shared) {
-    const int item = (int)get_global_id(0);
-    if (item < count) shared[places[item]] += (skg_sum)values[item];
+/* Gives `count` pixels of a part new sums: pixels[item] = row * columns + column, none twice; values[item][planes of
+ * the part]. What skg_open_add has added for them is taken off. */
+__kernel void skg_open_put(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+                           __global const int *table, int part, int count, __global const int *pixels,
+                           __global const long *values, __global skg_sum *shared) {
+    const int item = (int)get_global_id(0), first = skg_first_plane(table, part), counts = table[part];
+    if (item >= count) return;
+    const int row = pixels[item] / frame.columns, column = pixels[item] % frame.columns;
+    const int added = skg_sum_of(&frame, copies, used, counts, row, column) == 0;
+    for (int plane = first; plane < counts; plane++) {
+        const skg_sum own = added ? skg_sum_of(&frame, copies, used, plane, row, column) : 0;
+        const skg_sum value = (skg_sum)values[(size_t)item * (size_t)(counts - first) + (size_t)(plane - first)];
+        shared[skg_place(&frame, table[parts + plane], row, column)] += value - own;
+    }
 }

@@ -16,4 +16,8 @@ typedef struct {
 /* From the mesh's bounds as they stand, under a pose. */
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent);
 
+/* The field (skg_shared.h) that its rectangle and 2 pixels for rounding cover; rows may lie beyond the last
+ * one. */
+void skg_extent_field(const skg_camera *camera, const skg_extent *extent, cl_int field[4]);
+
 #endif

@@ -233,29 +233,20 @@ skg_status skg_frame_prepare(skg_plan *plan) {
     return status;
 }
 
-/* Rows by which fields grow, so that what moves a little does not change them. */
-enum { FIELD_ROWS = 16 };
-
-/* The fields of the raster's planes: what the rectangles of their parts cover, and 2 pixels for rounding. */
+/* The fields of the raster's planes: what those of their parts cover. */
 static skg_status find_fields(const skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
                               cl_int **fields) {
-    const double rows = (double)frame->camera.rows, columns = (double)frame->camera.columns;
     SKG_TRY(skg_job_stage(job, 4 * frame->planes, sizeof **fields, "fields", fields));
     for (int64_t p = 0; p < plan->scene->count; p++) {
-        const skg_scale_part *at = &frame->extents[p].scale;
-        const cl_int first_row = (cl_int)fmin(fmax(at->low_row - 2, 0), rows) & -FIELD_ROWS;
-        const cl_int end_row =
-            (cl_int)fmin(fmax(at->high_row + 2 + FIELD_ROWS, 0), rows + FIELD_ROWS) & -FIELD_ROWS;
-        const cl_int first = (cl_int)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS;
-        const cl_int last = (cl_int)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS;
+        cl_int own[4];
+        skg_extent_field(&frame->camera, &frame->extents[p], own);
         for (int64_t w = frame->firsts[p]; w < frame->firsts[p + 1]; w++) {
             cl_int *field = *fields + 4 * frame->all_writes[w].plane;
             const int known = field[1] > 0;
-            field[0] = known && field[0] < first_row ? field[0] : first_row;
-            field[1] = known && field[1] > end_row ? field[1] : end_row; /* may lie beyond the last row */
-            field[2] = known && field[2] < first * SKG_FIELD_COLUMNS ? field[2] : first * SKG_FIELD_COLUMNS;
-            field[3] = known && field[3] > (last + 1) * SKG_FIELD_COLUMNS ? field[3]
-                                                                          : (last + 1) * SKG_FIELD_COLUMNS;
+            for (int k = 0; k < 4; k += 2) {
+                field[k] = known && field[k] < own[k] ? field[k] : own[k];
+                field[k + 1] = known && field[k + 1] > own[k + 1] ? field[k + 1] : own[k + 1];
+            }
         }
     }
     return SKG_OK;

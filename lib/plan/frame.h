@@ -45,20 +45,21 @@ skg_status skg_frame_list_matter(const skg_plan *plan, const skg_frame *given, s
 /* Enqueues the open parts of a frame after the raster of the closed ones, whose sums they join (open.c). */
 skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_parts *frame, skg_raster *shared);
 
-/* An open part whose own planes are rastered. */
+/* Open parts that are rastered together. */
 typedef struct {
-    int64_t open;                      /* number in plan->open */
-    const skg_raster *raster, *shared; /* of its planes, and those that its sums join */
-    cl_mem moves;                      /* as skg_open_add takes them */
-    int64_t first_move, move_count;    /* its own; their order is that of its writes */
-    int64_t count_plane;
-    cl_mem bad; /* as skg_raster_bad_pixels leaves it */
-} skg_open_part;
+    int64_t parts;
+    const int64_t *open;      /* [parts] numbers in plan->open */
+    skg_raster *raster;       /* of their planes: each part's sums in the order of its writes, its count */
+    const skg_raster *shared; /* that their sums join */
+} skg_open_batch;
 
-/* Enqueues the repair of its bad pixels, as the plan's options have it (repair.c). Exact: waits for its
- * raster. */
-skg_status skg_open_part_repair(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
-                                const skg_open_part *part);
+/* Enqueues the repair of their bad pixels, as the plan's options have it, after verdicts and sums (repair.c).
+ * Exact: waits for the raster. */
+skg_status skg_open_repair(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
+                           const skg_open_batch *batch);
+
+/* A kernel of open.cl with its first arguments set: frame, sums, fields, parts, table. */
+skg_status skg_open_kernel(skg_plan *plan, const skg_open_batch *batch, const char *name, cl_kernel *kernel);
 
 /* Enqueues what priorities and clipping take off the sums of the closed parts, whose tables the device has;
  * waits for the number of hits (priority_hits.c). */

@@ -19,7 +19,9 @@ struct skg_job {
                           verified range in any */
     int32_t *listed;   /* staged: [2] as skg_raster_read_listed has it, of the last frame */
     int32_t *broken;   /* staged: the lowest vertex that was not finite, over all parts; INT32_MAX: none */
-    int32_t *bad; /* staged: [open parts][1 + SKG_FIRST_BAD] what the open parts of the last frame left */
+    int64_t bad_count; /* open parts of the last frame that add something: */
+    int64_t *bad_open; /* staged: [bad_count] numbers in plan->open */
+    int32_t *bad;      /* staged: [bad_count][1 + SKG_FIRST_BAD] verdicts on them */
 };
 
 skg_status skg_job_create(skg_plan *plan, skg_job **job);

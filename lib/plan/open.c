@@ -4,127 +4,163 @@
 #include "plan/frame.h"
 #include "plan/raster_private.h"
 
-/* So many at a time. */
-enum { BATCH = 8 };
+#include <string.h>
 
-/* A batch in the making: which of its planes go where. */
+/* Bytes of the planes of a batch, where one part does not need more. */
+enum { BATCH_BYTES = 32 << 20 };
+
+/* A frame's batches, one after another. */
 typedef struct {
+    skg_plan *plan;
+    skg_job *job;
+    const skg_frame_parts *frame;
+    skg_raster *raster; /* of the batch that needs most planes, for all */
+    int64_t planes;     /* that it has */
+    const skg_raster *shared;
     skg_geometry_part *parts;  /* [parts] only the batch's are drawn */
-    skg_plane_weight *weights; /* [planes of the batch] */
-    cl_int *moves;             /* staged: [count][3] as skg_open_add takes them */
-    int64_t planes, count;
-} open_batch;
+    skg_plane_weight *weights; /* [planes] */
+} batching;
 
-/* The planes of one part: one for each that it adds to, then its count. */
-static void add_part(const skg_frame_parts *frame, int64_t part, open_batch *batch) {
-    const int64_t writes = frame->firsts[part + 1] - frame->firsts[part],
-                  count_plane = batch->planes + writes;
-    skg_plane_weight *weights = batch->weights + batch->planes;
-    for (int64_t w = 0; w < writes; w++) {
-        const skg_plane_weight *shared = &frame->all_writes[frame->firsts[part] + w];
-        weights[w] = (skg_plane_weight){.plane = batch->planes + w, .weight = shared->weight};
-        cl_int *move = batch->moves + 3 * batch->count++;
-        move[0] = (cl_int)(batch->planes + w);
-        move[1] = (cl_int)count_plane;
-        move[2] = (cl_int)shared->plane;
-    }
-    weights[writes] = (skg_plane_weight){.plane = count_plane, .bias = 1};
-    batch->parts[part].weights = (int32_t)writes + 1;
-    batch->parts[part].weight = weights;
-    batch->planes = count_plane + 1;
+static int64_t planes_of(const batching *b, int64_t open) {
+    const int64_t part = b->plan->open[open];
+    return b->frame->firsts[part + 1] - b->frame->firsts[part] + 1;
 }
 
-static skg_status run_add(skg_plan *plan, skg_job *job, const skg_raster *raster, const skg_raster *shared,
-                          const open_batch *batch, cl_mem moves) {
+/* Who adds anything: lengths of one part know nothing of the others. */
+static void list_parts(const batching *b) {
+    b->job->bad_count = 0;
+    for (int64_t k = 0; k < b->plan->open_count; k++)
+        if (planes_of(b, k) > 1) b->job->bad_open[b->job->bad_count++] = k;
+}
+
+static skg_status get_raster(batching *b) {
+    const skg_frame_args *layout = &b->shared->frame;
+    skg_kernel_options kernels = b->frame->kernels;
+    int64_t most = 0, total = 0;
+    for (int64_t k = 0; k < b->job->bad_count; k++) {
+        const int64_t its = planes_of(b, b->job->bad_open[k]);
+        most = its > most ? its : most;
+        total += its;
+    }
+    const int64_t room = BATCH_BYTES / (layout->plane * (int64_t)(kernels.bits / 8));
+    b->planes = total < room ? total : room;
+    b->planes = b->planes > most ? b->planes : most;
+    kernels.listed_writes = 1;
+    return skg_plan_raster(b->plan, &kernels, b->plan->strategy, b->planes, 0, &b->raster);
+}
+
+/* Fills the tables of a batch. table: [parts + planes] as skg_open_add takes it. */
+static void fill_batch(const batching *b, const skg_open_batch *batch, cl_int *table, cl_int *fields) {
+    cl_int *counts = table, *joined = table + batch->parts, plane = 0;
+    for (int64_t p = 0; p < b->plan->scene->count; p++) {
+        b->parts[p] = b->frame->parts[p];
+        b->parts[p].weights = 0;
+    }
+    for (int64_t k = 0; k < batch->parts; k++) {
+        const int64_t part = b->plan->open[batch->open[k]];
+        const int64_t writes = planes_of(b, batch->open[k]) - 1;
+        b->parts[part].weights = (int32_t)writes + 1;
+        b->parts[part].weight = b->weights + plane;
+        for (int64_t w = 0; w <= writes; w++, plane++) {
+            const skg_plane_weight *shared = &b->frame->all_writes[b->frame->firsts[part] + w];
+            skg_extent_field(&b->frame->camera, &b->frame->extents[part], fields + 4 * plane);
+            if (w == writes) {
+                b->weights[plane] = (skg_plane_weight){.plane = plane, .bias = 1};
+                counts[k] = plane;
+            } else {
+                b->weights[plane] = (skg_plane_weight){.plane = plane, .weight = shared->weight};
+                joined[plane] = (cl_int)shared->plane;
+            }
+        }
+    }
+}
+
+skg_status skg_open_kernel(skg_plan *plan, const skg_open_batch *batch, const char *name, cl_kernel *kernel) {
     static const char *const files[] = {"open.cl"};
-    cl_program program = NULL;
-    cl_kernel kernel = NULL;
-    const cl_int count = (cl_int)batch->count;
+    const skg_raster *raster = batch->raster;
     const skg_kernel_options options = {.precision = raster->options.kernels.precision,
                                         .bits = raster->options.kernels.bits};
-    SKG_TRY(skg_kernels_get(plan->context, &options, 1, files, NULL, &program));
-    SKG_TRY(skg_kernel_create(program, "skg_open_add", &kernel));
+    const cl_int parts = (cl_int)batch->parts;
+    cl_program program = NULL;
     skg_status status = SKG_OK;
-    const int64_t lanes = skg_kernel_lanes(plan->context, options.precision);
-    const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
-    const size_t global[2] = {(size_t)((raster->frame.columns + 8 * lanes - 1) / (8 * lanes) * 8),
-                              (size_t)((raster->frame.rows + 15) / 16 * 16)};
-    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
+    *kernel = NULL;
+    SKG_TRY(skg_kernels_get(plan->context, &options, 1, files, NULL, &program));
+    SKG_TRY(skg_kernel_create(program, name, kernel));
+    SKG_TRY_CLEANUP(skg_kernel_set(*kernel, 0, sizeof raster->frame, &raster->frame));
     SKG_TRY_CLEANUP(
-        skg_kernel_set_memory(kernel, 1, 2, (cl_mem[]){raster->sums.memory, raster->used.memory}));
-    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 3, sizeof count, &count));
-    SKG_TRY_CLEANUP(skg_kernel_set_memory(kernel, 4, 2, (cl_mem[]){moves, shared->sums.memory}));
+        skg_kernel_set_memory(*kernel, 1, 2, (cl_mem[]){raster->sums.memory, raster->used.memory}));
+    SKG_TRY_CLEANUP(skg_kernel_set(*kernel, 3, sizeof parts, &parts));
+    SKG_TRY_CLEANUP(skg_kernel_set_memory(*kernel, 4, 1, &plan->open_table.memory));
+    return SKG_OK;
+cleanup:
+    clReleaseKernel(*kernel);
+    *kernel = NULL;
+    return status;
+}
+
+static skg_status add_sums(skg_plan *plan, skg_job *job, const skg_open_batch *batch) {
+    const skg_frame_args *layout = &batch->raster->frame;
+    const int on_gpu = plan->context->device->info.is_gpu;
+    const int64_t lanes = skg_kernel_lanes(plan->context, batch->raster->options.kernels.precision);
+    /* A CPU takes each row in one go. */
+    const size_t across = on_gpu ? (size_t)((layout->columns + 8 * lanes - 1) / (8 * lanes)) * 8 : 1;
+    const size_t local[2] = {on_gpu ? 8 : 1, 8};
+    const size_t global[2] = {across, (size_t)((layout->rows + 7) / 8 * 8)};
+    cl_kernel kernel = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_open_kernel(plan, batch, "skg_open_add", &kernel));
+    SKG_TRY_CLEANUP(skg_kernel_set_memory(kernel, 5, 1, &batch->shared->sums.memory));
     SKG_TRY_CLEANUP(skg_kernel_run(plan->context, kernel, "open meshes", 2, global, local, &job->log));
 cleanup:
     clReleaseKernel(kernel);
     return status;
 }
 
-/* Rasters a batch and adds it; its verdicts go to job->bad from `first` on. */
-static skg_status run_batch(skg_plan *plan, skg_job *job, const skg_frame_parts *frame, skg_raster *shared,
-                            int64_t first, int64_t open, const open_batch *batch) {
-    skg_kernel_options kernels = frame->kernels;
-    skg_raster *raster = NULL;
-    skg_buffer moves = {0};
-    skg_status status = SKG_OK;
-    int64_t plane = 0, move = 0;
-    kernels.listed_writes = 1;
-    SKG_TRY(skg_plan_raster(plan, &kernels, plan->strategy, batch->planes, 0, &raster));
-    SKG_TRY(skg_geometry_project(plan->context, &plan->geometry, &kernels, &frame->camera, batch->parts,
-                                 frame->scale.scale, &job->log));
-    SKG_TRY(skg_raster_run(raster, &plan->geometry, NULL, &job->log));
-    const int64_t bytes = 3 * batch->count * (int64_t)sizeof *batch->moves;
-    SKG_TRY_CLEANUP(
-        skg_buffer_reserve(plan->context, &moves, bytes, CL_MEM_READ_ONLY, "planes of open parts"));
-    SKG_TRY_CLEANUP(
-        skg_stage_write(plan->context, "open meshes", moves.memory, 0, bytes, batch->moves, &job->log));
-    SKG_TRY_CLEANUP(run_add(plan, job, raster, shared, batch, moves.memory));
-    for (int64_t k = first; k < first + open; k++) {
-        const int64_t part = plan->open[k];
-        const int64_t writes = frame->firsts[part + 1] - frame->firsts[part];
-        const skg_open_part own = {.open = k,
-                                   .raster = raster,
-                                   .shared = shared,
-                                   .moves = moves.memory,
-                                   .first_move = move,
-                                   .move_count = writes,
-                                   .count_plane = plane + writes,
-                                   .bad = plan->bad.memory};
-        plane += writes + 1;
-        move += writes;
-        SKG_TRY_CLEANUP(skg_raster_bad_pixels(raster, own.count_plane, own.bad, &job->log));
-        SKG_TRY_CLEANUP(skg_job_read(job, plan->bad.memory, (1 + SKG_FIRST_BAD) * (int64_t)sizeof *job->bad,
-                                     job->bad + k * (1 + SKG_FIRST_BAD)));
-        if (writes > 0) SKG_TRY_CLEANUP(skg_open_part_repair(plan, job, frame, &own));
+/* From `first` in job->bad_open on: as many parts as the planes suffice for. Returns them in batch->parts. */
+static skg_status run_batch(const batching *b, int64_t first, skg_open_batch *batch) {
+    skg_plan *plan = b->plan;
+    skg_job *job = b->job;
+    cl_int *table = NULL, *fields = NULL;
+    int64_t planes = 0;
+    *batch = (skg_open_batch){.open = job->bad_open + first, .raster = b->raster, .shared = b->shared};
+    while (first + batch->parts < job->bad_count) {
+        const int64_t its = planes_of(b, batch->open[batch->parts]);
+        if (planes + its > b->planes) break;
+        planes += its;
+        batch->parts++;
     }
-cleanup:
-    skg_buffer_release(&moves); /* OpenCL keeps it until what is enqueued is done */
-    return status;
+    SKG_TRY(skg_job_stage(job, batch->parts + planes, sizeof *table, "open parts", &table));
+    SKG_TRY(skg_job_stage(job, 4 * b->planes, sizeof *fields, "fields", &fields));
+    fill_batch(b, batch, table, fields);
+    const int64_t bytes = (batch->parts + planes) * (int64_t)sizeof *table;
+    SKG_TRY(skg_buffer_reserve(plan->context, &plan->open_table, bytes, CL_MEM_READ_ONLY,
+                               "planes of open parts"));
+    SKG_TRY(skg_stage_write(plan->context, "upload", plan->open_table.memory, 0, bytes, table, &job->log));
+    SKG_TRY(skg_geometry_weigh(plan->context, &plan->geometry, &b->frame->camera, b->parts,
+                               b->frame->scale.scale));
+    SKG_TRY(skg_raster_run(b->raster, &plan->geometry, fields, &job->log));
+    SKG_TRY(skg_raster_bad_pixels(b->raster, batch->parts, plan->open_table.memory, first, plan->bad.memory,
+                                  &job->log));
+    SKG_TRY(add_sums(plan, job, batch));
+    return skg_open_repair(plan, job, b->frame, batch);
 }
 
 skg_status skg_open_parts_add(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
                               skg_raster *shared) {
-    const int64_t parts = plan->scene->count;
+    batching b = {.plan = plan, .job = job, .frame = frame, .shared = shared};
+    skg_open_batch batch;
     skg_status status = SKG_OK;
-    for (int64_t first = 0; first < plan->open_count && status == SKG_OK; first += BATCH) {
-        const int64_t left = plan->open_count - first, open = left < BATCH ? left : BATCH;
-        open_batch batch = {0};
-        int64_t writes = 0;
-        for (int64_t k = first; k < first + open; k++)
-            writes += frame->firsts[plan->open[k] + 1] - frame->firsts[plan->open[k]];
-        if (writes == 0) continue; /* not of interest: lengths of another part */
-        SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *batch.parts, "open parts", &batch.parts));
-        SKG_TRY_CLEANUP(skg_alloc(writes + open, sizeof *batch.weights, "open parts", &batch.weights));
-        SKG_TRY_CLEANUP(skg_job_stage(job, 3 * writes, sizeof *batch.moves, "open parts", &batch.moves));
-        for (int64_t p = 0; p < parts; p++) {
-            batch.parts[p] = frame->parts[p];
-            batch.parts[p].weights = 0;
-        }
-        for (int64_t k = first; k < first + open; k++) add_part(frame, plan->open[k], &batch);
-        status = run_batch(plan, job, frame, shared, first, open, &batch);
-    cleanup:
-        skg_free(&batch.parts);
-        skg_free(&batch.weights);
-    }
+    list_parts(&b);
+    if (job->bad_count == 0) return SKG_OK;
+    SKG_TRY(get_raster(&b));
+    SKG_TRY_CLEANUP(skg_alloc(plan->scene->count, sizeof *b.parts, "open parts", &b.parts));
+    SKG_TRY_CLEANUP(skg_alloc(b.planes, sizeof *b.weights, "open parts", &b.weights));
+    for (int64_t first = 0; first < job->bad_count; first += batch.parts)
+        SKG_TRY_CLEANUP(run_batch(&b, first, &batch));
+    SKG_TRY_CLEANUP(skg_job_read(job, plan->bad.memory,
+                                 job->bad_count * (1 + SKG_FIRST_BAD) * (int64_t)sizeof *job->bad, job->bad));
+cleanup:
+    skg_free(&b.parts);
+    skg_free(&b.weights);
     return status;
 }

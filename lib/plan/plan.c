@@ -137,7 +137,8 @@ static skg_status make_lengths(skg_plan *plan) {
     SKG_TRY(skg_attenuator_create(plan->context, &plan->attenuator));
     SKG_TRY(skg_buffer_reserve(plan->context, &plan->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE,
                                "counters"));
-    return skg_buffer_reserve(plan->context, &plan->bad, (1 + SKG_FIRST_BAD) * (int64_t)sizeof(cl_int),
+    return skg_buffer_reserve(plan->context, &plan->bad,
+                              plan->open_count * (1 + SKG_FIRST_BAD) * (int64_t)sizeof(cl_int),
                               CL_MEM_READ_WRITE, "bad pixels");
 }
 
@@ -296,6 +297,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->image);
     skg_buffer_release(&plan->negative);
     skg_buffer_release(&plan->bad);
+    skg_buffer_release(&plan->open_table);
     skg_buffer_release(&plan->gaps);
     skg_buffer_release(&plan->field.image);
     skg_buffer_release(&plan->mix_lists);
@@ -310,6 +312,7 @@ void skg_plan_release(skg_plan **plan) {
     release_device_memory(last);
     for (int64_t k = 0; last->caps && k < last->open_count; k++) skg_caps_release(&last->caps[k]);
     skg_free(&last->caps);
+    skg_free(&last->told);
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);

@@ -104,6 +104,7 @@ struct skg_plan {
     int64_t open_count;
     int64_t *open;  /* [open_count] parts that are not closed */
     skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
+    int32_t *told;  /* [open_count] digits of the most bad pixels that were warned of; NULL: of none so far */
     skg_scale_grid grid;
     skg_frame_room *room; /* what frames use one after the other; NULL before the first */
     int32_t strategy;     /* decided */
@@ -112,8 +113,10 @@ struct skg_plan {
     skg_raster *rasters[SKG_MOST_RASTERS];
     skg_raster_options raster_options[SKG_MOST_RASTERS];
     skg_raster *main; /* of the last frame: that of the closed parts */
-    skg_buffer image, negative, bad;
-    skg_buffer gaps; /* of the open part at hand: int [rows][columns], as skg_open_gaps leaves them */
+    skg_buffer image, negative;
+    skg_buffer bad;        /* [open_count][1 + SKG_FIRST_BAD] verdicts */
+    skg_buffer open_table; /* of the batch of open parts at hand, as skg_open_add takes it */
+    skg_buffer gaps;       /* and as skg_open_gaps leaves them */
 
     int32_t contest_possible; /* priorities differ, or children are clipped */
     skg_contest_memory contest_memory;

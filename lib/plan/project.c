@@ -249,8 +249,8 @@ static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, co
 }
 
 /* Brings the frame's tables to the device where they differ from those it has. */
-static skg_status upload_tables(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
-                                const skg_geometry_part *part, double scale) {
+skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
+                              const skg_geometry_part *part, double scale) {
     const int32_t next = (geometry->slot + 1) % SKG_TABLE_SLOTS;
     skg_table_slot *slot = &geometry->slots[next];
     cl_command_queue queue = context->device->queue;
@@ -291,7 +291,7 @@ static skg_status get_kernel(skg_context *context, skg_geometry *geometry,
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
                                 const skg_kernel_options *options, const skg_camera *camera,
                                 const skg_geometry_part *part, double scale, skg_stage_log *log) {
-    SKG_TRY(upload_tables(context, geometry, camera, part, scale));
+    SKG_TRY(skg_geometry_weigh(context, geometry, camera, part, scale));
     SKG_TRY(get_kernel(context, geometry, options));
     const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
     const cl_mem memory[] = {geometry->part_table.memory, geometry->vertex_blocks.memory,

@@ -77,6 +77,10 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
                                 const skg_kernel_options *options, const skg_camera *camera,
                                 const skg_geometry_part *part, double scale, skg_stage_log *log);
 
+/* Enqueues another part table for a frame that is projected: the same parts with other weights. */
+skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
+                              const skg_geometry_part *part, double scale);
+
 /* Bytes on the device. */
 int64_t skg_geometry_bytes(const skg_geometry *geometry);
 

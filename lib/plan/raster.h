@@ -35,9 +35,10 @@ void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *fields,
                           skg_stage_log *log);
 
-/* Enqueues the verdict on a count plane into int result[1 + SKG_FIRST_BAD]: how many pixels do not cancel,
- * then the first ones, row * columns + column, ascending. */
-skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t plane, cl_mem result, skg_stage_log *log);
+/* Enqueues the verdicts on `count` count planes (int planes[], on the device) into int verdicts[first...][1 +
+ * SKG_FIRST_BAD]: how many pixels do not cancel, then the first ones, row * columns + column, ascending. */
+skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem planes, int64_t first,
+                                 cl_mem verdicts, skg_stage_log *log);
 
 /* Enqueues a read of how often triangles are listed in tiles, into listed[2]: in lists of one tile, in the
  * list for all tiles. It must stay. Nothing is written by strategies without tiles. */

@@ -26,7 +26,7 @@ struct skg_raster {
     skg_buffer scratch;                       /* bands: an image for each worker */
     skg_buffer counts, starts, list, for_all; /* tiles; of bands: counters, pieces, pool and list for all */
     skg_buffer queue;                         /* atomics: strips of large triangles */
-    skg_buffer rows_bad;
+    skg_buffer rows_bad; /* [count planes][rows][3] of the last verdicts, as counts.cl leaves it */
     cl_kernel kernels[SKG_RASTER_KERNELS]; /* NULL: not used by the strategy */
     cl_kernel bad_rows, bad;               /* made on demand */
 };

@@ -18,14 +18,15 @@ typedef struct {
     int turned;
 } casting;
 
-skg_status skg_pixel_list_make(int64_t columns, int64_t rows, const int32_t *marks, skg_pixel_list *list) {
+skg_status skg_pixel_list_make(int64_t columns, int64_t rows, int64_t first, int64_t end,
+                               const int32_t *marks, skg_pixel_list *list) {
     skg_status status = SKG_OK;
     *list = (skg_pixel_list){0};
-    for (int64_t k = 0; k < rows * columns; k++) list->count += marks[k] != 0;
+    for (int64_t k = first * columns; k < end * columns; k++) list->count += marks[k] != 0;
     SKG_TRY_CLEANUP(skg_alloc(rows + 1, sizeof *list->first, "bad pixels", &list->first));
     SKG_TRY_CLEANUP(skg_alloc(list->count, sizeof *list->columns, "bad pixels", &list->columns));
     for (int64_t r = 0, k = 0; r < rows; r++) {
-        for (int64_t c = 0; c < columns; c++)
+        for (int64_t c = 0; c < columns && r >= first && r < end; c++)
             if (marks[r * columns + c]) list->columns[k++] = (int32_t)c;
         list->first[r + 1] = k;
     }
@@ -129,18 +130,25 @@ static void cast_triangle(const casting *c, const seen *p0, const seen *p1, cons
     }
 }
 
+/* The middle of a loop, about which its cap is a fan. */
+static seen see_middle(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps, int64_t loop,
+                       const double *pose) {
+    const int64_t first = caps->first[loop], end = caps->first[loop + 1];
+    double mean[3] = {0};
+    for (int64_t k = first; k < end; k++) {
+        double at[3];
+        skg_mesh_vertex(mesh, caps->vertices[k], at);
+        for (int a = 0; a < 3; a++) mean[a] += at[a] / (double)(end - first);
+    }
+    return see(camera, pose, mean);
+}
+
 static void cast_caps(const casting *c, const skg_mesh *mesh, const skg_caps *caps, const double *pose,
                       const seen *vertices) {
     for (int64_t l = 0; l < caps->loops; l++) {
         const int32_t *loop = caps->vertices + caps->first[l];
         const int64_t count = caps->first[l + 1] - caps->first[l];
-        double mean[3] = {0};
-        for (int64_t k = 0; k < count; k++) {
-            double at[3];
-            skg_mesh_vertex(mesh, loop[k], at);
-            for (int a = 0; a < 3; a++) mean[a] += at[a] / (double)count;
-        }
-        const seen apex = see(c->camera, pose, mean);
+        const seen apex = see_middle(c->camera, mesh, caps, l, pose);
         for (int64_t k = 0; k < count; k++)
             cast_triangle(c, &apex, &vertices[loop[(k + 1) % count]], &vertices[loop[k]]);
     }
@@ -167,4 +175,64 @@ skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_
     cast_caps(&c, mesh, caps, pose, vertices);
     skg_free(&vertices);
     return SKG_OK;
+}
+
+/* --- where caps are
+ * ---------------------------------------------------------------------------------------------- */
+
+/* Pixels by which caps grow: more than a device errs by, so that rays past a rim count as through the hole.
+ */
+static const double MARGIN = 0.25;
+
+/* Widens [low, high] to the columns of edge ab between two rows. */
+static void widen(const seen *a, const seen *b, double from, double to, double *low, double *high) {
+    const double ax = a->x / a->w, ay = a->y / a->w, dx = b->x / b->w - ax, dy = b->y / b->w - ay;
+    double s = 0, e = 1;
+    if (dy != 0) {
+        s = fmax(fmin((from - ay) / dy, (to - ay) / dy), 0);
+        e = fmin(fmax((from - ay) / dy, (to - ay) / dy), 1);
+    } else if (ay < from || ay > to) {
+        return;
+    }
+    if (s > e) return;
+    *low = fmin(*low, fmin(ax + s * dx, ax + e * dx));
+    *high = fmax(*high, fmax(ax + s * dx, ax + e * dx));
+}
+
+static void mark_triangle(const skg_camera *camera, const seen *const corner[3], int32_t *marks) {
+    const double columns = (double)camera->columns, rows = (double)camera->rows;
+    double top = HUGE_VAL, bottom = -HUGE_VAL;
+    int ahead = 1;
+    for (int k = 0; k < 3; k++) {
+        ahead &= in_front(corner[k]->w);
+        top = fmin(top, corner[k]->y / corner[k]->w);
+        bottom = fmax(bottom, corner[k]->y / corner[k]->w);
+    }
+    const double first = ahead ? fmax(ceil(top - MARGIN), 0) : 0;
+    const double last = ahead ? fmin(floor(bottom + MARGIN), rows - 1) : rows - 1;
+    for (double row = first; row <= last; row++) {
+        double low = ahead ? HUGE_VAL : 0, high = ahead ? -HUGE_VAL : columns;
+        for (int k = 0; ahead && k < 3; k++)
+            widen(corner[k], corner[(k + 1) % 3], row - MARGIN, row + MARGIN, &low, &high);
+        const double end = fmin(floor(high + MARGIN), columns - 1);
+        for (double column = fmax(ceil(low - MARGIN), 0); column <= end; column++)
+            marks[(int64_t)row * camera->columns + (int64_t)column] = 1;
+    }
+}
+
+void skg_recast_mark(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps, const double *pose,
+                     int32_t *marks) {
+    for (int64_t l = 0; l < caps->loops; l++) {
+        const int64_t first = caps->first[l], end = caps->first[l + 1];
+        const seen apex = see_middle(camera, mesh, caps, l, pose);
+        double at[3];
+        skg_mesh_vertex(mesh, caps->vertices[end - 1], at);
+        seen last = see(camera, pose, at);
+        for (int64_t k = first; k < end; k++) {
+            skg_mesh_vertex(mesh, caps->vertices[k], at);
+            const seen next = see(camera, pose, at);
+            mark_triangle(camera, (const seen *const[3]){&apex, &last, &next}, marks);
+            last = next;
+        }
+    }
 }

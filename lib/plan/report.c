@@ -129,8 +129,17 @@ static void tell_negative(skg_plan *plan, int32_t pixels) {
                 pixels);
 }
 
+/* Whether so many bad pixels are worth a warning: ten times as many as in any before, from 1 on. */
+static int is_news(skg_plan *plan, int64_t open, int32_t bad) {
+    int32_t class = 0;
+    for (int64_t most = 1; most <= bad; most *= 10) class ++;
+    if (class <= plan->told[open]) return 0;
+    plan->told[open] = class;
+    return 1;
+}
+
 /* bad: of one open part, as skg_raster_bad_pixels leaves it. */
-static void tell_bad(skg_plan *plan, int64_t part, const int32_t *bad) {
+static void tell_bad(skg_plan *plan, int64_t open, const int32_t *bad) {
     static const char *const done[] = {
         [SKG_REPAIR_NONE] = "it is left out there",
         [SKG_REPAIR_NEIGHBOURS] = "it has the mean of its nearest valid pixels there",
@@ -141,6 +150,7 @@ static void tell_bad(skg_plan *plan, int64_t part, const int32_t *bad) {
     const int32_t repair = hopeless ? SKG_REPAIR_NONE : plan->options.repair;
     plan->report.bad_pixels += bad[0];
     if (repair != SKG_REPAIR_NONE) plan->report.repaired_pixels += bad[0];
+    if (!is_news(plan, open, bad[0])) return;
     char places[32 * SKG_FIRST_BAD] = "";
     size_t length = 0;
     for (int32_t k = 0; k < bad[0] && k < SKG_FIRST_BAD; k++)
@@ -151,7 +161,7 @@ static void tell_bad(skg_plan *plan, int64_t part, const int32_t *bad) {
         "part %s is open: at %" PRId32
         " pixels its rays do not leave it as often as they enter it; %s; first at (column, row) %s; close "
         "its mesh",
-        plan->scene->parts[part].label, bad[0], done[repair], places);
+        plan->scene->parts[plan->open[open]].label, bad[0], done[repair], places);
 }
 
 static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
@@ -183,9 +193,10 @@ skg_status skg_report_job(skg_job *job) {
                                           ? listings / (double)plan->report.tiles
                                           : (double)plan->report.triangles;
     plan->report.bad_pixels = plan->report.repaired_pixels = 0;
-    for (int64_t k = 0; k < plan->open_count; k++) {
+    if (!plan->told) SKG_TRY(skg_alloc(plan->open_count, sizeof *plan->told, "open parts", &plan->told));
+    for (int64_t k = 0; k < job->bad_count; k++) {
         const int32_t *bad = job->bad + k * (1 + SKG_FIRST_BAD);
-        if (bad[0] > 0) tell_bad(plan, plan->open[k], bad);
+        if (bad[0] > 0) tell_bad(plan, job->bad_open[k], bad);
     }
     return tell_outside(plan, job->negative[1]);
 }

@@ -216,9 +216,10 @@ static skg_status submit(submission *s, skg_job **job) {
     SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->negative, "counters", &made->negative));
     SKG_TRY_CLEANUP(skg_job_stage(made, 2, sizeof *made->listed, "counters", &made->listed));
     SKG_TRY_CLEANUP(skg_job_stage(made, 1, sizeof *made->broken, "counters", &made->broken));
-    if (plan->open_count)
-        SKG_TRY_CLEANUP(skg_job_stage(made, plan->open_count * (1 + SKG_FIRST_BAD), sizeof *made->bad,
-                                      "bad pixels", &made->bad));
+    SKG_TRY_CLEANUP(
+        skg_job_stage(made, plan->open_count, sizeof *made->bad_open, "bad pixels", &made->bad_open));
+    SKG_TRY_CLEANUP(skg_job_stage(made, plan->open_count * (1 + SKG_FIRST_BAD), sizeof *made->bad,
+                                  "bad pixels", &made->bad));
     SKG_TRY_CLEANUP(clear_counters(plan));
     for (int64_t i = 0; i < s->count; i++) SKG_TRY_CLEANUP(enqueue_frame(s, i, poses, made));
     SKG_TRY_CLEANUP(finish(s, made));

@@ -279,15 +279,20 @@ cleanup:
 }
 
 static skg_status read_bad_pixels(skg_context *context, skg_raster *raster, picture *result) {
-    skg_buffer buffer = {0};
-    skg_status status =
-        skg_buffer_reserve(context, &buffer, sizeof result->bad_pixels, CL_MEM_READ_WRITE, "verdict");
-    if (status == SKG_OK) status = skg_raster_bad_pixels(raster, 0, buffer.memory, NULL);
-    if (status == SKG_OK)
-        SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, buffer.memory, CL_TRUE, 0,
-                                           sizeof result->bad_pixels, result->bad_pixels, 0, NULL, NULL));
+    skg_buffer buffer = {0}, planes = {0};
+    const cl_int plane = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(
+        skg_buffer_reserve(context, &buffer, sizeof result->bad_pixels, CL_MEM_READ_WRITE, "verdict"));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &planes, sizeof plane, CL_MEM_READ_ONLY, "planes"));
+    SKG_CL_CLEANUP(clEnqueueWriteBuffer(context->device->queue, planes.memory, CL_TRUE, 0, sizeof plane,
+                                        &plane, 0, NULL, NULL));
+    SKG_TRY_CLEANUP(skg_raster_bad_pixels(raster, 1, planes.memory, 0, buffer.memory, NULL));
+    SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, buffer.memory, CL_TRUE, 0,
+                                       sizeof result->bad_pixels, result->bad_pixels, 0, NULL, NULL));
 cleanup:
     skg_buffer_release(&buffer);
+    skg_buffer_release(&planes);
     return status;
 }
 

@@ -271,6 +271,58 @@ START_TEST(holes_that_coincide) {
 }
 END_TEST
 
+/* A box of 60 mm with windows of 20 mm in two opposite faces: rays through both meet nothing, and balance.
+ * Faces are 3 x 3 squares of 20 mm; vertices are those of a grid of 4 x 4 x 4. */
+static void fill_windowed(soup *s, int windows) {
+    *s = (soup){.vertices = 64};
+    for (int v = 0; v < 64; v++)
+        for (int k = 0; k < 3; k++) s->positions[3 * v + k] = -30 + 20.0 * (v >> 2 * k & 3);
+    for (int face = 0; face < 54; face++) {
+        const int axis = face / 18, side = face / 9 % 2, i = face % 3, j = face / 3 % 3;
+        const int u = 1 << 2 * ((axis + 1) % 3), v = 1 << 2 * ((axis + 2) % 3);
+        const int32_t at = (int32_t)((side ? 3 << 2 * axis : 0) + i * u + j * v);
+        const int32_t along = (int32_t)(side ? u : v), across = (int32_t)(side ? v : u);
+        const int32_t two[6] = {at, at + along, at + u + v, at, at + u + v, at + across};
+        if (windows && axis == 2 && i == 1 && j == 1) continue;
+        memcpy(s->corners + 3 * s->triangles, two, sizeof two);
+        s->triangles += 2;
+    }
+}
+
+/* What counting cannot see: "neighbours" and "none" leave the hole black, "exact" has the full box. */
+START_TEST(in_through_one_hole_and_out_through_another) {
+    static soup closed, broken;
+    static picture truth, left_out, neighbours, exact;
+    fill_windowed(&closed, 0);
+    fill_windowed(&broken, 1);
+    for (int32_t projection = 0; projection < 2; projection++) {
+        wish w = {.precision = SKG_DOUBLE};
+        view.projection = projection ? SKG_PARALLEL : SKG_POINT;
+        take(&closed, NULL, &w, &truth);
+        ck_assert_int_eq(truth.report.open_parts, 0);
+        ck_assert_double_gt(truth.mm[SIDE / 2][SIDE / 2], 59.9);
+        take(&broken, NULL, &w, &left_out);
+        w.repair = SKG_REPAIR_NEIGHBOURS;
+        take(&broken, NULL, &w, &neighbours);
+        w.repair = SKG_REPAIR_EXACT;
+        take(&broken, NULL, &w, &exact);
+        ck_assert_double_eq(left_out.mm[SIDE / 2][SIDE / 2], 0);
+        ck_assert_double_eq(neighbours.mm[SIDE / 2][SIDE / 2], 0);
+        ck_assert_double_le(worst(&exact, &truth), DOUBLE_TOLERANCE);
+        for (int32_t strategy = SKG_STRATEGY_COPIES; strategy <= SKG_STRATEGY_ATOMICS; strategy++) {
+            w.strategy = strategy;
+            take(&broken, NULL, &w, &left_out);
+            ck_assert_mem_eq(left_out.mm, exact.mm, sizeof exact.mm);
+        }
+        /* Single: the most that a ray may err by anywhere, along the box's sides. */
+        wish single = {.repair = SKG_REPAIR_EXACT};
+        take(&closed, NULL, &single, &truth);
+        take(&broken, NULL, &single, &exact);
+        ck_assert_double_le(worst(&exact, &truth), 1e-3);
+    }
+}
+END_TEST
+
 /* The mean over the border of the smallest square with a valid pixel, by brute force. */
 static double neighbours_of(const picture *truth, const picture *left_out, int row, int column) {
     for (int reach = 0;; reach++) {
@@ -373,6 +425,55 @@ START_TEST(what_is_told) {
 }
 END_TEST
 
+static int warnings;
+
+static void count_warnings(int32_t level, const char *message, void *user) {
+    (void)user;
+    warnings += level == SKG_LOG_WARNING && strstr(message, "is open") != NULL;
+}
+
+/* Once for a part; again where it is ten times as bad as it was, not where it is better. */
+START_TEST(what_is_told_once) {
+    static const double z[] = {0, 0, -800, 0, -800};
+    static const int told_by[] = {1, 1, 2, 2, 2};
+    static soup broken;
+    static picture image;
+    static const int64_t first = 0;
+    skg_scene *scene = NULL;
+    skg_plan *plan = NULL;
+    skg_part part;
+    skg_output output;
+    int64_t few = 0;
+    fill_sphere(&broken);
+    remove_triangle(&broken, triangle_at(&broken, 5, 3, -40));
+    ck_skg(skg_scene_create(context, &scene));
+    skg_part_init(&part);
+    part.mesh = mesh_of(&broken), part.material = water;
+    ck_skg(skg_scene_add(scene, &part, NULL));
+    skg_mesh_release(&part.mesh);
+    ck_skg(skg_plan_create(context, scene, &view, beam, NULL, &plan));
+    ck_skg(skg_context_set_log(context, count_warnings, NULL));
+    skg_output_init(&output);
+    output.type = SKG_FLOAT64, output.data = image.mm;
+    for (int k = 0; k < 5; k++) {
+        skg_frame frame;
+        skg_job *job = NULL;
+        double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z[k], 0, 0, 0, 1};
+        skg_frame_init(&frame);
+        frame.posed = 1, frame.posed_ids = &first, frame.posed_poses = pose;
+        ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+        ck_skg(skg_job_wait(&job));
+        skg_plan_report_init(&image.report);
+        ck_skg(skg_plan_get_report(plan, &image.report));
+        if (k == 0) few = image.report.bad_pixels;
+        ck_assert_int_gt(image.report.bad_pixels, z[k] < 0 ? 10 * few : 0); /* told of every frame */
+        ck_assert_int_eq(warnings, told_by[k]);
+    }
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
     tcase_add_test(tests, a_missing_triangle);
@@ -380,10 +481,12 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_t_junction);
     tcase_add_test(tests, a_cut);
     tcase_add_test(tests, holes_that_coincide);
+    tcase_add_test(tests, in_through_one_hole_and_out_through_another);
     tcase_add_test(tests, neighbours_are_the_means_of_squares);
     tcase_add_test(tests, strategies_agree);
     tcase_add_test(tests, no_valid_pixel);
     tcase_add_test(tests, what_is_told);
+    tcase_add_test(tests, what_is_told_once);
 }
 
 SKG_SUITE_MAIN("repair", add_tests)

@@ -46,13 +46,14 @@ typedef struct {
 SKG_API void skg_detector_blur_init(skg_detector_blur *blur);
 
 /* What becomes of an open mesh's bad pixels, where a ray does not leave it as often as it enters it. A ray
- * that goes in by one hole and out by another is not found out by this, and stays without the part. NONE: the
- * part is left out there. NEIGHBOURS: the mean of the part's path parameters over the pixel's neighbourhood,
- * which is grown until it holds valid pixels (Vidal and Villard 2016, 3.2.7); left out where there is no
- * valid one at all. EXACT: cast anew on the host, in double, through the mesh with each loop of open edges
- * capped by a fan about its mean. Exact where loops are plane: any missing triangle, plane holes, cracks at
- * T-junctions, single flipped triangles; one of many surfaces where not. Submitting waits for the raster of
- * open parts. */
+ * that goes in by one hole and out by another is not found out by this, and stays without the part but with
+ * EXACT. NONE: the part is left out there. NEIGHBOURS: the mean of the part's path parameters over the
+ * pixel's neighbourhood, which is grown until it holds valid pixels (Vidal and Villard 2016, 3.2.7); left out
+ * where there is no valid one at all. EXACT: cast anew on the host, in double, through the mesh with each
+ * loop of open edges capped by a fan about its mean; so are rays that pass a cap, which go in through one
+ * hole and out through another where their hits cancel. Exact where loops are plane: any missing triangle,
+ * plane holes, cracks at T-junctions, single flipped triangles; one of many surfaces where not. Submitting
+ * waits for the raster of open parts. */
 enum { SKG_REPAIR_NONE = 0, SKG_REPAIR_NEIGHBOURS = 1, SKG_REPAIR_EXACT = 2 };
 
 /* Shapes of a source that is no point. Flat ones lie across the line from the source to the detector's
