@@ -2,6 +2,8 @@
 
 #include "frames.h"
 
+#include "core/names.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -218,18 +220,19 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     skg_plan_report_init(&report);
     skg_plan_get_report(plan, &report);
-    printf("scene      %s: %" PRId64 " parts (%" PRId64 " open), %" PRId64 " triangles, %" PRId64
-           " vertices\n",
-           session->path, report.parts, report.open_parts, report.triangles, report.vertices);
+    printf("scene      %s: %" PRId64 " %s (%" PRId64 " open), %" PRId64 " triangles, %" PRId64 " vertices\n",
+           session->path, report.parts, skg_plural(report.parts, "part", "parts"), report.open_parts,
+           report.triangles, report.vertices);
     printf("detector   %" PRId64 " x %" PRId64 " pixels\n", session->view.columns, session->view.rows);
     print_beam(session);
     printf("device     %s, %.1f MiB used\n", session->device.name,
            (double)report.device_bytes / (1024.0 * 1024.0));
     printf("precision  %s\n", cli_precision_names[report.precision]);
     print_strategy(&report);
-    printf("planes     %" PRId64 " for %" PRId64 " parts, from %" PRId64 " accumulators of %" PRId64
-           " bits\n",
-           report.planes, report.parts - report.open_parts, report.accumulators, report.plane_bits);
+    const int64_t closed = report.parts - report.open_parts;
+    printf("planes     %" PRId64 " for %" PRId64 " %s, from %" PRId64 " %s of %" PRId64 " bits\n",
+           report.planes, closed, skg_plural(closed, "part", "parts"), report.accumulators,
+           skg_plural(report.accumulators, "accumulator", "accumulators"), report.plane_bits);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
            " of them repaired; %" PRId64 " with a negative exponent; %" PRId64
            " outside the verified range\n",
