@@ -3,6 +3,7 @@
 
 #include "explain.h"
 #include "folder.h"
+#include "interrupt.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -25,8 +26,8 @@ static const cli_flag flag_at = {"--at", "T",
                                  "one picture at this time in s, with the events until then: the\n"
                                  "frame that a sequence has there"};
 static const cli_flag flag_meshes = {"--meshes", "DIR",
-                                     "a PLY file of every part that moves, every frame, with the\n"
-                                     "displacement of each vertex in mm"};
+                                     "a binary PLY file of every part that moves, every frame,\n"
+                                     "with the displacement of each vertex in mm"};
 static const cli_flag flag_outline = {"--outline", "PARTS@P",
                                       "draws the outlines that parts have at phase P, as\n"
                                       "ribs,diaphragm@0"};
@@ -70,6 +71,7 @@ static int read_flags(const cli_arguments *arguments, cli_fluoroscopy *f, sequen
     *s = (sequence){.fps = 30};
     s->place = cli_value(arguments, &flag_place);
     s->meshes = cli_value(arguments, &flag_meshes);
+    if (s->meshes) cli_guard_output(s->meshes);
     if (!s->place) return cli_error(CLI_USAGE, "breathe: nowhere to write to; add -o DIR");
     int exit_status = read_positive(arguments, &flag_seconds, &s->seconds);
     if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &flag_fps, &s->fps);

@@ -1,38 +1,58 @@
 #include "breathe.h"
 
 #include "folder.h"
+#include "plot.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Text PLY: nine digits bring every float back. */
+enum { VERTEX_BYTES = 3 * 8 + 4, TRIANGLE_BYTES = 1 + 3 * 4, LONGEST_HEADER = 512 };
+
+static unsigned char *put(unsigned char *to, uint64_t bits, int bytes) {
+    for (int i = 0; i < bytes; i++) to[i] = (unsigned char)(bits >> (8 * i));
+    return to + bytes;
+}
+
+static unsigned char *put_vertex(unsigned char *to, const double *now, const double *rest) {
+    const float moved =
+        (float)sqrt((now[0] - rest[0]) * (now[0] - rest[0]) + (now[1] - rest[1]) * (now[1] - rest[1]) +
+                    (now[2] - rest[2]) * (now[2] - rest[2]));
+    uint32_t narrow;
+    for (int k = 0; k < 3; k++) {
+        uint64_t wide;
+        memcpy(&wide, now + k, sizeof wide);
+        to = put(to, wide, 8);
+    }
+    memcpy(&narrow, &moved, sizeof narrow);
+    return put(to, narrow, 4);
+}
+
+/* Binary PLY, positions in double as they are. */
 static int write_ply(const char *path, int64_t vertices, const double *now, const double *rest,
                      int64_t triangles, const int32_t *corners) {
-    FILE *f = fopen(path, "w");
-    if (!f) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
-    fprintf(
-        f,
-        "ply\nformat ascii 1.0\ncomment mm; displacement from the scene's own mesh\nelement vertex %" PRId64
-        "\nproperty float x\nproperty float y\nproperty float z\nproperty float displacement\nelement face "
-        "%" PRId64 "\nproperty list uchar int vertex_indices\nend_header\n",
-        vertices, triangles);
-    for (int64_t i = 0; i < vertices; i++) {
-        const double *p = now + 3 * i, *q = rest + 3 * i;
-        const double moved = sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
-                                  (p[2] - q[2]) * (p[2] - q[2]));
-        fprintf(f, "%.9g %.9g %.9g %.9g\n", p[0], p[1], p[2], moved);
+    unsigned char *bytes =
+        malloc((size_t)(LONGEST_HEADER + vertices * VERTEX_BYTES + triangles * TRIANGLE_BYTES));
+    if (!bytes) return cli_error(CLI_DEVICE, "out of host memory for %s", path);
+    unsigned char *to =
+        bytes +
+        snprintf((char *)bytes, LONGEST_HEADER,
+                 "ply\nformat binary_little_endian 1.0\ncomment mm; displacement from the scene's own "
+                 "mesh\nelement vertex %" PRId64
+                 "\nproperty double x\nproperty double y\nproperty double z\nproperty float "
+                 "displacement\nelement face %" PRId64
+                 "\nproperty list uchar int vertex_indices\nend_header\n",
+                 vertices, triangles);
+    for (int64_t i = 0; i < vertices; i++) to = put_vertex(to, now + 3 * i, rest + 3 * i);
+    for (int64_t t = 0; t < triangles; t++) {
+        to = put(to, 3, 1);
+        for (int k = 0; k < 3; k++) to = put(to, (uint32_t)corners[3 * t + k], 4);
     }
-    for (int64_t t = 0; t < triangles; t++)
-        fprintf(f, "3 %" PRId32 " %" PRId32 " %" PRId32 "\n", corners[3 * t], corners[3 * t + 1],
-                corners[3 * t + 2]);
-    int failed = ferror(f) | fclose(f);
-    if (!failed) return CLI_DONE;
-    remove(path);
-    return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
+    const int exit_status = cli_write_file(path, bytes, (size_t)(to - bytes));
+    free(bytes);
+    return exit_status;
 }
 
 static int write_part(const cli_fluoroscopy *f, int64_t part, const char *label, const skg_mesh *mesh,

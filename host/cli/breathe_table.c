@@ -5,15 +5,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 int cli_table_open(const char *path, cli_table *table) {
     *table = (cli_table){0};
-    size_t room = strlen(path) + 6;
+    size_t room = strlen(path) + 32;
     table->path = malloc(room);
     table->temporary = malloc(room);
     if (!table->path || !table->temporary) return cli_error(CLI_DEVICE, "out of host memory");
     snprintf(table->path, room, "%s", path);
-    snprintf(table->temporary, room, "%s.part", path);
+    snprintf(table->temporary, room, "%s.part-%ld", path, (long)getpid());
     table->stream = fopen(table->temporary, "w");
     if (!table->stream) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
     fputs("t_s,phase,amplitude,thoracic,diaphragmatic,lung_ml,tidal_ml,lung_hu,diaphragm_left_mm,"

@@ -1,5 +1,6 @@
 /* The command skiagraph: finds the verb, parses what follows it, runs it. */
 #include "args.h"
+#include "interrupt.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -33,12 +34,24 @@ static int find_verb(const char *name, const cli_verb **verb) {
     return cli_unknown(name[0] == '-' ? "flag" : "verb", name, names, VERBS + 2, "help");
 }
 
+/* -o names what is written, whatever the verb. */
+static void guard_outputs(const cli_arguments *arguments) {
+    const char *path;
+    for (int f = 0; arguments->verb->flags[f]; f++)
+        for (int i = 0; strcmp(arguments->verb->flags[f]->name, "-o") == 0 &&
+                        (path = cli_nth_value(arguments, arguments->verb->flags[f], i));
+             i++)
+            cli_guard_output(path);
+}
+
 static int run_verb(const cli_verb *verb, int count, char **words) {
     cli_arguments arguments;
     int exit_status = cli_parse(verb, count, words, &arguments);
     if (exit_status == CLI_DONE && arguments.help) {
         cli_print_help(verb);
     } else if (exit_status == CLI_DONE) {
+        cli_catch_signals();
+        guard_outputs(&arguments);
         cli_set_quiet(cli_given(&arguments, &cli_flag_quiet));
         exit_status = verb->run(&arguments);
     }

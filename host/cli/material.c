@@ -1,4 +1,6 @@
 /* skiagraph material */
+#include "material.h"
+
 #include "plot.h"
 
 #include <inttypes.h>
@@ -8,9 +10,8 @@
 #include <string.h>
 #include <strings.h>
 
-enum { PROCESSES = 4, MOST_ROWS = 100000, GRID = 600 };
+enum { MOST_ROWS = 100000, GRID = 600 };
 
-static const char *const processes[PROCESSES] = {"Rayleigh", "Compton", "photo", "pair"};
 static const char *const interpolations[] = {"bilinear", "bilogarithmic"};
 static const double usual_kev[] = {10, 15, 20, 30, 40, 50, 60, 80, 100, 150};
 
@@ -23,22 +24,6 @@ static const cli_flag flag_list = {"--list", NULL, "the names of the tables inst
 static const cli_flag flag_naive = {"--naive", "bilinear|bilogarithmic",
                                     "beside HU:...: mu between water, soft tissue and bone by Hounsfield\n"
                                     "number (Eq. 13 of Vidal and Villard 2016), to see its error"};
-
-/* NaN where something is not known. */
-typedef struct {
-    double kev, mu_rho, process[PROCESSES], per_cm, hu, naive_per_cm;
-} row;
-
-typedef struct {
-    skg_material *material, *naive; /* naive: NULL unless asked for */
-    const char *name, *note;
-    double density;
-    int has_parts;    /* elements are known: coefficients by mass */
-    int has_per_cm;   /* density, or mu itself, is known */
-    double low, high; /* keV, of the energies asked for */
-    row *rows;        /* the table */
-    int64_t count;
-} matter;
 
 /* --- energies ------------------------------------------------------------------------------------------ */
 
@@ -65,7 +50,7 @@ static int read_energies(const char *text, double numbers[3]) {
     return CLI_DONE;
 }
 
-static int make_rows(const char *text, matter *m) {
+static int make_rows(const char *text, cli_matter *m) {
     double n[3] = {0, 0, 0};
     m->count = sizeof usual_kev / sizeof *usual_kev;
     if (text) {
@@ -84,15 +69,15 @@ static int make_rows(const char *text, matter *m) {
 
 /* --- values --------------------------------------------------------------------------------------------- */
 
-static skg_status fill_row(const matter *m, row *r) {
+static skg_status fill_row(const cli_matter *m, cli_matter_row *r) {
     r->mu_rho = r->per_cm = r->hu = r->naive_per_cm = (double)NAN;
-    for (int p = 0; p < PROCESSES; p++) r->process[p] = (double)NAN;
+    for (int p = 0; p < CLI_PROCESSES; p++) r->process[p] = (double)NAN;
     skg_status status = SKG_OK;
     if (m->has_parts) {
         skg_coefficients c;
         skg_coefficients_init(&c);
         status = skg_material_coefficients(m->material, r->kev, &c);
-        const double process[PROCESSES] = {c.rayleigh, c.compton, c.photo, c.pair};
+        const double process[CLI_PROCESSES] = {c.rayleigh, c.compton, c.photo, c.pair};
         memcpy(r->process, process, sizeof process);
         r->mu_rho = c.total;
     }
@@ -102,7 +87,7 @@ static skg_status fill_row(const matter *m, row *r) {
     return status;
 }
 
-static skg_status find_matter(const char *name, double density, matter *m) {
+static skg_status find_matter(const char *name, double density, cli_matter *m) {
     int64_t parts = 0;
     skg_status status = skg_material_named(name, &m->material);
     if (status == SKG_OK && density > 0) {
@@ -120,7 +105,7 @@ static skg_status find_matter(const char *name, double density, matter *m) {
     return status;
 }
 
-static int find_naive(const cli_arguments *arguments, const char *name, matter *m) {
+static int find_naive(const cli_arguments *arguments, const char *name, cli_matter *m) {
     int32_t interpolation = -1;
     char *end = NULL;
     int exit_status = cli_choice(arguments, &flag_naive, interpolations, 2, &interpolation);
@@ -132,129 +117,6 @@ static int find_naive(const cli_arguments *arguments, const char *name, matter *
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* --- text ----------------------------------------------------------------------------------------------- */
-
-static void print_parts(const matter *m) {
-    int64_t count = 0;
-    skg_material_size(m->material, &count);
-    for (int64_t i = 0; i < count; i++) {
-        int32_t z = 0;
-        double fraction = 0;
-        const char *symbol = "";
-        if (skg_material_part(m->material, i, &z, &fraction) != SKG_OK ||
-            skg_element_symbol(z, &symbol) != SKG_OK)
-            break;
-        printf("%s%s %.6g %%", i == 0 ? "  by mass: " : ", ", symbol, 100 * fraction);
-    }
-    if (count > 0) putchar('\n');
-}
-
-/* The energies of absorption edges within the range asked for. The caller frees them. */
-static double *edges_within(const matter *m, int64_t *count) {
-    int64_t all = 0;
-    *count = 0;
-    if (skg_material_edges(m->material, 0, NULL, &all) != SKG_OK) return NULL;
-    double *edges = calloc((size_t)all + 1, sizeof *edges);
-    if (!edges || skg_material_edges(m->material, all, edges, &all) != SKG_OK) return edges;
-    for (int64_t i = 0; i < all; i++)
-        if (edges[i] >= m->low && edges[i] <= m->high) edges[(*count)++] = edges[i];
-    return edges;
-}
-
-static void print_edges(const matter *m) {
-    int64_t count = 0;
-    double *edges = edges_within(m, &count);
-    for (int64_t i = 0; i < count; i++) printf("%s%.6g", i == 0 ? "  edges: " : ", ", edges[i]);
-    if (count > 0) printf(" keV\n");
-    free(edges);
-}
-
-/* A column of numbers; a dash where it is not known. */
-static void print_number(double value) {
-    if (isfinite(value))
-        printf(" %11.5g", value);
-    else
-        printf(" %11s", "-");
-}
-
-static void print_table(const matter *m) {
-    printf("%s: ", m->name);
-    if (m->density > 0)
-        printf("%g g/cm3\n", m->density);
-    else
-        printf("%s\n", m->has_parts ? "density not known; --density gives one" : "given by its mu");
-    if (*m->note) printf("  %s\n", m->note);
-    print_parts(m);
-    print_edges(m);
-    printf("\n%9s %11s", "keV", "mu/rho");
-    for (int p = 0; p < PROCESSES; p++) printf(" %11s", processes[p]);
-    printf(" %11s %11s%s\n", "mu", "HU", m->naive ? "    naive mu" : "");
-    printf("%9s %11s %11s %11s %11s %11s %11s%s\n", "", "cm2/g", "", "", "", "", "1/cm",
-           m->naive ? "                    1/cm" : "");
-    for (int64_t i = 0; i < m->count; i++) {
-        const row *r = &m->rows[i];
-        printf("%9.6g", r->kev);
-        print_number(r->mu_rho);
-        for (int p = 0; p < PROCESSES; p++) print_number(r->process[p]);
-        print_number(r->per_cm);
-        if (isfinite(r->hu))
-            printf(" %11.1f", r->hu);
-        else
-            print_number(r->hu);
-        if (m->naive) print_number(r->naive_per_cm);
-        putchar('\n');
-    }
-}
-
-static json_t *matter_json(const matter *m) {
-    json_t *object = json_object(), *rows = json_array();
-    json_object_set_new(object, "name", cli_json_text(m->name));
-    json_object_set_new(object, "density_g_cm3", cli_json_number(m->density > 0 ? m->density : (double)NAN));
-    json_object_set_new(object, "note", cli_json_text(m->note));
-    for (int64_t i = 0; i < m->count; i++) {
-        const row *r = &m->rows[i];
-        json_t *one = json_object();
-        json_object_set_new(one, "energy_keV", cli_json_number(r->kev));
-        json_object_set_new(one, "mu_rho_cm2_g", cli_json_number(r->mu_rho));
-        json_object_set_new(one, "mu_per_cm", cli_json_number(r->per_cm));
-        json_object_set_new(one, "hu", cli_json_number(r->hu));
-        for (int p = 0; p < PROCESSES; p++) {
-            char key[32];
-            snprintf(key, sizeof key, "%s_cm2_g", processes[p]);
-            if (key[0] == 'R' || key[0] == 'C') key[0] = (char)(key[0] - 'A' + 'a');
-            json_object_set_new(one, key, cli_json_number(r->process[p]));
-        }
-        if (m->naive) json_object_set_new(one, "naive_mu_per_cm", cli_json_number(r->naive_per_cm));
-        json_array_append_new(rows, one);
-    }
-    json_object_set_new(object, "rows", rows);
-    return object;
-}
-
-/* The table as .csv; an empty cell where a number is not known. NULL: out of memory. The caller frees it. */
-static char *matter_csv(const matter *m) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    if (!stream) return NULL;
-    fprintf(stream,
-            "energy (keV),mu/rho (cm2/g),Rayleigh (cm2/g),Compton (cm2/g),photo (cm2/g),pair (cm2/g),"
-            "mu (1/cm),HU%s\n",
-            m->naive ? ",naive mu (1/cm)" : "");
-    for (int64_t i = 0; i < m->count; i++) {
-        const row *r = &m->rows[i];
-        const double cells[] = {r->mu_rho,     r->process[0], r->process[1], r->process[2],
-                                r->process[3], r->per_cm,     r->hu,         r->naive_per_cm};
-        fprintf(stream, "%.10g", r->kev);
-        for (int c = 0; c < (m->naive ? 8 : 7); c++)
-            fprintf(stream, isfinite(cells[c]) ? ",%.10g" : ",", cells[c]);
-        fputc('\n', stream);
-    }
-    if (fclose(stream) == 0) return text;
-    free(text);
-    return NULL;
-}
-
 /* --- plot ----------------------------------------------------------------------------------------------- */
 
 static int ascending(const void *a, const void *b) {
@@ -263,9 +125,9 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* Energies for the plot: evenly spaced logarithms, and every edge from both sides. */
-static double *plot_energies(const matter *m, int64_t *count) {
+static double *plot_energies(const cli_matter *m, int64_t *count) {
     int64_t edge_count = 0;
-    double *edges = edges_within(m, &edge_count);
+    double *edges = cli_matter_edges(m, &edge_count);
     double *kev = calloc((size_t)(GRID + 2 * edge_count), sizeof *kev);
     *count = 0;
     for (int i = 0; kev && i < GRID; i++)
@@ -279,29 +141,29 @@ static double *plot_energies(const matter *m, int64_t *count) {
     return kev;
 }
 
-/* Curves of mu/rho and processes; of mu where that is all there is, or is compared. */
-static int fill_curves(const matter *m, const double *kev, int64_t count, double *values) {
+/* Curves of mu/rho and cli_processes; of mu where that is all there is, or is compared. */
+static int fill_curves(const cli_matter *m, const double *kev, int64_t count, double *values) {
     int by_mass = m->has_parts && !m->naive;
     for (int64_t i = 0; i < count; i++) {
-        row r = {.kev = kev[i]};
+        cli_matter_row r = {.kev = kev[i]};
         skg_status status = fill_row(m, &r);
         if (status != SKG_OK) return cli_fail(status);
         values[i] = by_mass ? r.mu_rho : r.per_cm;
         values[count + i] = r.naive_per_cm;
-        for (int p = 0; by_mass && p < PROCESSES; p++) values[(p + 1) * count + i] = r.process[p];
+        for (int p = 0; by_mass && p < CLI_PROCESSES; p++) values[(p + 1) * count + i] = r.process[p];
     }
     return CLI_DONE;
 }
 
-static int write_outputs(const cli_arguments *arguments, const matter *m, int plots) {
+static int write_outputs(const cli_arguments *arguments, const cli_matter *m, int plots) {
     int64_t count = 0;
     int by_mass = m->has_parts && !m->naive, exit_status = CLI_DONE;
     double *kev = NULL, *values = NULL;
-    char *csv = matter_csv(m), title[256];
-    cli_curve curves[PROCESSES + 1] = {{.name = by_mass ? "total" : m->name}};
+    char *csv = cli_matter_csv(m), title[256];
+    cli_curve curves[CLI_PROCESSES + 1] = {{.name = by_mass ? "total" : m->name}};
     cli_plot plot = {.title = title, .x_label = "photon energy (keV)", .is_log = 1, .curves = curves};
     if (plots > 0) kev = plot_energies(m, &count);
-    if (kev) values = calloc((size_t)count * (PROCESSES + 1), sizeof *values);
+    if (kev) values = calloc((size_t)count * (CLI_PROCESSES + 1), sizeof *values);
     if (!csv || (plots > 0 && !values)) exit_status = cli_error(CLI_DEVICE, "out of host memory");
     if (exit_status == CLI_DONE && plots > 0) exit_status = fill_curves(m, kev, count, values);
     if (exit_status == CLI_DONE) {
@@ -310,10 +172,10 @@ static int write_outputs(const cli_arguments *arguments, const matter *m, int pl
         else
             snprintf(title, sizeof title, "%s", m->name);
         plot.y_label = by_mass ? "mass attenuation coefficient (cm2/g)" : "attenuation coefficient (1/cm)";
-        plot.count = by_mass ? PROCESSES + 1 : m->naive ? 2 : 1;
-        for (int c = 0; c < plot.count; c++)
+        plot.count = by_mass ? CLI_PROCESSES + 1 : m->naive ? 2 : 1;
+        for (int c = 0; plots > 0 && c < plot.count; c++)
             curves[c].x = kev, curves[c].y = values + c * count, curves[c].count = count;
-        for (int p = 0; by_mass && p < PROCESSES; p++) curves[p + 1].name = processes[p];
+        for (int p = 0; by_mass && p < CLI_PROCESSES; p++) curves[p + 1].name = cli_processes[p];
         if (m->naive) curves[0].name = "Schneider 2000", curves[1].name = "naive (Eq. 13)";
         if (by_mass && m->high <= 1022) plot.count--; /* no pairs below twice an electron's rest energy */
         exit_status = cli_write_plots(arguments, &plot, csv);
@@ -349,7 +211,7 @@ static int list_names(int json) {
     return cli_json_print(object);
 }
 
-static int look_up(const cli_arguments *arguments, matter *m) {
+static int look_up(const cli_arguments *arguments, cli_matter *m) {
     const char *name = arguments->operands[0];
     double density = 0;
     int plots = 0;
@@ -365,14 +227,14 @@ static int look_up(const cli_arguments *arguments, matter *m) {
     if (status != SKG_OK) return cli_fail(status);
     exit_status = write_outputs(arguments, m, plots);
     if (exit_status != CLI_DONE) return exit_status;
-    if (cli_given(arguments, &cli_flag_json)) return cli_json_print(matter_json(m));
-    if (!cli_is_quiet()) print_table(m);
+    if (cli_given(arguments, &cli_flag_json)) return cli_json_print(cli_matter_json(m));
+    if (!cli_is_quiet()) cli_matter_print(m);
     cli_tell_plots(arguments);
     return CLI_DONE;
 }
 
 static int run(const cli_arguments *arguments) {
-    matter m = {.material = NULL};
+    cli_matter m = {.material = NULL};
     if (cli_given(arguments, &flag_list)) return list_names(cli_given(arguments, &cli_flag_json));
     if (arguments->operand_count == 0)
         return cli_error(CLI_USAGE, "material: of which material? give a NAME, or --list");

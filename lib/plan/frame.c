@@ -4,11 +4,40 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What a frame knows of its parts, one for each. */
+struct skg_frame_room {
+    skg_geometry_part *parts;
+    skg_extent *extents;
+    skg_scale_part *scales; /* of those that add something */
+};
+
+void skg_frame_room_release(skg_frame_room **room) {
+    if (!*room) return;
+    skg_free(&(*room)->parts);
+    skg_free(&(*room)->extents);
+    skg_free(&(*room)->scales);
+    skg_free(room);
+}
+
+static skg_status make_room(skg_plan *plan) {
+    const int64_t count = plan->scene->count;
+    skg_frame_room *room = NULL;
+    skg_status status = SKG_OK;
+    if (plan->room) return SKG_OK;
+    SKG_TRY(skg_alloc(1, sizeof *room, "parts of a frame", &room));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *room->parts, "parts of a frame", &room->parts));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *room->extents, "parts of a frame", &room->extents));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *room->scales, "parts of a frame", &room->scales));
+    plan->room = room;
+    return SKG_OK;
+cleanup:
+    skg_frame_room_release(&room);
+    return status;
+}
+
 static void release_parts(skg_frame_parts *frame) {
-    skg_free(&frame->parts);
     skg_free(&frame->writes);
     skg_free(&frame->first_write);
-    skg_free(&frame->extents);
     skg_mix_release(&frame->mix);
     skg_contest_release(&frame->contest);
 }
@@ -68,13 +97,13 @@ static double largest_weight(const skg_frame_parts *frame, int64_t part) {
 }
 
 /* Where the parts lie, what they may add, and the scale that follows from both. */
-static skg_status place_parts(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+static skg_status place_parts(skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
     const skg_scene *scene = plan->scene;
-    skg_scale_part *scales = NULL;
     int64_t adding = 0;
-    SKG_TRY(skg_alloc(scene->count, sizeof *frame->parts, "parts of a frame", &frame->parts));
-    SKG_TRY(skg_alloc(scene->count, sizeof *frame->extents, "parts of a frame", &frame->extents));
-    SKG_TRY(skg_alloc(scene->count, sizeof *scales, "parts of a frame", &scales));
+    SKG_TRY(make_room(plan));
+    skg_scale_part *scales = plan->room->scales;
+    frame->parts = plan->room->parts;
+    frame->extents = plan->room->extents;
     for (int64_t p = 0; p < scene->count; p++) {
         const skg_mesh *mesh = scene->parts[p].mesh;
         const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
@@ -94,7 +123,6 @@ static skg_status place_parts(const skg_plan *plan, const skg_frame_work *work, 
     }
     skg_scale_find(&plan->grid, adding, scales, plan->options.precision == SKG_DOUBLE ? 64 : 32,
                    &frame->scale);
-    skg_free(&scales);
     return SKG_OK;
 }
 

@@ -23,12 +23,12 @@ typedef struct {
     skg_kernel_options kernels;
     int64_t planes;                     /* of the raster: accumulators where they are mixed */
     skg_mix mix;                        /* of an image's planes; none: accumulators are planes */
-    skg_geometry_part *parts;           /* [parts] closed ones with their writes, open ones without */
+    skg_geometry_part *parts;           /* [parts], room of the plan's: closed ones with their writes */
     skg_plane_weight *writes;           /* of lengths */
     int64_t *first_write;               /* [parts + 1] of lengths */
     const skg_plane_weight *all_writes; /* what every part adds, open ones too: */
     const int64_t *firsts;              /* [parts + 1] all_writes[firsts[p]] ... */
-    skg_extent *extents;                /* [parts] */
+    skg_extent *extents;                /* [parts], in the plan's room */
     skg_scale scale;
     skg_contest contest; /* closed parts that compete for intervals */
 } skg_frame_parts;

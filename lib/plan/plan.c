@@ -313,6 +313,7 @@ void skg_plan_release(skg_plan **plan) {
     skg_free(&last->open);
     skg_free(&last->overlaps);
     skg_scale_grid_release(&last->grid);
+    skg_frame_room_release(&last->room);
     skg_free(&last->channel_names);
     skg_free(&last->band_kev);
     skg_free(&last->views);

@@ -68,6 +68,11 @@ typedef struct {
 /* Rasterisers compiled so far, by what they can do: sums of 32 or 64 bits, point or parallel beam, ... */
 enum { SKG_MOST_RASTERS = 16 };
 
+/* Memory for what a frame knows of its parts: a million of them take as long to allocate as to fill
+ * (frame.c). */
+typedef struct skg_frame_room skg_frame_room;
+void skg_frame_room_release(skg_frame_room **room);
+
 struct skg_plan {
     skg_refs refs;
     skg_context *context;   /* retained */
@@ -100,7 +105,8 @@ struct skg_plan {
     int64_t *open;  /* [open_count] parts that are not closed */
     skg_caps *caps; /* [open_count] what closes them; NULL: not needed so far */
     skg_scale_grid grid;
-    int32_t strategy; /* decided */
+    skg_frame_room *room; /* what frames use one after the other; NULL before the first */
+    int32_t strategy;     /* decided */
     const char *strategy_reason;
     int32_t raster_count, next_raster;
     skg_raster *rasters[SKG_MOST_RASTERS];

@@ -17,15 +17,21 @@ static skg_status fail(const cursor *here, const char *reason) {
     return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": %s", here->file->name, here->line, reason);
 }
 
-/* To the next word of the line; a backslash at its end continues it. 0: there is none. */
+/* Length of a backslash and the end of line that it takes away; 0: there is none here. */
+static int continuation(const char *c) {
+    if (c[0] != '\\') return 0;
+    if (c[1] == '\n') return 2;
+    return c[1] == '\r' && c[2] == '\n' ? 3 : 0;
+}
+
+/* To the next word of the line, beyond continuations. 0: there is none. */
 static int next_word(cursor *here) {
-    for (;; here->at++) {
+    for (;;) {
         const char *c = here->at;
-        if (c[0] == '\\' && (c[1] == '\n' || (c[1] == '\r' && c[2] == '\n'))) {
-            here->at += c[1] == '\r' ? 2 : 1;
-            here->line++;
-        } else if (*c != ' ' && *c != '\t' && *c != '\r')
-            return *c != '\0' && *c != '\n' && *c != '#';
+        const int length = continuation(c);
+        if (!length && *c != ' ' && *c != '\t' && *c != '\r') return *c != '\0' && *c != '\n' && *c != '#';
+        here->at += length ? length : 1;
+        here->line += length != 0;
     }
 }
 
@@ -34,9 +40,9 @@ static int is_end(char c) {
 }
 
 static void skip_line(cursor *here) {
-    while (next_word(here))
-        while (!is_end(*here->at) || (*here->at == '\\' && here->at[1] != '\n' && here->at[1] != '\r'))
-            here->at++;
+    while (next_word(here)) do {
+            here->at++; /* a word has a letter at least, be it a backslash */
+        } while (!is_end(*here->at) || (*here->at == '\\' && !continuation(here->at)));
     while (*here->at != '\0' && *here->at != '\n') here->at++; /* a comment */
     if (*here->at == '\n') here->at++;
     here->line++;

@@ -195,8 +195,14 @@ END_TEST
 START_TEST(meshes_have_displacements) {
     static char bytes[MOST_BYTES + 1];
     ck_run(0, "breathe thorax.json %s %s --phase 0 -o a.mha --meshes m --quiet", SMALL, PLAIN);
-    bytes[read_file("m/liver-0000.ply", bytes)] = '\0';
-    ck_assert_ptr_nonnull(strstr(bytes, "property float displacement\n"));
+    const size_t size = read_file("m/liver-0000.ply", bytes);
+    bytes[size] = '\0';
+    const char *vertices = strstr(bytes, "element vertex "), *faces = strstr(bytes, "element face ");
+    const char *end = strstr(bytes, "end_header\n");
+    ck_assert_ptr_nonnull(strstr(bytes, "property double z\nproperty float displacement\n"));
+    ck_assert(vertices && faces && end);
+    ck_assert_uint_eq(size, (size_t)(end + 11 - bytes) + 28 * strtoul(vertices + 15, NULL, 10) +
+                                13 * strtoul(faces + 13, NULL, 10));
     ck_assert(!has_file("m/spine-0000.ply"));
     ck_run(0, "mesh m/liver-0000.ply m/diaphragm-0000.ply --quiet"); /* closed as they move */
 }

@@ -1,7 +1,7 @@
 /* Scene files: the input is scene.json; a mesh and tables that it may name lie beside it. */
 #include "fuzz/fuzz.h"
 
-#include <skiagraph/setup.h>
+#include <skiagraph/motion.h>
 
 #include <string.h>
 
@@ -25,12 +25,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_expect_sentence(status);
     if (status == SKG_OK) {
         skg_view view;
+        skg_motion *motion = NULL;
         skg_plan_options options;
         skg_view_init(&view);
         skg_plan_options_init(&options);
         fuzz_expect_sentence(skg_setup_view(setup, &view));
         fuzz_expect_sentence(skg_setup_options(setup, &options));
         fuzz_expect_sentence(skg_view_check(&view));
+        fuzz_expect_sentence(skg_motion_create(NULL, setup, &motion));
+        skg_motion_release(&motion);
     }
     skg_setup_release(&setup);
     return 0;

@@ -1,13 +1,14 @@
 /* Command lines: each line of the input is a word, the first one a verb. They are parsed, and every flag is
- * read in every way; nothing is run. */
+ * read in every way. Verbs that need no device and read no scene are run, unless they would write files. */
 #include "cli/args.h"
+#include "cli/plot.h"
 #include "fuzz/fuzz.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const cli_verb *const verbs[] = {&cli_image,    &cli_lbuffer, &cli_plan,   &cli_mesh,
-                                        &cli_material, &cli_beam,    &cli_devices};
+static const cli_verb *const verbs[] = {&cli_image,    &cli_lbuffer, &cli_plan,    &cli_cost,   &cli_mesh,
+                                        &cli_material, &cli_beam,    &cli_devices, &cli_thorax, &cli_breathe};
 
 static void read_flags(const cli_arguments *arguments) {
     static const char *const names[4] = {"auto", "copies", "tiles", "atomics"};
@@ -25,6 +26,14 @@ static void read_flags(const cli_arguments *arguments) {
     }
 }
 
+static void use(const cli_arguments *arguments) {
+    read_flags(arguments);
+    if (arguments->verb != &cli_material && arguments->verb != &cli_beam) return;
+    if (cli_given(arguments, &cli_flag_plot)) return;
+    const int exit_status = arguments->verb->run(arguments);
+    if (exit_status < CLI_DONE || exit_status > CLI_OUTPUT) abort();
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     enum { MOST = 64, VERBS = sizeof verbs / sizeof *verbs };
     char *words[MOST], *text = fuzz_text(data, size), *at = text;
@@ -40,8 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (strcmp(words[0], verbs[i]->name) == 0) verb = verbs[i];
     if (verb) {
         cli_arguments arguments;
-        if (cli_parse(verb, count - 1, words + 1, &arguments) == CLI_DONE && !arguments.help)
-            read_flags(&arguments);
+        if (cli_parse(verb, count - 1, words + 1, &arguments) == CLI_DONE && !arguments.help) use(&arguments);
         cli_arguments_free(&arguments);
     }
     free(text);

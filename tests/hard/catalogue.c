@@ -8,7 +8,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 const run_choice hard_ways[HARD_WAYS] = {{.strategy = SKG_STRATEGY_AUTO},
                                          {.strategy = SKG_STRATEGY_COPIES},
@@ -35,35 +34,6 @@ void hard_check_values(hard_outcome *o, const double *image, int64_t count, doub
             hard_fault(o, "%g at pixel %lld", image[p], (long long)p);
             return;
         }
-}
-
-static double now_ms(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-double hard_frame_ms(skg_plan *plan, const skg_view *view) {
-    double least = HUGE_VAL;
-    for (int n = 0; n < 5; n++) {
-        const double start = now_ms();
-        free(run_image(plan, view));
-        least = fmin(least, now_ms() - start);
-    }
-    return least;
-}
-
-void hard_compare_time(hard_outcome *o, skg_plan *plan, const skg_view *view, int64_t triangles) {
-    const int down = (int)fmax(3, sqrt((double)triangles) / 2);
-    solid sphere = solid_sphere(0.3 * 400, 2 * down, down);
-    skg_view ordinary = run_view(view->columns, 400.0 / (double)view->columns);
-    ordinary.rows = view->rows;
-    skg_scene *scene = run_scene(&sphere, NULL);
-    skg_plan *other = run_plan(scene, &ordinary, (run_choice){0});
-    o->slower = hard_frame_ms(plan, view) / hard_frame_ms(other, &ordinary);
-    skg_plan_release(&other);
-    skg_scene_release(&scene);
-    solid_free(&sphere);
 }
 
 /* --- solids judged by the caster ------------------------------------------------------------------------ */
@@ -108,7 +78,7 @@ static void run_body(const hard_solid *s, hard_outcome *o) {
             double *got = run_lengths(plan, &s->view);
             hard_same_bits(o, way, got, pixels, &first);
             if (way == 0) judge_lengths(s, precision, got, o);
-            if (way == 0 && precision == SKG_SINGLE) hard_compare_time(o, plan, &s->view, s->body.triangles);
+            if (way == 0 && precision == SKG_SINGLE) hard_compare_time(o, scene, plan, &s->view);
             free(got);
             skg_plan_release(&plan);
         }

@@ -47,11 +47,10 @@ void hard_same_bits(hard_outcome *o, int way, const double *image, int64_t count
 /* Every value finite, none below `least`. */
 void hard_check_values(hard_outcome *o, const double *image, int64_t count, double least);
 
-/* ms of the fastest of five frames. */
-double hard_frame_ms(skg_plan *plan, const skg_view *view);
-
-/* Sets o->slower: plan's frames over those of a sphere of so many triangles on a detector of that size. */
-void hard_compare_time(hard_outcome *o, skg_plan *plan, const skg_view *view, int64_t triangles);
+/* Sets o->slower: the fastest frame of the plan over that of an ordinary scene of that size, by turns. Its
+ * size: as many pixels, triangles, and hits of pixels' paths with triangles, which are what work is made of;
+ * in one part, spheres within each other, all of them between source and detector (ordinary.c). */
+void hard_compare_time(hard_outcome *o, const skg_scene *scene, skg_plan *plan, const skg_view *view);
 
 int hard_case_count(void);
 void hard_case_run(int which, hard_outcome *o);

@@ -119,7 +119,7 @@ static void inverted(hard_outcome *o) {
         double *got = run_image(plan, &view);
         hard_same_bits(o, way, got, 96 * 96, &first);
         hard_check_values(o, got, 96 * 96, 0);
-        if (way == 0) hard_compare_time(o, plan, &view, options.triangles);
+        if (way == 0) hard_compare_time(o, scene, plan, &view);
         free(got);
         skg_plan_release(&plan);
     }

@@ -42,7 +42,7 @@ static void judge_pixels(hard_outcome *o, const judgement *j, int32_t precision,
 
 /* Takes the images in both precisions, by all strategies. spectrum NULL: 100 keV. */
 static void judge_scene(hard_outcome *o, const judgement *j, skg_scene *scene, const skg_view *view,
-                        skg_spectrum *spectrum, int64_t triangles) {
+                        skg_spectrum *spectrum) {
     for (int32_t precision = 0; precision <= run_has_double(); precision++) {
         uint64_t first = 0;
         for (int way = 0; way < HARD_WAYS; way++) {
@@ -53,7 +53,7 @@ static void judge_scene(hard_outcome *o, const judgement *j, skg_scene *scene, c
             double *got = run_image(plan, view);
             hard_same_bits(o, way, got, PIXELS, &first);
             if (way == 0) judge_pixels(o, j, precision, got);
-            if (way == 0 && precision == SKG_SINGLE) hard_compare_time(o, plan, view, triangles);
+            if (way == 0 && precision == SKG_SINGLE) hard_compare_time(o, scene, plan, view);
             free(got);
             skg_plan_release(&plan);
         }
@@ -103,7 +103,7 @@ static void transmission(hard_outcome *o) {
     skg_scene *scene = NULL;
     ck_skg(skg_scene_create(run_context, &scene));
     part_of(scene, "steps", &all, 20, -1);
-    judge_scene(o, &j, scene, &view, NULL, all.triangles);
+    judge_scene(o, &j, scene, &view, NULL);
     skg_scene_release(&scene);
     solid_free(&all);
 }
@@ -126,7 +126,7 @@ static void iodine(hard_outcome *o, judgement *j, skg_spectrum *spectrum, const 
     ck_skg(skg_scene_add(scene, &part, NULL));
     for (int p = 0; p < PIXELS; p++)
         j->truth[p] = (kev[0] * exp(-0.01 * mu[0]) + kev[1] * exp(-0.01 * mu[1])) / (kev[0] + kev[1]);
-    judge_scene(o, j, scene, &view, spectrum, plate.triangles);
+    judge_scene(o, j, scene, &view, spectrum);
     skg_scene_release(&scene);
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
@@ -183,7 +183,7 @@ static void neighbours(hard_outcome *o) {
         solid_free(&box);
     }
     j.least = largest_truth(&j);
-    judge_scene(o, &j, scene, &view, NULL, 48);
+    judge_scene(o, &j, scene, &view, NULL);
     skg_scene_release(&scene);
 }
 
@@ -206,7 +206,7 @@ static void shells(hard_outcome *o) {
         solid_free(&ball);
     }
     j.least = largest_truth(&j);
-    judge_scene(o, &j, scene, &view, NULL, SHELLS * 3480);
+    judge_scene(o, &j, scene, &view, NULL);
     skg_scene_release(&scene);
 }
 
@@ -243,7 +243,7 @@ static void overlapping(hard_outcome *o) {
                    : 1e-3 * (double)caster_length(c, &view, (long double)(p % SIDE), (long double)(p / SIDE));
     caster_free(c);
     j.least = largest_truth(&j);
-    judge_scene(o, &j, scene, &view, NULL, all.triangles);
+    judge_scene(o, &j, scene, &view, NULL);
     skg_scene_release(&scene);
     solid_free(&one);
     solid_free(&all);
@@ -267,7 +267,7 @@ static void far_beam(hard_outcome *o) {
     j.least = largest_truth(&j);
     free(straight);
     skg_plan_release(&plan);
-    judge_scene(o, &j, scene, &far, NULL, blob.triangles);
+    judge_scene(o, &j, scene, &far, NULL);
     skg_scene_release(&scene);
     solid_free(&blob);
 }

@@ -50,7 +50,7 @@ static void judge_open(hard_outcome *o, const solid *s, int64_t least_bad) {
                 o->worst[precision] = worst;
                 o->bar[precision] = precision == SKG_SINGLE ? 1e-3 : 1e-11;
                 if (!(worst <= o->bar[precision])) hard_fault(o, "worst %.3g", worst);
-                if (precision == SKG_SINGLE) hard_compare_time(o, plan, &view, s->triangles);
+                if (precision == SKG_SINGLE) hard_compare_time(o, scene, plan, &view);
             }
             free(got);
             skg_plan_release(&plan);
@@ -157,7 +157,7 @@ static void million_parts(hard_outcome *o) {
     o->bar[0] =
         0.02; /* of a mean over parts that pixels meet or miss; and rays that are longer off the middle */
     if (!(o->worst[0] <= o->bar[0])) hard_fault(o, "worst %.3g", o->worst[0]);
-    hard_compare_time(o, plan, &view, 4 * (int64_t)PARTS);
+    hard_compare_time(o, scene, plan, &view);
     free(got);
     skg_plan_release(&plan);
     skg_scene_release(&scene);

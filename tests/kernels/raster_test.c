@@ -1,5 +1,4 @@
 /* Path lengths: watertight, exact, and the same bits from every strategy. */
-#include "device/sources.h"
 #include "kernels/picture.h"
 #include "suite.h"
 
@@ -373,95 +372,6 @@ START_TEST(pixels_of_an_open_mesh) {
 }
 END_TEST
 
-START_TEST(strategy_follows_from_the_facts) {
-    const char *why = NULL;
-    skg_raster_facts facts = {
-        .workers = 2, .image_bytes = 1 << 20, .triangles = 41616, .triangle_pixels = 20};
-    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_COPIES);
-    facts.workers = 64;
-    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_TILES);
-    facts =
-        (skg_raster_facts){.workers = 2, .image_bytes = 16 << 20, .triangles = 168100, .triangle_pixels = 80};
-    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_TILES);
-    facts.triangle_pixels = 10;
-    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_COPIES);
-    facts.is_gpu = 1;
-    ck_assert_int_eq(skg_raster_choose(&facts, &why), SKG_STRATEGY_ATOMICS);
-    ck_assert_ptr_nonnull(why);
-}
-END_TEST
-
-/* --- the layout of structs
- * ---------------------------------------------------------------------------------------- */
-
-/* What the device's compiler makes of skg_shared.h: sizes, and places of the last fields. */
-static const char layout_kernel[] =
-    "__kernel void layout(__global int *out, __global const skg_part_entry *p, __global const skg_write *w,\n"
-    "                     __global const skg_ray_args *r, __global const skg_frame_args *f) {\n"
-    "    out[0] = sizeof(skg_part_entry); out[1] = sizeof(skg_write); out[2] = sizeof(skg_ray_args);\n"
-    "    out[3] = sizeof(skg_frame_args);\n"
-    "    out[4] = (int)((__global const char *)&p->pixel_i - (__global const char *)p);\n"
-    "    out[5] = (int)((__global const char *)&p->writes - (__global const char *)p);\n"
-    "    out[6] = (int)((__global const char *)&w->plane - (__global const char *)w);\n"
-    "    out[7] = (int)((__global const char *)&r->unit - (__global const char *)r);\n"
-    "    out[8] = (int)((__global const char *)&f->queue - (__global const char *)f);\n"
-    "}\n";
-
-static const char *built_in(const char *name) {
-    for (int i = 0; i < skg_kernel_source_count; i++)
-        if (strcmp(skg_kernel_sources[i].name, name) == 0) return skg_kernel_sources[i].text;
-    return NULL;
-}
-
-static void device_layout(const char *options, int32_t out[9]) {
-    const char *sources[4] = {built_in("config.clh"), built_in("types.clh"), built_in("skg_shared.h"),
-                              layout_kernel};
-    const skg_device *device = context->device;
-    cl_int code = CL_SUCCESS;
-    cl_program program = clCreateProgramWithSource(device->cl, 4, sources, NULL, &code);
-    ck_assert_int_eq(clBuildProgram(program, 1, &device->id, options, NULL, NULL), CL_SUCCESS);
-    cl_kernel kernel = NULL;
-    skg_buffer buffer = {0};
-    skg_stage_log log = {.on = 1};
-    ck_skg(skg_kernel_create(program, "layout", &kernel));
-    ck_skg(skg_buffer_reserve(context, &buffer, 4096, CL_MEM_READ_WRITE, "layout"));
-    const cl_mem memory[5] = {buffer.memory, buffer.memory, buffer.memory, buffer.memory, buffer.memory};
-    const size_t one = 1;
-    ck_skg(skg_kernel_set_memory(kernel, 0, 5, memory));
-    ck_skg(skg_kernel_run(context, kernel, "layout", 1, &one, &one, &log));
-    ck_assert_int_eq(
-        clEnqueueReadBuffer(device->queue, buffer.memory, CL_TRUE, 0, 9 * sizeof *out, out, 0, NULL, NULL),
-        CL_SUCCESS);
-    ck_assert_int_eq(log.count, 1);
-    skg_stage_log_clear(&log);
-    skg_buffer_release(&buffer);
-    clReleaseKernel(kernel);
-    clReleaseProgram(program);
-}
-
-START_TEST(structs_are_laid_out_alike) {
-    const int32_t single[9] = {
-        sizeof(skg_part_float),           sizeof(skg_write_float),           sizeof(skg_ray_float),
-        sizeof(skg_frame_args),           offsetof(skg_part_float, pixel_i), offsetof(skg_part_float, writes),
-        offsetof(skg_write_float, plane), offsetof(skg_ray_float, unit),     offsetof(skg_frame_args, queue)};
-    const int32_t twice[9] = {sizeof(skg_part_double),
-                              sizeof(skg_write_double),
-                              sizeof(skg_ray_double),
-                              sizeof(skg_frame_args),
-                              offsetof(skg_part_double, pixel_i),
-                              offsetof(skg_part_double, writes),
-                              offsetof(skg_write_double, plane),
-                              offsetof(skg_ray_double, unit),
-                              offsetof(skg_frame_args, queue)};
-    int32_t out[9];
-    device_layout("-cl-std=CL1.2", out);
-    ck_assert_mem_eq(out, single, sizeof out);
-    if (!context->device->info.has_double) return;
-    device_layout("-cl-std=CL1.2 -D SKG_DOUBLE=1 -D SKG_BITS=64 -D SKG_WIDE=4", out);
-    ck_assert_mem_eq(out, twice, sizeof out);
-}
-END_TEST
-
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
     tcase_add_test(tests, strategies_give_the_same_bits);
@@ -475,8 +385,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, plates_in_series_add_up);
     tcase_add_test(tests, vertex_that_is_not_finite);
     tcase_add_test(tests, pixels_of_an_open_mesh);
-    tcase_add_test(tests, strategy_follows_from_the_facts);
-    tcase_add_test(tests, structs_are_laid_out_alike);
 }
 
 SKG_SUITE_MAIN("raster", add_tests)
