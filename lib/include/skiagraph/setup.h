@@ -1,6 +1,6 @@
 /* Scene files: a whole set-up (scene, view, spectrum, options) from JSON in the schema that gVXR users have
- * ("JSON 1.0.0": WindowSize, Source, Detector, Samples, Scan), plus our own keys: Parent of a sample,
- * Precision, Tolerance (docs/scene-files.md lists every key). Keys and names without regard to case; lengths
+ * ("JSON 1.0.0": WindowSize, Source, Detector, Samples, Scan), plus keys of our own
+ * (docs/scene-files.md lists all of them). Keys and names without regard to case; lengths
  * with unit strings; paths relative to the file. */
 #ifndef SKIAGRAPH_SETUP_H
 #define SKIAGRAPH_SETUP_H
