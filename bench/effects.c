@@ -13,20 +13,70 @@ typedef struct {
     const char *name, *what;
     scene_changes changes;
     int precision, strategy, quantity, type, profile;
+    void (*ask)(skg_plan_options *options); /* for what the options have more of; NULL: nothing */
 } effect;
 
+static void ask_spot(skg_plan_options *options) {
+    static skg_spot spot;
+    skg_spot_init(&spot);
+    spot.shape = SKG_SPOT_RECTANGLE;
+    spot.extent[0] = spot.extent[1] = 1;
+    spot.samples = 16;
+    options->spot = &spot;
+}
+
+static void ask_blur(skg_plan_options *options) {
+    static const double line[5] = {0.05, 0.2, 0.5, 0.2, 0.05};
+    static skg_detector_blur blur;
+    skg_detector_blur_init(&blur);
+    blur.columns = blur.rows = 5;
+    blur.along_row = blur.along_column = line;
+    options->blur = &blur;
+}
+
+static void ask_supersampling(skg_plan_options *options) {
+    options->supersampling = 2;
+}
+static void ask_falloff(skg_plan_options *options) {
+    options->falloff = 1;
+}
+static void ask_noise(skg_plan_options *options) {
+    options->noise = 1;
+}
+static void ask_electronic(skg_plan_options *options) {
+    options->electronic_kev = 1;
+}
+static void ask_steps(skg_plan_options *options) {
+    options->quantum_step_kev = 1;
+}
+
 static const effect effects[] = {
-    {"base", "61 closed parts without parents, one energy", {.flat = 1}, 0, 0, 0, 0, 0},
-    {"nesting", "60 parts displace their parent", {.flat = 0}, 0, 0, 0, 0, 0},
-    {"open part", "one of 61 parts has a hole", {.flat = 1, .open = 1}, 0, 0, 0, 0, 0},
-    {"source plane", "one small part more, about the source", {.flat = 1, .round_source = 1}, 0, 0, 0, 0, 0},
-    {"double", "precision double", {.flat = 1}, SKG_DOUBLE, 0, 0, 0, 0},
-    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_ATTENUATION, 0, 0},
-    {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_FLOAT64, 0},
-    {"profile", "stages are timed", {.flat = 1}, 0, 0, 0, 0, 1},
-    {"copies", "strategy copies", {.flat = 1}, 0, SKG_STRATEGY_COPIES, 0, 0, 0},
-    {"tiles", "strategy tiles", {.flat = 1}, 0, SKG_STRATEGY_TILES, 0, 0, 0},
-    {"atomics", "strategy atomics", {.flat = 1}, 0, SKG_STRATEGY_ATOMICS, 0, 0, 0},
+    {"base", "61 closed parts without parents, one energy", {.flat = 1}, 0, 0, 0, 0, 0, NULL},
+    {"nesting", "60 parts displace their parent", {.flat = 0}, 0, 0, 0, 0, 0, NULL},
+    {"open part", "one of 61 parts has a hole", {.flat = 1, .open = 1}, 0, 0, 0, 0, 0, NULL},
+    {"source plane",
+     "one small part more, about the source",
+     {.flat = 1, .round_source = 1},
+     0,
+     0,
+     0,
+     0,
+     0,
+     NULL},
+    {"double", "precision double", {.flat = 1}, SKG_DOUBLE, 0, 0, 0, 0, NULL},
+    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_ATTENUATION, 0, 0, NULL},
+    {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_FLOAT64, 0, NULL},
+    {"profile", "stages are timed", {.flat = 1}, 0, 0, 0, 0, 1, NULL},
+    {"copies", "strategy copies", {.flat = 1}, 0, SKG_STRATEGY_COPIES, 0, 0, 0, NULL},
+    {"tiles", "strategy tiles", {.flat = 1}, 0, SKG_STRATEGY_TILES, 0, 0, 0, NULL},
+    {"atomics", "strategy atomics", {.flat = 1}, 0, SKG_STRATEGY_ATOMICS, 0, 0, 0, NULL},
+    {"extended source", "16 samples of a rectangle", {.flat = 1}, .ask = ask_spot},
+    {"supersampling", "2 x 2 rays a pixel", {.flat = 1}, .ask = ask_supersampling},
+    {"falloff", "inverse square and obliquity", {.flat = 1}, .ask = ask_falloff},
+    {"quantum noise", "of the photons of a pixel", {.flat = 1}, .ask = ask_noise},
+    {"blur", "two line spread functions of 5 samples", {.flat = 1}, .ask = ask_blur},
+    {"electronic noise", "1 keV per pixel", {.flat = 1}, .ask = ask_electronic},
+    {"quantisation", "steps of 1 keV", {.flat = 1}, .ask = ask_steps},
 };
 enum { EFFECTS = sizeof effects / sizeof *effects };
 
@@ -74,6 +124,7 @@ static void make_plan(skg_context *context, const effect *kind, long size, conte
     scene.options.strategy = kind->strategy;
     scene.options.quantity = kind->quantity;
     scene.options.profile = kind->profile;
+    if (kind->ask) kind->ask(&scene.options);
     const double start = bench_now();
     const skg_status status =
         skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &out->plan);

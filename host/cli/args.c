@@ -200,9 +200,11 @@ int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low,
 
 static void print_flag(const char *name, const char *value, const char *help) {
     char head[64];
-    snprintf(head, sizeof head, "%s %s", name, value ? value : "");
-    printf("  %-18s ", head);
-    if (strlen(head) > 18) printf("\n  %-18s ", "");
+    snprintf(head, sizeof head, "%s%s%s", name, value ? " " : "", value ? value : "");
+    if (strlen(head) > 18)
+        printf("  %s\n  %-18s ", head, "");
+    else
+        printf("  %-18s ", head);
     for (; *help; help++) {
         putchar(*help);
         if (*help == '\n') printf("  %-18s ", "");

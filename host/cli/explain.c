@@ -2,6 +2,8 @@
 
 #include "frames.h"
 
+#include "core/names.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +16,24 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
     if (status == SKG_OK) return CLI_DONE;
     int exit_status = cli_fail(status);
     return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
+}
+
+/* Of the open beam at a pixel across it, where photons per pixel are counted. */
+static skg_status open_beam(const cli_session *session, skg_quality *quality) {
+    const double *a = session->view.column_step, *b = session->view.row_step;
+    const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                              a[0] * b[1] - a[1] * b[0]};
+    skg_quality_init(quality);
+    const skg_status status = skg_spectrum_quality(session->spectrum, quality);
+    quality->air_kerma_ugy /= hypot(hypot(across[0], across[1]), across[2]); /* it was of photons per mm2 */
+    return status;
+}
+
+static json_t *open_beam_json(const cli_session *session) {
+    skg_quality quality;
+    if (open_beam(session, &quality) != SKG_OK) return json_null();
+    return json_pack("{s:f, s:f, s:f}", "mean_energy_keV", quality.mean_kev, "photons_per_pixel",
+                     quality.photons, "air_kerma_uGy", quality.air_kerma_ugy);
 }
 
 static json_t *effects_json(const skg_plan *plan) {
@@ -120,6 +140,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "negative_pixels", json_integer(report.negative_pixels));
     json_object_set_new(object, "outside_pixels", json_integer(report.outside_pixels));
     json_object_set_new(object, "bins", json_integer(report.bins));
+    json_object_set_new(object, "open_beam", open_beam_json(session));
     json_object_set_new(object, "samples", json_integer(report.samples));
     json_object_set_new(object, "sample_error", cli_json_number(report.sample_error));
     json_object_set_new(object, "stages_ns", stages_json(plan));
@@ -194,12 +215,12 @@ static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
 static void print_beam(const cli_session *session) {
     int64_t bins = 0;
     skg_quality quality;
-    skg_quality_init(&quality);
     skg_spectrum_size(session->spectrum, &bins);
     printf("beam       ");
     if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
-    if (skg_spectrum_quality(session->spectrum, &quality) == SKG_OK)
-        printf("%g keV, %g photons per pixel of the open beam\n", quality.mean_kev, quality.photons);
+    if (open_beam(session, &quality) == SKG_OK)
+        printf("%g keV, %g photons per pixel of the open beam, air kerma %.4g uGy\n", quality.mean_kev,
+               quality.photons, quality.air_kerma_ugy);
     else
         printf("not to be judged: %s\n", skg_last_error());
 }
@@ -218,18 +239,19 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     skg_plan_report_init(&report);
     skg_plan_get_report(plan, &report);
-    printf("scene      %s: %" PRId64 " parts (%" PRId64 " open), %" PRId64 " triangles, %" PRId64
-           " vertices\n",
-           session->path, report.parts, report.open_parts, report.triangles, report.vertices);
+    printf("scene      %s: %" PRId64 " %s (%" PRId64 " open), %" PRId64 " triangles, %" PRId64 " vertices\n",
+           session->path, report.parts, skg_plural(report.parts, "part", "parts"), report.open_parts,
+           report.triangles, report.vertices);
     printf("detector   %" PRId64 " x %" PRId64 " pixels\n", session->view.columns, session->view.rows);
     print_beam(session);
     printf("device     %s, %.1f MiB used\n", session->device.name,
            (double)report.device_bytes / (1024.0 * 1024.0));
     printf("precision  %s\n", cli_precision_names[report.precision]);
     print_strategy(&report);
-    printf("planes     %" PRId64 " for %" PRId64 " parts, from %" PRId64 " accumulators of %" PRId64
-           " bits\n",
-           report.planes, report.parts - report.open_parts, report.accumulators, report.plane_bits);
+    const int64_t closed = report.parts - report.open_parts;
+    printf("planes     %" PRId64 " for %" PRId64 " %s, from %" PRId64 " %s of %" PRId64 " bits\n",
+           report.planes, closed, skg_plural(closed, "part", "parts"), report.accumulators,
+           skg_plural(report.accumulators, "accumulator", "accumulators"), report.plane_bits);
     printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
            " of them repaired; %" PRId64 " with a negative exponent; %" PRId64
            " outside the verified range\n",

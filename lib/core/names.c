@@ -43,3 +43,7 @@ const char *skg_nearest_name(const char *name, const char *const *names, int64_t
     }
     return nearest;
 }
+
+const char *skg_plural(int64_t count, const char *one, const char *many) {
+    return count == 1 ? one : many;
+}

@@ -1,4 +1,4 @@
-/* Finding the name that was meant. Private. */
+/* Words of messages: the name that was meant, one or many. Private. */
 #ifndef SKG_NAMES_H
 #define SKG_NAMES_H
 
@@ -10,5 +10,8 @@ const char *skg_nearest_name(const char *name, const char *const *names, int64_t
 
 /* Equality without regard to case (ASCII). */
 int skg_same_name(const char *a, const char *b);
+
+/* The words that go with a number: `one` with 1, `many` with any other. */
+const char *skg_plural(int64_t count, const char *one, const char *many);
 
 #endif

@@ -142,8 +142,8 @@ skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_de
     }
     if (chosen < 0)
         return skg_fail(SKG_ERR_NO_DEVICE,
-                        "no OpenCL device fits device=%s; `skiagraph devices` lists the %" PRId32
-                        " there are",
+                        "no OpenCL device fits device=%s; `skiagraph devices` lists what there is (%" PRId32
+                        ")",
                         wanted, all);
     *platform = found[chosen].platform;
     *device = found[chosen].device;

@@ -1,3 +1,4 @@
+#include "core/names.h"
 #include "plan/extent.h"
 #include "plan/report.h"
 
@@ -66,7 +67,8 @@ static skg_status report_places(skg_plan *plan) {
         near += extents[i].near_source && extents[i].on_detector;
     }
     if (near)
-        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " parts reach the plane where rays start", near);
+        set(plan, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " %s the plane where rays start", near,
+            skg_plural(near, "part reaches", "parts reach"));
     else
         set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
     if (plan->contest_possible)
@@ -114,7 +116,9 @@ static void tell_detector(skg_plan *plan) {
         set(plan, SKG_EFFECT_RESPONSE, 1, "photons count by what the detector records of their energy");
     else
         set(plan, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: all photons, all their energy");
-    if (plan->attenuation.falloff)
+    if (plan->attenuation.falloff && plan->view.projection != SKG_POINT)
+        set(plan, SKG_EFFECT_FALLOFF, 0, "the beam is parallel: its intensity is the same everywhere");
+    else if (plan->attenuation.falloff)
         set(plan, SKG_EFFECT_FALLOFF, 1,
             "inverse square and obliquity, from the pixel nearest the perpendicular on");
     else
@@ -127,9 +131,10 @@ static void tell_compression(skg_plan *plan) {
     const int effect = SKG_EFFECT_COMPRESSION;
     if (model->verified > 0)
         set(plan, effect, 1,
-            "%" PRId32 " of %" PRId32 " energies and %" PRId32 " planes for %" PRId32
-            " materials; error of transmissions%s at most %.2g, verified on %" PRId64 " points",
-            model->nodes, model->bins, model->planes, model->materials,
+            "%" PRId32 " of %" PRId32 " energies and %" PRId32 " %s for %" PRId32
+            " %s; error of transmissions%s at most %.2g, verified on %" PRId64 " points",
+            model->nodes, model->bins, model->planes, skg_plural(model->planes, "plane", "planes"),
+            model->materials, skg_plural(model->materials, "material", "materials"),
             model->variances ? " and variances" : "", model->bound, model->verified);
     else if (model->bins == 1)
         set(plan, effect, 0, "the beam has one energy");
@@ -147,22 +152,23 @@ skg_status skg_report_effects(skg_plan *plan) {
     int64_t nested = 0;
     for (int64_t i = 0; i < scene->count; i++) nested += scene->parts[i].inside >= 0;
     if (plan->model.bins > 1)
-        set(plan, SKG_EFFECT_ENERGIES, 1,
-            "%" PRId32 " energies, %" PRId32 " planes for %" PRId32 " materials that differ",
-            plan->model.nodes, plan->model.planes, plan->model.materials);
+        set(plan, SKG_EFFECT_ENERGIES, 1, "%" PRId32 " %s, %" PRId32 " %s for %" PRId32 " %s",
+            plan->model.nodes, skg_plural(plan->model.nodes, "energy", "energies"), plan->model.planes,
+            skg_plural(plan->model.planes, "plane", "planes"), plan->model.materials,
+            skg_plural(plan->model.materials, "material", "materials that differ"));
     else
         set(plan, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
     tell_samples(plan);
     tell_detector(plan);
     tell_compression(plan);
     if (nested)
-        set(plan, SKG_EFFECT_NESTING, 1, "%" PRId64 " parts displace a parent: differences of mu, no pass",
-            nested);
+        set(plan, SKG_EFFECT_NESTING, 1, "%" PRId64 " %s a parent: differences of mu, no pass", nested,
+            skg_plural(nested, "part displaces", "parts displace"));
     else
         set(plan, SKG_EFFECT_NESTING, 0, "no part names a parent");
     if (plan->open_count)
-        set(plan, SKG_EFFECT_OPEN, 1,
-            "%" PRId64 " parts are not closed: each has a plane and a count of its own", plan->open_count);
+        set(plan, SKG_EFFECT_OPEN, 1, "%" PRId64 " %s not closed: each has a plane and a count of its own",
+            plan->open_count, skg_plural(plan->open_count, "part is", "parts are"));
     else
         set(plan, SKG_EFFECT_OPEN, 0, "every mesh is closed: signed hits cancel exactly");
     static const char *const repairs[] = {
@@ -179,8 +185,9 @@ skg_status skg_report_effects(skg_plan *plan) {
     if (!plan->options.overlaps)
         set(plan, SKG_EFFECT_OVERLAPS, 0, "not asked for");
     else
-        set(plan, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " pairs of parts overlap or leave their parent",
-            plan->overlap_count);
+        set(plan, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " %s", plan->overlap_count,
+            skg_plural(plan->overlap_count, "pair of parts overlaps, or a part leaves its parent",
+                       "pairs of parts overlap or leave their parent"));
     tell_noise(plan);
     return report_places(plan);
 }

@@ -6,8 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Rays along a side of the detector, of that of each further view, and of a part's own rectangle. */
-enum { SIDE = 64, MORE_SIDE = 24, OWN_SIDE = 16 };
+/* Rays along a side of the detector, of that of each further view, and of a part's own rectangle: there more
+ * for a thin one (ducts, a needle), which so few rays meet in fewer hits than enough for its longest chord.
+ */
+enum { SIDE = 64, MORE_SIDE = 24, OWN_SIDE = 16, ENOUGH_HITS = 128 };
 /* Views, meshes and poses to come may differ a little. */
 static const double MARGIN = 1.25;
 /* Share of a plane's range that it may fall below: a closed mesh that folds over itself has lengths below
@@ -173,11 +175,13 @@ static skg_status add_own_rays(const skg_scene_part_data *part, int64_t number, 
     const double low[2] = {fmax(r->low_column, -0.5), fmax(r->low_row, -0.5)};
     const double high[2] = {fmin(r->high_column, (double)camera->columns - 0.5),
                             fmin(r->high_row, (double)camera->rows - 0.5)};
-    lay_grid(grid, OWN_SIDE, low, high);
-    if (!(grid->column_step > 0 && grid->row_step > 0)) return SKG_OK;
-    SKG_TRY(measure(camera, part, extent->near_source, grid));
-    for (int64_t k = 0; k < grid->columns * grid->rows; k++)
-        widen_by_part(ranges, model, number, grid->length[k]);
+    grid->hits = 0;
+    for (int64_t side = OWN_SIDE; side <= SIDE && grid->hits < ENOUGH_HITS; side *= 2) {
+        lay_grid(grid, side, low, high);
+        if (!(grid->column_step > 0 && grid->row_step > 0)) return SKG_OK;
+        SKG_TRY(measure(camera, part, extent->near_source, grid));
+        for (int64_t k = 0; k < side * side; k++) widen_by_part(ranges, model, number, grid->length[k]);
+    }
     return SKG_OK;
 }
 

@@ -1,4 +1,5 @@
 #include "plan/report.h"
+#include "core/names.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -42,10 +43,12 @@ static void warn_of_overlaps(skg_plan *plan) {
     if (!worst) return;
     skg_log(
         plan->context, SKG_LOG_WARNING,
-        "%" PRId64
-        " pairs of parts overlap or leave their parent, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
+        "%" PRId64 " %s, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
         "%.3g mm along z at (%.1f, %.1f, %.1f) mm; their lengths add (or subtract the parent), nothing is clamped",
-        count, volume / 1000, scene->parts[worst->part].label,
+        count,
+        skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
+                   "pairs of parts overlap or leave their parent"),
+        volume / 1000, scene->parts[worst->part].label,
         worst->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[worst->other].label,
         worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
 }
@@ -123,10 +126,9 @@ static void tell_negative(skg_plan *plan, int32_t pixels) {
     plan->report.negative_pixels = pixels;
     if (pixels > 0)
         skg_log(plan->context, SKG_LOG_WARNING,
-                "%" PRId32
-                " pixels have a negative exponent: more was subtracted for children than their parent "
+                "%" PRId32 " %s a negative exponent: more was subtracted for children than their parent "
                 "has there; see the overlaps that the plan lists",
-                pixels);
+                pixels, skg_plural(pixels, "pixel has", "pixels have"));
 }
 
 /* Whether so many bad pixels are worth a warning: ten times as many as in any before, from 1 on. */
@@ -156,12 +158,12 @@ static void tell_bad(skg_plan *plan, int64_t open, const int32_t *bad) {
     for (int32_t k = 0; k < bad[0] && k < SKG_FIRST_BAD; k++)
         length += (size_t)snprintf(places + length, sizeof places - length, "%s(%" PRId64 ", %" PRId64 ")",
                                    k ? ", " : "", bad[1 + k] % columns, bad[1 + k] / columns);
-    skg_log(
-        plan->context, SKG_LOG_WARNING,
-        "part %s is open: at %" PRId32
-        " pixels its rays do not leave it as often as they enter it; %s; first at (column, row) %s; close "
-        "its mesh",
-        plan->scene->parts[plan->open[open]].label, bad[0], done[repair], places);
+    skg_log(plan->context, SKG_LOG_WARNING,
+            "part %s is open: at %" PRId32
+            " %s its rays do not leave it as often as they enter it; %s; first at (column, row) %s; close "
+            "its mesh",
+            plan->scene->parts[plan->open[open]].label, bad[0], skg_plural(bad[0], "pixel", "pixels"),
+            done[repair], places);
 }
 
 static skg_status tell_broken(const skg_plan *plan, int32_t vertex) {
@@ -178,9 +180,10 @@ static skg_status tell_outside(skg_plan *plan, int32_t pixels) {
     if (pixels == 0) return SKG_OK;
     return skg_fail(
         SKG_RANGE,
-        "at %" PRId32 " pixels the lengths leave the range that the error bound of %.2g was verified "
-        "for; the image is valid, the bound is not stated there; plan for this view and these poses",
-        pixels, plan->model.bound);
+        "at %" PRId32 " %s the lengths leave the range that the error bound of %.2g was verified "
+        "for; the image is valid, the bound is not stated there; plan for this view and these poses, or with "
+        "tolerance 0",
+        pixels, skg_plural(pixels, "pixel", "pixels"), plan->model.bound);
 }
 
 skg_status skg_report_job(skg_job *job) {

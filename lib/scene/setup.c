@@ -16,7 +16,7 @@ static const skg_json_key top_keys[] = {
     {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
     {"Breathing", NULL, SKG_KEY_READ},
     {"Noise", NULL, SKG_KEY_READ},
-    {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
+    {"Falloff", NULL, SKG_KEY_READ},
     {"World", NULL, SKG_KEY_READ},
     {"Repair", NULL, SKG_KEY_READ},
     {"Clip", NULL, SKG_KEY_READ},
@@ -101,6 +101,9 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
+    const skg_json_node falloff = skg_json_member(&top, "Falloff");
+    reader->setup->falloff = reader->setup->absolute;
+    if (falloff.value) SKG_TRY(skg_json_flag(&falloff, &reader->setup->falloff));
     SKG_TRY(read_world(reader, &top));
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
@@ -171,7 +174,7 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
-    if (setup->absolute) ours.falloff = 1;
+    if (setup->falloff) ours.falloff = 1;
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;

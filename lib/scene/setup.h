@@ -72,7 +72,8 @@ typedef struct {
 struct skg_setup {
     skg_scene *scene;
     skg_spectrum *spectrum;
-    int32_t absolute;       /* 1: photons come from mAs; the beam falls off with distance */
+    int32_t absolute;       /* 1: photons come from mAs */
+    int32_t falloff;        /* 1: the beam falls off with distance */
     skg_response *response; /* NULL: ideal */
     skg_material *world;    /* around the parts; NULL: vacuum */
     skg_detector_blur blur; /* columns 0: none */

@@ -262,6 +262,16 @@ START_TEST(the_bound_holds_at_the_own_view) {
 }
 END_TEST
 
+/* Pixels of 1 mm x 2 mm, 500 mm from the tube: 65 uGy/mAs at 1 m are four times as much there. */
+START_TEST(the_open_beam_is_told) {
+    ck_run(0, "plan scene.json --json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
+              "\"Filter\": [[\"Al\", 3]], \"mAs\": 2, \"Output\": [65, \"uGy/mAs\", 1, \"m\"]}'");
+    json_t *object = said_json(), *open = member(object, "open_beam");
+    ck_assert_double_eq_tol(json_number_value(member(open, "air_kerma_uGy")) / (65 * 2 * 4), 1, 1e-9);
+    json_decref(object);
+}
+END_TEST
+
 START_TEST(times_are_printed) {
     ck_run(0, "image scene.json --repeat 3");
     ck_assert_ptr_nonnull(strstr(said, "(3 frames)\n"));
@@ -280,6 +290,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, plan_says_what_and_why);
     tcase_add_test(tests, warnings_are_told_unless_quiet);
     tcase_add_test(tests, the_bound_holds_at_the_own_view);
+    tcase_add_test(tests, the_open_beam_is_told);
     tcase_add_test(tests, times_are_printed);
 }
 

@@ -119,6 +119,16 @@ static skg_quality quality(int32_t *absolute) {
     return q;
 }
 
+/* Without the key, falloff follows mAs (the next test). */
+START_TEST(falloff_can_be_asked_for) {
+    ck_skg(load_with("Falloff=true", NULL));
+    ck_assert_int_eq(options().falloff, 1);
+    ck_skg(load_with("Source.Beam={\"kVp\": 85, \"Filter\": [[\"Al\", 3]], \"mAs\": 1}", "Falloff=false"));
+    ck_assert_int_eq(options().falloff, 0);
+    ck_skg_fails(load_with("Falloff=2", NULL), SKG_ERR_FORMAT, "Falloff");
+}
+END_TEST
+
 /* The beam of gVXR's paediatric case; then with a load, whose photons are those per pixel of 1 mm x 2 mm at
  * 500 mm. */
 START_TEST(tubes) {
@@ -320,6 +330,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_kind_of_material, 0, sizeof kinds / sizeof *kinds);
     tcase_add_test(tests, tables_of_attenuation);
     tcase_add_test(tests, beams_of_many_energies);
+    tcase_add_test(tests, falloff_can_be_asked_for);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
     tcase_add_test(tests, focal_spots);

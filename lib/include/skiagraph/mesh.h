@@ -18,12 +18,12 @@ extern "C" {
 typedef struct skg_mesh skg_mesh;
 
 /* A mesh from arrays, which are copied. name: for messages; "" or NULL for "mesh".
- * positions: vertices rows of x, y, z, `position_stride` elements from row to row (>= 3, or 0 for 3), in
- * units of unit_mm mm (finite, > 0: 1 for mm, 10 for cm, 1000 for m). triangles: rows of three vertex numbers
- * from 0, `triangle_stride` elements from row to row (>= 3, or 0 for 3). A closed mesh that is inverted as a
- * whole is turned outward, with a warning (health.flipped); the caller's numbering stays. Errors:
- * SKG_ERR_ARGUMENT, SKG_ERR_MESH (no triangles, index out of range, NaN or infinite vertex: the first one is
- * named), SKG_ERR_MEMORY. The caller releases the mesh. */
+ * positions: `vertices` rows of x, y, z, `position_stride` elements from row to row (>= 3, or 0 for 3), in
+ * units of unit_mm mm (finite, > 0: 1 for mm, 10 for cm, 1000 for m). corners: `triangles` rows of three
+ * vertex numbers from 0, `triangle_stride` elements from row to row (>= 3, or 0 for 3). A closed mesh that is
+ * inverted as a whole is turned outward, with a warning (health.flipped); the caller's numbering stays.
+ * Errors: SKG_ERR_ARGUMENT, SKG_ERR_MESH (no triangles, index out of range, NaN or infinite vertex: the first
+ * one is named), SKG_ERR_MEMORY. The caller releases the mesh. */
 SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices,
                                    const double *positions, int64_t position_stride, int64_t triangles,
                                    const int32_t *corners, int64_t triangle_stride, double unit_mm,

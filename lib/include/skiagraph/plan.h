@@ -77,7 +77,7 @@ typedef struct {
     double extent[3]; /* mm, full widths */
     double axis[3];   /* what flat spots lie across; all 0: the line to the detector's centre */
     int64_t samples;  /* 1 to 65536; 0: doubled until two doublings in a row change 99.9 % of the pixels by
-                         less than  `tolerance` of the open beam, when the plan is made for its view */
+                         less than `tolerance` of the open beam, when the plan is made for its view */
     int64_t grid; /* n > 0: instead, the middles of n (line), n x n (rectangle) or n^3 (cube) equal pieces, as
                      Vidal and Villard 2016 */
     double tolerance; /* default 5e-3 */
@@ -157,7 +157,7 @@ typedef struct {
     const int64_t *matter_ids;    /* [matters] numbers of parts */
     const double *matter_density; /* [matters] of the part over its material's, 0 to 1000; NULL: 1 */
     const double *matter_share;   /* [matters] of the part that is there, 0 to 1; the rest is of what it lies
-                                     in.   NULL: 1. Below 1 for parts only that no other part lies in */
+                                     in. NULL: 1. Below 1 for parts only that no other part lies in */
 } skg_frame;
 
 SKG_API void skg_frame_init(skg_frame *frame);

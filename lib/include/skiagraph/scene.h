@@ -1,4 +1,5 @@
-/* Scenes: parts (a mesh, its material, what it lies inside, where it stands), views, and scene files.
+/* Scenes: parts (a mesh, its material, what it lies inside, where it stands), and views. Scene files:
+ * setup.h.
  *
  * Positions are in mm. A pose is a 4x4 affine matrix in double, row by row (pose[4*r + c]), that takes mesh
  * coordinates to the world: x_world = pose * (x, y, z, 1). Mirrored poses are fine; singular ones are

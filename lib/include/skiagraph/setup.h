@@ -1,6 +1,6 @@
 /* Scene files: a whole set-up (scene, view, spectrum, options) from JSON in the schema that gVXR users have
- * ("JSON 1.0.0": WindowSize, Source, Detector, Samples, Scan), plus our own keys: Parent of a sample,
- * Precision, Tolerance (docs/scene-files.md lists every key). Keys and names without regard to case; lengths
+ * ("JSON 1.0.0": WindowSize, Source, Detector, Samples, Scan), plus keys of our own
+ * (docs/scene-files.md lists all of them). Keys and names without regard to case; lengths
  * with unit strings; paths relative to the file. */
 #ifndef SKIAGRAPH_SETUP_H
 #define SKIAGRAPH_SETUP_H
@@ -25,8 +25,8 @@ SKG_API void skg_setup_release(skg_setup **setup);
 
 /* What it holds; scene, spectrum, and the response, world and blur of the options are valid as long as the
  * set-up (plans retain them). The view is that of a scan's first projection. options, prepared with
- * skg_plan_options_init, keep what the file does not say; falloff is on where photons come from mAs; views
- * are a sample of a scan's, valid as long as the set-up. */
+ * skg_plan_options_init, keep what the file does not say; falloff is on where photons come from mAs, or by
+ * the key Falloff; views are a sample of a scan's, valid as long as the set-up. */
 SKG_API skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene);
 SKG_API skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum);
 SKG_API skg_status skg_setup_view(const skg_setup *setup, skg_view *view);
