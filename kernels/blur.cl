@@ -40,9 +40,9 @@ __kernel void skg_blur_down(__global const skg_real *image, long offset, long ro
         }
     }
     SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++) {
-        if (row + r >= high) break;
         __global skg_real *place = workspace + ((long)channel * high + row + r) * stride + to;
-        SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) SKG_STORE_V(sum[r][v], v, place);
+        if (row + r < high) /* no break: it would keep the loop from being unrolled, which PoCL tells the user */
+            SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) SKG_STORE_V(sum[r][v], v, place);
     }
 }
 
