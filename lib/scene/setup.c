@@ -16,7 +16,7 @@ static const skg_json_key top_keys[] = {
     {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
     {"Breathing", NULL, SKG_KEY_READ},
     {"Noise", NULL, SKG_KEY_READ},
-    {"Falloff", "falloff with distance", SKG_KEY_NOT_YET},
+    {"Falloff", NULL, SKG_KEY_READ},
     {"World", NULL, SKG_KEY_READ},
     {"Repair", NULL, SKG_KEY_READ},
     {"Clip", NULL, SKG_KEY_READ},
@@ -66,6 +66,14 @@ static skg_status read_mends(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
+/* Where the file does not say, photons from mAs fall off with the distance. */
+static skg_status read_falloff(skg_setup *setup, const skg_json_object *top) {
+    const skg_json_node falloff = skg_json_member(top, "Falloff");
+    if (!falloff.value) return SKG_OK;
+    setup->has_falloff = 1;
+    return skg_json_flag(&falloff, &setup->falloff);
+}
+
 static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     skg_json_node node = skg_json_member(top, "Tolerance");
     setup->tolerance = -1;
@@ -98,6 +106,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
     SKG_TRY(read_mends(reader->setup, &top));
+    SKG_TRY(read_falloff(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
@@ -172,6 +181,7 @@ skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) 
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
     if (setup->absolute) ours.falloff = 1;
+    if (setup->has_falloff) ours.falloff = setup->falloff;
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;

@@ -85,7 +85,8 @@ struct skg_setup {
     skg_breathing_section breathing;
     int32_t precision, has_precision;
     int32_t repair, has_repair, clip;
-    double tolerance; /* negative: not given */
+    int32_t falloff, has_falloff; /* the key; without it, as absolute says */
+    double tolerance;             /* negative: not given */
 };
 
 /* What the readers share. */

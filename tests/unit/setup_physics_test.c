@@ -119,6 +119,18 @@ static skg_quality quality(int32_t *absolute) {
     return q;
 }
 
+/* Either way, against what the beam asks for. */
+START_TEST(falloff_as_the_file_says) {
+    ck_skg(load_with("Falloff=true", NULL));
+    ck_assert_int_eq(options().falloff, 1);
+    ck_skg(load_with("Falloff=false", NULL));
+    ck_assert_int_eq(options().falloff, 0);
+    ck_skg(load_with("Source.Beam={\"kVp\": 85, \"mAs\": 1}", "Falloff=false"));
+    ck_assert_int_eq(options().falloff, 0);
+    ck_skg_fails(load_with("Falloff=3", NULL), SKG_ERR_FORMAT, "Falloff");
+}
+END_TEST
+
 /* The beam of gVXR's paediatric case; then with a load, whose photons are those per pixel of 1 mm x 2 mm at
  * 500 mm. */
 START_TEST(tubes) {
@@ -141,6 +153,7 @@ START_TEST(tubes) {
         "\"ms\"], \"X-ray tube current\": [100, \"mA\"]}",
         NULL));
     by_current = quality(&absolute);
+    ck_assert_int_eq(absolute, 1);
     ck_assert_double_eq_tol(by_current.photons / with_load.photons, 1, 1e-12);
     ck_skg(load_with(
         "Source.Beam={\"kVp\": 85, \"Filter\": [[\"Al\", 1], [\"Cu\", 0.1]], \"mAs\": 1, \"Output\": "
@@ -320,6 +333,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_kind_of_material, 0, sizeof kinds / sizeof *kinds);
     tcase_add_test(tests, tables_of_attenuation);
     tcase_add_test(tests, beams_of_many_energies);
+    tcase_add_test(tests, falloff_as_the_file_says);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
     tcase_add_test(tests, focal_spots);

@@ -25,7 +25,7 @@ SKG_API void skg_setup_release(skg_setup **setup);
 
 /* What it holds; scene, spectrum, and the response, world and blur of the options are valid as long as the
  * set-up (plans retain them). The view is that of a scan's first projection. options, prepared with
- * skg_plan_options_init, keep what the file does not say; falloff is on where photons come from mAs; views
+ * skg_plan_options_init, keep what the file does not say; falloff, where its key is missing, is on where photons come from mAs; views
  * are a sample of a scan's, valid as long as the set-up. */
 SKG_API skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene);
 SKG_API skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum);
