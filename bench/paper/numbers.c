@@ -103,7 +103,7 @@ static double closed_form(const skg_material *bone, const skg_material *soft, in
 /* "value (off from truth)" */
 static void print_value(const paper_study *study, const char *what, int precision, int known, double value,
                         double truth, int digits, const char *unit) {
-    char name[64];
+    char name[128];
     if (!known) {
         printf(" - |");
         return;

@@ -140,6 +140,9 @@ void skg_frame_leave(const skg_rigid *frame, const double rest[3], const double 
 /* link.c */
 skg_status skg_body_find_links(skg_body *body);
 
+/* struts.c: ties across a sheet, added to its edges; the caller frees *ends. */
+skg_status skg_body_add_struts(const skg_body_organ *organ, int64_t *links, int32_t **ends);
+
 /* pose.c */
 void skg_link_follow(const skg_body *body, const skg_link *link, double displacement[3]);
 void skg_carried_vertex(const skg_body *body, const skg_body_organ *organ, int64_t vertex,

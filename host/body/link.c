@@ -106,24 +106,6 @@ static link_rule rule_of(const skg_body_organ *organ) {
     return skg_label_begins(organ->label, "skin") ? skin_rule : tendon_rule;
 }
 
-/* Edges as links; each face of a closed sheet is held to the other through its rim only, so vertices within
- * 4 mm across the diaphragm are tied too. */
-static skg_status add_struts(skg_body_organ *o, int64_t *links, int32_t **ends) {
-    int64_t room = *links;
-    for (int64_t i = 0; i < o->vertices; i++)
-        for (int64_t j = i + 1; j < o->vertices; j++) {
-            double d[3];
-            skg_add_scaled(o->rest + 3 * i, -1, o->rest + 3 * j, d);
-            if (o->node_of[i] != i || o->node_of[j] != j || skg_dot(d, d) > 16) continue;
-            if (*links == room) {
-                room += room / 2 + 16;
-                SKG_TRY(skg_realloc(2 * room, sizeof **ends, o->label, ends));
-            }
-            (*ends)[2 * *links] = (int32_t)i, (*ends)[2 * (*links)++ + 1] = (int32_t)j;
-        }
-    return SKG_OK;
-}
-
 /* How a vertex is driven. */
 enum { FREE, FOLLOWS, HANGS };
 
@@ -184,7 +166,7 @@ static skg_status add_hanging(const skg_body *body, skg_body_organ *o, int64_t h
 
 static skg_status build_chain(skg_body *body, skg_body_organ *o, chain_parts *c) {
     SKG_TRY(skg_chain_links(o->triangles, o->corner, o->node_of, &c->links, &c->ends));
-    if (o->role == ROLE_DIAPHRAGM) SKG_TRY(add_struts(o, &c->links, &c->ends));
+    if (o->role == ROLE_DIAPHRAGM) SKG_TRY(skg_body_add_struts(o, &c->links, &c->ends));
     SKG_TRY(skg_alloc(o->vertices, sizeof *o->link, o->label, &o->link));
     SKG_TRY(skg_alloc(o->vertices, sizeof *c->how, o->label, &c->how));
     SKG_TRY(add_hanging(body, o, find_drivers(body, o, o->link, c->how), c));

@@ -3,6 +3,7 @@
 
 #include "explain.h"
 #include "folder.h"
+#include "frames.h"
 #include "interrupt.h"
 
 #include <inttypes.h>
@@ -96,15 +97,14 @@ int cli_start_image(cli_fluoroscopy *f, int which, skg_job **job) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-int cli_wait_image(skg_job **job) {
-    skg_status status = skg_job_wait(job);
-    return status >= SKG_OK ? CLI_DONE : cli_fail(status);
+int cli_wait_image(cli_fluoroscopy *f, skg_job **job) {
+    return cli_end_image(skg_job_wait(job), &f->range_told);
 }
 
 static int make_image(cli_fluoroscopy *f, int which) {
     skg_job *job = NULL;
     int exit_status = cli_start_image(f, which, &job);
-    return exit_status == CLI_DONE ? cli_wait_image(&job) : exit_status;
+    return exit_status == CLI_DONE ? cli_wait_image(f, &job) : exit_status;
 }
 
 static int pose(cli_fluoroscopy *f, const sequence *s, int64_t frame) {
@@ -172,7 +172,7 @@ static int run_sequence(cli_fluoroscopy *f, sequence *s) {
         const double posing = cli_now_ms();
         if (i + 1 < s->frames) exit_status = pose(f, s, i + 1);
         s->pose_ms += cli_now_ms() - posing;
-        int waited = cli_wait_image(&job);
+        int waited = cli_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
     }
     s->sequence_ms = cli_now_ms() - start;
@@ -188,7 +188,7 @@ static int write_frame(cli_fluoroscopy *f, const sequence *s, int64_t i, cli_tab
     if (exit_status == CLI_DONE) exit_status = cli_table_add(f, (double)i / s->fps, table);
     if (exit_status == CLI_DONE && s->meshes) exit_status = cli_write_meshes(f, s->meshes, i);
     if (job) {
-        int waited = cli_wait_image(&job);
+        int waited = cli_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
     }
     if (exit_status == CLI_DONE) exit_status = cli_write_frame(f, 0, path);

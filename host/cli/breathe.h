@@ -12,12 +12,13 @@ typedef struct {
     int64_t pixels;
     float *image[2];  /* [rows][columns] of -ln(I/I0): one may be made while the other is used */
     double low, high; /* shown from black to white, one range for all frames */
+    int range_told;   /* lengths outside the verified range were warned of */
     char *outline;    /* [rows][columns] 1 where an outline is drawn; NULL: none */
 } cli_fluoroscopy;
 
 /* The image of the motion as it is posed, into image[which]: started, then waited for. */
 int cli_start_image(cli_fluoroscopy *f, int which, skg_job **job);
-int cli_wait_image(skg_job **job);
+int cli_wait_image(cli_fluoroscopy *f, skg_job **job);
 
 /* "ribs,diaphragm@0": the outlines of these parts at that phase (breathe_outline.c). */
 int cli_find_outline(cli_fluoroscopy *f, const char *wanted);

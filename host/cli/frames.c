@@ -30,6 +30,12 @@ static skg_status note_stages(const skg_plan *plan, cli_times *times) {
     return status;
 }
 
+int cli_end_image(skg_status status, int *told) {
+    if (status == SKG_RANGE && !(told && *told)) cli_warn("%s", skg_last_error());
+    if (status == SKG_RANGE && told) *told = 1;
+    return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);
+}
+
 int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, const void *user,
                    cli_times *times) {
     times->frame_ms = calloc((size_t)times->repeats + 1, sizeof *times->frame_ms);
@@ -46,8 +52,7 @@ int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, co
         if (noted < SKG_OK) status = noted;
         cli_progress("frames", i + 1, times->repeats, begun);
     }
-    if (status == SKG_RANGE) cli_warn("%s", skg_last_error());
-    return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);
+    return cli_end_image(status, NULL);
 }
 
 void cli_times_free(cli_times *times) {

@@ -20,6 +20,10 @@ typedef struct {
     int stage_count;
 } cli_times;
 
+/* The exit status after an image. Lengths outside the verified range are warned of; told (NULL: every time):
+ * 1 from the first warning on, and no more follow. */
+int cli_end_image(skg_status status, int *told);
+
 /* One frame into the caller's output: submit and wait. */
 typedef skg_status (*cli_frame)(skg_plan *plan, const skg_output *output, const void *user);
 

@@ -94,10 +94,16 @@ static void enter_triangles(triangle_grid *grid, int pass) {
 }
 
 static skg_status fill_grid(const double low[3], const double high[3], triangle_grid *grid) {
-    double volume = 1;
+    double volume = 1, extent = 0;
     int64_t cells = 1;
     for (int k = 0; k < 3; k++) volume *= high[k] - low[k];
-    grid->cell = fmax(1, cbrt(volume / (1 + (double)grid->count)));
+    for (int64_t t = 0; t < grid->count; t++) {
+        double from[3], to[3];
+        bounds_of(3, grid->corner + 9 * t, 0, from, to);
+        extent += fmax(to[0] - from[0], fmax(to[1] - from[1], to[2] - from[2])) / (double)grid->count;
+    }
+    grid->cell =
+        fmax(extent, cbrt(volume / (1 + 8 * (double)grid->count))); /* surfaces leave most cells empty */
     for (int k = 0; k < 3; k++) {
         grid->low[k] = low[k];
         grid->size[k] = 1 + (int64_t)((high[k] - low[k]) / grid->cell);
@@ -298,7 +304,11 @@ static int is_folded(const triangle_grid *grid, const int32_t *corners, int64_t 
     return 0;
 }
 
-skg_status skg_shape_folds(const skg_mesh_arrays *a, int64_t *count, char *fold) {
+static int has_moved(const int32_t *corners, int64_t t, const char *moved) {
+    return !moved || moved[corners[3 * t]] || moved[corners[3 * t + 1]] || moved[corners[3 * t + 2]];
+}
+
+skg_status skg_shape_folds(const skg_mesh_arrays *a, const char *moved, int64_t *count, char *fold) {
     triangle_grid grid = {0};
     double low[3], high[3];
     int64_t found = 0;
@@ -308,7 +318,7 @@ skg_status skg_shape_folds(const skg_mesh_arrays *a, int64_t *count, char *fold)
     SKG_TRY_CLEANUP(fill_grid(low, high, &grid));
 #pragma omp parallel for schedule(dynamic, 256) reduction(+ : found)
     for (int64_t t = 0; t < a->triangles; t++) {
-        fold[t] = (char)is_folded(&grid, a->corners, t);
+        fold[t] = (char)(has_moved(a->corners, t, moved) && is_folded(&grid, a->corners, t));
         found += fold[t];
     }
     *count = found;
@@ -345,7 +355,7 @@ skg_status skg_shape_unfold(const char *name, const skg_mesh_arrays *a) {
     SKG_TRY_CLEANUP(skg_alloc(a->vertices, sizeof *moves, name, &moves));
     SKG_TRY_CLEANUP(skg_alloc(4 * a->vertices, sizeof *sum, name, &sum));
     for (int pass = 0; pass < MOST_PASSES; pass++) {
-        SKG_TRY_CLEANUP(skg_shape_folds(a, &folds, fold));
+        SKG_TRY_CLEANUP(skg_shape_folds(a, pass > 0 ? moves : NULL, &folds, fold));
         if (folds == 0) break;
         smooth_folds(a, fold, moves, sum);
     }

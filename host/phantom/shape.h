@@ -51,8 +51,8 @@ skg_status skg_shape_retreat(const char *name, int64_t count, skg_mesh *const *o
                              skg_mesh_arrays *arrays);
 
 /* Which facets of a closed surface meet others of it that are not their neighbours: how many, and 1 or 0 per
- * triangle (apart.c). */
-skg_status skg_shape_folds(const skg_mesh_arrays *arrays, int64_t *count, char *fold);
+ * triangle. moved: per vertex, whether facets there are looked at; NULL: all (apart.c). */
+skg_status skg_shape_folds(const skg_mesh_arrays *arrays, const char *moved, int64_t *count, char *fold);
 
 /* Smooths a surface where it folds over itself, until it does not. */
 skg_status skg_shape_unfold(const char *name, const skg_mesh_arrays *arrays);

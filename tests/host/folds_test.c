@@ -30,7 +30,7 @@ static skg_thorax_part part_of(const skg_thorax *thorax, int64_t i) {
 static int64_t folds_of(const skg_mesh_arrays *arrays) {
     int64_t folds = -1;
     char *fold = calloc((size_t)arrays->triangles, 1);
-    ck_skg(skg_shape_folds(arrays, &folds, fold));
+    ck_skg(skg_shape_folds(arrays, NULL, &folds, fold));
     free(fold);
     return folds;
 }

@@ -151,6 +151,7 @@ START_TEST(tubes) {
         "\"ms\"], \"X-ray tube current\": [100, \"mA\"]}",
         NULL));
     by_current = quality(&absolute);
+    ck_assert_int_eq(absolute, 1);
     ck_assert_double_eq_tol(by_current.photons / with_load.photons, 1, 1e-12);
     ck_skg(load_with(
         "Source.Beam={\"kVp\": 85, \"Filter\": [[\"Al\", 1], [\"Cu\", 0.1]], \"mAs\": 1, \"Output\": "
