@@ -27,8 +27,9 @@ skg_bands_sort(skg_frame_args frame, __global const int *corners, __global const
                 skg_real4 a, b, c;
                 skg_box box;
                 met[triangle - start] = 0;
+                if (range.writes == 0) continue;
                 skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-                if (range.writes == 0 || !skg_bounds(a, b, c, window, &box)) continue;
+                if (!skg_bounds(a, b, c, window, &box)) continue;
                 const int from = (box.j0 + range.pixel_j) / frame.tile_rows;
                 const int to = (box.j1 - 1 + range.pixel_j) / frame.tile_rows;
                 if (to - from >= SKG_MOST_TILES) {

@@ -34,6 +34,7 @@ __kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies,
             const skg_sumv valid = SKG_AS_SUM_V(hits == (skg_sumv)(0));
             for (int plane = first; plane < counts; plane++) {
                 const skg_sumv sums = skg_field_sums_v(&frame, copies, used, plane, row, column);
+                if (!skg_any(SKG_TO_INT_V((sums & valid) != (skg_sumv)(0)))) continue; /* most of a rectangle */
                 __global skg_sum *place = shared + skg_place(&frame, table[parts + plane], row, column);
                 SKG_STORE_V(SKG_LOAD_V(0, place) + (sums & valid), 0, place);
             }

@@ -46,7 +46,11 @@ static skg_status get_raster(batching *b) {
     b->planes = total < room ? total : room;
     b->planes = b->planes > most ? b->planes : most;
     kernels.listed_writes = 1;
-    return skg_plan_raster(b->plan, &kernels, b->plan->strategy, b->planes, 0, &b->raster);
+    /* Bands write the few rows that a part meets; copies clear whole rectangles, and are added up twice. */
+    const skg_plan *plan = b->plan;
+    const int bands = plan->options.strategy == SKG_STRATEGY_AUTO && plan->strategy == SKG_STRATEGY_COPIES;
+    return skg_plan_raster(b->plan, &kernels, bands ? SKG_STRATEGY_TILES : plan->strategy, b->planes, 0,
+                           &b->raster);
 }
 
 /* Fills the tables of a batch. table: [parts + planes] as skg_open_add takes it. */
