@@ -30,9 +30,9 @@
 /* Rows that a work-item of the source plane's kernel draws. */
 #define SKG_SOURCE_ROWS 32
 
-/* The table of what sums there are: for each copy whether it counts; the counter of claims; then of each plane
- * the field that has any: rows from, to, columns from, to, the latter multiples of SKG_FIELD_COLUMNS or the
- * row's end. Outside it sums are 0, and neither zeroed nor read. */
+/* The table of what sums there are: for each copy whether it counts; the counter of claims; then of each
+ * plane the field that has any: rows from, to, columns from, to, the latter multiples of SKG_FIELD_COLUMNS or
+ * the row's end. Outside it sums are 0, and neither zeroed nor read. */
 #define SKG_FIELD(copies, plane) ((copies) + 1 + 4 * (plane))
 #define SKG_FIELD_COLUMNS 32
 
