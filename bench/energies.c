@@ -3,7 +3,7 @@
  * compressed. */
 #include "common/bench.h"
 
-#include "affinity.h"
+#include "cli/affinity.h"
 
 #include <skiagraph/opencl.h>
 

@@ -5,8 +5,8 @@
 #ifdef __OPENCL_C_VERSION__
 #define SKG_INT int
 #else
-#include <CL/cl.h>
-#define SKG_INT cl_int
+#include <stdint.h>
+#define SKG_INT int32_t
 #endif
 
 /* Items (triangles or projected vertices) per entry of a block table. */
@@ -107,22 +107,22 @@ typedef struct {
 } skg_ray_args;
 #else
 typedef struct {
-    SKG_PART_FIELDS(cl_float)
+    SKG_PART_FIELDS(float)
 } skg_part_float;
 typedef struct {
-    SKG_PART_FIELDS(cl_double)
+    SKG_PART_FIELDS(double)
 } skg_part_double;
 typedef struct {
-    SKG_WRITE_FIELDS(cl_float)
+    SKG_WRITE_FIELDS(float)
 } skg_write_float;
 typedef struct {
-    SKG_WRITE_FIELDS(cl_double)
+    SKG_WRITE_FIELDS(double)
 } skg_write_double;
 typedef struct {
-    SKG_RAY_FIELDS(cl_float)
+    SKG_RAY_FIELDS(float)
 } skg_ray_float;
 typedef struct {
-    SKG_RAY_FIELDS(cl_double)
+    SKG_RAY_FIELDS(double)
 } skg_ray_double;
 _Static_assert(sizeof(skg_part_float) == 20 * 4 + 12 * 4, "layout of a part, single");
 _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, double");

@@ -56,7 +56,7 @@ int main(int count, char **words) {
         perror(words[2]);
         return EXIT_FAILURE;
     }
-    fprintf(out, "#include \"material/tables.h\"\n\n");
+    fprintf(out, "#include \"materials/rows.h\"\n\n");
     write_cross_sections(words[1], out);
     write_elements(words[1], out);
     write_mixtures(words[1], out);

@@ -3,7 +3,7 @@
 #ifndef SKG_MATERIALS_TABLES_H
 #define SKG_MATERIALS_TABLES_H
 
-#include "material/tables.h"
+#include "rows.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 #include "paper/paper.h"
 
-#include "affinity.h"
+#include "cli/affinity.h"
 
 #include <inttypes.h>
 

@@ -1,7 +1,7 @@
 /* Where ribs turn, from the shapes of bones. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <ctype.h>
 #include <stdlib.h>

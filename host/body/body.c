@@ -1,7 +1,7 @@
 /* A body as a handle. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>

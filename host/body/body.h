@@ -5,7 +5,7 @@
 #include "body/rigid.h"
 #include "chainmail/chainmail.h"
 #include "core/context.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 
 #include <skiagraph/breathing.h>
 

@@ -1,7 +1,7 @@
 /* Drivers that pull against each other: which organs they are. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 static const double told_from_mm = 1;
 

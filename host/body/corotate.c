@@ -4,7 +4,7 @@
  * polar factor of their covariance), and Chain Mail moves only what departs from it. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Links between organs, found once, at rest. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* What a pose is like. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 void skg_body_measure_init(skg_body_measure *measure) {
     *measure = (skg_body_measure){.size = (int32_t)sizeof *measure};

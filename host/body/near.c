@@ -1,7 +1,7 @@
 /* Nearest points on triangles. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 /* Weights of the point of triangle abc nearest to p: regions of the plane by the signs of areas (Ericson,
  * Real-Time Collision Detection (2005) 5.1.5). */

@@ -1,7 +1,7 @@
 /* What the caller says of an organ. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Posing: each organ after those that it follows. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Ribs: a plane each, an axis through the head, one angle. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

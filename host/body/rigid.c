@@ -1,6 +1,6 @@
 #include "body/rigid.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

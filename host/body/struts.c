@@ -2,7 +2,7 @@
  * diaphragm is also tied to the nearest one of the face behind it. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

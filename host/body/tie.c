@@ -1,7 +1,7 @@
 /* Links that the caller gives, in the place of a label's rule. */
 #include "body/body.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <ctype.h>
 #include <inttypes.h>

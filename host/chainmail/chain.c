@@ -1,7 +1,7 @@
 /* Building the graph of links. */
 #include "chainmail/chainmail.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #define _XOPEN_SOURCE 700 /* nftw */
 #include "cli.h"
 
-#include "affinity.h"
+#include "cli/affinity.h"
 
 #include <errno.h>
 #include <ftw.h>

@@ -1,7 +1,7 @@
 /* A set-up that breathes. */
 #include "body/body.h"
 #include "scene/scene.h"
-#include "scene/setup.h"
+#include "setup/setup.h"
 
 #include <skiagraph/motion.h>
 

@@ -2,7 +2,7 @@
  * sampled; between the samples a facet may still cut into a neighbour's, and then draws back from it. */
 #include "phantom/shape.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Ribs, costal cartilage, sternum, spine, clavicles. */
 #include "phantom/thorax.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <stdio.h>
 #include <string.h>

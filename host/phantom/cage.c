@@ -2,7 +2,7 @@
  * of BodyParts3D (one man, lying), to about 5 mm. */
 #include "phantom/thorax.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* The diaphragm's middle surface: two domes over a rim that fits the cage and leaves out the spine. */
 #include "phantom/thorax.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 const double skg_dome_centre[2] = {0, -68};
 

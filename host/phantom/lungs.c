@@ -2,7 +2,7 @@
  * that the base lies on the diaphragm: no ring can cross another. */
 #include "phantom/thorax.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -1,7 +1,7 @@
 /* Diaphragm, heart, and what lies under the diaphragm. */
 #include "phantom/thorax.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "phantom/shape.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <string.h>
 

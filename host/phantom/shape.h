@@ -3,7 +3,7 @@
 #define SKG_SHAPE_H
 
 #include "core/core.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 
 /* Where the point of a ring lies: azimuth 0 to below 1. */
 typedef void (*skg_ring_place)(const void *shape, int64_t ring, double azimuth, double point[3]);

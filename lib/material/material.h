@@ -3,7 +3,7 @@
 #define SKG_MATERIAL_PRIVATE_H
 
 #include "core/core.h"
-#include "material/tables.h"
+#include "materials/rows.h"
 
 #include <skiagraph/material.h>
 

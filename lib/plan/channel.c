@@ -1,5 +1,5 @@
 /* What the channels of a plan's images are. */
-#include "plan/plan.h"
+#include "frame/plan.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "core/names.h"
-#include "plan/extent.h"
+#include "geometry/extent.h"
 #include "plan/report.h"
 
 #include <inttypes.h>

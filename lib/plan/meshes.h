@@ -3,7 +3,7 @@
 #ifndef SKG_PLAN_MESHES_H
 #define SKG_PLAN_MESHES_H
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/scene.h"
 
 typedef struct {

@@ -1,6 +1,6 @@
 /* The warning that nothing falls on the detector, with the direction and the distance of what comes nearest.
  */
-#include "plan/frame.h"
+#include "frame/frame.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 
 #include "core/context.h"
 #include "core/names.h"
-#include "scene/pose.h"
-#include "scene/vector.h"
+#include "core/pose.h"
+#include "core/vector.h"
 
 #include <float.h>
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 #include "core/core.h"
 
-#include "scene/vector.h"
+#include "core/vector.h"
 
 #include <skiagraph/scene.h>
 

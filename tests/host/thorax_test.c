@@ -1,7 +1,7 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "host/inside.h"
 #include "phantom/thorax.h"
-#include "plan/overlap.h"
+#include "geometry/overlap.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

@@ -1,5 +1,5 @@
 /* Blur against the sum that defines it, in double. */
-#include "plan/blur.h"
+#include "stage/blur.h"
 #include "suite.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "kernels/picture.h"
 
-#include "plan/attenuate.h"
-#include "plan/raster_private.h"
-#include "scene/pose.h"
+#include "stage/attenuate.h"
+#include "stage/raster_private.h"
+#include "core/pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -194,9 +194,9 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
                           const skg_camera *camera, int bodies, const body *of, double scale) {
     static const double origin[3] = {0, 0, 0};
     skg_geometry_part *parts = calloc((size_t)bodies, sizeof *parts);
-    skg_plane_weight *weights = calloc((size_t)bodies, sizeof *weights);
+    skg_contribution *weights = calloc((size_t)bodies, sizeof *weights);
     for (int b = 0; b < bodies; b++) {
-        weights[b] = (skg_plane_weight){of[b].plane, of[b].weight, of[b].bias};
+        weights[b] = (skg_contribution){of[b].plane, of[b].weight, of[b].bias};
         parts[b] = (skg_geometry_part){of[b].pose, origin, 0, middle_depth(camera, &of[b]), 1, &weights[b]};
     }
     skg_status status =

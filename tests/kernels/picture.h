@@ -2,7 +2,7 @@
 #ifndef SKG_TESTS_PICTURE_H
 #define SKG_TESTS_PICTURE_H
 
-#include "plan/raster.h"
+#include "stage/raster.h"
 
 #include <skiagraph/plan.h>
 

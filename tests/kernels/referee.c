@@ -1,7 +1,7 @@
 /* Signed lengths, each pixel against each triangle, in long double. */
 #include "kernels/picture.h"
 
-#include "scene/pose.h"
+#include "core/pose.h"
 
 #include <math.h>
 #include <stdlib.h>

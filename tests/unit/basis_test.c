@@ -1,7 +1,7 @@
 /* Planes: which materials are mixtures of others. */
 #include "beam_subject.h"
 
-#include "plan/basis.h"
+#include "spectral/basis.h"
 
 #include <math.h>
 #include <string.h>

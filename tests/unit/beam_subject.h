@@ -4,7 +4,7 @@
 
 #include "suite.h"
 
-#include "plan/verify.h"
+#include "spectral/verify.h"
 
 #include <skiagraph/skiagraph.h>
 

@@ -1,6 +1,6 @@
 /* Mesh files of our own readers and writers: back as they were, damaged, not to be written. */
 #include "core/context.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "unit/mesh_files.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* Mesh files of other programs: by Assimp, against Assimp, and the real organs where they are. */
 #include "core/names.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "unit/mesh_files.h"
 
 #include <assimp/cimport.h>

@@ -1,4 +1,4 @@
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "suite.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Meshes that are made: cuboid, sphere, cylinder, step wedge. */
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "unit/mesh_health.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* Triangles in an order that memory likes. */
 #include "core/core.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "suite.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Meshes from arrays: numbering, health, moving. */
 #include "core/context.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "unit/mesh_health.h"
 
 #include <float.h>

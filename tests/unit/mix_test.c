@@ -1,13 +1,13 @@
 /* Accumulators that planes are mixed from. */
 #include "suite.h"
 
-#include "plan/mix.h"
+#include "spectral/mix.h"
 
 #include <string.h>
 
 /* Fat in nothing; two bones and a hole of fat in bone, the last also turned round; lung in fat; no matter. */
 enum { PARTS = 7, PLANES = 3 };
-static const skg_plane_weight writes[] = {{0, 2, 0},  {1, 1, 0},    {0, -2, 0}, {1, 1, 0},
+static const skg_contribution writes[] = {{0, 2, 0},  {1, 1, 0},    {0, -2, 0}, {1, 1, 0},
                                           {0, -2, 0}, {0, 4, 0},    {1, -2, 0}, {2, 0.5, 0},
                                           {0, -2, 0}, {2, 0.25, 0}, {0, -1, 0}};
 static const int64_t firsts[PARTS + 1] = {0, 1, 3, 5, 7, 9, 11, 11};
@@ -54,7 +54,7 @@ START_TEST(only_lists_are_mixed) {
     ck_assert_int_eq(sums, 3);
     ck_skg(skg_mix_choose(2, PLANES, writes, single, &sums));
     ck_assert_int_eq(sums, 0);
-    ck_skg(skg_mix_choose(PARTS, 1, (const skg_plane_weight[]){{0, 1, 0}},
+    ck_skg(skg_mix_choose(PARTS, 1, (const skg_contribution[]){{0, 1, 0}},
                           (const int64_t[PARTS + 1]){0, 1, 1, 1, 1, 1, 1, 1}, &sums));
     ck_assert_int_eq(sums, 0);
 }

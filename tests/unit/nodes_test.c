@@ -1,8 +1,8 @@
 /* Spectral nodes against the sum over all bins. */
 #include "beam_subject.h"
 
-#include "plan/nnls.h"
-#include "plan/nodes.h"
+#include "spectral/nnls.h"
+#include "spectral/nodes.h"
 
 #include <math.h>
 #include <string.h>

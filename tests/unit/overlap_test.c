@@ -1,4 +1,4 @@
-#include "plan/overlap.h"
+#include "geometry/overlap.h"
 #include "suite.h"
 
 #include <math.h>

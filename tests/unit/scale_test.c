@@ -1,4 +1,4 @@
-#include "plan/scale.h"
+#include "geometry/scale.h"
 #include "suite.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "scene/pose.h"
+#include "core/pose.h"
 #include "unit/setup_files.h"
 
 #include <math.h>

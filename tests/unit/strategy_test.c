@@ -1,5 +1,5 @@
 /* The strategy that a scene calls for. */
-#include "plan/raster.h"
+#include "stage/raster.h"
 #include "suite.h"
 
 START_TEST(strategy_follows_from_the_facts) {

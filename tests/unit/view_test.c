@@ -1,5 +1,5 @@
-#include "plan/camera.h"
-#include "scene/vector.h"
+#include "geometry/camera.h"
+#include "core/vector.h"
 #include "suite.h"
 
 #include <math.h>

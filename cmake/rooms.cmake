@@ -1,0 +1,33 @@
+# skg_room(NAME SOURCES FILE... [LINKS TARGET...]): one room of the library, an object library of its own.
+#
+# A room includes the headers of another as "room/file.h". It finds only its own and those of the rooms that were
+# declared before it: its include path is a folder of links to these rooms. An include that points upward does not
+# compile. Public headers (<skiagraph/...>) and the kernels' shared ones are visible to all.
+set_property(GLOBAL PROPERTY SKG_ROOMS "")
+
+# Makes the folder PATH with a link to each folder of the list FOLDERS, named like it.
+function(skg_link_folders path folders)
+  file(MAKE_DIRECTORY ${path})
+  foreach(folder IN LISTS folders)
+    get_filename_component(name ${folder} NAME)
+    file(CREATE_LINK ${folder} ${path}/${name} SYMBOLIC)
+  endforeach()
+endfunction()
+
+function(skg_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS" ${ARGN})
+  get_property(rooms GLOBAL PROPERTY SKG_ROOMS)
+  list(APPEND rooms ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+  set_property(GLOBAL PROPERTY SKG_ROOMS "${rooms}")
+  set(sight ${skiagraph_BINARY_DIR}/rooms/${name})
+  skg_link_folders(${sight} "${rooms}")
+  list(TRANSFORM ROOM_SOURCES PREPEND ${name}/ REGEX "^[^/].*")
+  add_library(skg_${name} OBJECT ${ROOM_SOURCES})
+  target_include_directories(skg_${name} PRIVATE ${sight} ${skiagraph_SOURCE_DIR}/kernels)
+  target_link_libraries(skg_${name} PRIVATE skg_interface ${ROOM_LINKS})
+  # The objects, for the library and for tests of private code.
+  target_sources(skg_objects INTERFACE $<TARGET_OBJECTS:skg_${name}>)
+  if(ROOM_LINKS)
+    target_link_libraries(skg_objects INTERFACE ${ROOM_LINKS})
+  endif()
+endfunction()

@@ -1,0 +1,279 @@
+/* The key Beam of a source: energies, a file of them, or a tube. */
+#include "core/context.h"
+#include "core/units.h"
+#include "setup/setup.h"
+#include "core/vector.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static const char *const example = "[{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]";
+
+static const skg_json_key channel_keys[] = {
+    {"Energy", NULL, SKG_KEY_READ},
+    {"Unit", NULL, SKG_KEY_READ},
+    {"PhotonCount", NULL, SKG_KEY_READ},
+};
+
+/* A tube or a file of energies. */
+static const skg_json_key spectrum_keys[] = {
+    {"TextFile", NULL, SKG_KEY_READ},
+    {"GateMacro", NULL, SKG_KEY_READ},
+    {"Unit", NULL, SKG_KEY_READ},
+    {"kVp", NULL, SKG_KEY_READ},
+    {"PeakKiloVoltage", "kVp", SKG_KEY_READ},
+    {"TubeAngle", NULL, SKG_KEY_READ},
+    {"Anode", NULL, SKG_KEY_READ},
+    {"Model", NULL, SKG_KEY_READ},
+    {"mAs", NULL, SKG_KEY_READ},
+    {"ExposureTime", NULL, SKG_KEY_READ},
+    {"X-ray tube current", NULL, SKG_KEY_READ},
+    {"Current", "X-ray tube current", SKG_KEY_READ},
+    {"Filter", NULL, SKG_KEY_READ},
+    {"Filtration", "Filter", SKG_KEY_READ},
+    {"MaxNumberOfEnergyBins", NULL, SKG_KEY_READ},
+    {"Output", NULL, SKG_KEY_READ},
+};
+
+static skg_status read_channel(const skg_json_node *node, double *energy_kev, double *photons) {
+    skg_json_object channel;
+    skg_json_node energy_node, unit_node, photons_node;
+    double energy = 0, kev = 1;
+    const char *unit = NULL;
+    SKG_TRY(skg_json_read_object(node, channel_keys, sizeof channel_keys / sizeof *channel_keys, &channel));
+    SKG_TRY(skg_json_need(&channel, "Energy", "60", &energy_node));
+    SKG_TRY(skg_json_need(&channel, "Unit", "\"keV\"", &unit_node));
+    SKG_TRY(skg_json_need(&channel, "PhotonCount", "1000", &photons_node));
+    SKG_TRY(skg_json_number(&energy_node, &energy));
+    SKG_TRY(skg_json_text(&unit_node, &unit));
+    SKG_TRY(skg_json_number(&photons_node, photons));
+    skg_status status = skg_unit_of_energy(unit, &kev);
+    if (status != SKG_OK) return skg_json_fail(&unit_node, status, "%s", skg_last_error());
+    *energy_kev = energy * kev;
+    /* One energy, to have its fault told in its own place. */
+    skg_spectrum *check = NULL;
+    status = skg_spectrum_mono(*energy_kev, *photons, &check);
+    skg_spectrum_release(&check);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+static skg_status read_channels(skg_setup *setup, const skg_json_node *node) {
+    double *energies = NULL, *photons = NULL;
+    int64_t count = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_json_array(node, example, &count));
+    if (count == 0) return skg_json_fail(node, SKG_ERR_BEAM, "has no energy; give %s", example);
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "beam", &energies));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "beam", &photons));
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_node channel = skg_json_element(node, i);
+        SKG_TRY_CLEANUP(read_channel(&channel, &energies[i], &photons[i]));
+    }
+    SKG_TRY_CLEANUP(skg_spectrum_bins(count, energies, photons, &setup->spectrum));
+cleanup:
+    skg_free(&energies);
+    skg_free(&photons);
+    return status;
+}
+
+static skg_status read_file(skg_setup_reader *reader, const skg_json_object *beam,
+                            const skg_json_node *node) {
+    const char *path = NULL, *unit = NULL;
+    char *resolved = NULL;
+    skg_json_node unit_node;
+    SKG_TRY(skg_json_text(node, &path));
+    SKG_TRY(skg_json_need(beam, "Unit", "\"keV\"", &unit_node));
+    SKG_TRY(skg_json_text(&unit_node, &unit));
+    SKG_TRY(skg_setup_resolve(reader, path, &resolved));
+    skg_status status = skg_spectrum_file(resolved, unit, &reader->setup->spectrum);
+    skg_free(&resolved);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+/* A number, or [number, unit] with one of the names given. */
+static skg_status read_quantity(const skg_json_node *node, const char *what, const char *const *units,
+                                const double *values, int64_t count, double *quantity) {
+    int64_t choice = 0;
+    if (!json_is_array(node->value)) return skg_json_number(node, quantity);
+    skg_json_node number = skg_json_element(node, 0), unit = skg_json_element(node, 1);
+    SKG_TRY(skg_json_number(&number, quantity));
+    SKG_TRY(skg_json_choice(&unit, what, units, count, &choice));
+    *quantity *= values[choice];
+    return SKG_OK;
+}
+
+/* mAs, or exposure time (s) times tube current (mA). *given: 0 where there is neither. */
+static skg_status read_mas(const skg_json_object *beam, double *mas, int32_t *given) {
+    static const char *const times[] = {"s", "sec", "ms", "msec", "milliseconds", "millisecond", "seconds"};
+    static const double seconds[] = {1, 1, 1e-3, 1e-3, 1e-3, 1e-3, 1};
+    static const char *const currents[] = {"mA", "milliampere", "milliamperes", "A", "ampere", "amperes"};
+    static const double milliamperes[] = {1, 1, 1, 1e3, 1e3, 1e3};
+    skg_json_node node = skg_json_member(beam, "mAs"), time = skg_json_member(beam, "ExposureTime");
+    skg_json_node current = skg_json_member(beam, "X-ray tube current");
+    double t = 0, i = 0;
+    *given = node.value || (time.value && current.value);
+    if (node.value) return skg_json_number(&node, mas);
+    if (!time.value && !current.value) return SKG_OK;
+    if (!*given)
+        return skg_json_fail(time.value ? &time : &current, SKG_ERR_FORMAT,
+                             "exposure time and tube current go together; give both, or mAs");
+    SKG_TRY(read_quantity(&time, "unit of time", times, seconds, 7, &t));
+    SKG_TRY(read_quantity(&current, "unit of tube current", currents, milliamperes, 6, &i));
+    *mas = t * i;
+    return SKG_OK;
+}
+
+enum { MOST_FILTERS = 32 };
+
+typedef struct {
+    skg_filter filters[MOST_FILTERS];
+    skg_material *materials[MOST_FILTERS];
+    int64_t count;
+} filter_list;
+
+/* ["Cu", 0.1, "mm"]; mm where there is no unit; an element also by its number. */
+static skg_status read_filter(const skg_json_node *node, filter_list *list) {
+    static const char *const one = "[\"Cu\", 0.1, \"mm\"]";
+    int64_t length = 0, z = 0;
+    double thickness = 0, mm = 1;
+    const char *name = NULL;
+    SKG_TRY(skg_json_array(node, one, &length));
+    if (length < 2 || length > 3)
+        return skg_json_fail(node, SKG_ERR_FORMAT, "has %" PRId64 " elements; give %s", length, one);
+    skg_json_node material = skg_json_element(node, 0), value = skg_json_element(node, 1);
+    skg_json_node unit = skg_json_element(node, 2);
+    SKG_TRY(skg_json_number(&value, &thickness));
+    if (unit.value) SKG_TRY(skg_json_unit_of_length(&unit, &mm));
+    skg_material **place = &list->materials[list->count];
+    skg_status status;
+    if (json_is_integer(material.value)) {
+        SKG_TRY(skg_json_integer(&material, 1, 92, &z));
+        status = skg_material_element((int32_t)z, place);
+    } else {
+        SKG_TRY(skg_json_text(&material, &name));
+        status = skg_material_named(name, place);
+    }
+    if (status != SKG_OK) return skg_json_fail(&material, status, "%s", skg_last_error());
+    list->filters[list->count] = (skg_filter){*place, thickness * mm};
+    list->count++;
+    return SKG_OK;
+}
+
+static skg_status read_filters(const skg_json_object *beam, filter_list *list) {
+    skg_json_node node = skg_json_member(beam, "Filter");
+    int64_t count = 0;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_array(&node, "[[\"Cu\", 0.1, \"mm\"]]", &count));
+    if (count > MOST_FILTERS)
+        return skg_json_fail(&node, SKG_ERR_FORMAT, "has %" PRId64 " filters; %d are the most", count,
+                             MOST_FILTERS);
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_node filter = skg_json_element(&node, i);
+        SKG_TRY(read_filter(&filter, list));
+    }
+    return SKG_OK;
+}
+
+/* [65, "uGy/mAs", 100, "cm"] */
+static skg_status read_output(const skg_json_object *beam, skg_tube *tube) {
+    static const char *const form = "[65, \"uGy/mAs\", 100, \"cm\"]", *const units[] = {"uGy/mAs"};
+    skg_json_node node = skg_json_member(beam, "Output");
+    int64_t count = 0, choice = 0;
+    double mm = 1;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_array(&node, form, &count));
+    if (count != 4)
+        return skg_json_fail(&node, SKG_ERR_FORMAT, "has %" PRId64 " elements; give %s", count, form);
+    skg_json_node value = skg_json_element(&node, 0), unit = skg_json_element(&node, 1);
+    skg_json_node distance = skg_json_element(&node, 2), length = skg_json_element(&node, 3);
+    SKG_TRY(skg_json_number(&value, &tube->output_ugy_mas));
+    SKG_TRY(skg_json_choice(&unit, "unit of output", units, 1, &choice));
+    SKG_TRY(skg_json_number(&distance, &tube->output_at_mm));
+    SKG_TRY(skg_json_unit_of_length(&length, &mm));
+    tube->output_at_mm *= mm;
+    if (!(tube->output_ugy_mas > 0))
+        return skg_json_fail(&value, SKG_ERR_BEAM, "is %g; give an output above 0", tube->output_ugy_mas);
+    return SKG_OK;
+}
+
+/* Everything but voltage, load and filters. */
+static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
+    static const char *const models[] = {"Ebel", "Birch"};
+    skg_json_node angle = skg_json_member(beam, "TubeAngle"), anode = skg_json_member(beam, "Anode");
+    skg_json_node model = skg_json_member(beam, "Model"),
+                  bins = skg_json_member(beam, "MaxNumberOfEnergyBins");
+    int64_t most = 0, choice = 0;
+    const char *text = NULL;
+    if (angle.value) SKG_TRY(skg_json_number(&angle, &tube->angle_deg));
+    if (anode.value) {
+        SKG_TRY(skg_json_text(&anode, &text));
+        skg_status status = skg_element_number(text, &tube->anode);
+        if (status != SKG_OK) return skg_json_fail(&anode, status, "%s", skg_last_error());
+    }
+    if (model.value) SKG_TRY(skg_json_choice(&model, "model of a tube", models, 2, &choice));
+    tube->model = choice == 0 ? SKG_EBEL : SKG_BIRCH;
+    if (bins.value) {
+        SKG_TRY(skg_json_integer(&bins, 2, 5000, &most));
+        tube->bin_kev = fmax(1, tube->kvp / (double)most);
+    }
+    return read_output(beam, tube);
+}
+
+static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *beam, const skg_json_node *kvp) {
+    skg_tube tube;
+    filter_list list = {.count = 0};
+    skg_status status = SKG_OK;
+    skg_tube_init(&tube);
+    tube.context = reader->context;
+    SKG_TRY(skg_json_number(kvp, &tube.kvp));
+    SKG_TRY(read_mas(beam, &tube.mas, &reader->setup->absolute));
+    SKG_TRY(read_options(beam, &tube));
+    SKG_TRY_CLEANUP(read_filters(beam, &list));
+    tube.filters = list.filters;
+    tube.filter_count = list.count;
+    status = skg_spectrum_tube(&tube, &reader->setup->spectrum);
+    if (status != SKG_OK) status = skg_json_fail(beam->node, status, "%s", skg_last_error());
+cleanup:
+    for (int64_t i = 0; i < MOST_FILTERS; i++) skg_material_release(&list.materials[i]);
+    return status;
+}
+
+skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node) {
+    if (!json_is_object(node->value)) return read_channels(reader->setup, node);
+    skg_json_object beam;
+    SKG_TRY(skg_json_read_object(node, spectrum_keys, sizeof spectrum_keys / sizeof *spectrum_keys, &beam));
+    skg_json_node file = skg_json_member(&beam, "TextFile"), macro = skg_json_member(&beam, "GateMacro");
+    skg_json_node kvp = skg_json_member(&beam, "kVp");
+    int32_t given = (file.value != NULL) + (macro.value != NULL) + (kvp.value != NULL);
+    if (given > 1)
+        return skg_json_fail(node, SKG_ERR_FORMAT,
+                             "describes several beams; give one of kVp, TextFile, GateMacro");
+    if (file.value) return read_file(reader, &beam, &file);
+    if (macro.value) return read_file(reader, &beam, &macro);
+    if (kvp.value) return read_tube(reader, &beam, &kvp);
+    return skg_json_fail(node, SKG_ERR_FORMAT, "describes no beam; give %s, or {\"kVp\": 85}", example);
+}
+
+/* From photons per mm2 at 1 m to photons per pixel at the foot of the perpendicular from the source. */
+skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_setup *setup = reader->setup;
+    const skg_view *view = &setup->view;
+    double normal[3], way[3];
+    skg_spectrum *placed = NULL;
+    if (!setup->absolute) return SKG_OK;
+    if (view->projection != SKG_POINT)
+        return skg_json_fail(
+            node, SKG_ERR_BEAM,
+            "a parallel beam has no distance from the tube; leave out mAs, or use PointSource");
+    skg_cross(view->column_step, view->row_step, normal);
+    double area = skg_length(normal);
+    skg_add_scaled(view->centre, -1, view->source, way);
+    double distance = fabs(skg_dot(way, normal)) / area;
+    SKG_TRY(skg_spectrum_scaled(setup->spectrum, area * pow(1000 / distance, 2), &placed));
+    skg_spectrum_release(&setup->spectrum);
+    setup->spectrum = placed;
+    skg_log(reader->context, SKG_LOG_NOTE,
+            "mAs is given: photons are counted absolutely; noise is simulated where Noise is given only");
+    return SKG_OK;
+}

@@ -1,0 +1,201 @@
+/* The section Breathing of a scene file. */
+#include "setup/setup.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static const skg_json_key breathing_keys[] = {
+    {"Pattern", NULL, SKG_KEY_READ},     {"Waveform", NULL, SKG_KEY_READ},
+    {"Exponent", NULL, SKG_KEY_READ},    {"Period", NULL, SKG_KEY_READ},
+    {"StartPhase", NULL, SKG_KEY_READ},  {"ExpirationRatio", NULL, SKG_KEY_READ},
+    {"Thoracic", NULL, SKG_KEY_READ},    {"Diaphragmatic", NULL, SKG_KEY_READ},
+    {"ThoracicLag", NULL, SKG_KEY_READ}, {"Reference", NULL, SKG_KEY_READ},
+    {"Tendon", NULL, SKG_KEY_READ},      {"TendonPlane", NULL, SKG_KEY_READ},
+    {"Hysteresis", NULL, SKG_KEY_READ},  {"Relaxation", NULL, SKG_KEY_READ},
+    {"LungDensity", NULL, SKG_KEY_READ}, {"Organs", NULL, SKG_KEY_READ},
+    {"Events", NULL, SKG_KEY_READ},      {"RibAxes", NULL, SKG_KEY_READ},
+};
+
+static const skg_json_key event_keys[] = {
+    {"Hold", NULL, SKG_KEY_READ},     {"Weight", NULL, SKG_KEY_READ}, {"Needle", NULL, SKG_KEY_READ},
+    {"Contrast", NULL, SKG_KEY_READ}, {"Share", NULL, SKG_KEY_READ},
+};
+
+static const char *const points_example = "[[0, 0], [2.5, 110]]: seconds, value";
+
+void skg_breathing_section_free(skg_breathing_section *section) {
+    skg_setup_organs_free(section);
+    for (int64_t i = 0; i < section->contrast_count; i++) skg_free(&section->contrasts[i].share.points);
+    skg_free(&section->samples);
+    skg_free(&section->holds);
+    skg_free(&section->contrasts);
+    skg_free(&section->weight.points);
+    skg_free(&section->needle.points);
+}
+
+static skg_status read_number(const skg_json_object *object, const char *name, double *number) {
+    skg_json_node node = skg_json_member(object, name);
+    return node.value ? skg_json_number(&node, number) : SKG_OK;
+}
+
+static skg_status read_samples(skg_breathing_section *section, const skg_json_node *node) {
+    skg_breath *breath = &section->breath;
+    SKG_TRY(skg_json_array(node, "[1, 0.5, 0, 0.5]", &breath->sample_count));
+    SKG_TRY(skg_alloc(breath->sample_count, sizeof *section->samples, "waveform", &section->samples));
+    for (int64_t i = 0; i < breath->sample_count; i++) {
+        skg_json_node sample = skg_json_element(node, i);
+        SKG_TRY(skg_json_number(&sample, &section->samples[i]));
+    }
+    breath->samples = section->samples;
+    breath->waveform = SKG_BREATH_SAMPLED;
+    return SKG_OK;
+}
+
+/* A named pattern first; the other keys change it. */
+static skg_status read_waveform(skg_breathing_section *section, const skg_json_object *object) {
+    static const char *const waveforms[] = {"Sine", "Lujan", "Asymmetric"};
+    skg_breath *breath = &section->breath;
+    skg_json_node pattern = skg_json_member(object, "Pattern"),
+                  waveform = skg_json_member(object, "Waveform");
+    skg_json_node exponent = skg_json_member(object, "Exponent");
+    const char *name = NULL;
+    int64_t choice = 0;
+    if (pattern.value) {
+        SKG_TRY(skg_json_text(&pattern, &name));
+        skg_status status = skg_breath_pattern(name, breath);
+        if (status != SKG_OK) return skg_json_fail(&pattern, status, "%s", skg_last_error());
+    }
+    if (waveform.value && json_is_array(waveform.value)) {
+        SKG_TRY(read_samples(section, &waveform));
+    } else if (waveform.value) {
+        SKG_TRY(skg_json_choice(&waveform, "waveform", waveforms, 3, &choice));
+        breath->waveform = (int32_t)choice;
+    }
+    if (exponent.value) {
+        SKG_TRY(skg_json_integer(&exponent, 1, 8, &choice));
+        breath->exponent = (int32_t)choice;
+    }
+    SKG_TRY(read_number(object, "Period", &breath->period_s));
+    SKG_TRY(read_number(object, "StartPhase", &breath->start_phase));
+    SKG_TRY(read_number(object, "ExpirationRatio", &breath->expiration_ratio));
+    SKG_TRY(read_number(object, "Thoracic", &breath->thoracic));
+    SKG_TRY(read_number(object, "Diaphragmatic", &breath->diaphragmatic));
+    return read_number(object, "ThoracicLag", &breath->thoracic_lag);
+}
+
+static skg_status read_body(skg_breathing_section *section, const skg_json_object *object) {
+    skg_body_options *body = &section->body;
+    skg_json_node tendon = skg_json_member(object, "Tendon"), plane = skg_json_member(object, "TendonPlane");
+    skg_json_node relaxation = skg_json_member(object, "Relaxation");
+    skg_json_node density = skg_json_member(object, "LungDensity");
+    skg_json_node reference = skg_json_member(object, "Reference");
+    static const char *const rib_axes[] = {"Literature", "Bones"}; /* as SKG_RIB_AXES_ */
+    skg_json_node axes = skg_json_member(object, "RibAxes");
+    int64_t passes = 0, choice = SKG_RIB_AXES_LITERATURE;
+    double amplitude = 0;
+    if (reference.value) SKG_TRY(skg_json_number(&reference, &amplitude));
+    if (!(amplitude >= 0 && amplitude <= 1))
+        return skg_json_fail(&reference, SKG_ERR_BREATHING,
+                             "is %g; the amplitude at which the meshes were made, 0 (end-expiration) to 1",
+                             amplitude);
+    body->reference_thoracic = amplitude * section->breath.thoracic;
+    body->reference_diaphragmatic = amplitude * section->breath.diaphragmatic;
+    if (tendon.value) SKG_TRY(skg_json_lengths(&tendon, "[0, 0, -15, \"mm\"]", 3, body->tendon_mm));
+    if (plane.value) SKG_TRY(skg_json_numbers(&plane, "[0, 1, 1, 20]", 4, body->tendon_plane));
+    if (relaxation.value) SKG_TRY(skg_json_integer(&relaxation, 0, 20, &passes));
+    body->relaxation = (int32_t)passes;
+    if (axes.value) SKG_TRY(skg_json_choice(&axes, "kind of rib axes", rib_axes, 2, &choice));
+    body->rib_axes = (int32_t)choice;
+    section->lung_density = 1;
+    if (density.value) SKG_TRY(skg_json_flag(&density, &section->lung_density));
+    return read_number(object, "Hysteresis", &body->hysteresis);
+}
+
+static skg_status read_curve(const skg_json_node *node, double lowest, double highest, skg_curve *curve) {
+    int64_t count = 0;
+    double last = -HUGE_VAL;
+    if (curve->count) return skg_json_fail(node, SKG_ERR_FORMAT, "is given twice");
+    SKG_TRY(skg_json_array(node, points_example, &count));
+    if (count == 0) return skg_json_fail(node, SKG_ERR_FORMAT, "is empty; give %s", points_example);
+    SKG_TRY(skg_alloc(2 * count, sizeof *curve->points, "event", &curve->points));
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_node point = skg_json_element(node, i);
+        double *at = curve->points + 2 * i;
+        SKG_TRY(skg_json_numbers(&point, "[2.5, 110]", 2, at));
+        if (!(at[0] > last))
+            return skg_json_fail(&point, SKG_ERR_FORMAT, "is at %g s, the one before at %g s; times rise",
+                                 at[0], last);
+        if (!(at[1] >= lowest && at[1] <= highest))
+            return skg_json_fail(&point, SKG_ERR_FORMAT, "is %g; %g to %g", at[1], lowest, highest);
+        last = at[0];
+    }
+    curve->count = count;
+    return SKG_OK;
+}
+
+static skg_status read_event(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_breathing_section *section = &reader->setup->breathing;
+    skg_json_object event;
+    SKG_TRY(skg_json_read_object(node, event_keys, sizeof event_keys / sizeof *event_keys, &event));
+    skg_json_node hold = skg_json_member(&event, "Hold"), weight = skg_json_member(&event, "Weight");
+    skg_json_node needle = skg_json_member(&event, "Needle"), contrast = skg_json_member(&event, "Contrast");
+    skg_json_node share = skg_json_member(&event, "Share");
+    if ((hold.value != NULL) + (weight.value != NULL) + (needle.value != NULL) + (contrast.value != NULL) !=
+            1 ||
+        (contrast.value == NULL) != (share.value == NULL))
+        return skg_json_fail(
+            node, SKG_ERR_FORMAT,
+            "is no event; give one of {\"Hold\": [1, 5]}, {\"Weight\": [[5, 1], [6, 0.3]]}, "
+            "{\"Needle\": [[1, 0], [4, 110]]}, {\"Contrast\": \"bile ducts\", \"Share\": [[5, "
+            "0], [7, 1]]}");
+    if (hold.value) {
+        double span[2];
+        SKG_TRY(skg_json_numbers(&hold, "[1, 5]", 2, span));
+        section->holds[section->breath.hold_count++] = (skg_breath_hold){span[0], span[1]};
+        return SKG_OK;
+    }
+    if (weight.value) return read_curve(&weight, 0, 4, &section->weight);
+    if (needle.value) return read_curve(&needle, -1000, 1000, &section->needle);
+    const char *label = NULL;
+    struct skg_breathing_contrast *filling = &section->contrasts[section->contrast_count++];
+    SKG_TRY(skg_json_text(&contrast, &label));
+    SKG_TRY(skg_setup_find_part(reader, &contrast, label, &filling->part));
+    return read_curve(&share, 0, 1, &filling->share);
+}
+
+static skg_status read_events(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_breathing_section *section = &reader->setup->breathing;
+    int64_t count = 0;
+    SKG_TRY(skg_json_array(node, "[{\"Hold\": [1, 5]}]", &count));
+    SKG_TRY(skg_alloc(count, sizeof *section->holds, "events", &section->holds));
+    SKG_TRY(skg_alloc(count, sizeof *section->contrasts, "events", &section->contrasts));
+    section->breath.holds = section->holds;
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_node event = skg_json_element(node, i);
+        SKG_TRY(read_event(reader, &event));
+    }
+    if (section->weight.count && section->body.hysteresis > 0)
+        return skg_json_fail(node, SKG_ERR_UNSUPPORTED,
+                             "Weight changes the breath, so it needs Hysteresis 0");
+    return SKG_OK;
+}
+
+skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_breathing_section *section = &reader->setup->breathing;
+    skg_json_object object;
+    skg_breath_init(&section->breath);
+    SKG_TRY(skg_breath_pattern("quiet", &section->breath));
+    skg_body_options_init(&section->body);
+    section->lung_density = 1;
+    if (!node->value || json_is_null(node->value)) return SKG_OK;
+    section->is_given = 1;
+    SKG_TRY(
+        skg_json_read_object(node, breathing_keys, sizeof breathing_keys / sizeof *breathing_keys, &object));
+    SKG_TRY(read_waveform(section, &object));
+    SKG_TRY(read_body(section, &object));
+    skg_json_node organs = skg_json_member(&object, "Organs"), events = skg_json_member(&object, "Events");
+    if (organs.value) SKG_TRY(skg_setup_read_organs(reader, &organs));
+    if (events.value) SKG_TRY(read_events(reader, &events));
+    skg_status status = skg_breath_check(&section->breath);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}

@@ -1,0 +1,104 @@
+#include "setup/setup.h"
+#include "core/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+static const skg_json_key detector_keys[] = {
+    {"Position", NULL, SKG_KEY_READ},     {"UpVector", NULL, SKG_KEY_READ},
+    {"RightVector", NULL, SKG_KEY_READ},  {"NumberOfPixels", NULL, SKG_KEY_READ},
+    {"Size", NULL, SKG_KEY_READ},         {"Spacing", NULL, SKG_KEY_READ},
+    {"Oversampling", NULL, SKG_KEY_READ}, {"EnergyResponse", NULL, SKG_KEY_READ},
+    {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", NULL, SKG_KEY_READ},
+    {"PSF", NULL, SKG_KEY_READ},
+};
+
+/* Width and height of a pixel in mm, from Spacing or Size. */
+static skg_status read_spacing(const skg_json_object *detector, const skg_view *view, double *spacing) {
+    skg_json_node given = skg_json_member(detector, "Spacing"), size = skg_json_member(detector, "Size");
+    if (given.value && size.value)
+        return skg_json_fail(&size, SKG_ERR_FORMAT,
+                             "give either Size (of the detector) or Spacing (of its pixels), not both");
+    if (!given.value && !size.value)
+        return skg_json_fail(detector->node, SKG_ERR_FORMAT,
+                             "Size is missing; give \"Size\": [400, 400, \"mm\"] or \"Spacing\": [0.5, 0.5, "
+                             "\"mm\"]");
+    const skg_json_node *node = given.value ? &given : &size;
+    SKG_TRY(skg_json_lengths(node, "[width, height, \"mm\"]", 2, spacing));
+    if (!(spacing[0] > 0 && spacing[1] > 0))
+        return skg_json_fail(node, SKG_ERR_SCENE,
+                             "the detector has no size: %g mm wide and %g mm high; both have to be above 0",
+                             spacing[0], spacing[1]);
+    if (size.value) spacing[0] /= (double)view->columns, spacing[1] /= (double)view->rows;
+    return SKG_OK;
+}
+
+static skg_status read_pixels(const skg_json_object *detector, skg_view *view) {
+    skg_json_node node;
+    double pixels[2];
+    SKG_TRY(skg_json_need(detector, "NumberOfPixels", "[columns, rows]", &node));
+    SKG_TRY(skg_json_numbers(&node, "[columns, rows]", 2, pixels));
+    for (int64_t k = 0; k < 2; k++) {
+        skg_json_node element = skg_json_element(&node, k);
+        int64_t *count = k == 0 ? &view->columns : &view->rows;
+        /* The view's own limits are told by skg_view_check. */
+        SKG_TRY(skg_json_integer(&element, INT32_MIN, INT32_MAX, count));
+    }
+    return SKG_OK;
+}
+
+/* Directions in which the column and the row number grow. */
+static skg_status read_axes(const skg_json_object *detector, const skg_view *view, double *right,
+                            double *up) {
+    skg_json_node node;
+    SKG_TRY(skg_json_need(detector, "UpVector", "[0, 0, -1]", &node));
+    SKG_TRY(skg_json_direction(&node, up));
+    skg_json_node right_node = skg_json_member(detector, "RightVector");
+    if (right_node.value) return skg_json_direction(&right_node, right);
+    double towards_source[3];
+    if (view->projection == SKG_PARALLEL_FROM_INFINITY)
+        skg_scale_vector(-1, view->source, towards_source);
+    else
+        skg_add_scaled(view->source, -1, view->centre, towards_source);
+    skg_cross(up, towards_source, right);
+    double length = skg_length(right);
+    if (!(length > 1e-9 * skg_length(towards_source)))
+        return skg_json_fail(&node, SKG_ERR_SCENE,
+                             "points along the beam, so that right is not defined by it; give RightVector");
+    skg_scale_vector(1 / length, right, right);
+    return SKG_OK;
+}
+
+static skg_status read_oversampling(const skg_json_object *detector, int32_t *rays) {
+    skg_json_node node = skg_json_member(detector, "Oversampling");
+    int64_t side = 1;
+    if (node.value) SKG_TRY(skg_json_integer(&node, 1, 16, &side));
+    *rays = (int32_t)side;
+    return SKG_OK;
+}
+
+skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_view *view = &reader->setup->view;
+    skg_json_object detector;
+    skg_json_node position;
+    double right[3], up[3], spacing[2];
+    SKG_TRY(
+        skg_json_read_object(node, detector_keys, sizeof detector_keys / sizeof *detector_keys, &detector));
+    SKG_TRY(skg_json_need(&detector, "Position", "[0, 500, 0, \"mm\"]", &position));
+    SKG_TRY(skg_json_lengths(&position, "[0, 500, 0, \"mm\"]", 3, view->centre));
+    SKG_TRY(read_pixels(&detector, view));
+    if (view->columns < 1 || view->rows < 1) { /* before Size is divided by them */
+        skg_status status = skg_view_check(view);
+        return skg_json_fail(node, status, "%s", skg_last_error());
+    }
+    SKG_TRY(read_spacing(&detector, view, spacing));
+    SKG_TRY(read_axes(&detector, view, right, up));
+    SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
+    SKG_TRY(skg_setup_read_response(reader, &detector));
+    SKG_TRY(skg_setup_read_blur(reader, &detector));
+    skg_scale_vector(spacing[0], right, view->column_step);
+    skg_scale_vector(spacing[1], up, view->row_step);
+    skg_status status = skg_view_check(view);
+    if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
+    return SKG_OK;
+}

@@ -1,0 +1,143 @@
+#include "setup/json.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The whole file, with a 0 behind it. */
+static skg_status read_text(const char *path, char **text, size_t *length) {
+    FILE *stream = fopen(path, "rb");
+    if (!stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    skg_status status = SKG_OK;
+    size_t capacity = 0, got = 0;
+    *length = 0;
+    do {
+        if (*length + 1 >= capacity) {
+            capacity = 2 * capacity + 65536;
+            SKG_TRY_CLEANUP(skg_realloc((int64_t)capacity, 1, path, text));
+        }
+        got = fread(*text + *length, 1, capacity - 1 - *length, stream);
+        *length += got;
+    } while (got > 0);
+    if (ferror(stream))
+        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    else
+        (*text)[*length] = '\0';
+cleanup:
+    fclose(stream);
+    return status;
+}
+
+skg_status skg_json_open(const char *path, skg_json_file *file) {
+    *file = (skg_json_file){.path = path};
+    size_t length = 0;
+    SKG_TRY(read_text(path, &file->text, &length));
+    /* The byte order mark that some editors write is no JSON. */
+    if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
+    json_error_t error;
+    file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &error);
+    if (!file->root)
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %d, column %d: %s", path, error.line, error.column,
+                        error.text);
+    if (!json_is_object(file->root))
+        return skg_fail(SKG_ERR_FORMAT, "%s: a scene file holds one JSON object { ... }", path);
+    file->set = json_array();
+    if (!file->set) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
+    return SKG_OK;
+}
+
+void skg_json_close(skg_json_file *file) {
+    json_decref(file->root);
+    json_decref(file->set);
+    skg_free(&file->text);
+    *file = (skg_json_file){0};
+}
+
+skg_json_node skg_json_root(const skg_json_file *file) {
+    return (skg_json_node){.file = file, .value = file->root};
+}
+
+/* Whether a setting put this value, or one around it, in. */
+static int was_set(const skg_json_node *node) {
+    size_t count = json_array_size(node->file->set);
+    for (; node; node = node->up)
+        for (size_t i = 0; i < count; i++)
+            if (node->value && json_array_get(node->file->set, i) == node->value) return 1;
+    return 0;
+}
+
+/* The text is known to be JSON, so that skipping needs no checks beyond its end. */
+static const char *skip_space(const char *at) {
+    return at + strspn(at, " \t\r\n");
+}
+
+static const char *skip_string(const char *at) {
+    for (at++; *at && *at != '"'; at++)
+        if (*at == '\\' && at[1]) at++;
+    return *at ? at + 1 : at;
+}
+
+static const char *skip_value(const char *at) {
+    int64_t depth = 0;
+    do {
+        at = skip_space(at);
+        if (*at == '"')
+            at = skip_string(at);
+        else if (*at == '{' || *at == '[')
+            depth++, at++;
+        else if (*at == '}' || *at == ']')
+            depth--, at++;
+        else if (*at == ',' || *at == ':')
+            at++;
+        else
+            at += strcspn(at, " \t\r\n,:]}[{\"");
+    } while (depth > 0 && *at);
+    return at;
+}
+
+/* Whether the string literal at `at` is this key; literals with escapes are parsed. */
+static int is_key(const char *at, const char *key) {
+    const char *end = skip_string(at);
+    json_t *parsed = json_loadb(at, (size_t)(end - at), JSON_DECODE_ANY, NULL);
+    int same = parsed && strcmp(json_string_value(parsed), key) == 0;
+    json_decref(parsed);
+    return same;
+}
+
+/* From the first character of a container to the child that the node names: its key, or the element itself.
+ * NULL where it is not there. */
+static const char *find_child(const char *at, const skg_json_node *node, const char **value) {
+    if (*at != '{' && *at != '[') return NULL;
+    int object = *at == '{';
+    if (object != (node->key != NULL)) return NULL;
+    at = skip_space(at + 1);
+    for (int64_t index = 0; *at && *at != '}' && *at != ']'; index++) {
+        const char *key = at;
+        if (object) at = skip_space(skip_space(skip_string(at)) + 1);
+        if (object ? is_key(key, node->key) : index == node->index) {
+            *value = at;
+            return key;
+        }
+        at = skip_space(skip_value(at));
+        if (*at == ',') at = skip_space(at + 1);
+    }
+    return NULL;
+}
+
+/* First character of a node (its key where it has one); *value: of its value. */
+static const char *find_node(const skg_json_node *node, const char **value) {
+    if (!node->up) return *value = skip_space(node->file->text);
+    const char *around = NULL;
+    if (!find_node(node->up, &around)) return NULL;
+    return find_child(around, node, value);
+}
+
+int64_t skg_json_line(const skg_json_node *node) {
+    const char *value = NULL;
+    if (!node->file->text || was_set(node)) return 0;
+    const char *at = find_node(node, &value);
+    if (!at || !node->up) return 0;
+    int64_t line = 1;
+    for (const char *c = node->file->text; c < at; c++) line += *c == '\n';
+    return line;
+}

@@ -1,0 +1,165 @@
+/* The key Material of a sample, and of everything else that has one. */
+#include "core/context.h"
+#include "setup/setup.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+static const char *const example = "[\"mu\", 0.2], [\"Compound\", \"H2O\"] or a name such as \"Water\"";
+
+/* A number, or a string that holds one: gVXR's exporter writes the latter. */
+static skg_status read_mu(const skg_json_node *node, double *per_cm) {
+    if (!json_is_string(node->value)) return skg_json_number(node, per_cm);
+    const char *text = json_string_value(node->value);
+    json_t *number = json_loads(text, JSON_DECODE_ANY, NULL);
+    int usable = json_is_number(number);
+    *per_cm = usable ? json_number_value(number) : 0;
+    json_decref(number);
+    if (usable) return SKG_OK;
+    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no number; give 1/cm", text);
+}
+
+/* 26, "Fe", "Iron". */
+static skg_status read_z(const skg_json_node *node, int32_t *z) {
+    const char *text = NULL;
+    if (json_is_integer(node->value)) {
+        int64_t number = 0;
+        SKG_TRY(skg_json_integer(node, 1, 92, &number));
+        *z = (int32_t)number;
+        return SKG_OK;
+    }
+    SKG_TRY(skg_json_text(node, &text));
+    skg_status status = skg_element_number(text, z);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+static skg_status read_named(const skg_json_node *node, const char *before, skg_material **material) {
+    char text[512];
+    const char *name = NULL;
+    SKG_TRY(skg_json_text(node, &name));
+    if (strlen(before) + strlen(name) >= sizeof text)
+        return skg_json_fail(node, SKG_ERR_FORMAT, "is too long for a material");
+    strcpy(text, before);
+    strcat(text, name);
+    skg_status status = skg_material_named(text, material);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+static skg_status read_element(const skg_json_node *node, skg_material **material) {
+    int32_t z = 0;
+    SKG_TRY(read_z(node, &z));
+    return skg_material_element(z, material);
+}
+
+/* [1, 0.112, 8, 0.888]: elements and fractions by mass. */
+static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *node, const char *label,
+                                 skg_material **material) {
+    enum { MOST = 2 * 92 };
+    int32_t z[MOST / 2];
+    double fractions[MOST / 2];
+    int64_t count = 0;
+    const char *note = NULL;
+    SKG_TRY(skg_json_array(node, "[1, 0.112, 8, 0.888]", &count));
+    if (count % 2 != 0 || count > MOST)
+        return skg_json_fail(node, SKG_ERR_FORMAT,
+                             "has %" PRId64 " elements; give pairs of an element and its fraction by mass: "
+                             "[1, 0.112, 8, 0.888]",
+                             count);
+    for (int64_t i = 0; i < count; i += 2) {
+        skg_json_node element = skg_json_element(node, i), fraction = skg_json_element(node, i + 1);
+        SKG_TRY(read_z(&element, &z[i / 2]));
+        SKG_TRY(skg_json_number(&fraction, &fractions[i / 2]));
+    }
+    skg_status status = skg_material_mixture(label, count / 2, z, fractions, 0, material);
+    if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
+    SKG_TRY(skg_material_note(*material, &note));
+    if (*note) {
+        char place[256];
+        skg_json_place(node, place, sizeof place);
+        skg_log(reader->context, SKG_LOG_NOTE, "%s: %s", place, note);
+    }
+    return SKG_OK;
+}
+
+/* A formula by atoms; a name of the tables where it is none. */
+static skg_status read_compound(const skg_json_node *node, skg_material **material) {
+    const char *formula = NULL;
+    SKG_TRY(skg_json_text(node, &formula));
+    if (skg_material_formula(formula, 0, material) == SKG_OK) return SKG_OK;
+    return read_named(node, "", material);
+}
+
+static skg_status read_hounsfield(const skg_json_node *node, skg_material **material) {
+    double hu = 0;
+    SKG_TRY(skg_json_number(node, &hu));
+    skg_status status = skg_material_hounsfield(hu, material);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+/* ["Table", "mu.txt", "keV"] */
+static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path_node,
+                             const skg_json_node *unit_node, skg_material **material) {
+    const char *path = NULL, *unit = NULL;
+    char *resolved = NULL;
+    SKG_TRY(skg_json_text(path_node, &path));
+    SKG_TRY(skg_json_text(unit_node, &unit));
+    SKG_TRY(skg_setup_resolve(reader, path, &resolved));
+    skg_status status = skg_material_table_file(resolved, unit, material);
+    skg_free(&resolved);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(path_node, status, "%s", skg_last_error());
+}
+
+/* Its density is not set yet. */
+static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node, const char *label,
+                            skg_material **material) {
+    enum { MU, ELEMENT, MIXTURE, COMPOUND, HU, TABLE, KINDS };
+    static const char *const kinds[KINDS] = {"mu", "Element", "Mixture", "Compound", "HU", "Table"};
+    int64_t count = 0, kind = 0;
+    double per_cm = 0;
+    if (json_is_string(node->value)) return read_named(node, "", material);
+    SKG_TRY(skg_json_array(node, example, &count));
+    skg_json_node name = skg_json_element(node, 0), value = skg_json_element(node, 1);
+    skg_json_node unit = skg_json_element(node, 2);
+    SKG_TRY(skg_json_choice(&name, "kind of material", kinds, KINDS, &kind));
+    if (count != (kind == TABLE ? 3 : 2))
+        return skg_json_fail(node, SKG_ERR_FORMAT, "has %" PRId64 " elements; give %s", count,
+                             kind == MU      ? "[\"mu\", 0.2], in 1/cm"
+                             : kind == TABLE ? "[\"Table\", \"mu.txt\", \"keV\"]"
+                                             : example);
+    if (kind == ELEMENT) return read_element(&value, material);
+    if (kind == MIXTURE && json_is_string(value.value)) return read_named(&value, "weight:", material);
+    if (kind == MIXTURE) return read_fractions(reader, &value, label, material);
+    if (kind == COMPOUND) return read_compound(&value, material);
+    if (kind == HU) return read_hounsfield(&value, material);
+    if (kind == TABLE) return read_table(reader, &value, &unit, material);
+    SKG_TRY(read_mu(&value, &per_cm));
+    skg_status status = skg_material_mu(label, per_cm, material);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(&value, status, "%s", skg_last_error());
+}
+
+skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,
+                                   const skg_json_node *density, const char *label, skg_material **material) {
+    double g_cm3 = 0, known = 0;
+    skg_material *made = NULL;
+    int64_t elements = 0;
+    skg_status status = SKG_OK;
+    if (density->value) SKG_TRY(skg_json_number(density, &g_cm3));
+    if (density->value && !(g_cm3 > 0))
+        return skg_json_fail(density, SKG_ERR_MATERIAL, "is %g; a density in g/cm3 is above 0", g_cm3);
+    SKG_TRY(read_kind(reader, node, label, &made));
+    SKG_TRY_CLEANUP(skg_material_size(made, &elements));
+    SKG_TRY_CLEANUP(skg_material_density(made, &known));
+    if (elements == 0 ||
+        (known > 0 && !density->value)) { /* given by its attenuation, or nothing to change */
+        *material = made;
+        return SKG_OK;
+    }
+    if (density->value)
+        status = skg_material_at_density(made, g_cm3, material);
+    else
+        status = skg_json_fail(node, SKG_ERR_MATERIAL,
+                               "its density is not known; give \"Density\", in g/cm3, beside it");
+cleanup:
+    skg_material_release(&made);
+    return status;
+}

@@ -1,0 +1,222 @@
+#include "core/pose.h"
+#include "setup/setup.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const skg_json_key sample_keys[] = {
+    {"Label", NULL, SKG_KEY_READ},
+    {"Path", NULL, SKG_KEY_READ},
+    {"Unit", NULL, SKG_KEY_READ},
+    {"Cube", NULL, SKG_KEY_READ},
+    {"Cuboid", NULL, SKG_KEY_READ},
+    {"Parallelepiped", "Cuboid", SKG_KEY_READ},
+    {"Cylinder", NULL, SKG_KEY_READ},
+    {"Sphere", NULL, SKG_KEY_READ},
+    {"StepWedge", NULL, SKG_KEY_READ},
+    {"Material", NULL, SKG_KEY_READ},
+    {"Density", NULL, SKG_KEY_READ},
+    {"Type", NULL, SKG_KEY_READ},
+    {"Parent", NULL, SKG_KEY_READ},
+    {"Transform", NULL, SKG_KEY_READ},
+    {"MoveToCentre", NULL, SKG_KEY_READ},
+    {"MoveToCenter", "MoveToCentre", SKG_KEY_READ},
+    {"FlipNormals", NULL, SKG_KEY_READ},
+    {"FlipNormal", "FlipNormals", SKG_KEY_READ},
+    {"FlipNormalVectors", "FlipNormals", SKG_KEY_READ},
+    {"InvertNormal", "FlipNormals", SKG_KEY_READ},
+    {"InvertNormals", "FlipNormals", SKG_KEY_READ},
+    {"InvertNormalVectors", "FlipNormals", SKG_KEY_READ},
+    {"Opacity", NULL, SKG_KEY_IGNORED},
+    {"AmbientColour", NULL, SKG_KEY_IGNORED},
+    {"DiffuseColour", NULL, SKG_KEY_IGNORED},
+    {"SpecularColour", NULL, SKG_KEY_IGNORED},
+    {"AmbientColor", NULL, SKG_KEY_IGNORED},
+    {"DiffuseColor", NULL, SKG_KEY_IGNORED},
+    {"SpecularColor", NULL, SKG_KEY_IGNORED},
+    {"Shininess", NULL, SKG_KEY_IGNORED},
+    {"Priority", NULL, SKG_KEY_READ},
+};
+
+/* What the second pass needs to know of a sample. */
+typedef struct {
+    int64_t element; /* in Samples */
+    int64_t part;
+    int32_t outer;
+} sample_part;
+
+typedef struct {
+    sample_part *parts;
+    int64_t count;
+    int64_t outers, outer_part; /* how many outer samples, and the last one's part */
+    int32_t move_to_centre;     /* all together */
+} sample_list;
+
+static skg_status read_sample_object(const skg_json_node *node, skg_json_object *sample) {
+    return skg_json_read_object(node, sample_keys, sizeof sample_keys / sizeof *sample_keys, sample);
+}
+
+static skg_status read_flag(const skg_json_object *object, const char *name, int32_t *flag) {
+    skg_json_node node = skg_json_member(object, name);
+    return node.value ? skg_json_flag(&node, flag) : SKG_OK;
+}
+
+static skg_status read_material(skg_setup_reader *reader, const skg_json_object *sample, const char *label,
+                                skg_material **material) {
+    skg_json_node node, density = skg_json_member(sample, "Density");
+    SKG_TRY(skg_json_need(sample, "Material", "\"Water\", [\"mu\", 0.2]", &node));
+    return skg_setup_read_material(reader, &node, &density, label, material);
+}
+
+/* pose = pose T(-centre of the mesh's bounds) */
+static skg_status centre_mesh(const skg_mesh *mesh, double *pose) {
+    skg_mesh_health health;
+    double move[16];
+    skg_mesh_health_init(&health);
+    SKG_TRY(skg_mesh_get_health(mesh, &health));
+    const double *b = health.bounds;
+    skg_pose_translation(-0.5 * (b[0] + b[3]), -0.5 * (b[1] + b[4]), -0.5 * (b[2] + b[5]), move);
+    skg_pose_multiply(pose, move, pose);
+    return SKG_OK;
+}
+
+static skg_status read_pose(const skg_json_object *sample, const skg_mesh *mesh, const double *own,
+                            double *pose) {
+    int32_t centred = 0;
+    skg_pose_identity(pose);
+    skg_json_node transform = skg_json_member(sample, "Transform");
+    if (transform.value) SKG_TRY(skg_setup_read_transform(&transform, pose));
+    skg_pose_multiply(pose, own, pose);
+    SKG_TRY(read_flag(sample, "MoveToCentre", &centred));
+    return centred ? centre_mesh(mesh, pose) : SKG_OK;
+}
+
+/* The sample's part, with everything but its parent. */
+static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sample, skg_mesh_cache *cache,
+                            int64_t *id) {
+    skg_part part;
+    double own[16];
+    int32_t flip = 0;
+    skg_part_init(&part);
+    skg_json_node label = skg_json_member(sample, "Label"), priority = skg_json_member(sample, "Priority");
+    int64_t number = 0;
+    if (priority.value) SKG_TRY(skg_json_integer(&priority, INT32_MIN, INT32_MAX, &number));
+    part.priority = (int32_t)number;
+    if (label.value) SKG_TRY(skg_json_text(&label, &part.label));
+    SKG_TRY(read_flag(sample, "FlipNormals", &flip));
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
+    SKG_TRY_CLEANUP(skg_setup_read_shape(reader, sample, flip, cache, &part.mesh, own));
+    SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
+    status = skg_scene_add(reader->setup->scene, &part, id);
+    if (status != SKG_OK) status = skg_json_fail(sample->node, status, "%s", skg_last_error());
+cleanup:
+    skg_mesh_release(&part.mesh);
+    skg_material_release(&part.material);
+    return status;
+}
+
+static skg_status read_element(skg_setup_reader *reader, const skg_json_node *node, skg_mesh_cache *cache,
+                               sample_list *list) {
+    static const char *const types[] = {"inner", "outer"}, *const moves[] = {"MoveToCentre", "MoveToCenter"};
+    int64_t choice = 0;
+    if (json_is_string(node->value)) {
+        list->move_to_centre = 1;
+        return skg_json_choice(node, "command in the list of samples", moves, 2, &choice);
+    }
+    skg_json_object sample;
+    SKG_TRY(read_sample_object(node, &sample));
+    sample_part *part = &list->parts[list->count];
+    skg_json_node type = skg_json_member(&sample, "Type");
+    if (type.value) SKG_TRY(skg_json_choice(&type, "type of a sample", types, 2, &choice));
+    SKG_TRY(read_part(reader, &sample, cache, &part->part));
+    part->element = node->index;
+    part->outer = choice == 1;
+    list->count++;
+    if (part->outer) list->outers++, list->outer_part = part->part;
+    return SKG_OK;
+}
+
+/* An inner sample without Parent lies inside the one outer sample, where there is one. "Parent": null puts it
+ * into the world. */
+static skg_status read_parent(skg_scene *scene, const skg_json_node *samples, const sample_list *list,
+                              const sample_part *part) {
+    skg_json_node node = skg_json_element(samples, part->element);
+    skg_json_object sample;
+    SKG_TRY(read_sample_object(&node, &sample));
+    skg_json_node parent = skg_json_member(&sample, "Parent");
+    int64_t inside = -1;
+    if (parent.value && !json_is_null(parent.value)) {
+        const char *label = NULL;
+        SKG_TRY(skg_json_text(&parent, &label));
+        skg_status status = skg_scene_find(scene, label, &inside);
+        if (status == SKG_OK) status = skg_scene_set_inside(scene, part->part, inside);
+        return status == SKG_OK ? SKG_OK : skg_json_fail(&parent, status, "%s", skg_last_error());
+    }
+    if (parent.value || part->outer || list->outers == 0) return SKG_OK;
+    if (list->outers > 1)
+        return skg_json_fail(&node, SKG_ERR_SCENE,
+                             "there are %" PRId64 " outer samples, so each inner one needs a Parent: the "
+                             "label of the sample around it, or null",
+                             list->outers);
+    skg_status status = skg_scene_set_inside(scene, part->part, list->outer_part);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(&node, status, "%s", skg_last_error());
+}
+
+/* Widens bounds (min x, y, z, max x, y, z) by a part's vertices in the world. */
+static skg_status add_bounds(const skg_scene_part_data *part, double *bounds) {
+    int64_t vertices = 0, triangles = 0;
+    double *positions = NULL;
+    SKG_TRY(skg_mesh_size(part->mesh, &vertices, &triangles));
+    SKG_TRY(skg_alloc(vertices, 3 * sizeof *positions, part->label, &positions));
+    skg_status status = skg_mesh_read_positions(part->mesh, positions, 3);
+    for (int64_t i = 0; status == SKG_OK && i < vertices; i++) {
+        double x[3];
+        skg_pose_point(part->pose, positions + 3 * i, x);
+        for (int k = 0; k < 3; k++) {
+            bounds[k] = fmin(bounds[k], x[k]);
+            bounds[3 + k] = fmax(bounds[3 + k], x[k]);
+        }
+    }
+    skg_free(&positions);
+    return status;
+}
+
+static skg_status move_all_to_centre(skg_scene *scene) {
+    double bounds[6] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (int64_t i = 0; i < scene->count; i++) SKG_TRY(add_bounds(&scene->parts[i], bounds));
+    for (int64_t i = 0; i < scene->count; i++) {
+        double pose[16];
+        memcpy(pose, scene->parts[i].pose, sizeof pose);
+        for (int k = 0; k < 3; k++) pose[4 * k + 3] -= 0.5 * (bounds[k] + bounds[3 + k]);
+        SKG_TRY(skg_scene_set_pose(scene, i, pose));
+    }
+    return SKG_OK;
+}
+
+skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node) {
+    int64_t count = 0;
+    sample_list list = {.outer_part = -1};
+    skg_mesh_cache cache = {0};
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
+    SKG_TRY(skg_scene_create(reader->context, &reader->setup->scene));
+    SKG_TRY(skg_alloc(count, sizeof *list.parts, "samples", &list.parts));
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_node element = skg_json_element(node, i);
+        SKG_TRY_CLEANUP(read_element(reader, &element, &cache, &list));
+    }
+    if (list.count == 0) {
+        status = skg_json_fail(node, SKG_ERR_SCENE, "is empty; give at least one sample");
+        goto cleanup;
+    }
+    for (int64_t i = 0; i < list.count; i++)
+        SKG_TRY_CLEANUP(read_parent(reader->setup->scene, node, &list, &list.parts[i]));
+    if (list.move_to_centre) SKG_TRY_CLEANUP(move_all_to_centre(reader->setup->scene));
+cleanup:
+    skg_mesh_cache_clear(&cache);
+    skg_free(&list.parts);
+    return status;
+}

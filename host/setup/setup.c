@@ -1,0 +1,194 @@
+#include "setup/setup.h"
+#include "core/names.h"
+
+#include <math.h>
+#include <string.h>
+
+static const skg_json_key top_keys[] = {
+    {"File format version", NULL, SKG_KEY_READ},
+    {"WindowSize", NULL, SKG_KEY_IGNORED},
+    {"Source", NULL, SKG_KEY_READ},
+    {"Detector", NULL, SKG_KEY_READ},
+    {"Samples", NULL, SKG_KEY_READ},
+    {"Scan", NULL, SKG_KEY_READ},
+    {"Precision", NULL, SKG_KEY_READ},
+    {"Tolerance", NULL, SKG_KEY_READ},
+    {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
+    {"Breathing", NULL, SKG_KEY_READ},
+    {"Noise", NULL, SKG_KEY_READ},
+    {"Falloff", NULL, SKG_KEY_READ},
+    {"World", NULL, SKG_KEY_READ},
+    {"Repair", NULL, SKG_KEY_READ},
+    {"Clip", NULL, SKG_KEY_READ},
+};
+
+skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
+    const char *folder = *path == '/' ? "" : reader->folder;
+    SKG_TRY(skg_alloc((int64_t)(strlen(folder) + strlen(path)) + 1, 1, "path", resolved));
+    strcpy(*resolved, folder);
+    strcat(*resolved, path);
+    return SKG_OK;
+}
+
+/* [1, 0, 0]: anything of version 1 is read. */
+static skg_status read_version(const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "File format version");
+    double version[3] = {1, 0, 0};
+    if (node.value) SKG_TRY(skg_json_numbers(&node, "[1, 0, 0]", 3, version));
+    if (version[0] != 1)
+        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "version %g is not known; version 1 is", version[0]);
+    return SKG_OK;
+}
+
+static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {"single", "double", "half"};
+    static const int32_t values[] = {SKG_SINGLE, SKG_DOUBLE, SKG_HALF};
+    skg_json_node node = skg_json_member(top, "Precision");
+    if (!node.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
+    setup->has_precision = 1;
+    setup->precision = values[choice];
+    return SKG_OK;
+}
+
+/* What becomes of open meshes, and of what leaves its parent. */
+static skg_status read_mends(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {
+        [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
+    const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
+    if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
+    if (!repair.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&repair, "repair", names, 3, &choice));
+    setup->has_repair = 1;
+    setup->repair = (int32_t)choice;
+    return SKG_OK;
+}
+
+static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "Tolerance");
+    setup->tolerance = -1;
+    if (!node.value) return SKG_OK;
+    double tolerance = 0;
+    SKG_TRY(skg_json_number(&node, &tolerance));
+    if (tolerance < 0 || tolerance >= 1)
+        return skg_json_fail(&node, SKG_ERR_FORMAT, "is %g; give a relative error from 0 to below 1",
+                             tolerance);
+    setup->tolerance = tolerance;
+    return SKG_OK;
+}
+
+/* "Air", ["Compound", ...] or "Vacuum". */
+static skg_status read_world(skg_setup_reader *reader, const skg_json_object *top) {
+    skg_json_node node = skg_json_member(top, "World"), no_density = {0};
+    if (!node.value) return SKG_OK;
+    if (json_is_string(node.value) && skg_same_name(json_string_value(node.value), "vacuum")) return SKG_OK;
+    return skg_setup_read_material(reader, &node, &no_density, "world", &reader->setup->world);
+}
+
+static skg_status read_all(skg_setup_reader *reader) {
+    skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
+    skg_json_object top;
+    SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
+    SKG_TRY(skg_json_need(&top, "Source", "{ ... }", &source));
+    SKG_TRY(skg_json_need(&top, "Detector", "{ ... }", &detector));
+    SKG_TRY(skg_json_need(&top, "Samples", "[ ... ]", &samples));
+    SKG_TRY(read_version(&top));
+    SKG_TRY(read_precision(reader->setup, &top));
+    SKG_TRY(read_tolerance(reader->setup, &top));
+    SKG_TRY(read_mends(reader->setup, &top));
+    SKG_TRY(skg_setup_read_source(reader, &source));
+    SKG_TRY(skg_setup_read_detector(reader, &detector));
+    SKG_TRY(skg_setup_place_beam(reader, &source));
+    const skg_json_node falloff = skg_json_member(&top, "Falloff");
+    reader->setup->falloff = reader->setup->absolute;
+    if (falloff.value) SKG_TRY(skg_json_flag(&falloff, &reader->setup->falloff));
+    SKG_TRY(read_world(reader, &top));
+    skg_json_node noise = skg_json_member(&top, "Noise");
+    SKG_TRY(skg_setup_read_noise(reader, &noise));
+    skg_json_node scan = skg_json_member(&top, "Scan");
+    if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
+    SKG_TRY(skg_setup_read_samples(reader, &samples));
+    skg_json_node breathing = skg_json_member(&top, "Breathing");
+    return skg_setup_read_breathing(reader, &breathing);
+}
+
+skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
+                          skg_setup **setup) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: no place for the set-up");
+    *setup = NULL;
+    if (!path || count < 0 || (count > 0 && !settings))
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: no path, or no settings where there should be");
+    skg_setup_reader reader = {.context = context};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader.setup, "set-up", &reader.setup));
+    SKG_TRY_CLEANUP(skg_copy_text(path, &reader.folder));
+    char *slash = strrchr(reader.folder, '/');
+    *(slash ? slash + 1 : reader.folder) = '\0';
+    SKG_TRY_CLEANUP(skg_json_open(path, &reader.file));
+    for (int64_t i = 0; i < count; i++) SKG_TRY_CLEANUP(skg_json_set(&reader.file, settings[i]));
+    SKG_TRY_CLEANUP(read_all(&reader));
+    *setup = reader.setup;
+    reader.setup = NULL;
+cleanup:
+    skg_setup_release(&reader.setup);
+    skg_json_close(&reader.file);
+    skg_free(&reader.folder);
+    return status;
+}
+
+void skg_setup_release(skg_setup **setup) {
+    if (!setup || !*setup) return;
+    skg_scene_release(&(*setup)->scene);
+    skg_spectrum_release(&(*setup)->spectrum);
+    skg_response_release(&(*setup)->response);
+    skg_material_release(&(*setup)->world);
+    skg_free(&(*setup)->blur_samples);
+    skg_free(&(*setup)->scan.folder);
+    skg_free(&(*setup)->scan.views);
+    skg_breathing_section_free(&(*setup)->breathing);
+    skg_free(setup);
+}
+
+skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene) {
+    if (!setup || !scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_scene: no set-up or no result");
+    *scene = setup->scene;
+    return SKG_OK;
+}
+
+skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum) {
+    if (!setup || !spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_spectrum: no set-up or no result");
+    *spectrum = setup->spectrum;
+    return SKG_OK;
+}
+
+skg_status skg_setup_view(const skg_setup *setup, skg_view *view) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_view: no set-up");
+    return skg_struct_write(&setup->view, sizeof setup->view, "skg_view", view);
+}
+
+skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_options: no set-up");
+    skg_plan_options ours = {.size = sizeof ours};
+    SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
+    if (setup->has_precision) ours.precision = setup->precision;
+    if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
+    if (setup->falloff) ours.falloff = 1;
+    if (setup->has_repair) ours.repair = setup->repair;
+    if (setup->clip) ours.clip = 1;
+    if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
+    if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
+    if (setup->response) ours.response = setup->response;
+    if (setup->world) ours.world = setup->world;
+    if (setup->scan.view_count) ours.view_count = setup->scan.view_count, ours.views = setup->scan.views;
+    if (setup->blur.columns > 0) ours.blur = &setup->blur;
+    if (setup->noise.quantum || setup->noise.electronic_kev > 0 || setup->noise.step_kev > 0) {
+        ours.noise = setup->noise.quantum;
+        ours.swank = setup->noise.swank;
+        ours.noise_seed = setup->noise.seed;
+        ours.electronic_kev = setup->noise.electronic_kev;
+        ours.quantum_step_kev = setup->noise.step_kev;
+    }
+    return skg_struct_write(&ours, sizeof ours, "skg_plan_options", options);
+}

@@ -1,0 +1,187 @@
+#include "core/context.h"
+#include "core/pose.h"
+#include "setup/setup.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { PATH, CUBE, CUBOID, CYLINDER, SPHERE, STEP_WEDGE, SHAPES };
+static const char *const shapes[] = {"Path", "Cube", "Cuboid", "Cylinder", "Sphere", "StepWedge"};
+
+/* The makers' lengths come last in their arrays, before the unit; a number of sectors comes first. */
+static const struct {
+    int64_t sectors, lengths;
+    const char *example;
+} forms[] = {[CUBE] = {0, 1, "[edge, \"mm\"]"},
+             [CUBOID] = {0, 3, "[x, y, z, \"mm\"]"},
+             [CYLINDER] = {1, 2, "[sectors, height, radius, \"mm\"]"},
+             [SPHERE] = {1, 1, "[sectors, radius, \"mm\"]"}};
+
+enum { MOST_SECTORS = 100000 };
+
+void skg_mesh_cache_clear(skg_mesh_cache *cache) {
+    for (int64_t i = 0; i < cache->count; i++) {
+        skg_free(&cache->loaded[i].path);
+        skg_mesh_release(&cache->loaded[i].mesh);
+    }
+    skg_free(&cache->loaded);
+    cache->count = 0;
+}
+
+/* Takes path over; the mesh gets one more owner. */
+static skg_status remember(skg_mesh_cache *cache, char **path, double unit_mm, int32_t flip, skg_mesh *mesh) {
+    SKG_TRY(skg_realloc(cache->count + 1, sizeof *cache->loaded, "meshes", &cache->loaded));
+    SKG_TRY(skg_mesh_retain(mesh));
+    cache->loaded[cache->count++] =
+        (struct skg_loaded_mesh){.path = *path, .unit_mm = unit_mm, .flip = flip, .mesh = mesh};
+    *path = NULL;
+    return SKG_OK;
+}
+
+/* A closed mesh is outward whatever its file says; an open one is what it is, and may be turned: then *mesh
+ * becomes one with every triangle reversed. */
+static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json_node *node,
+                                  skg_mesh **mesh) {
+    skg_mesh_health health;
+    skg_mesh_health_init(&health);
+    SKG_TRY(skg_mesh_get_health(*mesh, &health));
+    if (health.closed) {
+        char place[256];
+        skg_json_place(node, place, sizeof place);
+        skg_log(reader->context, SKG_LOG_NOTE,
+                "%s: FlipNormals has no effect on a closed mesh, which is outward anyway", place);
+        return SKG_OK;
+    }
+    const char *name = NULL;
+    double *positions = NULL;
+    int32_t *corners = NULL;
+    skg_mesh *turned = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_mesh_name(*mesh, &name));
+    SKG_TRY_CLEANUP(skg_alloc(health.vertices, 3 * sizeof *positions, name, &positions));
+    SKG_TRY_CLEANUP(skg_alloc(health.triangles, 3 * sizeof *corners, name, &corners));
+    SKG_TRY_CLEANUP(skg_mesh_read_positions(*mesh, positions, 3));
+    SKG_TRY_CLEANUP(skg_mesh_read_triangles(*mesh, corners, 3));
+    for (int64_t i = 0; i < health.triangles; i++) {
+        int32_t second = corners[3 * i + 1];
+        corners[3 * i + 1] = corners[3 * i + 2];
+        corners[3 * i + 2] = second;
+    }
+    SKG_TRY_CLEANUP(skg_mesh_create(reader->context, name, health.vertices, positions, 3, health.triangles,
+                                    corners, 3, 1, &turned));
+    skg_mesh_release(mesh);
+    *mesh = turned;
+cleanup:
+    skg_free(&positions);
+    skg_free(&corners);
+    return status;
+}
+
+static skg_status load(const skg_setup_reader *reader, const skg_json_object *sample,
+                       const skg_json_node *node, int32_t flip, skg_mesh_cache *cache, skg_mesh **mesh) {
+    const char *text = NULL;
+    char *path = NULL;
+    double unit_mm = 1;
+    skg_json_node unit;
+    SKG_TRY(skg_json_text(node, &text));
+    SKG_TRY(skg_json_need(sample, "Unit", "\"mm\"", &unit));
+    SKG_TRY(skg_json_unit_of_length(&unit, &unit_mm));
+    SKG_TRY(skg_setup_resolve(reader, text, &path));
+    skg_status status = SKG_OK;
+    for (int64_t i = 0; i < cache->count; i++) {
+        const struct skg_loaded_mesh *known = &cache->loaded[i];
+        if (strcmp(known->path, path) != 0 || known->unit_mm != unit_mm || known->flip != flip) continue;
+        SKG_TRY_CLEANUP(skg_mesh_retain(known->mesh));
+        *mesh = known->mesh;
+        goto cleanup;
+    }
+    status = skg_mesh_load(reader->context, path, unit_mm, mesh);
+    if (status != SKG_OK) {
+        status = skg_json_fail(node, status, "%s", skg_last_error());
+        goto cleanup;
+    }
+    if (flip) SKG_TRY_CLEANUP(turn_inside_out(reader, node, mesh));
+    SKG_TRY_CLEANUP(remember(cache, &path, unit_mm, flip, *mesh));
+cleanup:
+    skg_free(&path);
+    return status;
+}
+
+static const skg_json_key wedge_keys[] = {
+    {"NumberOfSteps", NULL, SKG_KEY_READ},   {"TotalLength", NULL, SKG_KEY_READ},
+    {"Width", NULL, SKG_KEY_READ},           {"FirstStepHeight", NULL, SKG_KEY_READ},
+    {"OtherStepHeight", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
+};
+
+static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
+    static const char *const names[] = {"TotalLength", "Width", "FirstStepHeight", "OtherStepHeight"};
+    skg_json_object wedge;
+    skg_json_node member;
+    int64_t steps = 0;
+    double length[4], mm = 1;
+    SKG_TRY(skg_json_read_object(node, wedge_keys, sizeof wedge_keys / sizeof *wedge_keys, &wedge));
+    SKG_TRY(skg_json_need(&wedge, "NumberOfSteps", "5", &member));
+    SKG_TRY(skg_json_integer(&member, 1, MOST_SECTORS, &steps));
+    SKG_TRY(skg_json_need(&wedge, "Unit", "\"mm\"", &member));
+    SKG_TRY(skg_json_unit_of_length(&member, &mm));
+    for (int k = 0; k < 4; k++) {
+        SKG_TRY(skg_json_need(&wedge, names[k], "10", &member));
+        SKG_TRY(skg_json_number(&member, &length[k]));
+        length[k] *= mm;
+    }
+    if (length[2] != length[3])
+        return skg_json_fail(node, SKG_ERR_UNSUPPORTED,
+                             "a first step of another height than the others is not made yet; give the same "
+                             "FirstStepHeight and OtherStepHeight");
+    skg_status status = skg_mesh_step_wedge(length[0], length[1], (double)steps * length[2], steps, mesh);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+/* The schema's cylinders stand along y, the maker's along z. */
+static const double Y_FROM_Z[16] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+
+static skg_status make(const skg_json_node *node, int shape, skg_mesh **mesh, double *own) {
+    if (shape == STEP_WEDGE) return make_step_wedge(node, mesh);
+    int64_t count = 0, sectors = 0;
+    int64_t wanted = forms[shape].sectors + forms[shape].lengths + 1;
+    double length[3] = {0, 0, 0}, mm = 1;
+    SKG_TRY(skg_json_array(node, forms[shape].example, &count));
+    if (count != wanted)
+        return skg_json_fail(node, SKG_ERR_FORMAT, "has %" PRId64 " elements instead of %" PRId64 "; give %s",
+                             count, wanted, forms[shape].example);
+    if (forms[shape].sectors) {
+        skg_json_node element = skg_json_element(node, 0);
+        SKG_TRY(skg_json_integer(&element, 3, MOST_SECTORS, &sectors));
+    }
+    skg_json_node unit = skg_json_element(node, count - 1);
+    SKG_TRY(skg_json_unit_of_length(&unit, &mm));
+    for (int64_t k = 0; k < forms[shape].lengths; k++) {
+        skg_json_node element = skg_json_element(node, forms[shape].sectors + k);
+        SKG_TRY(skg_json_number(&element, &length[k]));
+        length[k] *= mm;
+    }
+    if (shape == CYLINDER) memcpy(own, Y_FROM_Z, sizeof Y_FROM_Z);
+    skg_status status = shape == CUBE     ? skg_mesh_cube(length[0], mesh)
+                        : shape == CUBOID ? skg_mesh_cuboid(length[0], length[1], length[2], mesh)
+                        : shape == SPHERE ? skg_mesh_sphere(length[0], sectors, mesh)
+                                          : skg_mesh_cylinder(length[1], length[0], sectors, mesh);
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
+skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
+                                skg_mesh_cache *cache, skg_mesh **mesh, double *own) {
+    int found = -1;
+    skg_pose_identity(own);
+    for (int shape = 0; shape < SHAPES; shape++) {
+        if (!skg_json_member(sample, shapes[shape]).value) continue;
+        if (found >= 0)
+            return skg_json_fail(sample->node, SKG_ERR_FORMAT, "has both %s and %s; a sample has one of them",
+                                 shapes[found], shapes[shape]);
+        found = shape;
+    }
+    if (found < 0)
+        return skg_json_fail(sample->node, SKG_ERR_FORMAT,
+                             "has no shape; give a Path, or a Cube, Cuboid, Cylinder, Sphere or StepWedge");
+    skg_json_node node = skg_json_member(sample, shapes[found]);
+    return found == PATH ? load(reader, sample, &node, flip, cache, mesh) : make(&node, found, mesh, own);
+}

@@ -1,0 +1,38 @@
+#include "setup/setup.h"
+
+static const skg_json_key source_keys[] = {
+    {"Position", NULL, SKG_KEY_READ}, {"Direction", NULL, SKG_KEY_READ},
+    {"Shape", NULL, SKG_KEY_READ},    {"Samples", NULL, SKG_KEY_READ},
+    {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
+    {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
+};
+
+skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_setup *setup = reader->setup;
+    skg_json_object source;
+    skg_json_node beam;
+    int32_t parallel = 0;
+    SKG_TRY(skg_json_read_object(node, source_keys, sizeof source_keys / sizeof *source_keys, &source));
+    SKG_TRY(skg_setup_read_source_shape(reader, &source, &parallel));
+    skg_view_init(&setup->view);
+    skg_json_node position = skg_json_member(&source, "Position");
+    skg_json_node direction = skg_json_member(&source, "Direction");
+    if (direction.value) {
+        if (!parallel)
+            return skg_json_fail(&direction, SKG_ERR_FORMAT,
+                                 "only a parallel beam has a direction; give a Position");
+        if (position.value)
+            return skg_json_fail(&direction, SKG_ERR_FORMAT,
+                                 "give either Position or Direction (a beam from infinity), not both");
+        setup->view.projection = SKG_PARALLEL_FROM_INFINITY;
+        SKG_TRY(skg_json_direction(&direction, setup->view.source));
+    } else {
+        static const char *const example = "[0, -500, 0, \"mm\"]";
+        setup->view.projection = parallel ? SKG_PARALLEL : SKG_POINT;
+        SKG_TRY(skg_json_need(&source, "Position", example, &position));
+        SKG_TRY(skg_json_lengths(&position, example, 3, setup->view.source));
+    }
+    SKG_TRY(skg_json_need(&source, "Beam", "[{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]",
+                          &beam));
+    return skg_setup_read_beam(reader, &beam);
+}

@@ -1,0 +1,78 @@
+/* Shape of a source: a point, a parallel beam, or a focal spot. */
+#include "setup/setup.h"
+
+#include <math.h>
+
+/* Names of spots, in the order of SKG_SPOT_LINE and so on, and how many sizes each has. */
+static const char *const spot_names[] = {"Line",   "Rectangle", "Cube",     "Disc",
+                                         "Sphere", "Gaussian",  "FocalSpot"};
+static const char *const spot_examples[] = {
+    "[\"Line\", 1, \"mm\"]",        "[\"Rectangle\", 1, 0.6, \"mm\"]", "[\"Cube\", 5, \"mm\"]",
+    "[\"Disc\", 1, \"mm\"]",        "[\"Sphere\", 1, \"mm\"]",         "[\"Gaussian\", 0.6, 0.6, \"mm\"]",
+    "[\"FocalSpot\", 1, \"mm\", 4]"};
+static const int spot_sizes[] = {1, 2, 1, 1, 1, 2, 1};
+enum { FOCAL_SPOT = 6 };
+
+/* gVXR's spot is a cube about the position, sampled at the middles of n x n x n equal cubes. */
+static skg_status read_focal_spot(const skg_json_node *node, skg_spot *spot) {
+    const skg_json_node pieces = skg_json_element(node, 3);
+    spot->shape = SKG_SPOT_CUBE;
+    return skg_json_integer(&pieces, 1, 40, &spot->grid);
+}
+
+static skg_status read_spot(const skg_json_node *node, skg_spot *spot) {
+    int64_t choice = 0, count = 0;
+    double mm = 0;
+    SKG_TRY(skg_json_array(node, "[\"Disc\", 1, \"mm\"]", &count));
+    const skg_json_node first = skg_json_element(node, 0);
+    SKG_TRY(skg_json_choice(&first, "shape of an extended source", spot_names, FOCAL_SPOT + 1, &choice));
+    const int sizes = spot_sizes[choice], wanted = sizes + (choice == FOCAL_SPOT ? 3 : 2);
+    if (count != wanted)
+        return skg_json_fail(node, SKG_ERR_FORMAT, "has %d entries; write it like %s", (int)count,
+                             spot_examples[choice]);
+    const skg_json_node unit = skg_json_element(node, 1 + sizes);
+    SKG_TRY(skg_json_unit_of_length(&unit, &mm));
+    for (int k = 0; k < 3; k++) {
+        const skg_json_node size = skg_json_element(node, 1 + (k < sizes ? k : 0));
+        SKG_TRY(skg_json_number(&size, &spot->extent[k]));
+        spot->extent[k] *= mm;
+        if (!(spot->extent[k] >= 0) || !isfinite(spot->extent[k]))
+            return skg_json_fail(&size, SKG_ERR_FORMAT, "is no size of a focal spot");
+    }
+    spot->shape = (int32_t)choice + SKG_SPOT_LINE;
+    return choice == FOCAL_SPOT ? read_focal_spot(node, spot) : SKG_OK;
+}
+
+static skg_status read_sampling(const skg_json_object *source, skg_spot *spot) {
+    const skg_json_node samples = skg_json_member(source, "Samples"), grid = skg_json_member(source, "Grid");
+    const skg_json_node tolerance = skg_json_member(source, "SampleTolerance"),
+                        axis = skg_json_member(source, "Axis");
+    if (samples.value) SKG_TRY(skg_json_integer(&samples, 0, 65536, &spot->samples));
+    if (grid.value) SKG_TRY(skg_json_integer(&grid, 1, 256, &spot->grid));
+    if (axis.value) SKG_TRY(skg_json_direction(&axis, spot->axis));
+    if (!tolerance.value) return SKG_OK;
+    SKG_TRY(skg_json_number(&tolerance, &spot->tolerance));
+    if (!(spot->tolerance > 0 && spot->tolerance < 1))
+        return skg_json_fail(&tolerance, SKG_ERR_FORMAT,
+                             "is %g; give a fraction of the open beam above 0, below 1", spot->tolerance);
+    return SKG_OK;
+}
+
+skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
+                                       int32_t *parallel) {
+    static const char *const shapes[] = {"PointSource", "Point",        "Cone",
+                                         "ConeBeam",    "ParallelBeam", "Parallel"};
+    skg_spot *spot = &reader->setup->spot;
+    skg_json_node node;
+    int64_t choice = 0;
+    skg_spot_init(spot);
+    *parallel = 0;
+    SKG_TRY(skg_json_need(source, "Shape", "\"PointSource\" or \"ParallelBeam\"", &node));
+    if (json_is_array(node.value)) {
+        SKG_TRY(read_spot(&node, spot));
+        return read_sampling(source, spot);
+    }
+    SKG_TRY(skg_json_choice(&node, "shape of a source", shapes, 6, &choice));
+    *parallel = choice >= 4;
+    return SKG_OK;
+}

@@ -1,0 +1,193 @@
+#include "geometry/camera.h"
+
+#include "core/vector.h"
+
+#include <math.h>
+
+/* matrix = [a b c]^-1, by cofactors; returns the determinant of [a b c]. */
+static double invert(const double a[3], const double b[3], const double c[3], double matrix[3][3]) {
+    skg_cross(b, c, matrix[0]);
+    skg_cross(c, a, matrix[1]);
+    skg_cross(a, b, matrix[2]);
+    const double determinant = skg_dot(a, matrix[0]);
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++) matrix[r][k] /= determinant;
+    return determinant;
+}
+
+/* t at which the paths of a parallel beam start: the plane through the source across the direction d; t - 1 =
+ * -((D0 + i Du + j Dv - S) . d) / d.d */
+static void parallel_start(const skg_view *view, const double pixel[3], skg_camera *camera) {
+    if (view->projection == SKG_PARALLEL_FROM_INFINITY) {
+        camera->start[0] = -1e30;
+        return;
+    }
+    const double *d = camera->first, square = skg_dot(d, d);
+    double from[3];
+    for (int k = 0; k < 3; k++) from[k] = pixel[k] - view->source[k];
+    camera->start[0] = 1 - skg_dot(from, d) / square;
+    camera->start[1] = -skg_dot(view->column_step, d) / square;
+    camera->start[2] = -skg_dot(view->row_step, d) / square;
+}
+
+/* Nothing is rounded: from infinity, the direction is only brought to a length near 1 by a power of two. */
+static void parallel_direction(const skg_view *view, double direction[3]) {
+    int exponent = 0;
+    if (view->projection == SKG_PARALLEL) {
+        skg_add_scaled(view->centre, -1, view->source, direction);
+        return;
+    }
+    frexp(fmax(fabs(view->source[0]), fmax(fabs(view->source[1]), fabs(view->source[2]))), &exponent);
+    for (int k = 0; k < 3; k++) direction[k] = ldexp(view->source[k], -exponent);
+}
+
+skg_status skg_camera_make(const skg_view *view, const double *source, double shift_column, double shift_row,
+                           skg_camera *camera) {
+    *camera = (skg_camera){.columns = view->columns, .rows = view->rows};
+    const double column = shift_column - 0.5 * (double)(view->columns - 1);
+    const double row = shift_row - 0.5 * (double)(view->rows - 1);
+    double pixel[3];
+    camera->parallel = view->projection != SKG_POINT;
+    for (int k = 0; k < 3; k++) {
+        camera->column[k] = view->column_step[k];
+        camera->row[k] = view->row_step[k];
+        pixel[k] = view->centre[k] + column * view->column_step[k] + row * view->row_step[k];
+    }
+    const double *seen_from = source ? source : view->source;
+    for (int k = 0; k < 3; k++) {
+        camera->origin[k] = camera->parallel ? pixel[k] : seen_from[k];
+        camera->first[k] = pixel[k] - seen_from[k];
+    }
+    if (camera->parallel) parallel_direction(view, camera->first);
+    camera->determinant = invert(camera->column, camera->row, camera->first, camera->matrix);
+    if (!(fabs(camera->determinant) > 0) || !isfinite(camera->determinant))
+        return skg_fail(SKG_ERR_SCENE,
+                        "the detector's steps and the beam lie in one plane, or are not finite; "
+                        "nothing can be projected");
+    if (camera->parallel) parallel_start(view, pixel, camera);
+    return SKG_OK;
+}
+
+void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]) {
+    double v[3];
+    for (int k = 0; k < 3; k++) v[k] = world[k] - camera->origin[k];
+    for (int r = 0; r < 3; r++) h[r] = skg_dot(camera->matrix[r], v);
+}
+
+/* The nearest pixel of the detector, along one axis. */
+static double own_pixel(double x, int64_t count) {
+    const double last = (double)(count - 1);
+    const double pixel = floor(x + 0.5);
+    return pixel > 0 ? (pixel < last ? pixel : last) : 0;
+}
+
+static double determinant(double m[3][3]) {
+    double c[3];
+    skg_cross(m[1], m[2], c);
+    return skg_dot(m[0], c);
+}
+
+/* Along one axis of the picture: anchor, offset and row, relative to the part's pixel. */
+static void point_axis(double h, double depth, const double linear[3], const double deep[3], int64_t count,
+                       double row[3], double *offset, double *anchor, SKG_INT *pixel) {
+    const int seen = depth > (double)SKG_NEAR; /* else the origin has no projection to be relative to */
+    const double at = seen ? h / depth : 0.5 * (double)(count - 1);
+    const double own = own_pixel(at, count);
+    const double relative_to = seen ? at : own;
+    *pixel = (SKG_INT)own;
+    *anchor = seen ? at - own : 0;
+    *offset = seen ? 0 : h - own * depth;
+    for (int k = 0; k < 3; k++) row[k] = linear[k] - relative_to * deep[k];
+}
+
+static void parallel_axis(double h, const double linear[3], int64_t count, double row[3], double *offset,
+                          double *anchor, SKG_INT *pixel) {
+    const double own = own_pixel(h, count);
+    *pixel = (SKG_INT)own;
+    *anchor = h - own;
+    *offset = 0;
+    for (int k = 0; k < 3; k++) row[k] = linear[k];
+}
+
+void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double reference,
+                     int32_t flipped, skg_part_double *part) {
+    double pose_linear[3][3], linear[3][3], world[3], h[3];
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) pose_linear[r][c] = pose[4 * r + c];
+        world[r] = skg_dot(pose_linear[r], origin) + pose[4 * r + 3];
+    }
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            linear[r][c] = camera->matrix[r][0] * pose[c] + camera->matrix[r][1] * pose[4 + c] +
+                           camera->matrix[r][2] * pose[8 + c];
+    skg_camera_see(camera, world, h);
+    const double depth = camera->parallel ? h[2] + 1 : h[2];
+    if (camera->parallel) {
+        parallel_axis(h[0], linear[0], camera->columns, part->row0, &part->offset_x, &part->anchor_x,
+                      &part->pixel_i);
+        parallel_axis(h[1], linear[1], camera->rows, part->row1, &part->offset_y, &part->anchor_y,
+                      &part->pixel_j);
+    } else {
+        point_axis(h[0], depth, linear[0], linear[2], camera->columns, part->row0, &part->offset_x,
+                   &part->anchor_x, &part->pixel_i);
+        point_axis(h[1], depth, linear[1], linear[2], camera->rows, part->row1, &part->offset_y,
+                   &part->anchor_y, &part->pixel_j);
+    }
+    for (int k = 0; k < 3; k++) part->row2[k] = linear[2][k];
+    part->reference = camera->parallel || reference > 0 ? reference : 1;
+    part->offset_r = depth - part->reference;
+    part->highest = 1 - part->reference;
+    part->start[0] = camera->start[0] + camera->start[1] * part->pixel_i + camera->start[2] * part->pixel_j -
+                     part->reference;
+    part->start[1] = camera->start[1];
+    part->start[2] = camera->start[2];
+    part->unused = 0;
+    part->reserved = 0;
+    /* Seen from the source, the far faces of an outward mesh turn as the picture's axes do. */
+    const int mirrored = (determinant(pose_linear) < 0) != (camera->determinant < 0);
+    part->turned = mirrored != (flipped != 0) ? -1 : 0;
+}
+
+double skg_camera_pixel_area(const skg_camera *camera) {
+    double across[3];
+    skg_cross(camera->column, camera->row, across);
+    return skg_length(across);
+}
+
+double skg_camera_nearest_ray(const skg_camera *camera) {
+    /* The foot is where the ray is across both steps: least squares over (i, j). */
+    const double uu = skg_dot(camera->column, camera->column), vv = skg_dot(camera->row, camera->row);
+    const double uv = skg_dot(camera->column, camera->row), fu = skg_dot(camera->first, camera->column);
+    const double fv = skg_dot(camera->first, camera->row), area = uu * vv - uv * uv;
+    const double i = own_pixel((uv * fv - vv * fu) / area, camera->columns);
+    const double j = own_pixel((uv * fu - uu * fv) / area, camera->rows);
+    double ray[3];
+    skg_add_scaled(camera->first, i, camera->column, ray);
+    skg_add_scaled(ray, j, camera->row, ray);
+    return skg_length(ray);
+}
+
+void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray) {
+    const double column = 0.5 * (double)(camera->columns - 1), row = 0.5 * (double)(camera->rows - 1);
+    *ray = (skg_ray_double){.unit = 1 / scale};
+    for (int k = 0; k < 3; k++) {
+        ray->centre[k] = camera->first[k];
+        if (camera->parallel) continue; /* every ray is d */
+        ray->centre[k] += column * camera->column[k] + row * camera->row[k];
+        ray->column[k] = camera->column[k];
+        ray->row[k] = camera->row[k];
+    }
+    ray->middle_i = column;
+    ray->middle_j = row;
+}
+
+void skg_rays_round(const skg_ray_double *from, skg_ray_float *to) {
+    for (int k = 0; k < 3; k++) {
+        to->centre[k] = (float)from->centre[k];
+        to->column[k] = (float)from->column[k];
+        to->row[k] = (float)from->row[k];
+    }
+    to->middle_i = (float)from->middle_i;
+    to->middle_j = (float)from->middle_j;
+    to->unit = (float)from->unit;
+}

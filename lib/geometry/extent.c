@@ -1,0 +1,85 @@
+#include "geometry/extent.h"
+
+#include "core/vector.h"
+
+#include <math.h>
+
+/* h (pixel times t, and t) of the corners of the mesh's box: of its lowest one, and from there along its
+ * edges. There may be a million parts a frame, so each is posed and seen once. */
+static void see_corners(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double h[8][3]) {
+    double lowest[3], world[3], edge[3][3];
+    for (int k = 0; k < 3; k++) lowest[k] = mesh->origin[k] + (double)mesh->lowest[k];
+    for (int k = 0; k < 3; k++)
+        world[k] = pose[4 * k] * lowest[0] + pose[4 * k + 1] * lowest[1] + pose[4 * k + 2] * lowest[2] +
+                   pose[4 * k + 3];
+    skg_camera_see(camera, world, h[0]);
+    if (camera->parallel) h[0][2] += 1; /* t, as for a point source */
+    for (int k = 0; k < 3; k++) {
+        const double along[3] = {pose[k], pose[4 + k], pose[8 + k]};
+        const double length = (double)mesh->highest[k] - (double)mesh->lowest[k];
+        for (int r = 0; r < 3; r++) edge[k][r] = length * skg_dot(camera->matrix[r], along);
+    }
+    for (int corner = 1; corner < 8; corner++) { /* by one edge from a corner that is known */
+        const int k = corner & 4 ? 2 : corner & 2 ? 1 : 0;
+        for (int r = 0; r < 3; r++) h[corner][r] = h[corner & ~(1 << k)][r] + edge[k][r];
+    }
+}
+
+/* As fmin and fmax of numbers, which are calls. */
+static double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+
+static double greater(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* The least and greatest t at which parallel paths start on this detector. */
+static void start_range(const skg_camera *camera, double *first, double *last) {
+    const double across = camera->start[1] * (double)(camera->columns - 1);
+    const double down = camera->start[2] * (double)(camera->rows - 1);
+    *first = camera->start[0] + fmin(0, across) + fmin(0, down);
+    *last = camera->start[0] + fmax(0, across) + fmax(0, down);
+}
+
+void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent) {
+    double h[8][3], low = HUGE_VAL, high = -HUGE_VAL, first = 0, last = 0;
+    skg_scale_part *part = &extent->scale;
+    *extent = (skg_extent){.scale = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0, 0, 0, mesh->layers}};
+    see_corners(camera, mesh, pose, h);
+    for (int k = 0; k < 8; k++) low = lesser(low, h[k][2]), high = greater(high, h[k][2]);
+    if (camera->parallel) start_range(camera, &first, &last);
+    /* Twice the limit of the kernels: a box is decided on in double, a vertex in float. */
+    extent->near_source = camera->parallel ? low <= last : low <= 2.0 * (double)SKG_NEAR;
+    for (int k = 0; k < 8; k++) {
+        const double t = camera->parallel ? 1 : h[k][2];
+        if (extent->near_source && !camera->parallel) break;
+        part->low_column = lesser(part->low_column, h[k][0] / t),
+        part->high_column = greater(part->high_column, h[k][0] / t);
+        part->low_row = lesser(part->low_row, h[k][1] / t),
+        part->high_row = greater(part->high_row, h[k][1] / t);
+    }
+    if (extent->near_source && !camera->parallel) {
+        part->low_column = part->low_row = -HUGE_VAL;
+        part->high_column = part->high_row = HUGE_VAL;
+    }
+    /* What lies before the start of the rays or behind the detector adds nothing. */
+    part->low_depth = lesser(greater(low, lesser(first, 1)), 1);
+    part->high_depth = lesser(greater(high, part->low_depth), 1);
+    extent->on_detector = part->high_column >= -0.5 && part->high_row >= -0.5 &&
+                          part->low_column <= (double)camera->columns - 0.5 &&
+                          part->low_row <= (double)camera->rows - 0.5 && part->high_depth > part->low_depth;
+}
+
+/* Rows by which fields grow, so that what moves a little does not change them. */
+enum { FIELD_ROWS = 16 };
+
+void skg_extent_field(const skg_camera *camera, const skg_extent *extent, int32_t field[4]) {
+    const double rows = (double)camera->rows, columns = (double)camera->columns;
+    const skg_scale_part *at = &extent->scale;
+    field[0] = (int32_t)fmin(fmax(at->low_row - 2, 0), rows) & -FIELD_ROWS;
+    field[1] = (int32_t)fmin(fmax(at->high_row + 2 + FIELD_ROWS, 0), rows + FIELD_ROWS) & -FIELD_ROWS;
+    field[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS * SKG_FIELD_COLUMNS;
+    field[3] =
+        ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS + 1) * SKG_FIELD_COLUMNS;
+}

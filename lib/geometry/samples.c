@@ -1,0 +1,160 @@
+#include "geometry/samples.h"
+
+#include "core/vector.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+enum { MOST_SAMPLES = 65536, MOST_SHIFTS = 16 };
+
+void skg_spot_init(skg_spot *spot) {
+    if (spot) *spot = (skg_spot){.size = (int32_t)sizeof *spot, .tolerance = 5e-3, .most = 1024};
+}
+
+/* How many extents a shape has. */
+static int extents_of(int32_t shape) {
+    static const int extents[] = {0, 1, 2, 3, 1, 1, 2};
+    return extents[shape];
+}
+
+static int64_t grid_size(const skg_spot *spot) {
+    int64_t size = 1;
+    for (int k = 0; k < extents_of(spot->shape); k++) size *= spot->grid;
+    return size;
+}
+
+static skg_status check_spot(const skg_spot *spot) {
+    if (spot->shape < SKG_SPOT_POINT || spot->shape > SKG_SPOT_GAUSSIAN)
+        return skg_fail(SKG_ERR_ARGUMENT, "shape %" PRId32 " of a focal spot is unknown; SKG_SPOT_...",
+                        spot->shape);
+    for (int k = 0; k < extents_of(spot->shape); k++)
+        if (!(spot->extent[k] >= 0 && spot->extent[k] <= 1000))
+            return skg_fail(SKG_ERR_SCENE, "the focal spot is %g mm wide along axis %d; 0 to 1000 mm",
+                            spot->extent[k], k);
+    if (!skg_all_finite(spot->axis, 3))
+        return skg_fail(SKG_ERR_SCENE, "the axis of the focal spot is not finite");
+    if (spot->samples < 0 || spot->samples > MOST_SAMPLES || spot->most < 1 || spot->most > MOST_SAMPLES)
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " samples of the source, at most %" PRId64 "; 0 to %d",
+                        spot->samples, spot->most, MOST_SAMPLES);
+    if (!(spot->tolerance > 0 && spot->tolerance < 1))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "a tolerance of %g of the open beam for the source; above 0, below 1",
+                        spot->tolerance);
+    if (spot->grid < 0 || spot->grid > 256 || (spot->grid > 0 && spot->shape > SKG_SPOT_CUBE))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "a grid of %" PRId64 " pieces a side; 0 to 256, of a line, a rectangle or a cube",
+                        spot->grid);
+    if (spot->grid > 0 && grid_size(spot) > MOST_SAMPLES)
+        return skg_fail(SKG_ERR_ARGUMENT, "a grid of %" PRId64 " samples; at most %d", grid_size(spot),
+                        MOST_SAMPLES);
+    return SKG_OK;
+}
+
+skg_status skg_samples_make(const skg_spot *spot, int32_t supersampling, skg_samples *samples) {
+    *samples = (skg_samples){.spot_count = 1, .shifts = supersampling};
+    skg_spot_init(&samples->spot);
+    if (spot) SKG_TRY(skg_struct_read(spot, "skg_spot", &samples->spot, sizeof samples->spot));
+    SKG_TRY(check_spot(&samples->spot));
+    if (supersampling < 1 || supersampling > MOST_SHIFTS)
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId32 " rays a side of a pixel; 1 to %d", supersampling,
+                        MOST_SHIFTS);
+    if (samples->spot.shape == SKG_SPOT_POINT) return SKG_OK;
+    samples->spot_count = samples->spot.grid > 0      ? grid_size(&samples->spot)
+                          : samples->spot.samples > 0 ? samples->spot.samples
+                                                      : 1;
+    return SKG_OK;
+}
+
+int64_t skg_samples_count(const skg_samples *samples) {
+    return samples->spot_count * samples->shifts * samples->shifts;
+}
+
+/* --- Sobol's sequence in three dimensions
+ * ------------------------------------------------------------------------- */
+
+/* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86: polynomials 1, x + 1, x^2 + x + 1 with starting
+ * numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. */
+static void sobol(int64_t index, double x[3]) {
+    uint32_t direction[3][17], sum[3] = {0, 0, 0};
+    for (int k = 0; k < 17; k++) direction[0][k] = UINT32_C(1) << (31 - k);
+    direction[1][0] = UINT32_C(1) << 31;
+    for (int k = 1; k < 17; k++) direction[1][k] = direction[1][k - 1] ^ (direction[1][k - 1] >> 1);
+    direction[2][0] = UINT32_C(1) << 31;
+    direction[2][1] = UINT32_C(3) << 30;
+    for (int k = 2; k < 17; k++)
+        direction[2][k] = direction[2][k - 1] ^ direction[2][k - 2] ^ (direction[2][k - 2] >> 2);
+    for (int k = 0; k < 17; k++)
+        if (index >> k & 1)
+            for (int d = 0; d < 3; d++) sum[d] ^= direction[d][k];
+    /* Digits turned by 0.1010...: at every length of the sequence the pieces' samples stand a third from
+     * their middle, to one side or the other, not all at their corner. */
+    for (int d = 0; d < 3; d++) x[d] = ((sum[d] ^ UINT32_C(0xaaaa8000)) + 0x1p14) * 0x1p-32;
+}
+
+static void grid_point(const skg_spot *spot, int64_t index, double x[3]) {
+    for (int k = 0; k < 3; k++) {
+        x[k] = ((double)(index % spot->grid) + 0.5) / (double)spot->grid;
+        index /= spot->grid;
+    }
+}
+
+/* --- shapes
+ * ---------------------------------------------------------------------------------------------------- */
+
+static const double TURN = 6.283185307179586;
+
+/* A point of the spot in its own axes, mm: across, down, along. */
+static void place_in_spot(const skg_spot *spot, const double x[3], double local[3]) {
+    const double *extent = spot->extent;
+    for (int k = 0; k < 3; k++) local[k] = k < extents_of(spot->shape) ? (x[k] - 0.5) * extent[k] : 0;
+    if (spot->shape == SKG_SPOT_DISC) {
+        const double radius = 0.5 * extent[0] * sqrt(x[0]);
+        local[0] = radius * cos(TURN * x[1]);
+        local[1] = radius * sin(TURN * x[1]);
+    } else if (spot->shape == SKG_SPOT_SPHERE) {
+        const double radius = 0.5 * extent[0] * cbrt(x[0]), z = 2 * x[1] - 1,
+                     across = sqrt(fmax(0, 1 - z * z));
+        local[0] = radius * across * cos(TURN * x[2]);
+        local[1] = radius * across * sin(TURN * x[2]);
+        local[2] = radius * z;
+    } else if (spot->shape == SKG_SPOT_GAUSSIAN) {
+        /* Box and Muller; a full width at half maximum is 2 sqrt(2 ln 2) standard deviations. */
+        const double radius = sqrt(-2 * log(1 - x[0])) / 2.3548200450309493;
+        local[0] = extent[0] * radius * cos(TURN * x[1]);
+        local[1] = extent[1] * radius * sin(TURN * x[1]);
+    }
+}
+
+/* The spot's axes in the world: across (along the projected column step), down, and towards the detector. */
+static void find_axes(const skg_spot *spot, const skg_view *view, double axes[3][3]) {
+    double *along = axes[2];
+    for (int k = 0; k < 3; k++) along[k] = spot->axis[k];
+    if (!(skg_length(along) > 0)) skg_add_scaled(view->centre, -1, view->source, along);
+    skg_scale_vector(1 / skg_length(along), along, along);
+    const double *step = view->column_step;
+    skg_add_scaled(step, -skg_dot(step, along), along, axes[0]);
+    if (!(skg_length(axes[0]) >
+          1e-9 * skg_length(step))) { /* the columns run along the axis: take the rows */
+        step = view->row_step;
+        skg_add_scaled(step, -skg_dot(step, along), along, axes[0]);
+    }
+    skg_scale_vector(1 / skg_length(axes[0]), axes[0], axes[0]);
+    skg_cross(along, axes[0], axes[1]);
+}
+
+void skg_samples_at(const skg_samples *samples, const skg_view *view, int64_t index, double source[3],
+                    double shift[2]) {
+    const int64_t side = samples->shifts, in_pixel = index % (side * side), of_source = index / (side * side);
+    shift[0] = ((double)(in_pixel % side) + 0.5) / (double)side - 0.5;
+    shift[1] = ((double)(in_pixel / side) + 0.5) / (double)side - 0.5;
+    for (int k = 0; k < 3; k++) source[k] = view->source[k];
+    if (samples->spot.shape == SKG_SPOT_POINT) return;
+    double x[3], local[3], axes[3][3];
+    if (samples->spot.grid > 0)
+        grid_point(&samples->spot, of_source, x);
+    else
+        sobol(of_source, x);
+    place_in_spot(&samples->spot, x, local);
+    find_axes(&samples->spot, view, axes);
+    for (int k = 0; k < 3; k++) skg_add_scaled(source, local[k], axes[k], source);
+}

@@ -1,0 +1,283 @@
+/* Is it closed, which way do its triangles run, how large is it? Everything in time linear in the triangles
+ * but for the sorting of small groups. */
+#include "mesh/mesh.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint64_t bits_of(double x) {
+    uint64_t bits;
+    x += 0.0; /* -0.0 becomes 0.0 */
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* Odd multipliers from the digits of the golden ratio and of pi; the shifts bring high bits down. */
+static uint64_t hash(const double p[3]) {
+    uint64_t h = bits_of(p[0]) * 0x9E3779B97F4A7C15u;
+    h = ((h ^ (h >> 32)) + bits_of(p[1])) * 0x9E3779B97F4A7C15u;
+    h = ((h ^ (h >> 32)) + bits_of(p[2])) * 0x243F6A8885A308D3u;
+    return h ^ (h >> 29);
+}
+
+/* mesh->weld: for each vertex the first one at the same place. */
+static skg_status weld(skg_mesh *mesh) {
+    int32_t *table = NULL;
+    uint64_t room = 16;
+    while (room < (uint64_t)mesh->vertices + (uint64_t)mesh->vertices / 3) room *= 2;
+    SKG_TRY(skg_alloc(mesh->vertices, sizeof *mesh->weld, mesh->name, &mesh->weld));
+    SKG_TRY(skg_alloc((int64_t)room, sizeof *table, mesh->name, &table));
+    for (int32_t i = 0; i < mesh->vertices; i++) {
+        const double *p = mesh->positions + 3 * (int64_t)i;
+        uint64_t slot = hash(p) & (room - 1);
+        for (;; slot = (slot + 1) & (room - 1)) {
+            int32_t other = table[slot] - 1; /* 0: free */
+            if (other < 0) {
+                table[slot] = i + 1;
+                mesh->weld[i] = i;
+                mesh->health.welded_vertices++;
+                break;
+            }
+            const double *q = mesh->positions + 3 * (int64_t)other;
+            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
+                mesh->weld[i] = other;
+                break;
+            }
+        }
+    }
+    skg_free(&table);
+    return SKG_OK;
+}
+
+/* Welded corners of a triangle; 0 when two of them are the same vertex. */
+static int welded(const skg_mesh *mesh, int64_t triangle, uint32_t corner[3]) {
+    for (int k = 0; k < 3; k++) corner[k] = (uint32_t)mesh->weld[mesh->corners[3 * triangle + k]];
+    return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
+}
+
+/* Items of the triangles, grouped by a vertex: those of vertex v are key[start[v]] to key[start[v + 1]-1],
+ * sorted. */
+typedef struct {
+    int64_t *start;
+    uint64_t *key;
+} groups;
+
+/* Gives the items (at most 3) of a triangle with their vertices; returns how many. */
+typedef int (*items_of)(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]);
+
+/* Its edges, each with the lower of its vertices: the other one, then the triangle, and the direction in the
+ * lowest bit. Triangles are fewer than 2^30. */
+static int edges_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
+    for (int k = 0; k < 3; k++) {
+        uint32_t a = corner[k], b = corner[(k + 1) % 3];
+        vertex[k] = a < b ? a : b;
+        key[k] = (uint64_t)(a < b ? b : a) << 32 | (uint64_t)triangle << 1 | (a < b);
+    }
+    return 3;
+}
+
+/* Itself, with the lowest of its vertices: the two others in order. */
+static int triangle_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
+    uint32_t a = corner[0], b = corner[1], c = corner[2], swap;
+    (void)triangle;
+    if (a > b) swap = a, a = b, b = swap;
+    if (b > c) swap = b, b = c, c = swap;
+    if (a > b) swap = a, a = b, b = swap;
+    vertex[0] = a;
+    key[0] = (uint64_t)b << 32 | c;
+    return 1;
+}
+
+static int compare_keys(const void *a, const void *b) {
+    uint64_t x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static void sort_keys(uint64_t *key, int64_t count) {
+    if (count > 32) {
+        qsort(key, (size_t)count, sizeof *key, compare_keys);
+        return;
+    }
+    for (int64_t i = 1; i < count; i++) {
+        uint64_t moving = key[i];
+        int64_t j = i;
+        for (; j > 0 && key[j - 1] > moving; j--) key[j] = key[j - 1];
+        key[j] = moving;
+    }
+}
+
+static void groups_free(groups *found) {
+    skg_free(&found->start);
+    skg_free(&found->key);
+}
+
+/* Counting sort by vertex, then each group by key. Degenerate triangles have no items: their edges cancel. */
+static skg_status group(const skg_mesh *mesh, items_of items, groups *found) {
+    uint32_t corner[3], vertex[3];
+    uint64_t key[3];
+    skg_status status = SKG_OK;
+    *found = (groups){0};
+    SKG_TRY_CLEANUP(skg_alloc(mesh->vertices + 2, sizeof *found->start, mesh->name, &found->start));
+    /* Shifted by two, so that after the filling start[v] is where group v begins. */
+    for (int64_t t = 0; t < mesh->triangles; t++)
+        for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
+            found->start[vertex[k] + 2]++;
+    for (int64_t v = 0; v < mesh->vertices; v++) found->start[v + 2] += found->start[v + 1];
+    SKG_TRY_CLEANUP(skg_alloc(found->start[mesh->vertices + 1], sizeof *found->key, mesh->name, &found->key));
+    for (int64_t t = 0; t < mesh->triangles; t++)
+        for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
+            found->key[found->start[vertex[k] + 1]++] = key[k];
+    for (int64_t v = 0; v < mesh->vertices; v++)
+        sort_keys(found->key + found->start[v], found->start[v + 1] - found->start[v]);
+    return SKG_OK;
+cleanup:
+    groups_free(found);
+    return status;
+}
+
+static int32_t root_of(int32_t *parent, int32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+static void join(int32_t *parent, int32_t a, int32_t b) {
+    a = root_of(parent, a), b = root_of(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+/* One edge: how often each way, and its triangles joined. */
+static void examine_edge(skg_mesh_health *health, const uint64_t *key, int64_t count, int64_t vertex,
+                         int32_t *parent, int32_t *multiplicity) {
+    int64_t up = 0;
+    for (int64_t i = 0; i < count; i++) {
+        up += (int64_t)(key[i] & 1);
+        if (i > 0) join(parent, (int32_t)(key[0] >> 1 & 0x3fffffff), (int32_t)(key[i] >> 1 & 0x3fffffff));
+    }
+    const int64_t down = count - up, most = up > down ? up : down;
+    if (most > 1) health->consistent = 0;
+    if (most > *multiplicity) *multiplicity = (int32_t)most;
+    health->nonmanifold_edges += count > 2;
+    health->open_edges += up > down ? up - down : down - up;
+    if (up != down && health->first_open_vertex < 0) health->first_open_vertex = vertex;
+}
+
+static skg_status examine_edges(skg_mesh *mesh) {
+    skg_mesh_health *health = &mesh->health;
+    groups edges;
+    int32_t *parent = NULL, multiplicity = 1; /* of the triangles, joined by edges */
+    SKG_TRY(group(mesh, edges_of, &edges));
+    skg_status status = skg_alloc(mesh->triangles, sizeof *parent, mesh->name, &parent);
+    if (status != SKG_OK) {
+        groups_free(&edges);
+        return status;
+    }
+    for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = t;
+    health->consistent = 1;
+    health->first_open_vertex = -1;
+    for (int64_t v = 0; v < mesh->vertices; v++)
+        for (int64_t i = edges.start[v], end; i < edges.start[v + 1]; i = end) {
+            for (end = i + 1; end < edges.start[v + 1] && edges.key[end] >> 32 == edges.key[i] >> 32;) end++;
+            examine_edge(health, edges.key + i, end - i, v, parent, &multiplicity);
+        }
+    health->closed = health->open_edges == 0;
+    groups_free(&edges);
+    for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = root_of(parent, t);
+    status = skg_mesh_count_layers(mesh, parent, multiplicity);
+    skg_free(&parent);
+    return status;
+}
+
+static skg_status count_duplicates(skg_mesh *mesh) {
+    groups triangles;
+    SKG_TRY(group(mesh, triangle_of, &triangles));
+    for (int64_t v = 0; v < mesh->vertices; v++)
+        for (int64_t i = triangles.start[v] + 1; i < triangles.start[v + 1]; i++)
+            mesh->health.duplicate_triangles += triangles.key[i] == triangles.key[i - 1];
+    groups_free(&triangles);
+    return SKG_OK;
+}
+
+/* Union-find over the welded vertices that triangles use. */
+static skg_status count_components(skg_mesh *mesh) {
+    int32_t *parent = NULL; /* -1: not used so far */
+    SKG_TRY(skg_alloc(mesh->vertices, sizeof *parent, mesh->name, &parent));
+    for (int64_t v = 0; v < mesh->vertices; v++) parent[v] = -1;
+    for (int64_t t = 0; t < mesh->triangles; t++) {
+        uint32_t corner[3];
+        int32_t root[3];
+        welded(mesh, t, corner);
+        for (int k = 0; k < 3; k++) {
+            int32_t v = (int32_t)corner[k];
+            if (parent[v] < 0) parent[v] = v, mesh->health.components++;
+            root[k] = root_of(parent, v);
+        }
+        for (int k = 1; k < 3; k++) {
+            mesh->health.components -= root_of(parent, root[0]) != root_of(parent, root[k]);
+            join(parent, root[0], root[k]);
+        }
+    }
+    skg_free(&parent);
+    return SKG_OK;
+}
+
+/* Rounding leaves a cross product of parallel edges at a few units of |u| |v| epsilon. */
+static int no_area(const double cross[3], const double u[3], const double v[3]) {
+    double c = 0, uu = 0, vv = 0, bar = 8 * DBL_EPSILON;
+    for (int k = 0; k < 3; k++) c += cross[k] * cross[k], uu += u[k] * u[k], vv += v[k] * v[k];
+    return c <= bar * bar * uu * vv;
+}
+
+void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
+    double volume = 0, area = 0, p[3];
+    int64_t degenerate = 0;
+    for (int k = 0; k < 3; k++) health->bounds[k] = DBL_MAX, health->bounds[3 + k] = -DBL_MAX;
+    for (int64_t i = 0; i < mesh->vertices; i++) {
+        skg_mesh_vertex(mesh, i, p);
+        for (int k = 0; k < 3; k++) {
+            if (p[k] < health->bounds[k]) health->bounds[k] = p[k];
+            if (p[k] > health->bounds[3 + k]) health->bounds[3 + k] = p[k];
+        }
+    }
+    for (int64_t t = 0; t < mesh->triangles; t++) {
+        double a[3], b[3], c[3], u[3], v[3];
+        skg_mesh_vertex(mesh, mesh->corners[3 * t], a);
+        skg_mesh_vertex(mesh, mesh->corners[3 * t + 1], b);
+        skg_mesh_vertex(mesh, mesh->corners[3 * t + 2], c);
+        for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], a[k] -= mesh->origin[k];
+        double cross[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+        degenerate += no_area(cross, u, v);
+        area += 0.5 * sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
+        /* Divergence theorem: the signed volume of the tetrahedron with the mesh's origin. */
+        volume += (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6;
+    }
+    health->degenerate_triangles = degenerate;
+    health->area = area;
+    health->volume = mesh->orientation * volume;
+}
+
+skg_status skg_mesh_examine(skg_mesh *mesh) {
+    skg_mesh_health *health = &mesh->health;
+    skg_mesh_health_init(health);
+    health->vertices = mesh->vertices;
+    health->triangles = mesh->triangles;
+    SKG_TRY(weld(mesh));
+    SKG_TRY(examine_edges(mesh));
+    SKG_TRY(count_duplicates(mesh));
+    SKG_TRY(count_components(mesh));
+    mesh->orientation = 1;
+    skg_mesh_measure(mesh, health);
+    mesh->closed = health->closed;
+    if (health->closed && health->volume < 0) {
+        mesh->orientation = -1;
+        health->volume = -health->volume;
+        health->flipped = 1;
+    }
+    health->outward = health->closed && health->volume > 0;
+    if (!health->closed) skg_mesh_vertex(mesh, health->first_open_vertex, health->first_open_position);
+    if (health->welded_vertices == mesh->vertices) skg_free(&mesh->weld);
+    return SKG_OK;
+}

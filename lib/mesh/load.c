@@ -1,0 +1,169 @@
+/* Mesh files. STL, OBJ and PLY are read here, all else by Assimp, which would lose too much of these three:
+ * it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's numbering is
+ * gone; it keeps only floats; it takes truncated ascii STL and PLY files for whole, and leaks where it
+ * refuses one. */
+#include "mesh/read.h"
+
+#include "core/context.h"
+#include "core/names.h"
+
+#include <assimp/cimport.h>
+#include <assimp/scene.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static skg_status grow(int64_t count, int64_t *room, size_t size, void *array_address) {
+    if (count < *room) return SKG_OK;
+    int64_t more = *room < 512 ? 1024 : 2 * *room;
+    SKG_TRY(skg_realloc(more, size, "mesh", array_address));
+    *room = more;
+    return SKG_OK;
+}
+
+skg_status skg_mesh_add_vertex(skg_mesh_arrays *arrays, const double position[3]) {
+    SKG_TRY(grow(arrays->vertices, &arrays->vertex_room, 3 * sizeof(double), &arrays->positions));
+    memcpy(arrays->positions + 3 * arrays->vertices++, position, 3 * sizeof(double));
+    return SKG_OK;
+}
+
+skg_status skg_mesh_add_corner(skg_mesh_arrays *arrays, skg_polygon *polygon, int64_t vertex) {
+    if (vertex < 0 || vertex >= SKG_MESH_LIMIT)
+        return skg_fail(SKG_ERR_MESH, "triangle %" PRId64 " names vertex %" PRId64 ", which no mesh has",
+                        arrays->triangles, vertex);
+    if (polygon->corners++ == 0) polygon->first = (int32_t)vertex;
+    if (polygon->corners >= 3) {
+        SKG_TRY(grow(arrays->triangles, &arrays->triangle_room, 3 * sizeof(int32_t), &arrays->corners));
+        int32_t *corner = arrays->corners + 3 * arrays->triangles++;
+        corner[0] = polygon->first, corner[1] = polygon->last, corner[2] = (int32_t)vertex;
+    }
+    polygon->last = (int32_t)vertex;
+    return SKG_OK;
+}
+
+/* Opens a regular file with something in it. */
+static skg_status open_file(const char *path, FILE **stream, int64_t *size) {
+    struct stat about;
+    *stream = fopen(path, "rb");
+    if (!*stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    skg_status status = SKG_OK;
+    if (fstat(fileno(*stream), &about) != 0)
+        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    else if (!S_ISREG(about.st_mode))
+        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: it is not a file", path);
+    else if (about.st_size == 0)
+        status = skg_fail(SKG_ERR_FORMAT, "%s: the file is empty", path);
+    *size = (int64_t)about.st_size;
+    if (status != SKG_OK) fclose(*stream);
+    return status;
+}
+
+typedef skg_status (*reader)(const skg_mesh_file *file, skg_mesh_arrays *arrays);
+
+/* The whole file into memory, numbers in the C locale (of this thread only), and the reader. */
+static skg_status read_here(FILE *stream, const char *path, int64_t size, reader read,
+                            skg_mesh_arrays *arrays) {
+    skg_mesh_file file = {path, NULL, size};
+    SKG_TRY(skg_alloc(size + 1, 1, path, &file.bytes));
+    skg_status status = SKG_OK;
+    locale_t plain = (locale_t)0;
+    if (fread(file.bytes, 1, (size_t)size, stream) != (size_t)size)
+        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    else if (plain = newlocale(LC_ALL_MASK, "C", (locale_t)0), plain == (locale_t)0)
+        status = skg_fail(SKG_ERR_MEMORY, "%s: no memory for a locale", path);
+    if (status == SKG_OK) {
+        locale_t before = uselocale(plain);
+        status = read(&file, arrays);
+        uselocale(before);
+        freelocale(plain);
+    }
+    skg_free(&file.bytes);
+    return status;
+}
+
+/* One object of a file, placed by its node; its vertices and faces in their order. */
+static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4x4 *m,
+                             skg_mesh_arrays *arrays) {
+    int64_t base = arrays->vertices;
+    for (unsigned i = 0; i < object->mNumVertices; i++) {
+        double x = (double)object->mVertices[i].x, y = (double)object->mVertices[i].y,
+               z = (double)object->mVertices[i].z;
+        double position[3] = {(double)m->a1 * x + (double)m->a2 * y + (double)m->a3 * z + (double)m->a4,
+                              (double)m->b1 * x + (double)m->b2 * y + (double)m->b3 * z + (double)m->b4,
+                              (double)m->c1 * x + (double)m->c2 * y + (double)m->c3 * z + (double)m->c4};
+        SKG_TRY(skg_mesh_add_vertex(arrays, position));
+    }
+    for (unsigned i = 0; i < object->mNumFaces; i++) {
+        const struct aiFace *face = &object->mFaces[i];
+        skg_polygon polygon = {0};
+        arrays->left_out += face->mNumIndices < 3;
+        for (unsigned k = 0; face->mNumIndices >= 3 && k < face->mNumIndices; k++) {
+            if (face->mIndices[k] >= object->mNumVertices)
+                return skg_fail(SKG_ERR_MESH, "face %u names vertex %u of an object of %u", i,
+                                face->mIndices[k], object->mNumVertices);
+            SKG_TRY(skg_mesh_add_corner(arrays, &polygon, base + (int64_t)face->mIndices[k]));
+        }
+    }
+    return SKG_OK;
+}
+
+static skg_status add_node(const struct aiScene *scene, const struct aiNode *node, struct aiMatrix4x4 above,
+                           skg_mesh_arrays *arrays) {
+    aiMultiplyMatrix4(&above, &node->mTransformation);
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
+        SKG_TRY(add_object(scene->mMeshes[node->mMeshes[i]], &above, arrays));
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        SKG_TRY(add_node(scene, node->mChildren[i], above, arrays));
+    return SKG_OK;
+}
+
+/* Without any post-processing: it would weld, split and sort. */
+static skg_status read_by_assimp(const char *path, skg_mesh_arrays *arrays) {
+    const struct aiScene *scene = aiImportFile(path, 0);
+    if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
+    struct aiMatrix4x4 identity;
+    aiIdentityMatrix4(&identity);
+    skg_status status = SKG_OK;
+    if (scene->mRootNode) status = add_node(scene, scene->mRootNode, identity, arrays);
+    if (status != SKG_OK) skg_fail(status, "%s: %s", path, skg_last_error());
+    aiReleaseImport(scene);
+    return status;
+}
+
+static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
+    FILE *stream;
+    int64_t size = 0;
+    SKG_TRY(open_file(path, &stream, &size));
+    const char *dot = strrchr(path, '.');
+    reader read = NULL;
+    if (dot && skg_same_name(dot, ".stl")) read = skg_mesh_read_stl;
+    if (dot && skg_same_name(dot, ".obj")) read = skg_mesh_read_obj;
+    if (dot && skg_same_name(dot, ".ply")) read = skg_mesh_read_ply;
+    skg_status status = read ? read_here(stream, path, size, read, arrays) : read_by_assimp(path, arrays);
+    fclose(stream);
+    return status;
+}
+
+skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+    skg_mesh_arrays arrays = {0};
+    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no place for the mesh");
+    *mesh = NULL;
+    if (!path || !*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
+    if (!isfinite(unit_mm) || unit_mm <= 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm: finite and above 0", path, unit_mm);
+    skg_status status = read_file(path, &arrays);
+    if (status != SKG_OK) {
+        skg_mesh_arrays_free(&arrays);
+        return status;
+    }
+    const char *name = strrchr(path, '/');
+    name = name ? name + 1 : path;
+    if (arrays.left_out > 0)
+        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name, arrays.left_out);
+    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
+    return skg_mesh_adopt(context, name, &arrays, mesh);
+}

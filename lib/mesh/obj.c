@@ -1,0 +1,106 @@
+/* Wavefront OBJ: vertex i is the i-th line "v", triangles stand in the order of the lines "f". All else
+ * (normals, texture, groups, materials) has no bearing on path lengths and is passed over. */
+#include "mesh/read.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    const skg_mesh_file *file;
+    const char *at;
+    int64_t line;
+} cursor;
+
+static skg_status fail(const cursor *here, const char *reason) {
+    return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": %s", here->file->name, here->line, reason);
+}
+
+/* Length of a backslash and the end of line that it takes away; 0: there is none here. */
+static int continuation(const char *c) {
+    if (c[0] != '\\') return 0;
+    if (c[1] == '\n') return 2;
+    return c[1] == '\r' && c[2] == '\n' ? 3 : 0;
+}
+
+/* To the next word of the line, beyond continuations. 0: there is none. */
+static int next_word(cursor *here) {
+    for (;;) {
+        const char *c = here->at;
+        const int length = continuation(c);
+        if (!length && *c != ' ' && *c != '\t' && *c != '\r') return *c != '\0' && *c != '\n' && *c != '#';
+        here->at += length ? length : 1;
+        here->line += length != 0;
+    }
+}
+
+static int is_end(char c) {
+    return c == '\0' || c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\' || c == '#';
+}
+
+static void skip_line(cursor *here) {
+    while (next_word(here)) do {
+            here->at++; /* a word has a letter at least, be it a backslash */
+        } while (!is_end(*here->at) || (*here->at == '\\' && !continuation(here->at)));
+    while (*here->at != '\0' && *here->at != '\n') here->at++; /* a comment */
+    if (*here->at == '\n') here->at++;
+    here->line++;
+}
+
+/* v x y z, after the "v"; a weight or colours may follow. */
+static skg_status read_vertex(cursor *here, skg_mesh_arrays *arrays) {
+    double position[3];
+    for (int k = 0; k < 3; k++) {
+        char *end = NULL;
+        if (next_word(here)) position[k] = strtod(here->at, &end);
+        if (!end || end == here->at || !is_end(*end))
+            return fail(here, "a vertex is \"v\" and three numbers");
+        here->at = end;
+    }
+    return skg_mesh_add_vertex(arrays, position);
+}
+
+/* f v v v ..., f v/vt ..., f v/vt/vn ..., f v//vn ...; v from 1, or from -1 backwards. */
+static skg_status read_face(cursor *here, skg_mesh_arrays *arrays) {
+    skg_polygon polygon = {0};
+    while (next_word(here)) {
+        char *end;
+        errno = 0;
+        long long number = strtoll(here->at, &end, 10);
+        if (end == here->at || (!is_end(*end) && *end != '/') || errno != 0 || number == 0)
+            return fail(here, "a face is \"f\" and vertex numbers, which count from 1 (or back from -1)");
+        int64_t vertex = number > 0 ? number - 1 : arrays->vertices + number;
+        if (vertex < 0 || vertex >= SKG_MESH_LIMIT)
+            return skg_fail(SKG_ERR_MESH, "%s: line %" PRId64 ": vertex %lld of %" PRId64, here->file->name,
+                            here->line, number, arrays->vertices);
+        SKG_TRY(skg_mesh_add_corner(arrays, &polygon, vertex));
+        while (!is_end(*end)) end++;
+        here->at = end;
+    }
+    return polygon.corners < 3 ? fail(here, "a face of fewer than three corners; truncated?") : SKG_OK;
+}
+
+static int is_keyword(const cursor *here, char word) {
+    return here->at[0] == word && is_end(here->at[1]);
+}
+
+skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
+    cursor here = {file, file->bytes, 1};
+    if (strlen(file->bytes) != (size_t)file->size)
+        return skg_fail(SKG_ERR_FORMAT, "%s: not an OBJ file: it holds a zero byte", file->name);
+    while (*here.at != '\0') {
+        if (next_word(&here)) {
+            if (is_keyword(&here, 'v')) {
+                here.at++;
+                SKG_TRY(read_vertex(&here, arrays));
+            } else if (is_keyword(&here, 'f')) {
+                here.at++;
+                SKG_TRY(read_face(&here, arrays));
+            } else if (is_keyword(&here, 'l') || is_keyword(&here, 'p'))
+                arrays->left_out++;
+        }
+        skip_line(&here);
+    }
+    return SKG_OK;
+}

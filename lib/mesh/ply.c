@@ -1,0 +1,242 @@
+/* PLY, ascii and binary of either byte order: any scalar types, any further elements and properties. */
+#include "mesh/read.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_ELEMENTS = 32, MOST_PROPERTIES = 256 };
+
+typedef enum { NO_TYPE, INT8, UINT8, INT16, UINT16, INT32, UINT32, FLOAT32, FLOAT64 } scalar;
+
+static const struct {
+    const char *name;
+    scalar type;
+} type_names[] = {{"char", INT8},     {"int8", INT8},       {"uchar", UINT8},    {"uint8", UINT8},
+                  {"short", INT16},   {"int16", INT16},     {"ushort", UINT16},  {"uint16", UINT16},
+                  {"int", INT32},     {"int32", INT32},     {"uint", UINT32},    {"uint32", UINT32},
+                  {"float", FLOAT32}, {"float32", FLOAT32}, {"double", FLOAT64}, {"float64", FLOAT64}};
+
+typedef enum { NO_ROLE, X, Y, Z, CORNERS } role;
+
+typedef struct {
+    scalar type, count_type; /* count_type: of a list's length; NO_TYPE: not a list */
+    role meaning;
+} property;
+
+typedef struct {
+    char name[64];
+    int64_t count;
+    int first, last; /* properties [first, last) */
+} element;
+
+typedef struct {
+    const skg_mesh_file *file;
+    const char *at, *end;
+    int ascii, swapped;
+    element elements[MOST_ELEMENTS];
+    property properties[MOST_PROPERTIES];
+    int element_count, property_count;
+} ply;
+
+static scalar type_of(const char *name) {
+    for (size_t i = 0; i < sizeof type_names / sizeof *type_names; i++)
+        if (strcmp(name, type_names[i].name) == 0) return type_names[i].type;
+    return NO_TYPE;
+}
+
+static skg_status bad_line(const ply *in, const char *line) {
+    return skg_fail(SKG_ERR_FORMAT, "%s: not a PLY header: \"%s\"", in->file->name, line);
+}
+
+static skg_status read_format(ply *in, const char *line, const char *format) {
+    const uint16_t one = 1;
+    unsigned char little;
+    memcpy(&little, &one, 1);
+    if (strcmp(format, "ascii") == 0)
+        in->ascii = 1;
+    else if (strcmp(format, "binary_little_endian") == 0)
+        in->swapped = !little;
+    else if (strcmp(format, "binary_big_endian") == 0)
+        in->swapped = little;
+    else
+        return bad_line(in, line);
+    return SKG_OK;
+}
+
+/* property TYPE NAME, property list COUNT_TYPE TYPE NAME */
+static skg_status read_property(ply *in, const char *line) {
+    char word[3][64] = {"", "", ""};
+    property found = {0};
+    const char *name;
+    if (in->element_count == 0) return bad_line(in, line);
+    element *owner = &in->elements[in->element_count - 1];
+    if (sscanf(line, "property list %63s %63s %63s", word[0], word[1], word[2]) == 3) {
+        found.count_type = type_of(word[0]);
+        found.type = type_of(word[1]);
+        name = word[2];
+        if (found.count_type == NO_TYPE) return bad_line(in, line);
+        if (strcmp(owner->name, "face") == 0 &&
+            (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0))
+            found.meaning = CORNERS;
+    } else if (sscanf(line, "property %63s %63s", word[0], word[1]) == 2) {
+        found.type = type_of(word[0]);
+        name = word[1];
+        if (strcmp(owner->name, "vertex") == 0 && strlen(name) == 1 && strchr("xyz", *name))
+            found.meaning = (role)(X + (*name - 'x'));
+    } else
+        return bad_line(in, line);
+    if (found.type == NO_TYPE) return bad_line(in, line);
+    if (in->property_count == MOST_PROPERTIES)
+        return skg_fail(SKG_ERR_FORMAT, "%s: more than %d properties", in->file->name, MOST_PROPERTIES);
+    in->properties[in->property_count++] = found;
+    owner->last = in->property_count;
+    return SKG_OK;
+}
+
+static skg_status read_element(ply *in, const char *line) {
+    if (in->element_count == MOST_ELEMENTS)
+        return skg_fail(SKG_ERR_FORMAT, "%s: more than %d elements", in->file->name, MOST_ELEMENTS);
+    element *found = &in->elements[in->element_count];
+    if (sscanf(line, "element %63s %" SCNd64, found->name, &found->count) != 2 || found->count < 0)
+        return bad_line(in, line);
+    found->first = found->last = in->property_count;
+    in->element_count++;
+    return SKG_OK;
+}
+
+static skg_status read_header(ply *in) {
+    for (int64_t number = 0;; number++) {
+        char line[256], word[64] = "", format[64] = "";
+        size_t length = strcspn(in->at, "\n");
+        if (in->at[length] != '\n')
+            return skg_fail(SKG_ERR_FORMAT, "%s: truncated: a PLY header ends with \"end_header\"",
+                            in->file->name);
+        snprintf(line, sizeof line, "%.*s", (int)(length < sizeof line ? length : sizeof line - 1), in->at);
+        if (length > 0 && length < sizeof line && line[length - 1] == '\r') line[length - 1] = '\0';
+        in->at += length + 1;
+        sscanf(line, "%63s %63s", word, format);
+        if (number == 0 && strcmp(word, "ply") != 0) return bad_line(in, line);
+        if (strcmp(word, "end_header") == 0) return SKG_OK;
+        if (strcmp(word, "format") == 0) SKG_TRY(read_format(in, line, format));
+        if (strcmp(word, "element") == 0) SKG_TRY(read_element(in, line));
+        if (strcmp(word, "property") == 0) SKG_TRY(read_property(in, line));
+    }
+}
+
+/* A value in the file's byte order as the machine's own. */
+#define TAKE(ctype)                                                                                          \
+    do {                                                                                                     \
+        ctype taken;                                                                                         \
+        memcpy(&taken, raw, sizeof taken);                                                                   \
+        *value = (double)taken;                                                                              \
+    } while (0)
+
+static int read_binary(ply *in, scalar type, double *value) {
+    static const int sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+    unsigned char raw[8];
+    int size = sizes[type];
+    if (in->end - in->at < size) return 0;
+    for (int i = 0; i < size; i++) raw[in->swapped ? size - 1 - i : i] = (unsigned char)in->at[i];
+    in->at += size;
+    switch (type) {
+    case INT8:
+        TAKE(int8_t);
+        break;
+    case UINT8:
+        TAKE(uint8_t);
+        break;
+    case INT16:
+        TAKE(int16_t);
+        break;
+    case UINT16:
+        TAKE(uint16_t);
+        break;
+    case INT32:
+        TAKE(int32_t);
+        break;
+    case UINT32:
+        TAKE(uint32_t);
+        break;
+    case FLOAT32:
+        TAKE(float);
+        break;
+    default:
+        TAKE(double);
+    }
+    return 1;
+}
+
+/* 0: the file ends, or no number is there. */
+static int read_value(ply *in, scalar type, double *value) {
+    if (!in->ascii) return read_binary(in, type, value);
+    char *end;
+    *value = strtod(in->at, &end);
+    if (end == in->at) return 0;
+    if (type == FLOAT32) *value = (double)(float)*value;
+    in->at = end;
+    return 1;
+}
+
+static skg_status cut_off(const ply *in, const element *what, int64_t number) {
+    return skg_fail(SKG_ERR_FORMAT, "%s: truncated or damaged: %s %" PRId64 " of %" PRId64 " cannot be read",
+                    in->file->name, what->name, number, what->count);
+}
+
+static skg_status read_list(ply *in, const property *list, const element *owner, int64_t number,
+                            skg_mesh_arrays *arrays) {
+    double length, value;
+    skg_polygon polygon = {0};
+    if (!read_value(in, list->count_type, &length) || !(length >= 0 && length <= INT32_MAX))
+        return cut_off(in, owner, number);
+    for (int64_t i = 0; i < (int64_t)length; i++) {
+        if (!read_value(in, list->type, &value)) return cut_off(in, owner, number);
+        if (list->meaning != CORNERS) continue;
+        if (!(fabs(value) <= UINT32_MAX)) return cut_off(in, owner, number);
+        if (value < 0 || value >= SKG_MESH_LIMIT)
+            return skg_fail(SKG_ERR_MESH, "%s: face %" PRId64 " names vertex %.0f", in->file->name, number,
+                            value);
+        SKG_TRY(skg_mesh_add_corner(arrays, &polygon, (int64_t)value));
+    }
+    if (list->meaning == CORNERS && polygon.corners < 3) arrays->left_out++;
+    return SKG_OK;
+}
+
+static skg_status read_instances(ply *in, const element *what, skg_mesh_arrays *arrays) {
+    int is_vertex = strcmp(what->name, "vertex") == 0;
+    for (int64_t i = 0; i < what->count && what->last > what->first; i++) {
+        double position[3] = {0, 0, 0}, value;
+        for (int p = what->first; p < what->last; p++) {
+            const property *here = &in->properties[p];
+            if (here->count_type != NO_TYPE) {
+                SKG_TRY(read_list(in, here, what, i, arrays));
+                continue;
+            }
+            if (!read_value(in, here->type, &value)) return cut_off(in, what, i);
+            if (here->meaning != NO_ROLE) position[here->meaning - X] = value;
+        }
+        if (is_vertex) SKG_TRY(skg_mesh_add_vertex(arrays, position));
+    }
+    return SKG_OK;
+}
+
+/* x, y and z of the vertices, and the faces' corners. */
+static skg_status check_roles(const ply *in) {
+    int seen[CORNERS + 1] = {0};
+    for (int p = 0; p < in->property_count; p++) seen[in->properties[p].meaning]++;
+    if (seen[X] == 1 && seen[Y] == 1 && seen[Z] == 1 && seen[CORNERS] == 1) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_FORMAT,
+        "%s: not a triangle mesh: needs vertices with x, y, z and faces with a list vertex_indices",
+        in->file->name);
+}
+
+skg_status skg_mesh_read_ply(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
+    ply in = {.file = file, .at = file->bytes, .end = file->bytes + file->size};
+    SKG_TRY(read_header(&in));
+    SKG_TRY(check_roles(&in));
+    for (int e = 0; e < in.element_count; e++) SKG_TRY(read_instances(&in, &in.elements[e], arrays));
+    return SKG_OK;
+}

@@ -1,0 +1,126 @@
+/* STL, binary and ascii: corner i of the file is vertex i. */
+#include "mesh/read.h"
+
+#include "core/names.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HEADER = 84, RECORD = 50 }; /* bytes: 80 of text and a count; normal, three corners, attribute */
+
+static uint32_t number_at(const char *bytes) {
+    const unsigned char *b = (const unsigned char *)bytes;
+    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static double float_at(const char *bytes) {
+    uint32_t bits = number_at(bytes);
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return (double)x;
+}
+
+static skg_status add(skg_mesh_arrays *arrays, skg_polygon *facet, const double position[3]) {
+    SKG_TRY(skg_mesh_add_corner(arrays, facet, arrays->vertices));
+    return skg_mesh_add_vertex(arrays, position);
+}
+
+static skg_status read_binary(const skg_mesh_file *file, int64_t count, skg_mesh_arrays *arrays) {
+    for (int64_t t = 0; t < count; t++) {
+        skg_polygon facet = {0};
+        for (int c = 1; c <= 3; c++) {
+            const char *corner = file->bytes + HEADER + RECORD * t + 12 * c;
+            double position[3] = {float_at(corner), float_at(corner + 4), float_at(corner + 8)};
+            SKG_TRY(add(arrays, &facet, position));
+        }
+    }
+    return SKG_OK;
+}
+
+typedef struct {
+    const skg_mesh_file *file;
+    const char *at;
+    int64_t line;
+    char word[16]; /* longer ones are cut: none of STL's is longer */
+} cursor;
+
+static skg_status fail(const cursor *here, const char *reason) {
+    return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": %s", here->file->name, here->line, reason);
+}
+
+static void skip_space(cursor *here) {
+    for (; *here->at && strchr(" \t\r\n\v\f", *here->at); here->at++) here->line += *here->at == '\n';
+}
+
+/* 0 at the end of the file. */
+static int next_word(cursor *here) {
+    skip_space(here);
+    size_t length = strcspn(here->at, " \t\r\n\v\f");
+    size_t kept = length < sizeof here->word ? length : sizeof here->word - 1;
+    memcpy(here->word, here->at, kept);
+    here->word[kept] = '\0';
+    here->at += length;
+    return length > 0;
+}
+
+static skg_status read_numbers(cursor *here, double number[3]) {
+    for (int k = 0; k < 3; k++) {
+        char *end;
+        skip_space(here);
+        number[k] = strtod(here->at, &end);
+        if (end == here->at || (*end && !strchr(" \t\r\n\v\f", *end)))
+            return fail(here, "three numbers are needed");
+        here->at = end;
+    }
+    return SKG_OK;
+}
+
+static skg_status read_facet(cursor *here, skg_mesh_arrays *arrays) {
+    skg_polygon facet = {0};
+    double number[3];
+    while (next_word(here)) {
+        if (skg_same_name(here->word, "endfacet"))
+            return facet.corners < 3 ? fail(here, "a facet of fewer than three corners") : SKG_OK;
+        if (skg_same_name(here->word, "vertex")) {
+            SKG_TRY(read_numbers(here, number));
+            SKG_TRY(add(arrays, &facet, number));
+        } else if (skg_same_name(here->word, "normal"))
+            SKG_TRY(read_numbers(here, number)); /* the corners' order says it */
+        else if (!skg_same_name(here->word, "outer") && !skg_same_name(here->word, "loop") &&
+                 !skg_same_name(here->word, "endloop"))
+            return fail(here, "no word of a facet");
+    }
+    return fail(here, "truncated: a facet ends with \"endfacet\"");
+}
+
+static skg_status read_text(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
+    cursor here = {.file = file, .at = file->bytes, .line = 1};
+    int in_solid = 0;
+    while (next_word(&here)) {
+        if (skg_same_name(here.word, "facet") && in_solid)
+            SKG_TRY(read_facet(&here, arrays));
+        else if (skg_same_name(here.word, in_solid ? "endsolid" : "solid")) {
+            in_solid = !in_solid;
+            here.at += strcspn(here.at, "\n"); /* a name */
+        } else
+            return fail(&here, in_solid ? "neither \"facet\" nor \"endsolid\"" : "no \"solid\"");
+    }
+    return in_solid ? fail(&here, "truncated: a solid ends with \"endsolid\"") : SKG_OK;
+}
+
+skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
+    int64_t said = file->size < HEADER ? -1 : (int64_t)number_at(file->bytes + 80);
+    if (said >= 0 && file->size == HEADER + RECORD * said) return read_binary(file, said, arrays);
+    /* An ascii STL begins with "solid"; so do binary ones of careless programs, but those hold zero bytes. */
+    if (strlen(file->bytes) == (size_t)file->size && strncmp(file->bytes, "solid", 5) == 0)
+        return read_text(file, arrays);
+    if (said < 0)
+        return skg_fail(SKG_ERR_FORMAT, "%s: truncated: %" PRId64 " bytes are no STL (%d at least)",
+                        file->name, file->size, HEADER);
+    return skg_fail(SKG_ERR_FORMAT,
+                    "%s: %s: its header counts %" PRId64 " triangles, its %" PRId64
+                    " bytes are enough for %" PRId64,
+                    file->name, file->size < HEADER + RECORD * said ? "truncated" : "not a binary STL", said,
+                    file->size, (file->size - HEADER) / RECORD);
+}

@@ -1,0 +1,149 @@
+#include "spectral/basis.h"
+#include "spectral/nnls.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Share of the greatest weight that every energy has: none is left out. */
+static const double LEAST_WEIGHT = 1e-4;
+
+void skg_basis_release(skg_basis *basis) {
+    skg_free(&basis->material);
+    skg_free(&basis->mix);
+    skg_free(&basis->mu);
+    basis->planes = 0;
+}
+
+/* Roots of the mean share that a bin has of what is recorded, over points and sets: errors of exponents count
+ * by it. */
+static skg_status weigh_bins(const skg_polychromatic *beam, const skg_lengths *points, double *weight) {
+    double *passed = NULL, greatest = 0;
+    SKG_TRY(skg_alloc(beam->bins, sizeof *passed, "basis", &passed));
+    for (int64_t p = 0; p < points->count; p++) {
+        const double *exact = points->exact + p * beam->sets;
+        skg_transmit(beam, beam->mu, points->lengths + p * beam->materials, passed);
+        for (int32_t b = 0; b < beam->bins; b++)
+            for (int32_t s = 0; s < beam->sets; s++)
+                weight[b] += passed[b] * beam->shares[b * beam->sets + s] / fmax(exact[s], beam->floor);
+    }
+    for (int32_t b = 0; b < beam->bins; b++) greatest = fmax(greatest, weight[b]);
+    for (int32_t b = 0; b < beam->bins; b++) weight[b] = sqrt(fmax(weight[b], LEAST_WEIGHT * greatest));
+    skg_free(&passed);
+    return SKG_OK;
+}
+
+static double thickness(const skg_polychromatic *beam, int32_t material) {
+    return fmax(fabs(beam->low[material]), fabs(beam->high[material]));
+}
+
+static double dot(const double *a, const double *b, int32_t count) {
+    double sum = 0;
+    for (int32_t i = 0; i < count; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* Takes what `column` has along the unit vector away, twice: once leaves rounding. */
+static void take_away(double *column, const double *unit, int32_t count) {
+    for (int twice = 0; twice < 2; twice++) {
+        const double along = dot(column, unit, count);
+        for (int32_t i = 0; i < count; i++) column[i] -= along * unit[i];
+    }
+}
+
+skg_status skg_basis_order(const skg_polychromatic *beam, const skg_lengths *points, int32_t first,
+                           int32_t *order) {
+    const int32_t bins = beam->bins, materials = beam->materials;
+    double *rest = NULL, *weight = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)materials * bins, sizeof *rest, "basis", &rest));
+    SKG_TRY_CLEANUP(skg_alloc(bins, sizeof *weight, "basis", &weight));
+    SKG_TRY_CLEANUP(weigh_bins(beam, points, weight));
+    for (int32_t m = 0; m < materials; m++) {
+        order[m] = m;
+        for (int32_t b = 0; b < bins; b++)
+            rest[m * bins + b] = beam->mu[m * bins + b] * weight[b] * thickness(beam, m);
+    }
+    for (int32_t k = 0; k < materials; k++) {
+        int32_t most = k;
+        for (int32_t j = k; j < materials; j++) {
+            const double *left = rest + order[j] * bins, *best = rest + order[most] * bins;
+            if (k == 0 && order[j] == first) most = j;
+            if (k == 0 && order[most] == first) break;
+            if (dot(left, left, bins) > dot(best, best, bins)) most = j;
+        }
+        const int32_t taken = order[most];
+        order[most] = order[k], order[k] = taken;
+        double *unit = rest + taken * bins;
+        const double length = sqrt(dot(unit, unit, bins));
+        for (int32_t b = 0; b < bins && length > 0; b++) unit[b] /= length;
+        for (int32_t j = k + 1; j < materials; j++) take_away(rest + order[j] * bins, unit, bins);
+    }
+cleanup:
+    skg_free(&rest);
+    skg_free(&weight);
+    return status;
+}
+
+/* mix of every material: itself where it is a plane, else by weighted least squares. */
+static skg_status mix_materials(const skg_polychromatic *beam, const double *weight, skg_basis *basis) {
+    const int32_t bins = beam->bins, planes = basis->planes;
+    skg_least_squares system = {0};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_least_squares_create(bins, planes, &system));
+    for (int32_t k = 0; k < planes; k++) {
+        system.list[k] = k;
+        for (int32_t b = 0; b < bins; b++)
+            system.a[k * bins + b] = beam->mu[basis->material[k] * bins + b] * weight[b];
+    }
+    for (int32_t m = 0; m < beam->materials; m++) {
+        double *mix = basis->mix + m * planes;
+        int32_t own = 0;
+        while (own < planes && basis->material[own] != m) own++;
+        if (own < planes) {
+            mix[own] = 1;
+            continue;
+        }
+        for (int32_t b = 0; b < bins; b++) system.b[b] = beam->mu[m * bins + b] * weight[b];
+        skg_least_squares_solve(&system, planes, system.list, mix, NULL);
+    }
+    for (int32_t m = 0; m < beam->materials; m++)
+        for (int32_t k = 0; k < planes; k++)
+            for (int32_t b = 0; b < bins; b++)
+                basis->mu[m * bins + b] +=
+                    basis->mix[m * planes + k] * beam->mu[basis->material[k] * bins + b];
+cleanup:
+    skg_least_squares_release(&system);
+    return status;
+}
+
+/* All bins, with the attenuation that the planes give. */
+static skg_status find_error(const skg_polychromatic *beam, const skg_lengths *points, skg_basis *basis) {
+    skg_nodes all = {.count = beam->bins, .shares = (double *)beam->shares};
+    SKG_TRY(skg_alloc(beam->bins, sizeof *all.bin, "basis", &all.bin));
+    for (int32_t b = 0; b < beam->bins; b++) all.bin[b] = b;
+    for (int64_t p = 0; p < points->count; p++)
+        basis->error =
+            fmax(basis->error, skg_nodes_error(beam, basis->mu, &all, points->lengths + p * beam->materials,
+                                               points->exact + p * beam->sets));
+    skg_free(&all.bin);
+    return SKG_OK;
+}
+
+skg_status skg_basis_make(const skg_polychromatic *beam, const skg_lengths *points, const int32_t *order,
+                          int32_t planes, skg_basis *basis) {
+    double *weight = NULL;
+    skg_status status = SKG_OK;
+    *basis = (skg_basis){.planes = planes};
+    SKG_TRY_CLEANUP(skg_alloc(beam->bins, sizeof *weight, "basis", &weight));
+    SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *basis->material, "basis", &basis->material));
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)beam->materials * planes, sizeof *basis->mix, "basis", &basis->mix));
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)beam->materials * beam->bins, sizeof *basis->mu, "basis", &basis->mu));
+    memcpy(basis->material, order, (size_t)planes * sizeof *order);
+    SKG_TRY_CLEANUP(weigh_bins(beam, points, weight));
+    SKG_TRY_CLEANUP(mix_materials(beam, weight, basis));
+    SKG_TRY_CLEANUP(find_error(beam, points, basis));
+cleanup:
+    skg_free(&weight);
+    if (status != SKG_OK) skg_basis_release(basis);
+    return status;
+}

@@ -1,0 +1,236 @@
+#include "spectral/compress.h"
+
+#include "spectral/basis.h"
+#include "spectral/nodes.h"
+#include "spectral/quantity.h"
+#include "spectral/ranges.h"
+
+#include <math.h>
+#include <string.h>
+
+/* How many nodes a plane is multiplied for, as long as that is not known. */
+static const double LIKELY_NODES = 12;
+/* What of the tolerance planes may use, before the doubling of what is found. */
+static const double SHARE_OF_PLANES = 0.125;
+/* Points that planes are chosen by. */
+enum { CORNERS = 64, DRAWS = 160, GIVEN = 96 };
+
+typedef struct {
+    const skg_scene *scene;
+    const double *mu;
+    double tolerance;
+    int is_ratio;
+    skg_polychromatic beam;
+    skg_ranges ranges;
+    double *shares, *sums; /* [nodes][channels], [channels] */
+    skg_basis basis;
+    skg_compression found;
+} compressing;
+
+/* An image over the open beam shows what is left of little where the world lets little pass. */
+static skg_status find_floor(compressing *c, const skg_model *model) {
+    double *lengths = NULL, *exact = NULL;
+    skg_status status = SKG_OK;
+    c->beam.floor = SKG_RELATIVE_FROM;
+    if (!c->is_ratio || model->world_plane < 0) return SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.materials, sizeof *lengths, "nodes", &lengths));
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.sets, sizeof *exact, "nodes", &exact));
+    lengths[model->world_plane] = c->ranges.way;
+    skg_transmit_exact(&c->beam, lengths, exact);
+    for (int32_t s = 0; s < c->beam.sets; s++)
+        if (c->sums[s] > 0)
+            c->beam.floor = fmin(c->beam.floor, SKG_RELATIVE_FROM * fmax(exact[s], exp(-SKG_MOST_EXPONENT)));
+cleanup:
+    skg_free(&lengths);
+    skg_free(&exact);
+    return status;
+}
+
+/* Means of the channels, then their variances where there is noise. */
+static int32_t sets_of(const skg_model *model) {
+    return model->variances ? 2 * model->channels : model->channels;
+}
+
+/* What set s takes of node n. */
+static double *table_of(const skg_model *model, int32_t s) {
+    return s < model->channels ? model->weights : model->variances;
+}
+static double *weight_at(const skg_model *model, int32_t n, int32_t s) {
+    return &table_of(model, s)[n * model->channels + s % model->channels];
+}
+
+static skg_status describe(compressing *c, const skg_model *model) {
+    const int32_t bins = model->nodes, sets = sets_of(model);
+    SKG_TRY(skg_alloc((int64_t)bins * sets, sizeof *c->shares, "nodes", &c->shares));
+    SKG_TRY(skg_alloc(sets, sizeof *c->sums, "nodes", &c->sums));
+    for (int32_t k = 0; k < bins * sets; k++) c->sums[k % sets] += *weight_at(model, k / sets, k % sets);
+    for (int32_t k = 0; k < bins * sets; k++)
+        c->shares[k] = c->sums[k % sets] > 0 ? *weight_at(model, k / sets, k % sets) / c->sums[k % sets] : 0;
+    c->beam = (skg_polychromatic){.bins = bins,
+                                  .materials = model->planes,
+                                  .sets = sets,
+                                  .paired = model->variances != NULL,
+                                  .mu = c->mu,
+                                  .shares = c->shares,
+                                  .low = c->ranges.low,
+                                  .high = c->ranges.high};
+    return find_floor(c, model);
+}
+
+/* --- planes
+ * ------------------------------------------------------------------------------------------------------ */
+
+/* What a mm of a part adds to the planes of a basis: weights [planes]. */
+static void mix_writes(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
+    memset(weights, 0, (size_t)basis->planes * sizeof *weights);
+    for (int64_t w = model->first_write[part]; w < model->first_write[part + 1]; w++)
+        for (int32_t k = 0; k < basis->planes; k++)
+            weights[k] += model->writes[w].weight * basis->mix[model->writes[w].plane * basis->planes + k];
+}
+
+static double cost_of(const compressing *c, const skg_model *model, const skg_basis *basis, double *weights) {
+    double cost = basis->planes * (SKG_COST_OF_PLANE + LIKELY_NODES);
+    for (int64_t p = 0; p < c->scene->count; p++) {
+        mix_writes(model, basis, p, weights);
+        for (int32_t k = 0; k < basis->planes; k++)
+            if (weights[k] != 0) cost += SKG_COST_OF_WRITE * c->ranges.hits[p];
+    }
+    return cost;
+}
+
+/* The cheapest of the layouts that the tolerance allows, from a plane per material down. */
+static skg_status choose_planes(compressing *c, const skg_model *model) {
+    const int32_t materials = c->beam.materials;
+    skg_lengths points = {0};
+    skg_basis trial = {0};
+    int32_t *order = NULL;
+    double *weights = NULL, least = HUGE_VAL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(materials, sizeof *order, "basis", &order));
+    SKG_TRY_CLEANUP(skg_alloc(materials, sizeof *weights, "basis", &weights));
+    SKG_TRY_CLEANUP(skg_lengths_fill(&c->beam, CORNERS, DRAWS, 3, 0, NULL, &points));
+    for (int64_t k = 0; k < GIVEN && k < c->ranges.rays; k++)
+        SKG_TRY_CLEANUP(skg_lengths_add(
+            &c->beam,
+            c->ranges.lengths + (c->ranges.rays <= GIVEN ? k : k * c->ranges.rays / GIVEN) * materials,
+            &points));
+    SKG_TRY_CLEANUP(skg_basis_order(&c->beam, &points, (int32_t)model->world_plane, order));
+    for (int32_t planes = materials; planes >= 1; planes--) {
+        SKG_TRY_CLEANUP(skg_basis_make(&c->beam, &points, order, planes, &trial));
+        if (planes < materials && trial.error > SHARE_OF_PLANES * c->tolerance) break;
+        const double cost = cost_of(c, model, &trial, weights);
+        if (cost < least) {
+            const skg_basis better = trial;
+            trial = c->basis, c->basis = better, least = cost;
+        }
+        skg_basis_release(&trial);
+    }
+cleanup:
+    skg_basis_release(&trial);
+    skg_lengths_release(&points);
+    skg_free(&order);
+    skg_free(&weights);
+    return status;
+}
+
+/* --- the model with fewer
+ * ---------------------------------------------------------------------------------------- */
+
+static skg_status rewrite_writes(const compressing *c, skg_model *model) {
+    const int32_t planes = c->basis.planes;
+    const int64_t parts = c->scene->count;
+    int64_t *first = NULL, count = 0;
+    skg_contribution *writes = NULL;
+    double *weights = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first, "planes of the parts", &first));
+    SKG_TRY_CLEANUP(skg_alloc(parts * planes, sizeof *writes, "planes of the parts", &writes));
+    SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *weights, "planes of the parts", &weights));
+    for (int64_t p = 0; p < parts; p++) {
+        first[p] = count;
+        mix_writes(model, &c->basis, p, weights);
+        for (int32_t k = 0; k < planes; k++)
+            if (weights[k] != 0) writes[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
+    }
+    first[parts] = count;
+    skg_free(&model->first_write);
+    skg_free(&model->writes);
+    model->first_write = first, model->writes = writes;
+    first = NULL, writes = NULL;
+    int32_t world = 0;
+    while (world < planes && c->basis.material[world] != model->world_plane) world++;
+    if (model->world_plane >= 0) model->world_plane = world; /* the first that was taken */
+    model->planes = planes;
+cleanup:
+    skg_free(&first);
+    skg_free(&writes);
+    skg_free(&weights);
+    return status;
+}
+
+/* What planes hold over the range of lengths; and rounding of their sums more. */
+static skg_status find_range(const compressing *c, skg_model *model) {
+    const int32_t planes = c->basis.planes;
+    SKG_TRY(skg_alloc(2 * (int64_t)planes, sizeof *model->range, "planes", &model->range));
+    for (int32_t k = 0; k < planes; k++) {
+        double low = 0, high = 0;
+        for (int32_t m = 0; m < c->beam.materials; m++) {
+            const double mix = c->basis.mix[m * planes + k];
+            const double ends[2] = {mix * c->beam.low[m], mix * c->beam.high[m]};
+            low += fmin(ends[0], ends[1]), high += fmax(ends[0], ends[1]);
+        }
+        const double rounding = 1e-5 * (high - low) + 1e-3;
+        model->range[2 * k] = low - rounding, model->range[2 * k + 1] = high + rounding;
+    }
+    return SKG_OK;
+}
+
+static void rewrite_nodes(const compressing *c, skg_model *model) {
+    const skg_nodes *nodes = &c->found.nodes;
+    const int32_t sets = c->beam.sets, bins = c->beam.bins, planes = c->basis.planes;
+    for (int32_t n = 0; n < nodes->count; n++) {
+        const int32_t bin = nodes->bin[n]; /* n or above: nothing is overwritten before it is read */
+        double before = 0, after = 0;
+        for (int32_t s = 0; s < sets; s++) {
+            const double weight = nodes->shares[n * sets + s] * c->sums[s];
+            *weight_at(model, n, s) = weight;
+            if (s >= model->channels) continue;
+            before += c->shares[bin * sets + s] * c->sums[s];
+            after += weight;
+        }
+        model->node_kev[n] = model->node_kev[bin];
+        model->node_photons[n] = before > 0 ? model->node_photons[bin] * (after / before) : 0;
+        for (int32_t k = 0; k < planes; k++)
+            model->coefficients[n * planes + k] = c->mu[(int64_t)c->basis.material[k] * bins + bin];
+    }
+    model->nodes = nodes->count;
+    model->bound = c->found.bound;
+    model->verified = c->found.verified;
+}
+
+skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
+                        const double *mu, skg_model *model) {
+    const int is_ratio = skg_quantity_is_ratio(options);
+    /* A ratio to what the world lets pass has the errors of both. */
+    const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
+    compressing c = {
+        .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c.ranges));
+    SKG_TRY_CLEANUP(describe(&c, model));
+    SKG_TRY_CLEANUP(choose_planes(&c, model));
+    SKG_TRY_CLEANUP(
+        skg_nodes_find(&c.beam, c.basis.mu, c.tolerance, c.ranges.rays, c.ranges.lengths, &c.found));
+    if (c.found.nodes.count == 0) goto cleanup;
+    c.found.bound *= errors;
+    SKG_TRY_CLEANUP(find_range(&c, model));
+    SKG_TRY_CLEANUP(rewrite_writes(&c, model));
+    rewrite_nodes(&c, model);
+cleanup:
+    skg_ranges_release(&c.ranges);
+    skg_basis_release(&c.basis);
+    skg_nodes_release(&c.found.nodes);
+    skg_free(&c.shares);
+    skg_free(&c.sums);
+    return status;
+}

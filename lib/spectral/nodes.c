@@ -1,0 +1,346 @@
+#include "spectral/nodes.h"
+#include "spectral/nnls.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Points that weights are fitted to, and others that they are checked on. */
+enum { FIT_CORNERS = 64, FIT_DRAWS = 320, FIT_GIVEN = 96, CHECK_CORNERS = 1024, CHECK_DRAWS = 2000 };
+/* Reweightings; refits with what a check has found; searches, each aiming lower; sets times nodes up to which
+ * nodes are shifted. */
+enum { REWEIGHTINGS = 30, REFITS = 3, SEARCHES = 5, SHIFTED = 64 };
+static const uint64_t fit_seed = 1, check_seed = 2;
+
+typedef struct {
+    const skg_polychromatic *beam;
+    const double *mu;
+    double aim; /* greatest error wanted at the points that weights are fitted to */
+    skg_lengths fit, check;
+    skg_least_squares *systems;   /* [sets] over all bins, reduced */
+    int32_t *bins, *best, *trial; /* [bins] each */
+    int32_t count, best_count;
+    double *x, *spread;        /* [bins] each */
+    double *score;             /* [bins] */
+    skg_nodes nodes;           /* of the last weights */
+    double *row_weight, *rest; /* [fit points] */
+    int64_t row_room;
+} search;
+
+/* --- systems over the bins
+ * --------------------------------------------------------------------------------------- */
+
+static double unit_of(const search *s, int64_t point, int32_t set) {
+    return 1 / fmax(s->fit.exact[point * s->beam->sets + set], s->beam->floor);
+}
+
+static skg_status make_system(search *s, int32_t set) {
+    const int64_t points = s->fit.count;
+    const int32_t bins = s->beam->bins;
+    skg_least_squares whole = {0};
+    double *passed = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_least_squares_create(points, bins, &whole));
+    SKG_TRY_CLEANUP(skg_alloc(bins, sizeof *passed, "nodes", &passed));
+    for (int64_t p = 0; p < points; p++) {
+        const double unit = unit_of(s, p, set);
+        skg_transmit(s->beam, s->mu, s->fit.lengths + p * s->beam->materials, passed);
+        for (int32_t b = 0; b < bins; b++) whole.a[b * points + p] = passed[b] * unit;
+        whole.b[p] = s->fit.exact[p * s->beam->sets + set] * unit;
+    }
+    SKG_TRY_CLEANUP(skg_least_squares_reduce(&whole, &s->systems[set]));
+cleanup:
+    skg_least_squares_release(&whole);
+    skg_free(&passed);
+    return status;
+}
+
+static void start_even(double *x, int32_t count) {
+    for (int32_t j = 0; j < count; j++) x[j] = 1.0 / count;
+}
+
+/* Sum over the sets of the squared errors that these bins leave. */
+static double squares_left(search *s, int32_t count, const int32_t *bins) {
+    double sum = 0;
+    for (int32_t set = 0; set < s->beam->sets; set++) {
+        start_even(s->x, count);
+        sum += skg_nnls(&s->systems[set], count, bins, 0, s->x);
+    }
+    return sum;
+}
+
+/* The bins that non-negative least squares takes for any of the sets. */
+static void find_first(search *s) {
+    const int32_t bins = s->beam->bins;
+    const double least = (double)s->fit.count * 0.01 * s->aim * s->aim;
+    for (int32_t b = 0; b < bins; b++) s->trial[b] = b, s->score[b] = 0;
+    for (int32_t set = 0; set < s->beam->sets; set++) {
+        memset(s->x, 0, (size_t)bins * sizeof *s->x);
+        skg_nnls(&s->systems[set], bins, s->trial, least, s->x);
+        for (int32_t b = 0; b < bins; b++) s->score[b] += s->x[b];
+    }
+    s->count = 0;
+    for (int32_t b = 0; b < bins; b++)
+        if (s->score[b] > 0) s->bins[s->count++] = b;
+}
+
+/* Takes away the bin without which the squared errors grow least. */
+static void take_one_away(search *s) {
+    int32_t worst = 0;
+    for (int32_t j = 0; j < s->count; j++) s->score[j] = 0;
+    for (int32_t set = 0; set < s->beam->sets; set++) {
+        int32_t used = 0;
+        start_even(s->x, s->count);
+        skg_nnls(&s->systems[set], s->count, s->bins, 0, s->x);
+        for (int32_t j = 0; j < s->count; j++)
+            if (s->x[j] > 0) s->trial[used++] = s->bins[j];
+        double *again = s->x + s->beam->bins; /* second half */
+        skg_least_squares_solve(&s->systems[set], used, s->trial, again, s->spread);
+        for (int32_t j = 0, k = 0; j < s->count; j++)
+            if (s->x[j] > 0) {
+                s->score[j] += again[k] * again[k] / s->spread[k];
+                k++;
+            }
+    }
+    for (int32_t j = 1; j < s->count; j++)
+        if (s->score[j] < s->score[worst]) worst = j;
+    s->count--;
+    memmove(s->bins + worst, s->bins + worst + 1, (size_t)(s->count - worst) * sizeof *s->bins);
+}
+
+/* Shifts each bin to the neighbour that leaves the smallest errors, while that helps. */
+static void shift(search *s) {
+    static const int32_t ways[] = {-1, 1, -2, 2, -4, 4};
+    double left = squares_left(s, s->count, s->bins);
+    for (int round = 0; round < 3; round++) {
+        const double before = left;
+        for (int32_t j = 0; j < s->count; j++)
+            for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
+                const int32_t old = s->bins[j], to = old + ways[w];
+                const int32_t above = j + 1 < s->count ? s->bins[j + 1] : s->beam->bins;
+                if (to <= (j > 0 ? s->bins[j - 1] : -1) || to >= above) continue;
+                s->bins[j] = to;
+                const double now = squares_left(s, s->count, s->bins);
+                if (now < 0.999 * left)
+                    left = now;
+                else
+                    s->bins[j] = old;
+            }
+        if (!(left < 0.9 * before)) break;
+    }
+}
+
+/* --- weights
+ * ----------------------------------------------------------------------------------------------------- */
+
+/* Errors at the points that weights are fitted to, of one set with weights s->x of the nodes in s->trial; the
+ * greatest is returned. */
+static double find_rest(search *s, const double *columns, int32_t set, int32_t used) {
+    const int64_t points = s->fit.count;
+    double worst = 0;
+    for (int64_t p = 0; p < points; p++) {
+        double sum = -s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
+        for (int32_t j = 0; j < used; j++) sum += s->x[j] * columns[s->trial[j] * points + p];
+        s->rest[p] = fabs(sum);
+        worst = fmax(worst, s->rest[p]);
+    }
+    return worst;
+}
+
+static void keep_weights(search *s, int32_t set, int32_t used) {
+    const int32_t sets = s->beam->sets;
+    for (int32_t j = 0; j < s->count; j++) s->nodes.shares[j * sets + set] = 0;
+    for (int32_t j = 0; j < used; j++) s->nodes.shares[s->trial[j] * sets + set] = s->x[j];
+}
+
+/* What weights are fitted with. */
+typedef struct {
+    skg_least_squares system;
+    double *columns; /* [nodes][points], in units of the errors of a set */
+    double *passed;  /* [bins] */
+} fitting;
+
+static void find_columns(search *s, int32_t set, fitting *f) {
+    const int64_t points = s->fit.count;
+    for (int64_t p = 0; p < points; p++) {
+        skg_transmit(s->beam, s->mu, s->fit.lengths + p * s->beam->materials, f->passed);
+        for (int32_t j = 0; j < s->count; j++)
+            f->columns[j * points + p] = f->passed[s->bins[j]] * unit_of(s, p, set);
+    }
+}
+
+/* Weights of one set, of the nodes in s->trial, towards the smallest greatest error, into s->nodes; that
+ * error is returned. */
+static double fit_set(search *s, int32_t set, int32_t used, fitting *f) {
+    const int64_t points = s->fit.count;
+    double best = HUGE_VAL;
+    find_columns(s, set, f);
+    for (int64_t p = 0; p < points; p++) s->row_weight[p] = 1;
+    start_even(s->x, used);
+    for (int step = 0; step < REWEIGHTINGS; step++) {
+        for (int64_t p = 0; p < points; p++) {
+            const double root = sqrt(s->row_weight[p]);
+            for (int32_t j = 0; j < s->count; j++)
+                f->system.a[j * points + p] = root * f->columns[j * points + p];
+            f->system.b[p] = root * s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
+        }
+        skg_nnls(&f->system, used, s->trial, 0, s->x);
+        const double worst = find_rest(s, f->columns, set, used);
+        if (worst < best) {
+            best = worst;
+            keep_weights(s, set, used);
+        }
+        if (best < 0.5 * s->aim || best > 20 * s->aim) break; /* good enough, or hopeless */
+        for (int64_t p = 0; p < points; p++) s->row_weight[p] *= s->rest[p] / worst + 0.05;
+    }
+    return best;
+}
+
+/* Leaves the nodes in s->trial that both sets of a pair have taken. */
+static int32_t keep_common(search *s, int32_t set, int32_t used) {
+    const int32_t sets = s->beam->sets;
+    int32_t common = 0;
+    for (int32_t j = 0; j < used; j++) {
+        const double *shares = s->nodes.shares + s->trial[j] * sets;
+        if (shares[set] > 0 && shares[set + sets / 2] > 0) s->trial[common++] = s->trial[j];
+    }
+    return common;
+}
+
+/* A set, or a pair of them: fitted anew with the nodes that both take until they take the same. */
+static double fit_sets(search *s, int32_t set, fitting *f) {
+    for (int32_t j = 0; j < s->count; j++) s->trial[j] = j;
+    if (!s->beam->paired) return fit_set(s, set, s->count, f);
+    for (int32_t used = s->count;;) {
+        const double error = fmax(fit_set(s, set, used, f), fit_set(s, set + s->beam->sets / 2, used, f));
+        const int32_t common = keep_common(s, set, used);
+        if (common == used) return error;
+        used = common;
+    }
+}
+
+/* Weights of all sets for s->bins; *error: the greatest at the points fitted to. */
+static skg_status fit_weights(search *s, double *error) {
+    const int64_t points = s->fit.count;
+    const int32_t heads = s->beam->paired ? s->beam->sets / 2 : s->beam->sets;
+    fitting f = {.columns = NULL};
+    skg_status status = SKG_OK;
+    if (s->row_room < points) {
+        s->row_room = 2 * points;
+        SKG_TRY(skg_realloc(s->row_room, sizeof *s->row_weight, "nodes", &s->row_weight));
+        SKG_TRY(skg_realloc(s->row_room, sizeof *s->rest, "nodes", &s->rest));
+    }
+    SKG_TRY_CLEANUP(skg_least_squares_create(points, s->count, &f.system));
+    SKG_TRY_CLEANUP(skg_alloc(points * s->count, sizeof *f.columns, "nodes", &f.columns));
+    SKG_TRY_CLEANUP(skg_alloc(s->beam->bins, sizeof *f.passed, "nodes", &f.passed));
+    s->nodes.count = s->count;
+    memcpy(s->nodes.bin, s->bins, (size_t)s->count * sizeof *s->bins);
+    *error = 0;
+    for (int32_t set = 0; set < heads; set++) *error = fmax(*error, fit_sets(s, set, &f));
+cleanup:
+    skg_least_squares_release(&f.system);
+    skg_free(&f.columns);
+    skg_free(&f.passed);
+    return status;
+}
+
+/* --- the search
+ * -------------------------------------------------------------------------------------------------- */
+
+/* From the first bins downwards: s->best becomes the fewest bins that reach the aim, best_count 0 where none
+ * do. */
+static skg_status find_fewest(search *s) {
+    for (int32_t set = 0; set < s->beam->sets; set++) {
+        skg_least_squares_release(&s->systems[set]);
+        SKG_TRY(make_system(s, set));
+    }
+    find_first(s);
+    s->best_count = 0;
+    for (int misses = 0; s->count >= 1 && misses < 2;) {
+        double error = 0;
+        SKG_TRY(fit_weights(s, &error));
+        if (error > s->aim && s->beam->sets * s->count <= SHIFTED) {
+            shift(s);
+            SKG_TRY(fit_weights(s, &error));
+        }
+        misses += error > s->aim;
+        if (error <= s->aim) {
+            s->best_count = s->count, misses = 0;
+            memcpy(s->best, s->bins, (size_t)s->count * sizeof *s->bins);
+        }
+        take_one_away(s);
+    }
+    s->count = s->best_count;
+    memcpy(s->bins, s->best, (size_t)s->count * sizeof *s->bins);
+    return SKG_OK;
+}
+
+/* Weights for s->bins that hold at all points; *error the greatest found. */
+static skg_status check(search *s, double target, double *error, int64_t *checked) {
+    for (int refit = 0; refit <= REFITS; refit++) {
+        double fitted = 0;
+        SKG_TRY(fit_weights(s, &fitted));
+        SKG_TRY(skg_nodes_verify(s->beam, s->mu, &s->nodes, &s->check, error, checked, &s->fit));
+        if (*error <= target) return SKG_OK;
+    }
+    return SKG_OK;
+}
+
+static skg_status open_search(search *s, int64_t count, const double *given) {
+    const skg_polychromatic *beam = s->beam;
+    const int32_t bins = beam->bins;
+    SKG_TRY(skg_alloc(beam->sets, sizeof *s->systems, "nodes", &s->systems));
+    SKG_TRY(skg_alloc(bins, sizeof *s->bins, "nodes", &s->bins));
+    SKG_TRY(skg_alloc(bins, sizeof *s->best, "nodes", &s->best));
+    SKG_TRY(skg_alloc(bins, sizeof *s->trial, "nodes", &s->trial));
+    SKG_TRY(skg_alloc(2 * bins, sizeof *s->x, "nodes", &s->x));
+    SKG_TRY(skg_alloc(bins, sizeof *s->spread, "nodes", &s->spread));
+    SKG_TRY(skg_alloc(bins, sizeof *s->score, "nodes", &s->score));
+    SKG_TRY(skg_alloc(bins, sizeof *s->nodes.bin, "nodes", &s->nodes.bin));
+    SKG_TRY(skg_alloc((int64_t)bins * beam->sets, sizeof *s->nodes.shares, "nodes", &s->nodes.shares));
+    SKG_TRY(skg_lengths_fill(beam, FIT_CORNERS, FIT_DRAWS, fit_seed, 0, NULL, &s->fit));
+    for (int64_t k = 0; k < FIT_GIVEN && k < count; k++) {
+        const int64_t at = count <= FIT_GIVEN ? k : k * count / FIT_GIVEN;
+        SKG_TRY(skg_lengths_add(beam, given + at * beam->materials, &s->fit));
+    }
+    return skg_lengths_fill(beam, CHECK_CORNERS, CHECK_DRAWS, check_seed, count, given, &s->check);
+}
+
+static void close_search(search *s) {
+    for (int32_t set = 0; s->systems && set < s->beam->sets; set++)
+        skg_least_squares_release(&s->systems[set]);
+    skg_free(&s->systems);
+    skg_free(&s->bins);
+    skg_free(&s->best);
+    skg_free(&s->trial);
+    skg_free(&s->x);
+    skg_free(&s->spread);
+    skg_free(&s->score);
+    skg_free(&s->row_weight);
+    skg_free(&s->rest);
+    skg_nodes_release(&s->nodes);
+    skg_lengths_release(&s->fit);
+    skg_lengths_release(&s->check);
+}
+
+skg_status skg_nodes_find(const skg_polychromatic *beam, const double *mu, double tolerance, int64_t count,
+                          const double *given, skg_compression *compression) {
+    const double target = 0.5 * tolerance;
+    search s = {.beam = beam, .mu = mu, .aim = 0.9 * target};
+    skg_status status = SKG_OK;
+    *compression = (skg_compression){0};
+    SKG_TRY_CLEANUP(open_search(&s, count, given));
+    for (int k = 0; k < SEARCHES; k++, s.aim *= 0.7) {
+        double error = 0;
+        int64_t checked = 0;
+        SKG_TRY_CLEANUP(find_fewest(&s));
+        if (s.count == 0 || s.count >= beam->bins) break;
+        SKG_TRY_CLEANUP(check(&s, target, &error, &checked));
+        if (error > target) continue;
+        *compression = (skg_compression){s.nodes, 2 * error, checked};
+        s.nodes = (skg_nodes){0};
+        break;
+    }
+cleanup:
+    close_search(&s);
+    return status;
+}

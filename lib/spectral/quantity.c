@@ -1,0 +1,9 @@
+#include "spectral/quantity.h"
+
+int skg_quantity_is_absolute(const skg_plan_options *options) {
+    return options->noise || options->electronic_kev > 0 || options->quantum_step_kev > 0;
+}
+
+int skg_quantity_is_ratio(const skg_plan_options *options) {
+    return options->quantity == SKG_TRANSMISSION || options->quantity == SKG_ATTENUATION;
+}

@@ -1,0 +1,209 @@
+#include "spectral/verify.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { STARTS = 10 };
+
+void skg_nodes_release(skg_nodes *nodes) {
+    skg_free(&nodes->bin);
+    skg_free(&nodes->shares);
+    nodes->count = 0;
+}
+
+void skg_lengths_release(skg_lengths *points) {
+    skg_free(&points->lengths);
+    skg_free(&points->exact);
+    points->count = points->room = 0;
+}
+
+static double exponent_at(const skg_polychromatic *beam, const double *mu, const double *lengths,
+                          int32_t bin) {
+    double sum = 0;
+    for (int32_t m = 0; m < beam->materials; m++) sum += lengths[m] * mu[(int64_t)m * beam->bins + bin];
+    return sum;
+}
+
+void skg_transmit(const skg_polychromatic *beam, const double *mu, const double *lengths, double *passed) {
+    for (int32_t b = 0; b < beam->bins; b++) passed[b] = exp(-exponent_at(beam, mu, lengths, b));
+}
+
+void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact) {
+    memset(exact, 0, (size_t)beam->sets * sizeof *exact);
+    for (int32_t b = 0; b < beam->bins; b++) {
+        const double passed = exp(-exponent_at(beam, beam->mu, lengths, b));
+        for (int32_t s = 0; s < beam->sets; s++) exact[s] += passed * beam->shares[b * beam->sets + s];
+    }
+}
+
+/* --- points
+ * ------------------------------------------------------------------------------------------------------ */
+
+/* Thins lengths out until the energy that passes best has no more than the greatest exponent. */
+static void cap(const skg_polychromatic *beam, double *lengths) {
+    double least = HUGE_VAL;
+    for (int32_t b = 0; b < beam->bins; b++) least = fmin(least, exponent_at(beam, beam->mu, lengths, b));
+    if (least <= SKG_MOST_EXPONENT) return;
+    for (int32_t m = 0; m < beam->materials; m++) lengths[m] *= SKG_MOST_EXPONENT / least;
+}
+
+skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths, skg_lengths *points) {
+    if (points->count == points->room) {
+        const int64_t room = 2 * points->room + 64;
+        SKG_TRY(skg_realloc(room * beam->materials, sizeof *lengths, "lengths", &points->lengths));
+        SKG_TRY(skg_realloc(room * beam->sets, sizeof *lengths, "lengths", &points->exact));
+        points->room = room;
+    }
+    double *at = points->lengths + points->count * beam->materials;
+    memmove(at, lengths, (size_t)beam->materials * sizeof *at);
+    cap(beam, at);
+    skg_transmit_exact(beam, at, points->exact + points->count * beam->sets);
+    points->count++;
+    return SKG_OK;
+}
+
+/* From 0 to below 1 (splitmix64: Steele, Lea and Flood 2014). */
+static double draw(uint64_t *state) {
+    uint64_t z = *state += 0x9E3779B97F4A7C15u;
+    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+static void draw_corner(const skg_polychromatic *beam, uint64_t which, double *lengths) {
+    for (int32_t m = 0; m < beam->materials; m++)
+        lengths[m] = m < 64 && which >> m & 1 ? beam->high[m] : beam->low[m];
+}
+
+/* Thin: all lengths together by a power of ten down to a thousandth, each by its square. */
+static void draw_point(const skg_polychromatic *beam, int thin, uint64_t *state, double *lengths) {
+    const double all = thin ? pow(10, -3 * draw(state)) : 1;
+    for (int32_t m = 0; m < beam->materials; m++) {
+        const double part = draw(state), end = beam->high[m];
+        const double start = thin ? fmax(0, beam->low[m]) : beam->low[m];
+        lengths[m] = start + (end - start) * (thin ? part * part : part) * all;
+    }
+}
+
+skg_status skg_lengths_fill(const skg_polychromatic *beam, int64_t most, int64_t draws, uint64_t seed,
+                            int64_t count, const double *given, skg_lengths *points) {
+    uint64_t state = seed;
+    double *lengths = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(beam->materials, sizeof *lengths, "lengths", &lengths));
+    const int all = beam->materials < 30 && (int64_t)1 << beam->materials <= most;
+    const int64_t corners = all ? (int64_t)1 << beam->materials : most;
+    SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points)); /* nothing in the way */
+    for (int64_t c = 0; c < corners; c++) {
+        draw_corner(beam, all || c == 0 ? (uint64_t)c : (uint64_t)(draw(&state) * 0x1p53), lengths);
+        SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points));
+    }
+    for (int64_t d = 0; d < draws; d++) {
+        draw_point(beam, d % 2 == 1, &state, lengths);
+        SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points));
+    }
+    for (int64_t g = 0; g < count; g++)
+        SKG_TRY_CLEANUP(skg_lengths_add(beam, given + g * beam->materials, points));
+cleanup:
+    skg_free(&lengths);
+    return status;
+}
+
+/* --- errors
+ * ------------------------------------------------------------------------------------------------------ */
+
+double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
+                       const double *lengths, const double *exact) {
+    double worst = 0, found[64] = {0}; /* a few sets at a time: the exponentials are shared */
+    for (int32_t first = 0; first < beam->sets; first += 64) {
+        const int32_t sets = beam->sets - first < 64 ? beam->sets - first : 64;
+        for (int32_t s = 0; s < sets; s++) found[s] = 0;
+        for (int32_t n = 0; n < nodes->count; n++) {
+            const double passed = exp(-exponent_at(beam, mu, lengths, nodes->bin[n]));
+            for (int32_t s = 0; s < sets; s++) found[s] += passed * nodes->shares[n * beam->sets + first + s];
+        }
+        for (int32_t s = 0; s < sets; s++) {
+            const double truth = exact[first + s];
+            worst = fmax(worst, fabs(found[s] - truth) / fmax(truth, beam->floor));
+        }
+    }
+    return worst;
+}
+
+typedef struct {
+    const skg_polychromatic *beam;
+    const double *mu;
+    const skg_nodes *nodes;
+    double *lengths, *trial, *exact; /* of one point */
+    int64_t looks;
+} climb;
+
+static double look(climb *c, const double *lengths) {
+    c->looks++;
+    skg_transmit_exact(c->beam, lengths, c->exact);
+    return skg_nodes_error(c->beam, c->mu, c->nodes, lengths, c->exact);
+}
+
+/* Coordinate by coordinate, with steps that shrink where none leads up. */
+static double ascend(climb *c, double error) {
+    const skg_polychromatic *beam = c->beam;
+    for (double step = 0.2; step > 0.004; step /= 2) {
+        int rose = 1;
+        for (int pass = 0; rose && pass < 4; pass++) {
+            rose = 0;
+            for (int32_t k = 0; k < 2 * beam->materials; k++) {
+                const int32_t m = k / 2;
+                const double way = (k % 2 ? step : -step) * (beam->high[m] - beam->low[m]);
+                memcpy(c->trial, c->lengths, (size_t)beam->materials * sizeof *c->trial);
+                c->trial[m] = fmin(fmax(c->trial[m] + way, beam->low[m]), beam->high[m]);
+                if (c->trial[m] == c->lengths[m]) continue;
+                cap(beam, c->trial);
+                const double found = look(c, c->trial);
+                if (!(found > error)) continue;
+                error = found, rose = 1;
+                memcpy(c->lengths, c->trial, (size_t)beam->materials * sizeof *c->trial);
+            }
+        }
+    }
+    return error;
+}
+
+/* Keeps the worst few, in falling order; of equal ones the first. */
+static void rank_point(int64_t index, double error, int64_t *worst, double *errors, int32_t *count) {
+    int32_t at = *count;
+    while (at > 0 && errors[at - 1] < error) at--;
+    if (at == STARTS) return;
+    if (*count < STARTS) (*count)++;
+    for (int32_t k = *count - 1; k > at; k--) worst[k] = worst[k - 1], errors[k] = errors[k - 1];
+    worst[at] = index, errors[at] = error;
+}
+
+skg_status skg_nodes_verify(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
+                            const skg_lengths *points, double *error, int64_t *checked, skg_lengths *worst) {
+    int64_t start[STARTS];
+    double errors[STARTS];
+    int32_t starts = 0;
+    skg_status status = SKG_OK;
+    climb c = {.beam = beam, .mu = mu, .nodes = nodes};
+    SKG_TRY_CLEANUP(skg_alloc(beam->materials, sizeof *c.lengths, "lengths", &c.lengths));
+    SKG_TRY_CLEANUP(skg_alloc(beam->materials, sizeof *c.trial, "lengths", &c.trial));
+    SKG_TRY_CLEANUP(skg_alloc(beam->sets, sizeof *c.exact, "lengths", &c.exact));
+    for (int64_t p = 0; p < points->count; p++)
+        rank_point(p,
+                   skg_nodes_error(beam, mu, nodes, points->lengths + p * beam->materials,
+                                   points->exact + p * beam->sets),
+                   start, errors, &starts);
+    *error = starts ? errors[0] : 0;
+    for (int32_t s = 0; s < starts; s++) {
+        memcpy(c.lengths, points->lengths + start[s] * beam->materials,
+               (size_t)beam->materials * sizeof *c.lengths);
+        *error = fmax(*error, ascend(&c, errors[s]));
+        if (worst) SKG_TRY_CLEANUP(skg_lengths_add(beam, c.lengths, worst));
+    }
+    *checked = points->count + c.looks;
+cleanup:
+    skg_free(&c.lengths);
+    skg_free(&c.trial);
+    skg_free(&c.exact);
+    return status;
+}

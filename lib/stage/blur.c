@@ -1,0 +1,225 @@
+#include "stage/blur.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* As in blur.cl. */
+enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
+
+/* Longest function along either direction, samples. */
+enum { MOST_SAMPLES = 4095 };
+
+/* What one type of image needs. */
+typedef struct {
+    cl_kernel down_kernel, across_kernel;
+    skg_buffer down, across; /* weights */
+} blur_type;
+
+struct skg_blur {
+    skg_context *context;
+    int64_t columns, rows; /* samples */
+    int32_t separable, reserved;
+    double *down;   /* [rows]; of a point spread function: one sample of 1 */
+    double *across; /* [columns]; of a point spread function: [rows][columns] */
+    char kind[80];
+    blur_type type[2]; /* of float, of double; made on demand */
+    skg_buffer workspace;
+};
+
+void skg_detector_blur_init(skg_detector_blur *blur) {
+    if (blur) *blur = (skg_detector_blur){.size = (int32_t)sizeof *blur};
+}
+
+int64_t skg_blur_samples(const skg_blur *blur) {
+    return blur->separable ? blur->columns + blur->rows : blur->columns * blur->rows;
+}
+
+static skg_status check_count(const char *what, int64_t count) {
+    if (count < 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "the %s has %" PRId64 " samples; give at least one", what, count);
+    if (count % 2 == 0)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "the %s has %" PRId64
+                        " samples; an even number has no middle and would shift the image by half a pixel, "
+                        "give an odd one",
+                        what, count);
+    if (count > MOST_SAMPLES)
+        return skg_fail(SKG_ERR_ARGUMENT, "the %s has %" PRId64 " samples; at most %d", what, count,
+                        MOST_SAMPLES);
+    return SKG_OK;
+}
+
+/* Turned end to end, as a convolution needs it, and scaled to sum 1. */
+static skg_status copy_turned(const char *what, int64_t count, const double *samples, double **turned) {
+    double sum = 0, magnitude = 0;
+    if (!samples) return skg_fail(SKG_ERR_ARGUMENT, "the %s has no samples: NULL", what);
+    for (int64_t i = 0; i < count; i++) {
+        if (!isfinite(samples[i]))
+            return skg_fail(SKG_ERR_ARGUMENT, "sample %" PRId64 " of the %s is not finite: %g", i, what,
+                            samples[i]);
+        sum += samples[i];
+        magnitude += fabs(samples[i]);
+    }
+    /* What rounding may leave of a sum of 0. */
+    if (!(sum > 1e-12 * magnitude) || !isfinite(magnitude))
+        return skg_fail(SKG_ERR_ARGUMENT, "the samples of the %s sum to %g; the sum has to be above 0", what,
+                        sum);
+    SKG_TRY(skg_alloc(count, sizeof **turned, what, turned));
+    for (int64_t i = 0; i < count; i++) (*turned)[i] = samples[count - 1 - i] / sum;
+    return SKG_OK;
+}
+
+static skg_status read_shape(const skg_detector_blur *shape, skg_blur *blur) {
+    static const double one = 1;
+    skg_detector_blur ours = {.size = sizeof ours};
+    SKG_TRY(skg_struct_read(shape, "skg_detector_blur", &ours, sizeof ours));
+    const int separable = blur->separable = ours.point == NULL;
+    blur->columns = ours.columns;
+    blur->rows = ours.rows;
+    if (!separable && (ours.along_row || ours.along_column))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "both line and point spread functions are given; give one kind of them");
+    SKG_TRY(check_count(separable ? "line spread function along the rows" : "point spread function's row",
+                        ours.columns));
+    SKG_TRY(check_count(
+        separable ? "line spread function along the columns" : "point spread function's column", ours.rows));
+    if (!separable) {
+        SKG_TRY(copy_turned("point spread function", ours.columns * ours.rows, ours.point, &blur->across));
+        return copy_turned("copy", 1, &one, &blur->down);
+    }
+    SKG_TRY(copy_turned("line spread function along the rows", ours.columns, ours.along_row, &blur->across));
+    return copy_turned("line spread function along the columns", ours.rows, ours.along_column, &blur->down);
+}
+
+skg_status skg_blur_create(skg_context *context, const skg_detector_blur *shape, skg_blur **blur) {
+    SKG_TRY(skg_alloc(1, sizeof **blur, "blur", blur));
+    skg_blur *made = *blur;
+    made->context = context;
+    skg_status status = read_shape(shape, made);
+    if (status != SKG_OK) {
+        skg_blur_release(blur);
+        return status;
+    }
+    snprintf(made->kind, sizeof made->kind, "a %s of %" PRId64 " x %" PRId64 " samples",
+             made->separable ? "pair of line spread functions" : "point spread function", made->columns,
+             made->rows);
+    return SKG_OK;
+}
+
+const char *skg_blur_kind(const skg_blur *blur) {
+    return blur->kind;
+}
+
+void skg_blur_release(skg_blur **blur) {
+    if (!*blur) return;
+    for (int32_t i = 0; i < 2; i++) {
+        blur_type *type = &(*blur)->type[i];
+        if (type->down_kernel) clReleaseKernel(type->down_kernel);
+        if (type->across_kernel) clReleaseKernel(type->across_kernel);
+        skg_buffer_release(&type->down);
+        skg_buffer_release(&type->across);
+    }
+    skg_buffer_release(&(*blur)->workspace);
+    skg_free(&(*blur)->down);
+    skg_free(&(*blur)->across);
+    skg_free(blur);
+}
+
+int64_t skg_blur_bytes(const skg_blur *blur) {
+    int64_t bytes = blur->workspace.bytes;
+    for (int32_t i = 0; i < 2; i++) bytes += blur->type[i].down.bytes + blur->type[i].across.bytes;
+    return bytes;
+}
+
+/* Weights in the type of the image, with `zeros` about them. */
+static skg_status upload(const skg_blur *blur, int is_double, int64_t count, const double *weights,
+                         int64_t zeros, skg_buffer *buffer) {
+    const size_t element = is_double ? sizeof(double) : sizeof(float);
+    void *padded = NULL;
+    SKG_TRY(skg_alloc(count + 2 * zeros, element, "blur", &padded));
+    for (int64_t i = 0; i < count; i++)
+        if (is_double)
+            ((double *)padded)[zeros + i] = weights[i];
+        else
+            ((float *)padded)[zeros + i] = (float)weights[i];
+    skg_status status =
+        skg_buffer_write(blur->context, buffer, (count + 2 * zeros) * (int64_t)element, padded, "blur");
+    skg_free(&padded);
+    return status;
+}
+
+static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
+    static const char *const files[] = {"blur.cl"};
+    const skg_kernel_options options = {.precision = is_double ? SKG_DOUBLE : SKG_SINGLE, .bits = 32};
+    const int64_t down = blur->separable ? blur->rows : 1;
+    blur_type *type = *got = &blur->type[is_double];
+    cl_program program = NULL;
+    if (type->across_kernel) return SKG_OK;
+    SKG_TRY(skg_kernels_get(blur->context, &options, 1, files, NULL, &program));
+    SKG_TRY(upload(blur, is_double, down, blur->down, BLUR_ROWS - 1, &type->down));
+    SKG_TRY(upload(blur, is_double, blur->columns * (blur->separable ? 1 : blur->rows), blur->across, 0,
+                   &type->across));
+    if (!type->down_kernel) SKG_TRY(skg_kernel_create(program, "skg_blur_down", &type->down_kernel));
+    return skg_kernel_create(program, "skg_blur_across", &type->across_kernel);
+}
+
+static int64_t rounded_up(int64_t count, int64_t unit) {
+    return (count + unit - 1) / unit * unit;
+}
+
+/* Sets arguments first, first + 1, ... to these numbers. */
+static skg_status set_ints(cl_kernel kernel, cl_uint first, int32_t count, const cl_int *values) {
+    for (int32_t i = 0; i < count; i++)
+        SKG_TRY(skg_kernel_set(kernel, first + (cl_uint)i, sizeof *values, &values[i]));
+    return SKG_OK;
+}
+
+static skg_status set_image(cl_kernel kernel, cl_uint first, const skg_image_place *image) {
+    const cl_long strides[3] = {image->offset, image->row_stride, image->channel_stride};
+    SKG_TRY(skg_kernel_set(kernel, first, sizeof image->memory, &image->memory));
+    for (cl_uint i = 0; i < 3; i++)
+        SKG_TRY(skg_kernel_set(kernel, first + 1 + i, sizeof *strides, &strides[i]));
+    return SKG_OK;
+}
+
+/* Enqueues a kernel over `across` x `down` work-items of each channel. */
+static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, int64_t down, int64_t channels,
+                      skg_stage_log *log) {
+    const size_t local[3] = {4, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
+    const size_t global[3] = {(size_t)rounded_up(across, 4), (size_t)rounded_up(down, 16), (size_t)channels};
+    return skg_kernel_run(blur->context, kernel, "blur", 3, global, local, log);
+}
+
+skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
+                        int64_t channels, skg_stage_log *log) {
+    const int is_double = image->output_double != 0;
+    const int64_t lanes = skg_kernel_lanes(blur->context, is_double ? SKG_DOUBLE : SKG_SINGLE);
+    const int64_t left = blur->columns / 2, above = blur->separable ? 0 : blur->rows / 2;
+    /* Runs of the second pass may end past the image, and read as far to the right as any. */
+    const int64_t stride = rounded_up(rounded_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);
+    const int64_t high = rows + 2 * above;
+    const cl_int taps = blur->separable ? (cl_int)blur->rows : 1;
+    blur_type *type = NULL;
+    SKG_TRY(get_type(blur, is_double, &type));
+    SKG_TRY(skg_buffer_reserve(blur->context, &blur->workspace,
+                               stride * high * channels *
+                                   (int64_t)(is_double ? sizeof(cl_double) : sizeof(cl_float)),
+                               CL_MEM_READ_WRITE, "blur"));
+    cl_kernel kernel = type->down_kernel;
+    SKG_TRY(set_image(kernel, 0, image));
+    SKG_TRY(set_ints(kernel, 4, 3, (cl_int[]){(cl_int)columns, (cl_int)rows, taps}));
+    SKG_TRY(skg_kernel_set_memory(kernel, 7, 2, (cl_mem[]){type->down.memory, blur->workspace.memory}));
+    SKG_TRY(set_ints(kernel, 9, 4, (cl_int[]){(cl_int)stride, (cl_int)high, (cl_int)left, (cl_int)above}));
+    SKG_TRY(run(blur, kernel, stride / (BLUR_VECTORS * lanes), (high + BLUR_ROWS - 1) / BLUR_ROWS, channels,
+                log));
+    kernel = type->across_kernel;
+    SKG_TRY(skg_kernel_set_memory(kernel, 0, 1, &blur->workspace.memory));
+    SKG_TRY(set_ints(kernel, 1, 4,
+                     (cl_int[]){(cl_int)stride, (cl_int)high, blur->separable ? 1 : (cl_int)blur->rows,
+                                (cl_int)blur->columns}));
+    SKG_TRY(skg_kernel_set_memory(kernel, 5, 1, &type->across.memory));
+    SKG_TRY(set_image(kernel, 6, image));
+    SKG_TRY(set_ints(kernel, 10, 2, (cl_int[]){(cl_int)columns, (cl_int)rows}));
+    return run(blur, kernel, (columns + BLUR_RUN * lanes - 1) / (BLUR_RUN * lanes), rows, channels, log);
+}

@@ -1,0 +1,324 @@
+#include "stage/project.h"
+
+#include <skiagraph/plan.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Vertices that a work-item projects on a CPU. */
+enum { RUN = 256 };
+
+static int is_double(const skg_geometry *geometry) {
+    return geometry->precision == SKG_DOUBLE;
+}
+
+static size_t real_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(double) : sizeof(float);
+}
+
+static size_t entry_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
+}
+
+static size_t write_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(skg_write_double) : sizeof(skg_write_float);
+}
+
+static skg_status reset_bad(skg_context *context, skg_geometry *geometry) {
+    const cl_int none = INT32_MAX;
+    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none, 0,
+                                   sizeof none, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+/* For each block of items the part that its first item belongs to. first: [parts + 1]. */
+static skg_status upload_blocks(skg_context *context, int64_t parts, const int64_t *first, const char *what,
+                                skg_buffer *buffer) {
+    const int64_t blocks = first[parts] / SKG_BLOCK + 1;
+    int32_t *table = NULL;
+    SKG_TRY(skg_alloc(blocks, sizeof *table, what, &table));
+    int64_t part = 0;
+    for (int64_t b = 0; b < blocks; b++) {
+        while (part + 1 < parts && first[part + 1] <= b * SKG_BLOCK) part++;
+        table[b] = (int32_t)part;
+    }
+    skg_status status = skg_buffer_write(context, buffer, blocks * (int64_t)sizeof *table, table, what);
+    skg_free(&table);
+    return status;
+}
+
+static skg_status upload_corners(skg_context *context, skg_geometry *geometry, const skg_geometry_mesh *mesh,
+                                 const int64_t *mesh_triangle) {
+    const int64_t total = mesh_triangle[geometry->meshes];
+    SKG_TRY(skg_buffer_reserve(context, &geometry->corners, total * 3 * (int64_t)sizeof(int32_t),
+                               CL_MEM_READ_ONLY, "corners of the triangles"));
+    for (int64_t m = 0; m < geometry->meshes; m++) {
+        const size_t size = (size_t)mesh[m].triangles * 3 * sizeof(int32_t);
+        if (size == 0) continue;
+        SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->corners.memory, CL_TRUE,
+                                        (size_t)mesh_triangle[m] * 3 * sizeof(int32_t), size, mesh[m].corners,
+                                        0, NULL, NULL));
+    }
+    return SKG_OK;
+}
+
+/* Numbers meshes and parts; fails where 32-bit numbers do not reach. */
+static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, const int64_t *mesh_of_part,
+                         int64_t *mesh_triangle, int64_t *first_triangle) {
+    for (int64_t m = 0; m < geometry->meshes; m++) {
+        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + mesh[m].vertices;
+        mesh_triangle[m + 1] = mesh_triangle[m] + mesh[m].triangles;
+    }
+    for (int64_t p = 0; p < geometry->parts; p++) {
+        const skg_geometry_mesh *of = &mesh[mesh_of_part[p]];
+        geometry->first_vertex[p + 1] = geometry->first_vertex[p] + of->vertices;
+        first_triangle[p + 1] = first_triangle[p] + of->triangles;
+    }
+    geometry->mesh_vertices = geometry->mesh_vertex[geometry->meshes];
+    geometry->vertices = geometry->first_vertex[geometry->parts];
+    geometry->triangles = first_triangle[geometry->parts];
+    const int64_t most = INT32_MAX / 4;
+    if (geometry->vertices > most || geometry->triangles > most || geometry->mesh_vertices > most)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%" PRId64 " triangles with %" PRId64
+                        " vertices over all parts are more than the tables number (%" PRId64 ")",
+                        geometry->triangles, geometry->vertices, most);
+    return SKG_OK;
+}
+
+/* The fields that a part's place in the tables gives. */
+#define SKG_PLACE(entry, p)                                                                                  \
+    do {                                                                                                     \
+        (entry).mesh_vertex = (SKG_INT)geometry->mesh_vertex[mesh_of_part[p]];                               \
+        (entry).first_vertex = (SKG_INT)geometry->first_vertex[p];                                           \
+        (entry).vertices = (SKG_INT)(geometry->first_vertex[(p) + 1] - geometry->first_vertex[p]);           \
+        (entry).mesh_triangle = (SKG_INT)mesh_triangle[mesh_of_part[p]];                                     \
+        (entry).first_triangle = (SKG_INT)first_triangle[p];                                                 \
+        (entry).triangles = (SKG_INT)(first_triangle[(p) + 1] - first_triangle[p]);                          \
+    } while (0)
+
+static void place_parts(const skg_geometry *geometry, const int64_t *mesh_of_part,
+                        const int64_t *mesh_triangle, const int64_t *first_triangle, void *entries) {
+    for (int64_t p = 0; p < geometry->parts; p++) {
+        if (is_double(geometry))
+            SKG_PLACE(((skg_part_double *)entries)[p], p);
+        else
+            SKG_PLACE(((skg_part_float *)entries)[p], p);
+    }
+}
+
+skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t meshes,
+                               const skg_geometry_mesh *mesh, int64_t parts, const int64_t *mesh_of_part,
+                               skg_geometry *geometry) {
+    int64_t *mesh_triangle = NULL, *first_triangle = NULL;
+    skg_status status = SKG_OK;
+    *geometry = (skg_geometry){.meshes = meshes, .parts = parts, .precision = precision};
+    SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof *mesh_triangle, "mesh table", &mesh_triangle));
+    SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first_triangle, "part table", &first_triangle));
+    SKG_TRY_CLEANUP(
+        skg_alloc(meshes + 1, sizeof *geometry->mesh_vertex, "mesh table", &geometry->mesh_vertex));
+    SKG_TRY_CLEANUP(
+        skg_alloc(parts + 1, sizeof *geometry->first_vertex, "part table", &geometry->first_vertex));
+    SKG_TRY_CLEANUP(number(geometry, mesh, mesh_of_part, mesh_triangle, first_triangle));
+    for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
+        skg_table_slot *slot = &geometry->slots[i];
+        SKG_TRY_CLEANUP(skg_alloc(parts, entry_size(geometry), "part table", &slot->entries));
+        place_parts(geometry, mesh_of_part, mesh_triangle, first_triangle, slot->entries);
+    }
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->part_table, parts * (int64_t)entry_size(geometry),
+                                       CL_MEM_READ_ONLY, "part table"));
+    SKG_TRY_CLEANUP(upload_corners(context, geometry, mesh, mesh_triangle));
+    SKG_TRY_CLEANUP(
+        upload_blocks(context, parts, geometry->first_vertex, "vertex blocks", &geometry->vertex_blocks));
+    SKG_TRY_CLEANUP(
+        upload_blocks(context, parts, first_triangle, "triangle blocks", &geometry->triangle_blocks));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->offsets,
+                                       geometry->mesh_vertices * 3 * (int64_t)real_size(geometry),
+                                       CL_MEM_READ_ONLY, "vertices"));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->projected,
+                                       geometry->vertices * 4 * (int64_t)real_size(geometry),
+                                       CL_MEM_READ_WRITE, "projected vertices"));
+    SKG_TRY_CLEANUP(
+        skg_buffer_reserve(context, &geometry->bad, sizeof(cl_int), CL_MEM_READ_WRITE, "vertex check"));
+    SKG_TRY_CLEANUP(reset_bad(context, geometry));
+cleanup:
+    skg_free(&mesh_triangle);
+    skg_free(&first_triangle);
+    if (status != SKG_OK) skg_geometry_release(geometry);
+    return status;
+}
+
+/* Until the device has read the slot's last contents. */
+static skg_status wait_for(skg_table_slot *slot) {
+    if (!slot->read) return SKG_OK;
+    SKG_CL_TRY(clWaitForEvents(1, &slot->read));
+    clReleaseEvent(slot->read);
+    slot->read = NULL;
+    return SKG_OK;
+}
+
+void skg_geometry_release(skg_geometry *geometry) {
+    skg_buffer *const buffers[] = {
+        &geometry->offsets,       &geometry->corners,         &geometry->part_table, &geometry->write_table,
+        &geometry->vertex_blocks, &geometry->triangle_blocks, &geometry->projected,  &geometry->bad};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
+    skg_free(&geometry->mesh_vertex);
+    skg_free(&geometry->first_vertex);
+    for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
+        skg_table_slot *slot = &geometry->slots[i];
+        if (wait_for(slot) != SKG_OK) clReleaseEvent(slot->read);
+        skg_free(&slot->entries);
+        skg_free(&slot->writes);
+    }
+    if (geometry->kernel) clReleaseKernel(geometry->kernel);
+    geometry->kernel = NULL;
+}
+
+skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
+                               const void *offsets, skg_stage_log *log) {
+    const int64_t row = 3 * (int64_t)real_size(geometry);
+    const int64_t first = geometry->mesh_vertex[mesh], count = geometry->mesh_vertex[mesh + 1] - first;
+    if (count == 0) return SKG_OK;
+    SKG_TRY(
+        skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets, log));
+    return reset_bad(context, geometry);
+}
+
+/* What changes from frame to frame in single precision is double's, rounded once. */
+static void round_entry(const skg_part_double *from, skg_part_float *to) {
+    for (int k = 0; k < 3; k++) {
+        to->row0[k] = (float)from->row0[k];
+        to->row1[k] = (float)from->row1[k];
+        to->row2[k] = (float)from->row2[k];
+        to->start[k] = (float)from->start[k];
+    }
+    to->offset_x = (float)from->offset_x;
+    to->offset_y = (float)from->offset_y;
+    to->offset_r = (float)from->offset_r;
+    to->anchor_x = (float)from->anchor_x;
+    to->anchor_y = (float)from->anchor_y;
+    to->reference = (float)from->reference;
+    to->highest = (float)from->highest;
+    to->pixel_i = from->pixel_i;
+    to->pixel_j = from->pixel_j;
+    to->turned = from->turned;
+    to->first_write = from->first_write;
+    to->writes = from->writes;
+}
+
+static void set_write(const skg_geometry *geometry, void *writes, int64_t index,
+                      const skg_contribution *weight, double factor) {
+    if (is_double(geometry))
+        ((skg_write_double *)writes)[index] = (skg_write_double){
+            .weight = weight->weight * factor, .bias = weight->bias, .plane = (SKG_INT)weight->plane};
+    else
+        ((skg_write_float *)writes)[index] = (skg_write_float){.weight = (float)(weight->weight * factor),
+                                                               .bias = (float)weight->bias,
+                                                               .plane = (SKG_INT)weight->plane};
+}
+
+static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *camera,
+                              const skg_geometry_part *part, double scale, skg_table_slot *slot) {
+    int64_t total = 0;
+    for (int64_t p = 0; p < geometry->parts; p++) total += part[p].weights;
+    if (total > slot->write_room) {
+        SKG_TRY(skg_realloc(total, write_size(geometry), "write table", &slot->writes));
+        slot->write_room = total;
+    }
+    slot->write_count = 0;
+    for (int64_t p = 0; p < geometry->parts; p++) {
+        skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
+        skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
+        entry->first_write = (SKG_INT)slot->write_count;
+        entry->writes = (SKG_INT)part[p].weights;
+        if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);
+        /* Kernels weigh q = r / reference; a parallel beam's q is r itself. */
+        const double factor = camera->parallel ? scale : scale * entry->reference;
+        for (int32_t w = 0; w < part[p].weights; w++)
+            set_write(geometry, slot->writes, slot->write_count++, &part[p].weight[w], factor);
+    }
+    return SKG_OK;
+}
+
+static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, const skg_table_slot *b) {
+    return a->write_count == b->write_count &&
+           memcmp(a->entries, b->entries, (size_t)geometry->parts * entry_size(geometry)) == 0 &&
+           (a->write_count == 0 ||
+            memcmp(a->writes, b->writes, (size_t)a->write_count * write_size(geometry)) == 0);
+}
+
+/* Brings the frame's tables to the device where they differ from those it has. */
+skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
+                              const skg_geometry_part *part, double scale) {
+    const int32_t next = (geometry->slot + 1) % SKG_TABLE_SLOTS;
+    skg_table_slot *slot = &geometry->slots[next];
+    cl_command_queue queue = context->device->queue;
+    SKG_TRY(wait_for(slot));
+    SKG_TRY(fill_tables(geometry, camera, part, scale, slot));
+    if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
+    const size_t bytes = (size_t)slot->write_count * write_size(geometry);
+    geometry->uploaded =
+        0; /* should one of the two writes fail, the device has neither the old nor the new */
+    SKG_TRY(
+        skg_buffer_reserve(context, &geometry->write_table, (int64_t)bytes, CL_MEM_READ_ONLY, "write table"));
+    if (bytes > 0)
+        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->write_table.memory, CL_FALSE, 0, bytes, slot->writes,
+                                        0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->part_table.memory, CL_FALSE, 0,
+                                    (size_t)geometry->parts * entry_size(geometry), slot->entries, 0, NULL,
+                                    &slot->read));
+    geometry->slot = next;
+    geometry->uploaded = 1;
+    return SKG_OK;
+}
+
+static skg_status get_kernel(skg_context *context, skg_geometry *geometry,
+                             const skg_kernel_options *options) {
+    static const char *const files[] = {"project.cl"};
+    cl_program program = NULL;
+    char run[32] = "";
+    if (!context->device->info.is_gpu) snprintf(run, sizeof run, "-D SKG_RUN=%d", RUN);
+    if (geometry->kernel && memcmp(&geometry->kernel_options, options, sizeof *options) == 0) return SKG_OK;
+    if (geometry->kernel) clReleaseKernel(geometry->kernel);
+    geometry->kernel = NULL;
+    SKG_TRY(skg_kernels_get(context, options, 1, files, run, &program));
+    SKG_TRY(skg_kernel_create(program, "skg_project", &geometry->kernel));
+    geometry->kernel_options = *options;
+    return SKG_OK;
+}
+
+skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
+                                const skg_kernel_options *options, const skg_camera *camera,
+                                const skg_geometry_part *part, double scale, skg_stage_log *log) {
+    SKG_TRY(skg_geometry_weigh(context, geometry, camera, part, scale));
+    SKG_TRY(get_kernel(context, geometry, options));
+    const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
+    const cl_mem memory[] = {geometry->part_table.memory, geometry->vertex_blocks.memory,
+                             geometry->offsets.memory, geometry->projected.memory, geometry->bad.memory};
+    const int on_gpu = context->device->info.is_gpu;
+    const size_t local = on_gpu ? 64 : 1, run = on_gpu ? 1 : RUN;
+    const size_t global = ((size_t)geometry->vertices + local * run - 1) / (local * run) * local;
+    SKG_TRY(skg_kernel_set(geometry->kernel, 0, sizeof frame, &frame));
+    SKG_TRY(skg_kernel_set_memory(geometry->kernel, 1, 5, memory));
+    return skg_kernel_run(context, geometry->kernel, "project", 1, &global, &local, log);
+}
+
+int64_t skg_geometry_bytes(const skg_geometry *geometry) {
+    return geometry->offsets.bytes + geometry->corners.bytes + geometry->part_table.bytes +
+           geometry->write_table.bytes + geometry->vertex_blocks.bytes + geometry->triangle_blocks.bytes +
+           geometry->projected.bytes + geometry->bad.bytes;
+}
+
+void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex) {
+    int64_t low = 0, high = geometry->parts; /* first_vertex[low] <= vertex < first_vertex[high] */
+    while (high - low > 1) {
+        const int64_t middle = (low + high) / 2;
+        if (geometry->first_vertex[middle] <= vertex)
+            low = middle;
+        else
+            high = middle;
+    }
+    *part = low;
+    *mesh_vertex = vertex - geometry->first_vertex[low];
+}
