@@ -63,9 +63,9 @@ static const effect effects[] = {
      0,
      0,
      NULL},
-    {"double", "precision double", {.flat = 1}, SKG_DOUBLE, 0, 0, 0, 0, NULL},
-    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_ATTENUATION, 0, 0, NULL},
-    {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_FLOAT64, 0, NULL},
+    {"double", "precision double", {.flat = 1}, SKG_PRECISION_DOUBLE, 0, 0, 0, 0, NULL},
+    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_QUANTITY_ATTENUATION, 0, 0, NULL},
+    {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_TYPE_FLOAT64, 0, NULL},
     {"profile", "stages are timed", {.flat = 1}, 0, 0, 0, 0, 1, NULL},
     {"copies", "strategy copies", {.flat = 1}, 0, SKG_STRATEGY_COPIES, 0, 0, 0, NULL},
     {"tiles", "strategy tiles", {.flat = 1}, 0, SKG_STRATEGY_TILES, 0, 0, 0, NULL},
@@ -136,7 +136,7 @@ static void make_plan(skg_context *context, const effect *kind, long size, conte
     skg_output_init(&out->output);
     out->output.type = kind->type;
     out->output.data =
-        bench_alloc((size_t)(size * size), kind->type == SKG_FLOAT64 ? sizeof(double) : sizeof(float));
+        bench_alloc((size_t)(size * size), kind->type == SKG_TYPE_FLOAT64 ? sizeof(double) : sizeof(float));
     scene_close(&scene);
 }
 

@@ -109,8 +109,8 @@ static skg_scene *nested_boxes(skg_context *context) {
         skg_mesh *box = NULL;
         skg_material *material = NULL;
         skg_part part;
-        bench_try(skg_mesh_cuboid(600 - 20 * i, 600 - 20 * i, 100 - 15 * i, &box), "box");
-        bench_try(skg_material_named(matter[i], &material), "material");
+        bench_try(skg_mesh_create_cuboid(600 - 20 * i, 600 - 20 * i, 100 - 15 * i, &box), "box");
+        bench_try(skg_material_create_named(matter[i], &material), "material");
         skg_part_init(&part);
         part.mesh = box, part.material = material, part.label = matter[i], part.inside = i - 1;
         bench_try(skg_scene_add(scene, &part, NULL), "part");
@@ -127,7 +127,7 @@ static skg_spectrum *even_spectrum(int64_t bins) {
         kev[i] = 20 + 100.0 * (double)i / (double)bins;
         photons[i] = 1 + (double)(i % 7);
     }
-    bench_try(skg_spectrum_bins(bins, kev, photons, &spectrum), "spectrum");
+    bench_try(skg_spectrum_create_bins(bins, kev, photons, &spectrum), "spectrum");
     return spectrum;
 }
 
@@ -169,10 +169,10 @@ static void close_frames(frames *f) {
 static double stage_ms(const skg_plan *plan, const char *name) {
     int64_t count = 0;
     skg_stage stage;
-    bench_try(skg_plan_stages(plan, &count), "stages");
+    bench_try(skg_plan_stage_count(plan, &count), "stages");
     for (int64_t i = 0; i < count; i++) {
         skg_stage_init(&stage);
-        bench_try(skg_plan_stage(plan, i, &stage), "stage");
+        bench_try(skg_plan_stage_get(plan, i, &stage), "stage");
         if (strcmp(stage.name, name) == 0) return stage.ns * 1e-6;
     }
     return 0;
@@ -248,7 +248,7 @@ static void compare_tolerances(skg_context *context, skg_scene *scene, const set
     for (int i = 0; i < CASES; i++) {
         skg_plan_report report;
         skg_plan_report_init(&report);
-        bench_try(skg_plan_get_report(plans[i].plan, &report), "report");
+        bench_try(skg_plan_report_get(plans[i].plan, &report), "report");
         printf("| %g | %d | %d | %.2g | %.2f | %.2f | %.2f |\n", tolerances[i], (int)report.nodes,
                (int)report.planes, report.bound, bench_least(&times[i]), bench_median(&times[i]),
                bench_least(&times[0]) / bench_least(&times[i]));

@@ -62,7 +62,7 @@ static void live(const settings *set, story *out) {
     scene_open(context, set->scene, set->size, &scene);
     moment[PLANNING] = bench_now();
     bench_try(skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan), "plan");
-    bench_try(skg_plan_channels(plan, &channels), "plan");
+    bench_try(skg_plan_channel_count(plan, &channels), "plan");
     skg_output_init(&output);
     output.data = bench_alloc((size_t)(channels * scene.view.rows * scene.view.columns), sizeof(float));
     moment[FIRST] = bench_now();
@@ -73,7 +73,7 @@ static void live(const settings *set, story *out) {
     for (int k = 0; k < ALL; k++) out->ms[k] = moment[k + 1] - moment[k];
     out->ms[ALL] = moment[SECOND] - moment[CONTEXT];
     skg_plan_report_init(&report);
-    bench_try(skg_plan_get_report(plan, &report), "report");
+    bench_try(skg_plan_report_get(plan, &report), "report");
     out->parts = report.parts;
     out->triangles = report.triangles;
 }

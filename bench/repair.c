@@ -28,11 +28,11 @@ static int is_opened(const char *label) {
 static skg_mesh *open_mesh(skg_context *context, const skg_mesh *mesh, const char *name) {
     int64_t vertices, triangles, kept = 0;
     skg_mesh *result = NULL;
-    bench_try(skg_mesh_size(mesh, &vertices, &triangles), name);
+    bench_try(skg_mesh_count(mesh, &vertices, &triangles), name);
     double *positions = bench_alloc((size_t)(3 * vertices), sizeof *positions);
     int32_t *corners = bench_alloc((size_t)(3 * triangles), sizeof *corners);
-    bench_try(skg_mesh_read_positions(mesh, positions, 3), name);
-    bench_try(skg_mesh_read_triangles(mesh, corners, 3), name);
+    bench_try(skg_mesh_positions_get(mesh, positions, 3), name);
+    bench_try(skg_mesh_triangles_get(mesh, corners, 3), name);
     for (int64_t t = 0; t < triangles; t++)
         if (t % EVERY != EVERY / 2) memmove(corners + 3 * kept++, corners + 3 * t, 3 * sizeof *corners);
     bench_try(skg_mesh_create(context, name, vertices, positions, 3, kept, corners, 3, 1, &result), name);
@@ -45,11 +45,11 @@ static skg_scene *open_scene(skg_context *context, const skg_scene *closed) {
     skg_scene *scene = NULL;
     int64_t parts = 0;
     bench_try(skg_scene_create(context, &scene), "scene");
-    bench_try(skg_scene_size(closed, &parts), "scene");
+    bench_try(skg_scene_part_count(closed, &parts), "scene");
     for (int64_t i = 0; i < parts; i++) {
         skg_part part;
         skg_part_init(&part);
-        bench_try(skg_scene_part(closed, i, &part), "part");
+        bench_try(skg_scene_part_get(closed, i, &part), "part");
         const int opens = is_opened(part.label);
         if (opens) part.mesh = open_mesh(context, part.mesh, part.label);
         bench_try(skg_scene_add(scene, &part, NULL), part.label);
@@ -64,18 +64,18 @@ static double *make_image(skg_context *context, const bench_scene *bench, skg_sc
     skg_plan_options options = bench->options;
     skg_plan *plan = NULL;
     skg_output output;
-    options.precision = SKG_DOUBLE;
+    options.precision = SKG_PRECISION_DOUBLE;
     options.repair = repair;
-    options.quantity = SKG_ATTENUATION;
+    options.quantity = SKG_QUANTITY_ATTENUATION;
     options.overlaps = 0;
     bench_try(skg_plan_create(context, scene, &bench->view, bench->beam, &options, &plan), "plan");
     skg_output_init(&output);
-    output.type = SKG_FLOAT64;
+    output.type = SKG_TYPE_FLOAT64;
     double *image = bench_alloc((size_t)(bench->view.columns * bench->view.rows), sizeof *image);
     output.data = image;
     bench_try(skg_plan_image(plan, &output), "image");
     skg_plan_report_init(report);
-    bench_try(skg_plan_get_report(plan, report), "report");
+    bench_try(skg_plan_report_get(plan, report), "report");
     skg_plan_release(&plan);
     return image;
 }
@@ -114,12 +114,12 @@ static void tell(const bench_scene *bench, const char *name, const double *image
 static void write_drawing(const float *drawing, const char *png) {
     skg_picture picture;
     skg_picture_init(&picture);
-    picture.type = SKG_FLOAT32;
+    picture.type = SKG_TYPE_FLOAT32;
     picture.columns = COLUMNS;
     picture.rows = ROWS;
     picture.channels = 1;
     picture.data = drawing;
-    picture.quantity = SKG_ATTENUATION;
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
     picture.low = 0;
     picture.high = 1;
     bench_try(skg_picture_write(&picture, png), png);
@@ -137,7 +137,7 @@ int main(int count, char **words) {
             bench_usage(&arguments, usage);
     if (!file || !png) bench_die("%s", usage);
     skg_context *context = bench_context(device);
-    skg_context_set_log(context, NULL, NULL); /* that the meshes are open is meant */
+    skg_context_log_set(context, NULL, NULL); /* that the meshes are open is meant */
     scene_open(context, file, 0, &bench);
     if (bench.view.columns < FIRST_COLUMN + SIDE || bench.view.rows < FIRST_ROW + SIDE)
         bench_die("%s: the detector is too small for the drawing", file);

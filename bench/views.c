@@ -73,7 +73,7 @@ static void open_series(skg_context *context, bench_scene *scene, long views, se
     bench_try(skg_plan_create(context, scene->scene, &scene->view, scene->beam, &scene->options, &out->plan),
               "plan");
     int64_t channels = 0;
-    bench_try(skg_plan_channels(out->plan, &channels), "plan");
+    bench_try(skg_plan_channel_count(out->plan, &channels), "plan");
     out->views = views;
     out->pixels = channels * scene->view.rows * scene->view.columns;
     out->turned = bench_alloc((size_t)views, sizeof *out->turned);

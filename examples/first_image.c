@@ -20,9 +20,10 @@ static int make_scene(skg_context *context, double radius_mm, skg_scene **scene)
     skg_material *adipose = NULL, *water = NULL;
     skg_part part;
     int64_t envelope = -1;
-    int bad = failed(skg_mesh_cuboid(120, 120, 80, &box)) || failed(skg_mesh_sphere(radius_mm, 64, &ball)) ||
-              failed(skg_material_mu("adipose at 80 keV", 0.171, &adipose)) ||
-              failed(skg_material_mu("water at 80 keV", 0.1837, &water)) ||
+    int bad = failed(skg_mesh_create_cuboid(120, 120, 80, &box)) ||
+              failed(skg_mesh_create_sphere(radius_mm, 64, &ball)) ||
+              failed(skg_material_create_mu("adipose at 80 keV", 0.171, &adipose)) ||
+              failed(skg_material_create_mu("water at 80 keV", 0.1837, &water)) ||
               failed(skg_scene_create(context, scene));
     if (!bad) {
         skg_part_init(&part);
@@ -50,13 +51,13 @@ static int image_into(skg_context *context, skg_scene *scene, float *pixels) {
     view.row_step[1] = 0.6;
     skg_plan_options options;
     skg_plan_options_init(&options);
-    options.quantity = SKG_TRANSMISSION;
+    options.quantity = SKG_QUANTITY_TRANSMISSION;
     skg_output output;
     skg_output_init(&output);
     output.data = pixels;
     skg_spectrum *beam = NULL;
     skg_plan *plan = NULL;
-    int bad = failed(skg_spectrum_mono(80, 1000, &beam)) ||
+    int bad = failed(skg_spectrum_create_mono(80, 1000, &beam)) ||
               failed(skg_plan_create(context, scene, &view, beam, &options, &plan)) ||
               failed(skg_plan_image(plan, &output));
     skg_plan_release(&plan);

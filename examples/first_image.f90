@@ -32,18 +32,18 @@ program first_image
             type(c_ptr), value :: config
             type(c_ptr) :: context
         end function
-        integer(c_int32_t) function skg_mesh_cube(edge, mesh) bind(c)
+        integer(c_int32_t) function skg_mesh_create_cube(edge, mesh) bind(c)
             import :: c_int32_t, c_double, c_ptr
             real(c_double), value :: edge
             type(c_ptr) :: mesh
         end function
-        integer(c_int32_t) function skg_material_mu(name, per_cm, material) bind(c)
+        integer(c_int32_t) function skg_material_create_mu(name, per_cm, material) bind(c)
             import :: c_int32_t, c_double, c_ptr
             type(c_ptr), value :: name
             real(c_double), value :: per_cm
             type(c_ptr) :: material
         end function
-        integer(c_int32_t) function skg_spectrum_mono(energy_kev, photons, spectrum) bind(c)
+        integer(c_int32_t) function skg_spectrum_create_mono(energy_kev, photons, spectrum) bind(c)
             import :: c_int32_t, c_double, c_ptr
             real(c_double), value :: energy_kev, photons
             type(c_ptr) :: spectrum
@@ -127,9 +127,9 @@ program first_image
     real(c_float) :: middle
 
     call check(skg_context_create(c_null_ptr, context))
-    call check(skg_mesh_cube(30.0_c_double, mesh))
-    call check(skg_material_mu(c_null_ptr, 0.1837_c_double, water))
-    call check(skg_spectrum_mono(80.0_c_double, 1.0_c_double, beam))
+    call check(skg_mesh_create_cube(30.0_c_double, mesh))
+    call check(skg_material_create_mu(c_null_ptr, 0.1837_c_double, water))
+    call check(skg_spectrum_create_mono(80.0_c_double, 1.0_c_double, beam))
     call check(skg_scene_create(context, scene))
     call skg_part_init(part)
     part%mesh = mesh

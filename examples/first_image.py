@@ -39,9 +39,9 @@ def make(function, *arguments):
 
 SIDE = 128
 context = make("skg_context_create", None)
-mesh = make("skg_mesh_sphere", c.c_double(40), c.c_int64(128))
-tissue = make("skg_material_mu", b"soft tissue at 80 keV", c.c_double(0.1932))
-beam = make("skg_spectrum_mono", c.c_double(80), c.c_double(1000))
+mesh = make("skg_mesh_create_sphere", c.c_double(40), c.c_int64(128))
+tissue = make("skg_material_create_mu", b"soft tissue at 80 keV", c.c_double(0.1932))
+beam = make("skg_spectrum_create_mono", c.c_double(80), c.c_double(1000))
 scene = make("skg_scene_create", context)
 
 part = Part()

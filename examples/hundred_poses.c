@@ -30,9 +30,9 @@ static int run(skg_plan *plan, int64_t part, float *images) {
         for (int i = 0; i < BATCH; i++) {
             turned(3.14159265358979 / 2 * (first + i) / (POSES - 1), poses[i]);
             skg_frame_init(&frames[i]);
-            frames[i].posed = 1;
-            frames[i].posed_ids = &part;
-            frames[i].posed_poses = poses[i];
+            frames[i].pose_count = 1;
+            frames[i].pose_parts = &part;
+            frames[i].poses = poses[i];
         }
         skg_output output;
         skg_output_init(&output);
@@ -55,21 +55,23 @@ int main(void) {
     int64_t part = -1;
     skg_view view;
     skg_view_init(&view);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     view.columns = view.rows = SIDE;
     view.source[2] = -500;
     view.centre[2] = 100;
     view.column_step[0] = view.row_step[1] = 0.5;
     skg_plan_options options;
     skg_plan_options_init(&options);
-    options.quantity = SKG_ATTENUATION;
+    options.quantity = SKG_QUANTITY_ATTENUATION;
     skg_part one;
     skg_part_init(&one);
-    int bad = failed(skg_context_create(NULL, &context)) || failed(skg_mesh_cuboid(10, 10, 40, &bar)) ||
-              failed(skg_material_mu("bone at 80 keV", 0.428, &bone)) ||
+    int bad = failed(skg_context_create(NULL, &context)) ||
+              failed(skg_mesh_create_cuboid(10, 10, 40, &bar)) ||
+              failed(skg_material_create_mu("bone at 80 keV", 0.428, &bone)) ||
               failed(skg_scene_create(context, &scene));
     one.mesh = bar, one.material = bone, one.label = "bar";
-    bad = bad || failed(skg_scene_add(scene, &one, &part)) || failed(skg_spectrum_mono(80, 1, &beam)) ||
+    bad = bad || failed(skg_scene_add(scene, &one, &part)) ||
+          failed(skg_spectrum_create_mono(80, 1, &beam)) ||
           failed(skg_plan_create(context, scene, &view, beam, &options, &plan)) || run(plan, part, images);
     if (!bad) {
         const int middle = SIDE / 2 * SIDE + SIDE / 2;

@@ -60,10 +60,10 @@ static int read_organs(const char *folder, organ *organs) {
         snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
         memcpy(one->name, entry->d_name, length - 4);
         if (failed(skg_mesh_load(NULL, path, 1, &mesh)) ||
-            failed(skg_mesh_size(mesh, &one->vertices, &triangles)))
+            failed(skg_mesh_count(mesh, &one->vertices, &triangles)))
             break;
         one->positions = calloc((size_t)one->vertices * 3, sizeof(double));
-        if (one->positions) count += !failed(skg_mesh_read_positions(mesh, one->positions, 0));
+        if (one->positions) count += !failed(skg_mesh_positions_get(mesh, one->positions, 0));
         skg_mesh_release(&mesh);
     }
     if (directory) closedir(directory);

@@ -36,11 +36,11 @@ static void solve(void *what) {
 
 static skg_chain *chain_of(skg_mesh *mesh, const char *label, skg_tissue tissue, int32_t *driver) {
     int64_t vertices, triangles, links;
-    bench_try(skg_mesh_size(mesh, &vertices, &triangles), label);
+    bench_try(skg_mesh_count(mesh, &vertices, &triangles), label);
     double *rest = bench_alloc((size_t)vertices * 3, sizeof *rest);
     int32_t *corners = bench_alloc((size_t)triangles * 3, sizeof *corners), *ends;
-    bench_try(skg_mesh_read_positions(mesh, rest, 0), label);
-    bench_try(skg_mesh_read_triangles(mesh, corners, 0), label);
+    bench_try(skg_mesh_positions_get(mesh, rest, 0), label);
+    bench_try(skg_mesh_triangles_get(mesh, corners, 0), label);
     bench_try(skg_chain_links(triangles, corners, NULL, &links, &ends), label);
     *driver = 0;
     for (int64_t i = 0; i < vertices; i++)
@@ -99,7 +99,7 @@ static void breathe(void *what) {
     skg_breath_init(&breath);
     skg_breath_state state;
     skg_breath_state_init(&state);
-    bench_try(skg_breath_at_phase(&breath, (double)(b->step++ % 120) / 120, &state), "breath");
+    bench_try(skg_breath_state_at_phase(&breath, (double)(b->step++ % 120) / 120, &state), "breath");
     bench_try(skg_body_pose(b->body, &state), "body");
 }
 
@@ -226,7 +226,7 @@ int main(int count, char **words) {
     for (int64_t i = 0; i < thorax.parts; i++) {
         skg_thorax_part part;
         skg_thorax_part_init(&part);
-        bench_try(skg_thorax_get_part(thorax.thorax, i, &part), "thorax");
+        bench_try(skg_thorax_part_get(thorax.thorax, i, &part), "thorax");
         if (strcmp(part.label, "liver") != 0 && strcmp(part.label, "diaphragm") != 0) continue;
         for (int t = 0; t < 2; t++) {
             const skg_tissue tissue[2] = {{0.7, 1.1, 0.1}, {0.9, 1.02, 0}};

@@ -41,7 +41,7 @@ static void warn(int32_t level, const char *sentence, void *user) {
 skg_context *bench_context(const char *config) {
     skg_context *context = NULL;
     bench_try(skg_context_create(config, &context), "context");
-    bench_try(skg_context_set_log(context, warn, NULL), "context");
+    bench_try(skg_context_log_set(context, warn, NULL), "context");
     return context;
 }
 

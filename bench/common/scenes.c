@@ -23,8 +23,8 @@ static int64_t add_part(bench_scene *out, skg_mesh *mesh, double per_cm, int64_t
     skg_part part;
     int64_t id = 0, parts = 0;
     char label[32];
-    bench_try(skg_material_mu("tissue", per_cm, &material), "material");
-    bench_try(skg_scene_size(out->scene, &parts), "scene");
+    bench_try(skg_material_create_mu("tissue", per_cm, &material), "material");
+    bench_try(skg_scene_part_count(out->scene, &parts), "scene");
     snprintf(label, sizeof label, "organ %lld", (long long)parts);
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside, part.label = label;
@@ -68,7 +68,7 @@ static void begin(skg_context *context, bench_scene *out) {
     memset(out, 0, sizeof *out);
     skg_plan_options_init(&out->options);
     bench_try(skg_scene_create(context, &out->scene), "scene");
-    bench_try(skg_spectrum_mono(80, 1000, &out->beam), "beam");
+    bench_try(skg_spectrum_create_mono(80, 1000, &out->beam), "beam");
 }
 
 static const double nowhere[3] = {0, 0, 0}, unscaled[3] = {1, 1, 1};
@@ -150,7 +150,7 @@ static void from_folder(skg_context *context, const char *folder, long size, ben
         skg_mesh_health health;
         skg_mesh_health_init(&health);
         bench_try(skg_mesh_load(context, paths[i], 1, &meshes[i]), paths[i]);
-        bench_try(skg_mesh_get_health(meshes[i], &health), paths[i]);
+        bench_try(skg_mesh_health_get(meshes[i], &health), paths[i]);
         for (int k = 0; k < 3; k++) {
             all.low[k] = fmin(all.low[k], health.bounds[k] - 10);
             all.high[k] = fmax(all.high[k], health.bounds[k + 3] + 10);
@@ -160,7 +160,7 @@ static void from_folder(skg_context *context, const char *folder, long size, ben
         edges[k] = all.high[k] - all.low[k];
         middle[k] = (all.high[k] + all.low[k]) / 2;
     }
-    bench_try(skg_mesh_cuboid(edges[0], edges[1], edges[2], &envelope), "envelope");
+    bench_try(skg_mesh_create_cuboid(edges[0], edges[1], edges[2], &envelope), "envelope");
     const int64_t outer = add_part(out, envelope, adipose, NO_PARENT, middle, unscaled);
     skg_mesh_release(&envelope);
     for (int i = 0; i < count; i++) {
@@ -176,10 +176,10 @@ static void from_file(skg_context *context, const char *path, bench_scene *out) 
     skg_plan_options_init(&out->options);
     skg_view_init(&out->view);
     bench_try(skg_setup_load(context, path, 0, NULL, &out->setup), path);
-    bench_try(skg_setup_scene(out->setup, &out->scene), path);
-    bench_try(skg_setup_spectrum(out->setup, &out->beam), path);
-    bench_try(skg_setup_view(out->setup, &out->view), path);
-    bench_try(skg_setup_options(out->setup, &out->options), path);
+    bench_try(skg_setup_scene_get(out->setup, &out->scene), path);
+    bench_try(skg_setup_spectrum_get(out->setup, &out->beam), path);
+    bench_try(skg_setup_view_get(out->setup, &out->view), path);
+    bench_try(skg_setup_options_get(out->setup, &out->options), path);
     bench_try(skg_scene_retain(out->scene), path);
     bench_try(skg_spectrum_retain(out->beam), path);
 }
@@ -210,14 +210,14 @@ void scene_close(bench_scene *scene) {
 static void find_middle(const skg_scene *scene, double *middle) {
     int64_t parts = 0;
     box all = nothing;
-    bench_try(skg_scene_size(scene, &parts), "scene");
+    bench_try(skg_scene_part_count(scene, &parts), "scene");
     for (int64_t i = 0; i < parts; i++) {
         skg_part part;
         skg_mesh_health health;
         skg_part_init(&part);
         skg_mesh_health_init(&health);
-        bench_try(skg_scene_part(scene, i, &part), "part");
-        bench_try(skg_mesh_get_health(part.mesh, &health), "part");
+        bench_try(skg_scene_part_get(scene, i, &part), "part");
+        bench_try(skg_mesh_health_get(part.mesh, &health), "part");
         for (int k = 0; k < 3; k++) {
             double place = part.pose[4 * k + 3];
             for (int m = 0; m < 3; m++)

@@ -7,17 +7,17 @@ enum { MATERIALS = 5, ENERGIES = 10, HOLES = 100 };
 
 static void get_part(const bench_thorax *thorax, int64_t number, skg_thorax_part *part) {
     skg_thorax_part_init(part);
-    bench_try(skg_thorax_get_part(thorax->thorax, number, part), "thorax");
+    bench_try(skg_thorax_part_get(thorax->thorax, number, part), "thorax");
 }
 
 static skg_mesh *with_holes(const skg_mesh *mesh, const char *label) {
     int64_t vertices, triangles;
     skg_mesh *open = NULL;
-    bench_try(skg_mesh_size(mesh, &vertices, &triangles), label);
+    bench_try(skg_mesh_count(mesh, &vertices, &triangles), label);
     double *positions = bench_alloc((size_t)vertices * 3, sizeof *positions);
     int32_t *corners = bench_alloc((size_t)triangles * 3, sizeof *corners);
-    bench_try(skg_mesh_read_positions(mesh, positions, 0), label);
-    bench_try(skg_mesh_read_triangles(mesh, corners, 0), label);
+    bench_try(skg_mesh_positions_get(mesh, positions, 0), label);
+    bench_try(skg_mesh_triangles_get(mesh, corners, 0), label);
     int64_t kept = 0;
     for (int64_t i = 0; i < triangles; i++)
         if (i % HOLES != HOLES / 2) memmove(corners + 3 * kept++, corners + 3 * i, 3 * sizeof *corners);
@@ -33,7 +33,7 @@ void thorax_make(long triangles, int open, bench_thorax *out) {
     options.triangles = triangles;
     *out = (bench_thorax){0};
     bench_try(skg_thorax_create(&options, &out->thorax), "thorax");
-    bench_try(skg_thorax_size(out->thorax, &out->parts), "thorax");
+    bench_try(skg_thorax_part_count(out->thorax, &out->parts), "thorax");
     out->meshes = bench_alloc((size_t)out->parts, sizeof *out->meshes);
     for (int64_t i = 0; i < out->parts; i++) {
         skg_thorax_part part;
@@ -43,7 +43,7 @@ void thorax_make(long triangles, int open, bench_thorax *out) {
             out->meshes[i] = with_holes(part.mesh, part.label);
         else
             bench_try(skg_mesh_retain(out->meshes[i] = part.mesh), part.label);
-        bench_try(skg_mesh_size(out->meshes[i], &vertices, &its), part.label);
+        bench_try(skg_mesh_count(out->meshes[i], &vertices, &its), part.label);
         out->triangles += its;
     }
 }
@@ -83,7 +83,8 @@ skg_scene *thorax_scene(skg_context *context, const bench_thorax *thorax) {
     skg_material *materials[MATERIALS];
     skg_scene *scene = NULL;
     bench_try(skg_scene_create(context, &scene), "scene");
-    for (int m = 0; m < MATERIALS; m++) bench_try(skg_material_named(names[m], &materials[m]), names[m]);
+    for (int m = 0; m < MATERIALS; m++)
+        bench_try(skg_material_create_named(names[m], &materials[m]), names[m]);
     for (int64_t i = 0; i < thorax->parts; i++) {
         skg_thorax_part from;
         skg_part part;
@@ -101,7 +102,7 @@ skg_spectrum *thorax_beam(void) {
     double kev[ENERGIES], photons[ENERGIES];
     skg_spectrum *spectrum = NULL;
     for (int n = 0; n < ENERGIES; n++) kev[n] = 30 + 5 * n, photons[n] = 1000;
-    bench_try(skg_spectrum_bins(ENERGIES, kev, photons, &spectrum), "spectrum");
+    bench_try(skg_spectrum_create_bins(ENERGIES, kev, photons, &spectrum), "spectrum");
     return spectrum;
 }
 

@@ -46,9 +46,9 @@ static void open_job(const settings *set, job *j) {
     *j = (job){.context = bench_context(set->device)};
     bench_try(skg_setup_load(j->context, set->scene, 0, NULL, &j->setup), set->scene);
     skg_view_init(&j->view);
-    bench_try(skg_setup_scene(j->setup, &j->scene), "scene");
-    bench_try(skg_setup_spectrum(j->setup, &j->spectrum), "beam");
-    bench_try(skg_setup_view(j->setup, &j->view), "view");
+    bench_try(skg_setup_scene_get(j->setup, &j->scene), "scene");
+    bench_try(skg_setup_spectrum_get(j->setup, &j->spectrum), "beam");
+    bench_try(skg_setup_view_get(j->setup, &j->view), "view");
     j->count = j->view.columns * j->view.rows;
 }
 
@@ -66,10 +66,10 @@ static double *take(const job *j, int32_t precision, int32_t quantity, int32_t f
     bench_try(skg_plan_create(j->context, j->scene, &j->view, j->spectrum, &options, &plan), "plan");
     skg_output_init(&output);
     float *narrow = bench_alloc((size_t)j->count, sizeof *narrow);
-    output.type = precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
-    output.data = precision == SKG_DOUBLE ? (void *)image : (void *)narrow;
+    output.type = precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
+    output.data = precision == SKG_PRECISION_DOUBLE ? (void *)image : (void *)narrow;
     bench_try(skg_plan_image(plan, &output), "image");
-    for (int64_t p = 0; precision == SKG_SINGLE && p < j->count; p++) image[p] = (double)narrow[p];
+    for (int64_t p = 0; precision == SKG_PRECISION_SINGLE && p < j->count; p++) image[p] = (double)narrow[p];
     free(narrow);
     skg_plan_release(&plan);
     return image;
@@ -158,10 +158,10 @@ static int run(const settings *set, const job *j, FILE *csv) {
     int missed = 0;
     skg_device_info info;
     skg_device_info_init(&info);
-    bench_try(skg_context_device(j->context, &info), "device");
+    bench_try(skg_context_device_get(j->context, &info), "device");
     printf("| image | NCC | mean rel. error | largest | bar |\n|---|---|---|---|---|\n");
     for (int32_t precision = 0; precision <= info.has_double; precision++) {
-        double *ours = take(j, precision, SKG_TRANSMISSION, 0, set->rays);
+        double *ours = take(j, precision, SKG_QUANTITY_TRANSMISSION, 0, set->rays);
         missed |=
             compare(precision ? "I/I0, double, against the primary" : "I/I0, single, against the primary",
                     ours, primary_share, n, 0, 1e-4, csv);
@@ -171,8 +171,9 @@ static int run(const settings *set, const job *j, FILE *csv) {
         free(ours);
     }
     for (int32_t falloff = 1; falloff >= 0; falloff--) {
-        double *ours = take(j, SKG_SINGLE, SKG_ENERGY, falloff, set->rays), kev = 0, photons = 0;
-        bench_try(skg_spectrum_bin(j->spectrum, 0, &kev, &photons), "beam");
+        double *ours = take(j, SKG_PRECISION_SINGLE, SKG_QUANTITY_ENERGY, falloff, set->rays), kev = 0,
+               photons = 0;
+        bench_try(skg_spectrum_bin_get(j->spectrum, 0, &kev, &photons), "beam");
         /* To the reference's unit: the open beams are equal in the middle of the detector. */
         scale_to(ours, open[middle] / (kev * photons), n);
         compare(falloff ? "energy with falloff, against the primary"

@@ -31,9 +31,9 @@ static void open_scenery(const paper_study *study, scenery *s) {
     *s = (scenery){0};
     bench_try(skg_setup_load(study->context, study->scene, 0, NULL, &s->setup), study->scene);
     skg_view_init(&s->view);
-    bench_try(skg_setup_scene(s->setup, &s->scene), "scene");
-    bench_try(skg_setup_spectrum(s->setup, &s->beam), "beam");
-    bench_try(skg_setup_view(s->setup, &s->view), "view");
+    bench_try(skg_setup_scene_get(s->setup, &s->scene), "scene");
+    bench_try(skg_setup_spectrum_get(s->setup, &s->beam), "beam");
+    bench_try(skg_setup_view_get(s->setup, &s->view), "view");
     s->count = s->view.columns * s->view.rows;
 }
 
@@ -55,14 +55,14 @@ static double *take(const paper_study *study, const scenery *s, const source *fr
     spot.extent[0] = spot.extent[1] = spot.extent[2] = from->edge;
     spot.grid = study->pieces;
     options.spot = from->edge > 0 ? &spot : NULL;
-    options.quantity = SKG_TRANSMISSION;
-    output.type = SKG_FLOAT64, output.data = image;
+    options.quantity = SKG_QUANTITY_TRANSMISSION;
+    output.type = SKG_TYPE_FLOAT64, output.data = image;
     bench_try(skg_plan_create(study->context, s->scene, &view, s->beam, &options, &plan), "plan");
     bench_try(skg_plan_image(plan, &output), "image");
     const double start = bench_now();
     bench_try(skg_plan_image(plan, &output), "image");
     *ms = bench_now() - start;
-    bench_try(skg_plan_get_report(plan, &report), "plan");
+    bench_try(skg_plan_report_get(plan, &report), "plan");
     *passes = report.samples;
     skg_plan_release(&plan);
     return image;

@@ -7,7 +7,8 @@
 enum { PRECISIONS = 3, ENERGIES = 4 };
 
 static const char *const precision_names[PRECISIONS] = {"half", "single", "double"};
-static const int32_t precisions[PRECISIONS] = {SKG_HALF, SKG_SINGLE, SKG_DOUBLE};
+static const int32_t precisions[PRECISIONS] = {SKG_PRECISION_HALF, SKG_PRECISION_SINGLE,
+                                               SKG_PRECISION_DOUBLE};
 static const double kev[ENERGIES] = {80, 100, 200, 300};
 static const double photons[ENERGIES] = {1, 10, 20, 10}; /* Eq. 14: the first; Eq. 15: the others */
 /* The paper's Tables 3 and 4, 1/cm. */
@@ -33,8 +34,8 @@ static skg_scene *object(skg_context *context, skg_material *bone, skg_material 
     skg_scene *scene = NULL;
     skg_mesh *cube = NULL, *cylinder = NULL;
     bench_try(skg_scene_create(context, &scene), "scene");
-    bench_try(skg_mesh_cube(30, &cube), "cube");
-    bench_try(skg_mesh_cylinder(10, 30, 20, &cylinder), "cylinder");
+    bench_try(skg_mesh_create_cube(30, &cube), "cube");
+    bench_try(skg_mesh_create_cylinder(10, 30, 20, &cylinder), "cylinder");
     add(scene, cube, soft, -1);
     add(scene, cylinder, bone, 0);
     return scene;
@@ -43,9 +44,9 @@ static skg_scene *object(skg_context *context, skg_material *bone, skg_material 
 static skg_spectrum *beam_of(int equation) {
     skg_spectrum *beam = NULL;
     if (equation == 0)
-        bench_try(skg_spectrum_mono(kev[0], photons[0], &beam), "beam");
+        bench_try(skg_spectrum_create_mono(kev[0], photons[0], &beam), "beam");
     else
-        bench_try(skg_spectrum_bins(ENERGIES - 1, kev + 1, photons + 1, &beam), "beam");
+        bench_try(skg_spectrum_create_bins(ENERGIES - 1, kev + 1, photons + 1, &beam), "beam");
     return beam;
 }
 
@@ -68,7 +69,7 @@ static ray cast(const paper_study *study, skg_material *bone, skg_material *soft
     skg_plan_options_init(&options);
     options.precision = precision;
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = pixels;
+    output.type = SKG_TYPE_FLOAT64, output.data = pixels;
     const skg_status status = skg_plan_create(study->context, scene, &view, beam, &options, &plan);
     if (status != SKG_ERR_UNSUPPORTED) {
         bench_try(status, "plan");
@@ -77,7 +78,7 @@ static ray cast(const paper_study *study, skg_material *bone, skg_material *soft
         out.kev = pixels[MIDDLE];
         for (int64_t part = 0; part < 2; part++) {
             skg_job *job = NULL;
-            bench_try(skg_plan_lengths(plan, part, SKG_SURFACE, 1, NULL, &output, &job), "lengths");
+            bench_try(skg_plan_lengths(plan, part, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job), "lengths");
             bench_try(skg_job_wait(&job), "lengths");
             out.lengths[part] = pixels[MIDDLE];
         }
@@ -93,8 +94,8 @@ static double closed_form(const skg_material *bone, const skg_material *soft, in
     double sum = 0;
     for (int k = equation ? 1 : 0; k < (equation ? ENERGIES : 1); k++) {
         double in_bone = 0, in_soft = 0;
-        bench_try(skg_material_attenuation(bone, kev[k], &in_bone), "bone");
-        bench_try(skg_material_attenuation(soft, kev[k], &in_soft), "soft tissue");
+        bench_try(skg_material_attenuation_get(bone, kev[k], &in_bone), "bone");
+        bench_try(skg_material_attenuation_get(soft, kev[k], &in_soft), "soft tissue");
         sum += photons[k] * kev[k] * exp(-2 * in_bone - in_soft);
     }
     return sum;
@@ -149,7 +150,7 @@ static void print_coefficients(const paper_study *study, const skg_material *bon
         for (int k = 0; k < ENERGIES; k++) {
             char what[64];
             double mu = 0;
-            bench_try(skg_material_attenuation(materials[m], kev[k], &mu), names[m]);
+            bench_try(skg_material_attenuation_get(materials[m], kev[k], &mu), names[m]);
             printf(" %.4f / %.4f (%+.2f %%) |", printed[m][k], mu, 100 * (mu / printed[m][k] - 1));
             snprintf(what, sizeof what, "mu of %.4s at %g keV", names[m], kev[k]);
             paper_row(study, "number", what, 0, 0, mu, "1/cm");
@@ -182,14 +183,14 @@ int paper_numbers(const paper_study *study) {
         "its 16-bit buffers, off its own equation.\n\n"
         "| quantity | printed: equation | printed: 16 bits | closed form | half | single | double |\n"
         "|---|---:|---:|---:|---:|---:|---:|\n");
-    bench_try(skg_material_table("bone", ENERGIES, kev, printed_bone, &bone), "bone");
-    bench_try(skg_material_table("soft tissue", ENERGIES, kev, printed_soft, &soft), "soft tissue");
+    bench_try(skg_material_create_table("bone", ENERGIES, kev, printed_bone, &bone), "bone");
+    bench_try(skg_material_create_table("soft tissue", ENERGIES, kev, printed_soft, &soft), "soft tissue");
     const int differs = print_rays(study, "from the printed mu", bone, soft, 1);
     skg_material_release(&bone);
     skg_material_release(&soft);
     /* The paper's 1329.886 and 51.715, cut to whole numbers as its code did. */
-    bench_try(skg_material_hounsfield(1329, &bone), "bone");
-    bench_try(skg_material_hounsfield(51, &soft), "soft tissue");
+    bench_try(skg_material_create_hounsfield(1329, &bone), "bone");
+    bench_try(skg_material_create_hounsfield(51, &soft), "soft tissue");
     print_rays(study, "from 1329 and 51 HU", bone, soft, 0);
     printf("\nFrom the printed mu, half gives what is printed for 16 bits, to its last digit: %s.\n",
            differs ? "NO" : "yes");

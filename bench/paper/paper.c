@@ -54,7 +54,7 @@ int main(int count, char **words) {
     read_settings(count, words, &study, &device, &csv);
     study.context = bench_context(device);
     /* A frame of open meshes warns of each. */
-    bench_try(skg_context_set_log(study.context, NULL, NULL), "context");
+    bench_try(skg_context_log_set(study.context, NULL, NULL), "context");
     study.csv = csv ? bench_open(csv) : NULL;
     if (study.csv) fprintf(study.csv, "part,what,triangles,series,value,unit\n");
     const int missed = paper_numbers(&study);

@@ -14,13 +14,13 @@ typedef struct {
 } way;
 
 static const way ways[] = {
-    {"half; closed", SKG_HALF, THORAX_CLOSED, 0},
-    {"single; closed", SKG_SINGLE, THORAX_CLOSED, 0},
-    {"double; closed", SKG_DOUBLE, THORAX_CLOSED, 0},
-    {"single; liver open; none", SKG_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_NONE},
-    {"single; liver open; neighbours", SKG_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_NEIGHBOURS},
-    {"single; liver open; exact", SKG_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_EXACT},
-    {"single; all open; neighbours", SKG_SINGLE, THORAX_ALL_OPEN, SKG_REPAIR_NEIGHBOURS},
+    {"half; closed", SKG_PRECISION_HALF, THORAX_CLOSED, 0},
+    {"single; closed", SKG_PRECISION_SINGLE, THORAX_CLOSED, 0},
+    {"double; closed", SKG_PRECISION_DOUBLE, THORAX_CLOSED, 0},
+    {"single; liver open; none", SKG_PRECISION_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_NONE},
+    {"single; liver open; neighbours", SKG_PRECISION_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_NEIGHBOURS},
+    {"single; liver open; exact", SKG_PRECISION_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_EXACT},
+    {"single; all open; neighbours", SKG_PRECISION_SINGLE, THORAX_ALL_OPEN, SKG_REPAIR_NEIGHBOURS},
 };
 enum { WAYS = sizeof ways / sizeof *ways, WAY_SINGLE = 1, WAY_DOUBLE = 2, WAY_ALL_OPEN = 6, PILOT = 3 };
 
@@ -126,11 +126,11 @@ static void find_errors(const paper_study *study, const picture *reference, pict
     skg_plan_report report;
     skg_channel_init(&channel);
     skg_plan_report_init(&report);
-    bench_try(skg_plan_channel(p->plan, 0, &channel), "plan");
-    bench_try(skg_plan_get_report(p->plan, &report), "plan");
+    bench_try(skg_plan_channel_get(p->plan, 0, &channel), "plan");
+    bench_try(skg_plan_report_get(p->plan, &report), "plan");
     p->worst = p->rms = 0;
     for (int64_t i = 0; i < count; i++) {
-        const double error = ((double)ours[i] - (double)truth[i]) / channel.open;
+        const double error = ((double)ours[i] - (double)truth[i]) / channel.flat_field;
         p->worst = fmax(p->worst, fabs(error));
         p->rms += error * error / (double)count;
     }
@@ -201,7 +201,7 @@ static void breathe(void *what) {
     if (f->job) bench_try(skg_job_wait(&f->job), "image");
     if (f->picture.plan)
         bench_try(skg_plan_submit(f->picture.plan, 1, NULL, &f->picture.output, &f->job), "image");
-    bench_try(skg_breath_at_phase(&breath, (double)(f->step++ % STEPS) / STEPS, &state), "breath");
+    bench_try(skg_breath_state_at_phase(&breath, (double)(f->step++ % STEPS) / STEPS, &state), "breath");
     bench_try(skg_body_pose(f->body, &state), "body");
 }
 

@@ -18,13 +18,13 @@ library *library_create(skg_context *context, const bench_shape *shape, const sk
     bench_try(skg_mesh_create_float(context, "shape", shape->vertices, shape->positions, 0, shape->triangles,
                                     shape->corners, 0, 1, &mesh),
               "mesh");
-    bench_try(skg_material_mu("water", 0.18, &water), "material"); /* 1/cm, about 80 keV */
+    bench_try(skg_material_create_mu("water", 0.18, &water), "material"); /* 1/cm, about 80 keV */
     bench_try(skg_scene_create(context, &scene), "scene");
     skg_part part;
     skg_part_init(&part);
     part.mesh = mesh, part.material = water;
     bench_try(skg_scene_add(scene, &part, NULL), "part");
-    bench_try(skg_spectrum_mono(80, 1, &beam), "beam");
+    bench_try(skg_spectrum_create_mono(80, 1, &beam), "beam");
     skg_plan_options options;
     skg_plan_options_init(&options);
     options.overlaps = 0;
@@ -42,7 +42,8 @@ library *library_create(skg_context *context, const bench_shape *shape, const sk
 void library_frame(void *contender) {
     library *self = contender;
     skg_job *job = NULL;
-    bench_try(skg_plan_lengths(self->plan, 0, SKG_SURFACE, 1, &self->frame, &self->output, &job), "lengths");
+    bench_try(skg_plan_lengths(self->plan, 0, SKG_LENGTHS_SURFACE, 1, &self->frame, &self->output, &job),
+              "lengths");
     bench_try(skg_job_wait(&job), "lengths");
 }
 

@@ -142,7 +142,7 @@ int main(int count, char **words) {
     skg_context *context = bench_context(set.device);
     skg_device_info device;
     skg_device_info_init(&device);
-    bench_try(skg_context_device(context, &device), "device");
+    bench_try(skg_context_device_get(context, &device), "device");
     printf("Device: %s (%s), %d compute units; threads of plain C and Embree: %d; PoCL's threads: %s.\n\n",
            device.name, device.version, (int)device.compute_units, set.threads, pinned);
     table rows = {0};

@@ -32,13 +32,13 @@ static int64_t parts;
 
 static void make_body(void) {
     check(skg_thorax_create(NULL, &thorax));
-    check(skg_thorax_size(thorax, &parts));
+    check(skg_thorax_part_count(thorax, &parts));
     check(skg_body_create(NULL, NULL, &body));
     for (int64_t i = 0; i < parts; i++) {
         skg_organ organ;
         skg_organ_init(&organ);
         skg_thorax_part_init(part + i);
-        check(skg_thorax_get_part(thorax, i, part + i));
+        check(skg_thorax_part_get(thorax, i, part + i));
         organ.mesh = part[i].mesh, organ.label = part[i].label, organ.inside = part[i].inside;
         check(skg_body_add(body, &organ, NULL));
     }
@@ -55,11 +55,11 @@ static void pose(double ribs, double belly) {
 /* Positions and corners of a part as it is posed; the caller frees both. */
 static int64_t read_mesh(const skg_mesh *mesh, double **positions, int32_t **corners, int64_t *triangles) {
     int64_t vertices;
-    check(skg_mesh_size(mesh, &vertices, triangles));
+    check(skg_mesh_count(mesh, &vertices, triangles));
     *positions = get((size_t)vertices * 3, sizeof **positions);
     *corners = get((size_t)*triangles * 3, sizeof **corners);
-    check(skg_mesh_read_positions(mesh, *positions, 0));
-    check(skg_mesh_read_triangles(mesh, *corners, 0));
+    check(skg_mesh_positions_get(mesh, *positions, 0));
+    check(skg_mesh_triangles_get(mesh, *corners, 0));
     return vertices;
 }
 

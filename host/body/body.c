@@ -119,7 +119,7 @@ skg_status skg_body_link(skg_body *body) {
     return SKG_OK;
 }
 
-skg_status skg_body_set_needle(skg_body *body, double withdrawn_mm) {
+skg_status skg_body_needle_set(skg_body *body, double withdrawn_mm) {
     if (!body || !isfinite(withdrawn_mm) || fabs(withdrawn_mm) > 1000)
         return skg_fail(SKG_ERR_BREATHING, "body: needle withdrawn by %g mm; at most 1000", withdrawn_mm);
     body->withdrawn = withdrawn_mm;

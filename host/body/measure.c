@@ -101,7 +101,7 @@ static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_bod
     m->broken_links += broken;
 }
 
-skg_status skg_body_get_measure(const skg_body *body, skg_body_measure *theirs) {
+skg_status skg_body_measure_get(const skg_body *body, skg_body_measure *theirs) {
     if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
     skg_body_measure m;
     skg_body_measure_init(&m);

@@ -93,13 +93,13 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
     SKG_TRY(take_links(given, o));
     const skg_tissue *t = &given->tissue;
     o->tissue = t->alpha_min == 0 && t->alpha_max == 0 && t->beta == 0 ? skg_tissue_of(o->label) : *t;
-    SKG_TRY(skg_mesh_size(o->mesh, &o->vertices, &o->triangles));
+    SKG_TRY(skg_mesh_count(o->mesh, &o->vertices, &o->triangles));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->rest));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->moved));
     SKG_TRY(skg_alloc(3 * o->triangles, sizeof(int32_t), o->label, &o->corner));
     SKG_TRY(skg_alloc(o->vertices, sizeof(int32_t), o->label, &o->node_of));
-    SKG_TRY(skg_mesh_read_positions(o->mesh, o->rest, 0));
-    SKG_TRY(skg_mesh_read_triangles(o->mesh, o->corner, 0));
+    SKG_TRY(skg_mesh_positions_get(o->mesh, o->rest, 0));
+    SKG_TRY(skg_mesh_triangles_get(o->mesh, o->corner, 0));
     for (int64_t i = 0; i < o->vertices; i++) {
         if (!skg_all_finite(o->rest + 3 * i, 3))
             return skg_fail(SKG_ERR_BREATHING, "%s: vertex %" PRId64 " is not finite", o->label, i);
@@ -112,7 +112,7 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
     SKG_TRY(skg_near_prepare(o));
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    SKG_TRY(skg_mesh_get_health(o->mesh, &health));
+    SKG_TRY(skg_mesh_health_get(o->mesh, &health));
     o->volume = health.volume;
     return take_centre(given, o);
 }

@@ -149,11 +149,11 @@ static skg_status write_mesh(skg_body_organ *o) {
     if (rests) {
         if (!o->changed) return SKG_OK;
         o->changed = 0;
-        return skg_mesh_write_positions(o->mesh, o->rest, 0);
+        return skg_mesh_positions_set(o->mesh, o->rest, 0);
     }
     float *offsets;
     const double *origin;
-    SKG_TRY(skg_mesh_positions(o->mesh, &offsets, &origin));
+    SKG_TRY(skg_mesh_offsets_get(o->mesh, &offsets, &origin));
     for (int64_t i = 0; i < o->vertices; i++)
         for (int k = 0; k < 3; k++) {
             float offset = (float)(o->rest[3 * i + k] - origin[k] + o->moved[3 * i + k]);
@@ -161,7 +161,7 @@ static skg_status write_mesh(skg_body_organ *o) {
             offsets[3 * i + k] = offset;
         }
     o->changed = 1;
-    return differs ? skg_mesh_moved(o->mesh) : SKG_OK;
+    return differs ? skg_mesh_offsets_moved(o->mesh) : SKG_OK;
 }
 
 static int is_of(const skg_body_organ *o, skg_role role, int stage) {
@@ -248,7 +248,7 @@ skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
         for (int step = 0; step < LOOP_STEPS; step++) {
             skg_breath_state state;
             skg_breath_state_init(&state);
-            SKG_TRY(skg_breath_at_phase(breath, (double)step / LOOP_STEPS, &state));
+            SKG_TRY(skg_breath_state_at_phase(breath, (double)step / LOOP_STEPS, &state));
             SKG_TRY(pose_all(body, state.thoracic, state.diaphragmatic));
             copy_memories(body, step, 1);
         }

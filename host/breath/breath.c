@@ -12,7 +12,7 @@ static const double pi = 3.14159265358979323846;
 
 void skg_breath_init(skg_breath *breath) {
     *breath = (skg_breath){.size = (int32_t)sizeof *breath,
-                           .waveform = SKG_BREATH_SINE,
+                           .waveform = SKG_WAVEFORM_SINE,
                            .exponent = 2,
                            .period_s = 4,
                            .expiration_ratio = 1.5,
@@ -34,7 +34,7 @@ skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
     for (int i = 0; i < COUNT; i++) {
         if (!skg_same_name(name ? name : "", names[i])) continue;
         skg_breath_init(breath);
-        breath->waveform = SKG_BREATH_ASYMMETRIC;
+        breath->waveform = SKG_WAVEFORM_ASYMMETRIC;
         breath->period_s = value[i].period_s;
         breath->thoracic = value[i].thoracic;
         breath->diaphragmatic = value[i].diaphragmatic;
@@ -81,7 +81,7 @@ static skg_status check_holds(const skg_breath *b) {
 }
 
 static skg_status check(const skg_breath *b) {
-    SKG_TRY(check_range("waveform", b->waveform, SKG_BREATH_SINE, SKG_BREATH_SAMPLED));
+    SKG_TRY(check_range("waveform", b->waveform, SKG_WAVEFORM_SINE, SKG_WAVEFORM_SAMPLED));
     SKG_TRY(check_range("exponent", b->exponent, 1, 8));
     SKG_TRY(check_range("period_s", b->period_s, 0.2, 60));
     SKG_TRY(check_range("start_phase", b->start_phase, 0, 1));
@@ -89,7 +89,7 @@ static skg_status check(const skg_breath *b) {
     SKG_TRY(check_range("thoracic", b->thoracic, 0, 4));
     SKG_TRY(check_range("diaphragmatic", b->diaphragmatic, 0, 4));
     SKG_TRY(check_range("thoracic_lag", b->thoracic_lag, -0.5, 0.5));
-    if (b->waveform == SKG_BREATH_SAMPLED) SKG_TRY(check_samples(b));
+    if (b->waveform == SKG_WAVEFORM_SAMPLED) SKG_TRY(check_samples(b));
     return check_holds(b);
 }
 
@@ -127,9 +127,9 @@ static double sampled(const skg_breath *b, double p) {
 
 /* Amplitude of the waveform at a phase from 0 to below 1. */
 static double waveform(const skg_breath *b, double p) {
-    if (b->waveform == SKG_BREATH_SINE) return 0.5 * (1 + cos(2 * pi * p));
-    if (b->waveform == SKG_BREATH_LUJAN) return pow(cos(pi * p), 2 * b->exponent);
-    if (b->waveform == SKG_BREATH_SAMPLED) return sampled(b, p);
+    if (b->waveform == SKG_WAVEFORM_SINE) return 0.5 * (1 + cos(2 * pi * p));
+    if (b->waveform == SKG_WAVEFORM_LUJAN) return pow(cos(pi * p), 2 * b->exponent);
+    if (b->waveform == SKG_WAVEFORM_SAMPLED) return sampled(b, p);
     double expiration = b->expiration_ratio / (1 + b->expiration_ratio);
     return p < expiration ? 0.5 * (1 + cos(pi * p / expiration))
                           : 0.5 * (1 - cos(pi * (p - expiration) / (1 - expiration)));
@@ -144,7 +144,7 @@ static skg_status fill(const skg_breath *b, double phase, skg_breath_state *thei
     return skg_struct_write(&state, sizeof state, "skg_breath_state", theirs);
 }
 
-skg_status skg_breath_at_phase(const skg_breath *breath, double phase, skg_breath_state *state) {
+skg_status skg_breath_state_at_phase(const skg_breath *breath, double phase, skg_breath_state *state) {
     skg_breath ours;
     skg_breath_init(&ours);
     SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
@@ -163,7 +163,7 @@ static double breathing_time(const skg_breath *b, double time) {
     return spent;
 }
 
-skg_status skg_breath_at_time(const skg_breath *breath, double time_s, skg_breath_state *state) {
+skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg_breath_state *state) {
     skg_breath ours;
     skg_breath_init(&ours);
     SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));

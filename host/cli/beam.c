@@ -55,7 +55,7 @@ static int read_filter(const char *text, beam *b) {
     memcpy(name, text, length);
     name[length] = '\0';
     skg_material **material = &b->materials[b->filter_count];
-    skg_status status = skg_material_named(name, material);
+    skg_status status = skg_material_create_named(name, material);
     if (status != SKG_OK) return cli_fail(status);
     b->filters[b->filter_count] = (skg_filter){*material, mm};
     b->filter_count++;
@@ -123,12 +123,13 @@ static skg_status make_spectrum(int32_t unit, beam *b) {
         b->tube.filter_count = b->filter_count;
         b->tube.log = cli_log;
         b->per_mas = pow(b->tube.distance_mm / 1000, 2) / b->tube.mas;
-        return skg_spectrum_tube(&b->tube, &b->spectrum);
+        return skg_spectrum_create_tube(&b->tube, &b->spectrum);
     }
     skg_spectrum *open = NULL;
     b->per_mas = (double)NAN;
-    skg_status status = skg_spectrum_file(b->file, energy_units[unit], &open);
-    if (status == SKG_OK) status = skg_spectrum_filtered(open, b->filter_count, b->filters, &b->spectrum);
+    skg_status status = skg_spectrum_load(b->file, energy_units[unit], &open);
+    if (status == SKG_OK)
+        status = skg_spectrum_create_filtered(open, b->filter_count, b->filters, &b->spectrum);
     skg_spectrum_release(&open);
     return status;
 }
@@ -143,7 +144,7 @@ static int make_beam(const cli_arguments *arguments, beam *b) {
         exit_status = read_filter(text, b);
     if (exit_status != CLI_DONE) return exit_status;
     skg_status status = make_spectrum(unit, b);
-    if (status == SKG_OK) status = skg_spectrum_quality(b->spectrum, &b->quality);
+    if (status == SKG_OK) status = skg_spectrum_quality_get(b->spectrum, &b->quality);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -161,7 +162,7 @@ static void describe(const beam *b, char *text, size_t size) {
                         authors[b->tube.model]);
     }
     for (int64_t i = 0; i < b->filter_count && used >= 0 && (size_t)used < size; i++) {
-        skg_material_name(b->materials[i], &name);
+        skg_material_name_get(b->materials[i], &name);
         used += snprintf(text + used, size - (size_t)used, "%s %g mm %s", i == 0 ? ";" : ",",
                          b->filters[i].mm, name);
     }
@@ -172,7 +173,7 @@ static void print_beam(const beam *b) {
     const skg_quality *q = &b->quality;
     int64_t bins = 0;
     describe(b, text, sizeof text);
-    skg_spectrum_size(b->spectrum, &bins);
+    skg_spectrum_bin_count(b->spectrum, &bins);
     printf("%s\n", text);
     printf("  mean energy   %.2f keV (%" PRId64 " energies)\n", q->mean_kev, bins);
     printf("  HVL1          %.4g mm Al   %.4g mm Cu\n", q->hvl1_mm_al, q->hvl1_mm_cu);
@@ -201,10 +202,10 @@ static json_t *beam_json(const beam *b) {
     json_object_set_new(object, "homogeneity", cli_json_number(q->homogeneity));
     json_object_set_new(object, "air_kerma_uGy_per_mAs_1m", cli_json_number(q->air_kerma_ugy * b->per_mas));
     json_object_set_new(object, "photons_per_mm2_mAs_1m", cli_json_number(q->photons * b->per_mas));
-    skg_spectrum_size(b->spectrum, &count);
+    skg_spectrum_bin_count(b->spectrum, &count);
     for (int64_t i = 0; i < count; i++) {
         double bin[2];
-        if (skg_spectrum_bin(b->spectrum, i, &bin[0], &bin[1]) == SKG_OK)
+        if (skg_spectrum_bin_get(b->spectrum, i, &bin[0], &bin[1]) == SKG_OK)
             json_array_append_new(bins, cli_json_numbers(bin, 2));
     }
     json_object_set_new(object, "bins", bins);
@@ -220,10 +221,10 @@ static char *beam_csv(const beam *b) {
     FILE *stream = open_memstream(&text, &size);
     if (!stream) return NULL;
     fprintf(stream, "energy (keV),photons%s\n", b->file ? "" : " per mm2");
-    skg_spectrum_size(b->spectrum, &count);
+    skg_spectrum_bin_count(b->spectrum, &count);
     for (int64_t i = 0; i < count; i++) {
         double kev, photons;
-        if (skg_spectrum_bin(b->spectrum, i, &kev, &photons) == SKG_OK)
+        if (skg_spectrum_bin_get(b->spectrum, i, &kev, &photons) == SKG_OK)
             fprintf(stream, "%.10g,%.10g\n", kev, photons);
     }
     if (fclose(stream) == 0) return text;
@@ -235,12 +236,12 @@ static char *beam_csv(const beam *b) {
 static void make_steps(const skg_spectrum *spectrum, int64_t count, double *x, double *y) {
     double width = HUGE_VAL, before = 0, kev = 0, photons = 0;
     for (int64_t i = 0; i < count; i++, before = kev) {
-        skg_spectrum_bin(spectrum, i, &kev, &photons);
+        skg_spectrum_bin_get(spectrum, i, &kev, &photons);
         if (i > 0) width = fmin(width, kev - before);
     }
     if (count == 1) width = 1;
     for (int64_t i = 0; i < count; i++) {
-        skg_spectrum_bin(spectrum, i, &kev, &photons);
+        skg_spectrum_bin_get(spectrum, i, &kev, &photons);
         x[4 * i] = x[4 * i + 1] = kev - width / 2;
         x[4 * i + 2] = x[4 * i + 3] = kev + width / 2;
         y[4 * i] = y[4 * i + 3] = 0;
@@ -254,7 +255,7 @@ static int write_outputs(const cli_arguments *arguments, const beam *b) {
     char title[512];
     int64_t count = 0;
     int exit_status;
-    skg_spectrum_size(b->spectrum, &count);
+    skg_spectrum_bin_count(b->spectrum, &count);
     double *x = calloc(4 * (size_t)count, sizeof *x), *y = calloc(4 * (size_t)count, sizeof *y);
     char *csv = beam_csv(b);
     if (x && y && csv) {

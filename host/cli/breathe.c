@@ -119,14 +119,14 @@ int cli_write_frame(cli_fluoroscopy *f, int which, const char *path) {
     skg_picture_init(&picture);
     for (int64_t i = 0; f->outline && i < f->pixels; i++)
         if (f->outline[i]) f->image[which][i] = (float)f->high;
-    picture.type = SKG_FLOAT32;
+    picture.type = SKG_TYPE_FLOAT32;
     picture.columns = f->session.view.columns;
     picture.rows = f->session.view.rows;
     picture.channels = 1;
     picture.data = f->image[which];
     picture.name = "attenuation";
     picture.unit = "-ln(I/I0)";
-    picture.quantity = SKG_ATTENUATION;
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
     picture.view = &f->session.view;
     picture.low = f->low;
     picture.high = f->high;
@@ -254,9 +254,9 @@ static int prepare(const cli_arguments *arguments, cli_fluoroscopy *f, sequence 
     double period = 0;
     int exit_status = cli_open_session(arguments, &f->session);
     if (exit_status != CLI_DONE) return exit_status;
-    f->session.options.quantity = SKG_ATTENUATION;
+    f->session.options.quantity = SKG_QUANTITY_ATTENUATION;
     skg_status status = skg_motion_create(f->session.context, f->session.setup, &f->motion);
-    if (status == SKG_OK) status = skg_motion_period(f->motion, &period);
+    if (status == SKG_OK) status = skg_motion_period_get(f->motion, &period);
     if (status != SKG_OK) return cli_fail(status);
     if (!(s->seconds > 0)) s->seconds = period;
     const double frames = is_one(s) ? 1 : fmax(1, floor(s->seconds * s->fps + 0.5));

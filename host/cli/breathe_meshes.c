@@ -58,7 +58,7 @@ static int write_ply(const char *path, int64_t vertices, const double *now, cons
 static int write_part(const cli_fluoroscopy *f, int64_t part, const char *label, const skg_mesh *mesh,
                       const char *folder, int64_t frame) {
     int64_t vertices = 0, triangles = 0;
-    skg_status status = skg_mesh_size(mesh, &vertices, &triangles);
+    skg_status status = skg_mesh_count(mesh, &vertices, &triangles);
     double *now = malloc((size_t)vertices * 6 * sizeof *now);
     int32_t *corners = malloc((size_t)triangles * 3 * sizeof *corners);
     char *path = cli_path_in(folder, "%s-%04" PRId64 ".ply", label, frame);
@@ -68,9 +68,9 @@ static int write_part(const cli_fluoroscopy *f, int64_t part, const char *label,
     } else {
         for (char *c = path + strlen(folder) + 1; *c; c++)
             if (*c == '/' || *c == ' ') *c = '-';
-        if (status == SKG_OK) status = skg_mesh_read_positions(mesh, now, 0);
-        if (status == SKG_OK) status = skg_motion_rest(f->motion, part, now + 3 * vertices);
-        if (status == SKG_OK) status = skg_mesh_read_triangles(mesh, corners, 0);
+        if (status == SKG_OK) status = skg_mesh_positions_get(mesh, now, 0);
+        if (status == SKG_OK) status = skg_motion_rest_get(f->motion, part, now + 3 * vertices);
+        if (status == SKG_OK) status = skg_mesh_triangles_get(mesh, corners, 0);
         exit_status = status != SKG_OK
                           ? cli_fail(status)
                           : write_ply(path, vertices, now, now + 3 * vertices, triangles, corners);
@@ -84,13 +84,13 @@ static int write_part(const cli_fluoroscopy *f, int64_t part, const char *label,
 int cli_write_meshes(const cli_fluoroscopy *f, const char *folder, int64_t frame) {
     int64_t parts = 0;
     int exit_status = CLI_DONE;
-    skg_status status = skg_scene_size(f->session.scene, &parts);
+    skg_status status = skg_scene_part_count(f->session.scene, &parts);
     for (int64_t p = 0; p < parts && status == SKG_OK && exit_status == CLI_DONE; p++) {
         skg_part part;
         int32_t moves = 0;
         skg_part_init(&part);
-        status = skg_scene_part(f->session.scene, p, &part);
-        if (status == SKG_OK) status = skg_motion_moves(f->motion, p, &moves);
+        status = skg_scene_part_get(f->session.scene, p, &part);
+        if (status == SKG_OK) status = skg_motion_part_moves(f->motion, p, &moves);
         if (status == SKG_OK && moves) exit_status = write_part(f, p, part.label, part.mesh, folder, frame);
     }
     return status == SKG_OK ? exit_status : cli_fail(status);

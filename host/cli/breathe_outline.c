@@ -51,14 +51,14 @@ int cli_find_outline(cli_fluoroscopy *f, const char *wanted) {
     f->outline = calloc((size_t)f->pixels, 1);
     if (!f->outline) return cli_error(CLI_DEVICE, "out of host memory for the outline");
     skg_status status = skg_motion_at_phase(f->motion, phase);
-    if (status == SKG_OK) status = skg_scene_size(f->session.scene, &parts);
+    if (status == SKG_OK) status = skg_scene_part_count(f->session.scene, &parts);
     for (int64_t p = 0; p < parts && status == SKG_OK; p++) {
         skg_part part;
         skg_job *job = NULL;
         skg_part_init(&part);
-        status = skg_scene_part(f->session.scene, p, &part);
+        status = skg_scene_part_get(f->session.scene, p, &part);
         if (status != SKG_OK || !is_wanted(part.label, wanted, length)) continue;
-        status = skg_plan_lengths(f->plan, p, SKG_SURFACE, 1, NULL, &output, &job);
+        status = skg_plan_lengths(f->plan, p, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job);
         if (status == SKG_OK) status = skg_job_wait(&job);
         if (status >= SKG_OK) add_border(f, f->image[0]);
         if (status > SKG_OK) status = SKG_OK;

@@ -53,14 +53,14 @@ void cli_sheet_add(const cli_fluoroscopy *f, int which, int64_t frame, int64_t f
 int cli_sheet_write(const cli_fluoroscopy *f, const cli_sheet *sheet, const char *path) {
     skg_picture picture;
     skg_picture_init(&picture);
-    picture.type = SKG_FLOAT32;
+    picture.type = SKG_TYPE_FLOAT32;
     picture.columns = sheet_columns(sheet);
     picture.rows = sheet_rows(sheet);
     picture.channels = 1;
     picture.data = sheet->values;
     picture.name = "attenuation";
     picture.unit = "-ln(I/I0)";
-    picture.quantity = SKG_ATTENUATION;
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
     picture.low = f->low;
     picture.high = f->high;
     skg_status status = skg_picture_write(&picture, path);

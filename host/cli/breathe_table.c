@@ -44,9 +44,9 @@ int cli_table_add(const cli_fluoroscopy *f, double time_s, cli_table *table) {
     skg_body *body = NULL;
     skg_motion_state_init(&s);
     skg_body_measure_init(&m);
-    skg_status status = skg_motion_get_state(f->motion, &s);
-    if (status == SKG_OK) status = skg_motion_body(f->motion, &body);
-    if (status == SKG_OK) status = skg_body_get_measure(body, &m);
+    skg_status status = skg_motion_state_get(f->motion, &s);
+    if (status == SKG_OK) status = skg_motion_body_get(f->motion, &body);
+    if (status == SKG_OK) status = skg_body_measure_get(body, &m);
     if (status != SKG_OK) return cli_fail(status);
     fprintf(table->stream,
             "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId64 ",%.9g,%" PRId64

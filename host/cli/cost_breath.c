@@ -22,7 +22,7 @@ static skg_status begin(breath *b, const cost_setting *setting) {
     snprintf(hysteresis, sizeof hysteresis, "Breathing.Hysteresis=%.17g", setting->hysteresis);
     snprintf(relaxation, sizeof relaxation, "Breathing.Relaxation=%d", (int)setting->relaxation);
     skg_status status = cost_load(b->study, 3, settings, &b->setup);
-    if (status == SKG_OK) status = skg_setup_scene(b->setup, &b->scene);
+    if (status == SKG_OK) status = skg_setup_scene_get(b->setup, &b->scene);
     if (status == SKG_OK) status = skg_motion_create(NULL, b->setup, &b->motion);
     if (status == SKG_OK) status = cost_plan(b->study, setting, b->scene, &b->plan);
     skg_output_init(&b->output);
@@ -53,18 +53,18 @@ static skg_status run(void *user) {
 /* Vertices of the parts that move, as they are: rows of x, y, z. positions NULL: they are counted only. */
 static skg_status read_positions(const breath *b, double *positions, int64_t *count) {
     int64_t parts = 0, vertices, triangles;
-    skg_status status = skg_scene_size(b->scene, &parts);
+    skg_status status = skg_scene_part_count(b->scene, &parts);
     *count = 0;
     for (int64_t i = 0; i < parts && status == SKG_OK; i++) {
         int32_t moves = 0;
         skg_part part;
         skg_part_init(&part);
-        status = skg_scene_part(b->scene, i, &part);
-        if (status == SKG_OK) status = skg_motion_moves(b->motion, i, &moves);
+        status = skg_scene_part_get(b->scene, i, &part);
+        if (status == SKG_OK) status = skg_motion_part_moves(b->motion, i, &moves);
         if (status != SKG_OK || !moves) continue;
-        status = skg_mesh_size(part.mesh, &vertices, &triangles);
+        status = skg_mesh_count(part.mesh, &vertices, &triangles);
         if (status == SKG_OK && positions)
-            status = skg_mesh_read_positions(part.mesh, positions + 3 * *count, 3);
+            status = skg_mesh_positions_get(part.mesh, positions + 3 * *count, 3);
         *count += vertices;
     }
     return status;

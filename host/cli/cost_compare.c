@@ -53,7 +53,7 @@ static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t
     skg_output_init(&output);
     output.type = type;
     output.data = data;
-    skg_status status = skg_plan_lengths(plan, part, SKG_SURFACE, 1, NULL, &output, &job);
+    skg_status status = skg_plan_lengths(plan, part, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job);
     if (status >= SKG_OK) status = skg_job_wait(&job);
     if (status >= SKG_OK) cost_widen(type, pixels, data);
     return status;
@@ -106,7 +106,7 @@ void cost_compare_lengths(cost_study *study, const cost_setting *reference, cost
     length_errors e = {.type = {cost_type(best.precision), cost_type(its.precision)}};
     e.data[0] = calloc((size_t)(2 * study->pixels), sizeof *e.data[0]);
     e.data[1] = e.data[0] + study->pixels;
-    skg_status status = e.data[0] ? skg_scene_size(study->session.scene, &e.parts) : SKG_ERR_MEMORY;
+    skg_status status = e.data[0] ? skg_scene_part_count(study->session.scene, &e.parts) : SKG_ERR_MEMORY;
     if (status >= SKG_OK) status = cost_plan(study, &best, NULL, &e.plan[0]);
     if (status >= SKG_OK) status = cost_plan(study, &its, NULL, &e.plan[1]);
     if (status >= SKG_OK) status = add_parts(study, &e);

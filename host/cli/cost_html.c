@@ -75,7 +75,7 @@ static int picture_json(const skg_picture *picture, json_t **uri) {
 
 static void begin_picture(const cost_study *study, const float *data, skg_picture *picture) {
     skg_picture_init(picture);
-    picture->type = SKG_FLOAT32;
+    picture->type = SKG_TYPE_FLOAT32;
     picture->columns = study->thumb_columns;
     picture->rows = study->thumb_rows;
     picture->channels = 1;
@@ -86,7 +86,7 @@ static void begin_picture(const cost_study *study, const float *data, skg_pictur
 static int levels_json(const cost_study *study, float *values, double low, double high, json_t **uri) {
     skg_picture picture;
     begin_picture(study, values, &picture);
-    picture.quantity = SKG_ATTENUATION;
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
     picture.low = low;
     picture.high = high;
     for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++) {
@@ -105,7 +105,7 @@ static int small_json(const cost_study *study, const cost_point *point, double *
     if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
     for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(point->small[i], LEAST_SHOWN));
     begin_picture(study, dense, &picture);
-    picture.quantity = SKG_ATTENUATION;
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
     skg_status status = *high > *low ? SKG_OK : skg_picture_range(&picture, low, high);
     if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* one value everywhere */
     int exit_status = status == SKG_OK ? levels_json(study, dense, *low, *high, uri) : cli_fail(status);

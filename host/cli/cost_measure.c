@@ -68,7 +68,7 @@ skg_status cost_time(const cost_study *study, cost_run run, void *user, cost_poi
 skg_status cost_report_plan(const skg_plan *plan, cost_point *point) {
     skg_plan_report report;
     skg_plan_report_init(&report);
-    skg_status status = skg_plan_get_report(plan, &report);
+    skg_status status = skg_plan_report_get(plan, &report);
     point->nodes = report.nodes;
     point->planes = report.planes;
     point->bins = report.bins;
@@ -76,11 +76,11 @@ skg_status cost_report_plan(const skg_plan *plan, cost_point *point) {
 }
 
 int32_t cost_type(int32_t precision) {
-    return precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
+    return precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
 }
 
 void cost_widen(int32_t type, int64_t count, double *values) {
-    for (int64_t i = count - 1; type == SKG_FLOAT32 && i >= 0; i--) {
+    for (int64_t i = count - 1; type == SKG_TYPE_FLOAT32 && i >= 0; i--) {
         float value;
         memcpy(&value, (const char *)values + (size_t)i * sizeof value, sizeof value);
         values[i] = (double)value;

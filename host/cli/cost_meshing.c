@@ -20,13 +20,13 @@ void cost_meshing_free(cost_meshing *meshing) {
 
 static skg_status count_triangles(const skg_scene *scene, int64_t *triangles) {
     int64_t parts = 0, vertices, its;
-    skg_status status = skg_scene_size(scene, &parts);
+    skg_status status = skg_scene_part_count(scene, &parts);
     *triangles = 0;
     for (int64_t i = 0; i < parts && status == SKG_OK; i++) {
         skg_part part;
         skg_part_init(&part);
-        status = skg_scene_part(scene, i, &part);
-        if (status == SKG_OK) status = skg_mesh_size(part.mesh, &vertices, &its);
+        status = skg_scene_part_get(scene, i, &part);
+        if (status == SKG_OK) status = skg_mesh_count(part.mesh, &vertices, &its);
         if (status == SKG_OK) *triangles += its;
     }
     return status;
@@ -34,12 +34,13 @@ static skg_status count_triangles(const skg_scene *scene, int64_t *triangles) {
 
 static int has_same_positions(const skg_mesh *a, const skg_mesh *b) {
     int64_t vertices = 0, others = 0, triangles;
-    if (skg_mesh_size(a, &vertices, &triangles) != SKG_OK || skg_mesh_size(b, &others, &triangles) != SKG_OK)
+    if (skg_mesh_count(a, &vertices, &triangles) != SKG_OK ||
+        skg_mesh_count(b, &others, &triangles) != SKG_OK)
         return 0;
     if (vertices != others) return 0;
     double *positions = calloc((size_t)(6 * vertices), sizeof *positions);
-    int same = positions && skg_mesh_read_positions(a, positions, 3) == SKG_OK &&
-               skg_mesh_read_positions(b, positions + 3 * vertices, 3) == SKG_OK &&
+    int same = positions && skg_mesh_positions_get(a, positions, 3) == SKG_OK &&
+               skg_mesh_positions_get(b, positions + 3 * vertices, 3) == SKG_OK &&
                memcmp(positions, positions + 3 * vertices, (size_t)(3 * vertices) * sizeof *positions) == 0;
     free(positions);
     return same;
@@ -50,7 +51,7 @@ static int has_same_positions(const skg_mesh *a, const skg_mesh *b) {
 enum { NOT_ROUND, SPHERE, CYLINDER };
 static const char *const keys[] = {NULL, "Sphere", "Cylinder"};
 
-/* Triangles of a sphere of so many sectors, as skg_mesh_sphere makes it. */
+/* Triangles of a sphere of so many sectors, as skg_mesh_create_sphere makes it. */
 static int64_t triangles_of_sphere(int64_t sectors) {
     const int64_t bands = sectors / 2 < 2 ? 2 : sectors / 2;
     return 2 * (bands - 1) * sectors;
@@ -63,18 +64,18 @@ static int is_round(const skg_mesh *mesh, int64_t *sectors) {
     skg_mesh *made = NULL;
     skg_status status = SKG_ERR_MESH;
     skg_mesh_health_init(&health);
-    if (skg_mesh_name(mesh, &name) != SKG_OK || skg_mesh_get_health(mesh, &health) != SKG_OK)
+    if (skg_mesh_name_get(mesh, &name) != SKG_OK || skg_mesh_health_get(mesh, &health) != SKG_OK)
         return NOT_ROUND;
     const int shape = strcmp(name, "sphere") == 0     ? SPHERE
                       : strcmp(name, "cylinder") == 0 ? CYLINDER
                                                       : NOT_ROUND;
     const double *high = health.bounds + 3;
     *sectors = health.triangles / 4;
-    if (shape == CYLINDER) status = skg_mesh_cylinder(high[0], 2 * high[2], *sectors, &made);
+    if (shape == CYLINDER) status = skg_mesh_create_cylinder(high[0], 2 * high[2], *sectors, &made);
     if (shape == SPHERE) {
         for (*sectors = 3; triangles_of_sphere(*sectors) < health.triangles; (*sectors)++) {
         }
-        status = skg_mesh_sphere(high[2], *sectors, &made);
+        status = skg_mesh_create_sphere(high[2], *sectors, &made);
     }
     const int same = status == SKG_OK && has_same_positions(mesh, made);
     skg_mesh_release(&made);
@@ -91,7 +92,7 @@ static char *setting_of(const skg_part *part, int64_t number, int shape, int64_t
     size_t size = 0;
     const char *name = "";
     FILE *stream = open_memstream(&text, &size);
-    if (!stream || skg_mesh_name(part->mesh, &name) != SKG_OK) return NULL;
+    if (!stream || skg_mesh_name_get(part->mesh, &name) != SKG_OK) return NULL;
     if (strcmp(part->label, name) == 0)
         fprintf(stream, "Samples.%" PRId64 ".", number);
     else
@@ -106,7 +107,7 @@ static char *setting_of(const skg_part *part, int64_t number, int shape, int64_t
 static skg_status scale_sectors(const cost_study *study, double factor, cost_meshing *meshing,
                                 int64_t *triangles) {
     int64_t parts = 0;
-    skg_status status = skg_scene_size(study->session.scene, &parts);
+    skg_status status = skg_scene_part_count(study->session.scene, &parts);
     *triangles = study->triangles;
     meshing->settings = calloc((size_t)parts, sizeof *meshing->settings);
     if (!meshing->settings) return SKG_ERR_MEMORY;
@@ -114,7 +115,7 @@ static skg_status scale_sectors(const cost_study *study, double factor, cost_mes
         int64_t sectors = 0;
         skg_part part;
         skg_part_init(&part);
-        status = skg_scene_part(study->session.scene, i, &part);
+        status = skg_scene_part_get(study->session.scene, i, &part);
         const int shape = status == SKG_OK ? is_round(part.mesh, &sectors) : NOT_ROUND;
         if (shape == NOT_ROUND || sectors < FEWEST_SECTORS) continue; /* a prism, for all that is known */
         const int64_t wanted = scaled(sectors, factor);
@@ -132,7 +133,7 @@ static skg_status load_round(const cost_study *study, int64_t triangles, cost_me
     skg_setup *setup = NULL;
     skg_status status =
         cost_load(study, meshing->setting_count, (const char *const *)meshing->settings, &setup);
-    if (status == SKG_OK) status = skg_setup_scene(setup, &meshing->scene);
+    if (status == SKG_OK) status = skg_setup_scene_get(setup, &meshing->scene);
     if (status == SKG_OK) status = skg_scene_retain(meshing->scene);
     if (status != SKG_OK) meshing->scene = NULL;
     skg_setup_release(&setup);
@@ -171,9 +172,9 @@ static skg_mesh *mesh_of(const skg_thorax *thorax, const char *label) {
     int64_t parts = 0;
     skg_thorax_part part;
     skg_thorax_part_init(&part);
-    if (skg_thorax_size(thorax, &parts) != SKG_OK) return NULL;
+    if (skg_thorax_part_count(thorax, &parts) != SKG_OK) return NULL;
     for (int64_t i = 0; i < parts; i++)
-        if (skg_thorax_get_part(thorax, i, &part) == SKG_OK && strcasecmp(part.label, label) == 0)
+        if (skg_thorax_part_get(thorax, i, &part) == SKG_OK && strcasecmp(part.label, label) == 0)
             return part.mesh;
     return NULL;
 }
@@ -184,7 +185,7 @@ static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
     skg_mesh_health healths[2];
     skg_mesh_health_init(&healths[0]);
     skg_mesh_health_init(&healths[1]);
-    if (skg_mesh_get_health(a, &healths[0]) != SKG_OK || skg_mesh_get_health(b, &healths[1]) != SKG_OK)
+    if (skg_mesh_health_get(a, &healths[0]) != SKG_OK || skg_mesh_health_get(b, &healths[1]) != SKG_OK)
         return 0;
     if (!healths[0].closed || !healths[1].closed) return 0;
     for (int k = 0; k < 6; k++)
@@ -209,11 +210,11 @@ static int is_thorax(const cost_study *study) {
     skg_part_init(&part);
     if (skg_scene_find(study->session.scene, "common bile duct", &id) != SKG_OK)
         return 0; /* saves the time */
-    if (make_thorax(study->triangles, &thorax) == SKG_OK) skg_thorax_size(thorax, &parts);
+    if (make_thorax(study->triangles, &thorax) == SKG_OK) skg_thorax_part_count(thorax, &parts);
     for (int64_t i = 0; i < parts; i++)
-        same += skg_thorax_get_part(thorax, i, &generated) == SKG_OK &&
+        same += skg_thorax_part_get(thorax, i, &generated) == SKG_OK &&
                 skg_scene_find(study->session.scene, generated.label, &id) == SKG_OK &&
-                skg_scene_part(study->session.scene, id, &part) == SKG_OK &&
+                skg_scene_part_get(study->session.scene, id, &part) == SKG_OK &&
                 has_same_bounds(part.mesh, generated.mesh);
     skg_thorax_release(&thorax);
     return parts > 0 && same == parts;
@@ -222,11 +223,11 @@ static int is_thorax(const cost_study *study) {
 /* The scene with every part that the thorax has too from there. */
 static skg_status take_thorax(const cost_study *study, const skg_thorax *thorax, skg_scene *scene) {
     int64_t parts = 0;
-    skg_status status = skg_scene_size(study->session.scene, &parts);
+    skg_status status = skg_scene_part_count(study->session.scene, &parts);
     for (int64_t i = 0; i < parts && status == SKG_OK; i++) {
         skg_part part;
         skg_part_init(&part);
-        status = skg_scene_part(study->session.scene, i, &part);
+        status = skg_scene_part_get(study->session.scene, i, &part);
         if (status != SKG_OK) break;
         skg_mesh *mesh = mesh_of(thorax, part.label);
         if (mesh) part.mesh = mesh;

@@ -34,7 +34,7 @@ static skg_status read_spectrum(const cost_study *study, int64_t bins, skg_spect
     skg_setup *setup = NULL;
     snprintf(setting, sizeof setting, "Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)bins);
     skg_status status = cost_load(study, 1, settings, &setup);
-    if (status == SKG_OK) status = skg_setup_spectrum(setup, spectrum);
+    if (status == SKG_OK) status = skg_setup_spectrum_get(setup, spectrum);
     if (status == SKG_OK) status = skg_spectrum_retain(*spectrum);
     skg_setup_release(&setup);
     return status;
@@ -71,13 +71,13 @@ static int look_at_scene(cost_study *study) {
     skg_channel_init(&channel);
     skg_status status = skg_plan_create(study->session.context, study->session.scene, &study->session.view,
                                         study->session.spectrum, options, &plan);
-    if (status == SKG_OK) status = skg_plan_get_report(plan, &report);
-    if (status == SKG_OK) status = skg_plan_channel(plan, 0, &channel);
-    study->open = channel.open;
-    study->has_open = report.open_parts > 0;
+    if (status == SKG_OK) status = skg_plan_report_get(plan, &report);
+    if (status == SKG_OK) status = skg_plan_channel_get(plan, 0, &channel);
+    study->open = channel.flat_field;
+    study->has_open = report.leaky_parts > 0;
     study->triangles = report.triangles;
     study->has_spot = options->spot && options->spot->shape != SKG_SPOT_POINT && options->spot->grid == 0 &&
-                      study->session.view.projection == SKG_POINT;
+                      study->session.view.projection == SKG_PROJECTION_POINT;
     study->own = (cost_setting){.precision = options->precision,
                                 .supersampling = options->supersampling,
                                 .tolerance = options->tolerance,
@@ -96,10 +96,10 @@ static int look_at_scene(cost_study *study) {
 static int look_at_beam(cost_study *study) {
     int64_t own = 0, finest = 0;
     skg_spectrum *spectrum = NULL;
-    skg_status status = skg_spectrum_size(study->session.spectrum, &own);
+    skg_status status = skg_spectrum_bin_count(study->session.spectrum, &own);
     if (status != SKG_OK) return cli_fail(status);
     study->has_tube = cost_spectrum(study, COST_FINEST_BINS, &spectrum) == SKG_OK;
-    if (study->has_tube) status = skg_spectrum_size(spectrum, &finest);
+    if (study->has_tube) status = skg_spectrum_bin_count(spectrum, &finest);
     study->has_energies = own > 1 || finest > 1;
     study->finest = finest > own ? COST_FINEST_BINS : 0;
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -108,7 +108,7 @@ static int look_at_beam(cost_study *study) {
 static int look_at_breath(cost_study *study) {
     int32_t breathes = 0;
     skg_body_options_init(&study->body);
-    skg_status status = skg_motion_options(study->session.setup, &breathes, &study->body);
+    skg_status status = skg_setup_body_options_get(study->session.setup, &breathes, &study->body);
     study->has_breath = breathes;
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -121,7 +121,7 @@ int cost_open(cost_study *study) {
     const skg_view *view = &study->session.view;
     int64_t side = view->columns > view->rows ? view->columns : view->rows;
     if (study->session.context) /* what there was to tell of the scene has been told */
-        skg_context_set_log(study->session.context, NULL, NULL);
+        skg_context_log_set(study->session.context, NULL, NULL);
     study->pixels = view->columns * view->rows;
     study->thumb_block = (side + THUMB - 1) / THUMB > 1 ? (side + THUMB - 1) / THUMB : 1;
     study->thumb_columns = (view->columns + study->thumb_block - 1) / study->thumb_block;

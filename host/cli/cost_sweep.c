@@ -36,20 +36,21 @@ static void add_rays(cost_study *study) {
     exact.tolerance = 0;
     exact.bins = study->finest;
     add(study, COST_SCENE, COST_OF_RAYS, study->own);
-    static const int32_t precisions[] = {SKG_HALF, SKG_SINGLE, SKG_DOUBLE};
+    static const int32_t precisions[] = {SKG_PRECISION_HALF, SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE};
     for (int i = 0; i < 2 + twice; i++) {
         exact.precision = precisions[i];
         add(study, COST_PRECISION, COST_OF_RAYS, exact);
     }
     if (!study->has_energies) return;
     cost_setting its = exact;
-    for (int32_t precision = SKG_SINGLE; precision <= (twice ? SKG_DOUBLE : SKG_SINGLE); precision++)
+    for (int32_t precision = SKG_PRECISION_SINGLE;
+         precision <= (twice ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE); precision++)
         for (int i = step - 1; i < 6; i += step) {
             its.precision = precision;
             its.tolerance = tolerances[i];
             add(study, COST_TOLERANCE, COST_OF_RAYS, its);
         }
-    its.precision = SKG_SINGLE;
+    its.precision = SKG_PRECISION_SINGLE;
     for (int i = 0; study->has_tube && i < 5; i += step) {
         if (!cost_has_bins(study, bins[i])) break; /* wider than the tube's model allows */
         its.bins = bins[i];
@@ -237,9 +238,9 @@ int cost_sweep(cost_study *study) {
     cost_setting best = study->own;
     best.tolerance = 0;
     best.bins = study->finest;
-    best.precision = study->session.device.has_double ? SKG_DOUBLE : SKG_SINGLE;
+    best.precision = study->session.device.has_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
     study->references[COST_OF_RAYS].setting = best;
-    if (best.precision == SKG_SINGLE)
+    if (best.precision == SKG_PRECISION_SINGLE)
         cost_note(study, "the device has no fp64: single precision is compared with itself");
     if (study->session.options.spot && study->session.options.spot->grid > 0)
         cost_note(study, "source samples are not swept: the scene fixes them by a grid");

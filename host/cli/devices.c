@@ -74,7 +74,7 @@ static int list_devices(int64_t count, const skg_device_info *best, int json) {
     for (int64_t i = 0; i < count; i++) {
         skg_device_info device;
         skg_device_info_init(&device);
-        skg_status status = skg_device_describe(i, &device);
+        skg_status status = skg_device_get(i, &device);
         if (status != SKG_OK) {
             json_decref(list);
             return cli_fail(status);

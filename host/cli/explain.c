@@ -24,7 +24,7 @@ static skg_status open_beam(const cli_session *session, skg_quality *quality) {
     const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
     skg_quality_init(quality);
-    const skg_status status = skg_spectrum_quality(session->spectrum, quality);
+    const skg_status status = skg_spectrum_quality_get(session->spectrum, quality);
     quality->air_kerma_ugy /= hypot(hypot(across[0], across[1]), across[2]); /* it was of photons per mm2 */
     return status;
 }
@@ -39,11 +39,11 @@ static json_t *open_beam_json(const cli_session *session) {
 static json_t *effects_json(const skg_plan *plan) {
     json_t *list = json_array();
     int64_t count = 0;
-    skg_plan_effects(plan, &count);
+    skg_plan_effect_count(plan, &count);
     for (int64_t i = 0; i < count; i++) {
         skg_effect effect;
         skg_effect_init(&effect);
-        if (skg_plan_effect(plan, i, &effect) != SKG_OK) break;
+        if (skg_plan_effect_get(plan, i, &effect) != SKG_OK) break;
         json_t *object = json_object();
         json_object_set_new(object, "name", cli_json_text(effect.name));
         json_object_set_new(object, "on", json_boolean(effect.on));
@@ -59,7 +59,7 @@ static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
     json_t *list = json_array();
     for (int64_t i = 0; i < nodes; i++) {
         double node[2];
-        if (skg_plan_node(plan, i, &node[0], &node[1], NULL) == SKG_OK)
+        if (skg_plan_node_get(plan, i, &node[0], &node[1], NULL) == SKG_OK)
             json_array_append_new(list, cli_json_numbers(node, 2));
     }
     return list;
@@ -69,11 +69,11 @@ static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
 static json_t *stages_json(const skg_plan *plan) {
     json_t *object = json_object();
     int64_t count = 0;
-    skg_plan_stages(plan, &count);
+    skg_plan_stage_count(plan, &count);
     for (int64_t i = 0; i < count; i++) {
         skg_stage stage;
         skg_stage_init(&stage);
-        if (skg_plan_stage(plan, i, &stage) != SKG_OK) break;
+        if (skg_plan_stage_get(plan, i, &stage) != SKG_OK) break;
         json_object_set_new(object, stage.name, cli_json_number(stage.ns));
     }
     return object;
@@ -82,17 +82,17 @@ static json_t *stages_json(const skg_plan *plan) {
 static const char *label_of(const skg_scene *scene, int64_t id) {
     skg_part part;
     skg_part_init(&part);
-    return skg_scene_part(scene, id, &part) == SKG_OK ? part.label : "?";
+    return skg_scene_part_get(scene, id, &part) == SKG_OK ? part.label : "?";
 }
 
 static json_t *overlaps_json(const skg_plan *plan, const skg_scene *scene) {
     json_t *list = json_array();
     int64_t count = 0;
-    skg_plan_overlaps(plan, &count);
+    skg_plan_overlap_count(plan, &count);
     for (int64_t i = 0; i < count; i++) {
         skg_overlap overlap;
         skg_overlap_init(&overlap);
-        if (skg_plan_overlap(plan, i, &overlap) != SKG_OK) break;
+        if (skg_plan_overlap_get(plan, i, &overlap) != SKG_OK) break;
         json_t *object = json_object();
         json_object_set_new(object, "part", cli_json_text(label_of(scene, overlap.part)));
         json_object_set_new(object, "other", cli_json_text(label_of(scene, overlap.other)));
@@ -118,7 +118,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     json_t *object = json_object();
     skg_plan_report_init(&report);
-    skg_plan_get_report(plan, &report);
+    skg_plan_report_get(plan, &report);
     json_object_set_new(object, "effects", effects_json(plan));
     json_object_set_new(object, "nodes", nodes_json(plan, report.nodes));
     json_object_set_new(object, "planes", json_integer(report.planes));
@@ -132,7 +132,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "device", cli_json_text(session->device.name));
     json_object_set_new(object, "device_bytes", json_integer(report.device_bytes));
     json_object_set_new(object, "parts", json_integer(report.parts));
-    json_object_set_new(object, "open_parts", json_integer(report.open_parts));
+    json_object_set_new(object, "leaky_parts", json_integer(report.leaky_parts));
     json_object_set_new(object, "triangles", json_integer(report.triangles));
     json_object_set_new(object, "vertices", json_integer(report.vertices));
     json_object_set_new(object, "bad_pixels", json_integer(report.bad_pixels));
@@ -157,12 +157,12 @@ static void print_cost(const skg_effect *effect) {
 
 static void print_effects(const skg_plan *plan) {
     int64_t count = 0;
-    skg_plan_effects(plan, &count);
+    skg_plan_effect_count(plan, &count);
     printf("\neffects, with what they cost: estimated, in frames of this scene without any\n");
     for (int64_t i = 0; i < count; i++) {
         skg_effect effect;
         skg_effect_init(&effect);
-        if (skg_plan_effect(plan, i, &effect) != SKG_OK) break;
+        if (skg_plan_effect_get(plan, i, &effect) != SKG_OK) break;
         printf("  %-3s %-22s", effect.on ? "on" : "off", effect.name);
         print_cost(&effect);
         printf("  %s\n", effect.reason);
@@ -171,12 +171,12 @@ static void print_effects(const skg_plan *plan) {
 
 static void print_stages(const skg_plan *plan) {
     int64_t count = 0;
-    if (skg_plan_stages(plan, &count) != SKG_OK || count == 0) return;
+    if (skg_plan_stage_count(plan, &count) != SKG_OK || count == 0) return;
     printf("\nmeasured on one frame, ms\n");
     for (int64_t i = 0; i < count; i++) {
         skg_stage stage;
         skg_stage_init(&stage);
-        if (skg_plan_stage(plan, i, &stage) != SKG_OK) break;
+        if (skg_plan_stage_get(plan, i, &stage) != SKG_OK) break;
         printf("  %-26s %.3f\n", stage.name, stage.ns * 1e-6);
     }
 }
@@ -189,7 +189,7 @@ static void print_nodes(const skg_plan *plan, const skg_plan_report *report) {
            report->bound, report->verified);
     for (int64_t i = 0; i < report->nodes; i++) {
         double kev, photons;
-        if (skg_plan_node(plan, i, &kev, &photons, NULL) != SKG_OK) break;
+        if (skg_plan_node_get(plan, i, &kev, &photons, NULL) != SKG_OK) break;
         printf("%s%8.6g: %-10.6g%s", i % 4 ? "" : "  ", kev, photons,
                i % 4 == 3 || i + 1 == report->nodes ? "\n" : "");
     }
@@ -198,12 +198,12 @@ static void print_nodes(const skg_plan *plan, const skg_plan_report *report) {
 static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
     enum { SHOWN = 10 };
     int64_t count = 0;
-    if (skg_plan_overlaps(plan, &count) != SKG_OK || count == 0) return;
+    if (skg_plan_overlap_count(plan, &count) != SKG_OK || count == 0) return;
     printf("\noverlaps (lengths add where parts overlap)\n");
     for (int64_t i = 0; i < count && i < SHOWN; i++) {
         skg_overlap overlap;
         skg_overlap_init(&overlap);
-        if (skg_plan_overlap(plan, i, &overlap) != SKG_OK) break;
+        if (skg_plan_overlap_get(plan, i, &overlap) != SKG_OK) break;
         printf("  %s %s %s: %.4g mm3, longest %.4g mm at (%.4g, %.4g, %.4g) mm\n",
                label_of(scene, overlap.part), overlap.protrudes ? "leaves its parent" : "overlaps",
                label_of(scene, overlap.other), overlap.volume, overlap.longest, overlap.place[0],
@@ -215,7 +215,7 @@ static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
 static void print_beam(const cli_session *session) {
     int64_t bins = 0;
     skg_quality quality;
-    skg_spectrum_size(session->spectrum, &bins);
+    skg_spectrum_bin_count(session->spectrum, &bins);
     printf("beam       ");
     if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
     if (open_beam(session, &quality) == SKG_OK)
@@ -238,9 +238,9 @@ static void print_strategy(const skg_plan_report *report) {
 void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     skg_plan_report_init(&report);
-    skg_plan_get_report(plan, &report);
+    skg_plan_report_get(plan, &report);
     printf("scene      %s: %" PRId64 " %s (%" PRId64 " open), %" PRId64 " triangles, %" PRId64 " vertices\n",
-           session->path, report.parts, skg_plural(report.parts, "part", "parts"), report.open_parts,
+           session->path, report.parts, skg_plural(report.parts, "part", "parts"), report.leaky_parts,
            report.triangles, report.vertices);
     printf("detector   %" PRId64 " x %" PRId64 " pixels\n", session->view.columns, session->view.rows);
     print_beam(session);
@@ -248,7 +248,7 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
            (double)report.device_bytes / (1024.0 * 1024.0));
     printf("precision  %s\n", cli_precision_names[report.precision]);
     print_strategy(&report);
-    const int64_t closed = report.parts - report.open_parts;
+    const int64_t closed = report.parts - report.leaky_parts;
     printf("planes     %" PRId64 " for %" PRId64 " %s, from %" PRId64 " %s of %" PRId64 " bits\n",
            report.planes, closed, skg_plural(closed, "part", "parts"), report.accumulators,
            skg_plural(report.accumulators, "accumulator", "accumulators"), report.plane_bits);

@@ -19,11 +19,11 @@ static cli_stage_times *find_stage(cli_times *times, const char *name) {
 
 static skg_status note_stages(const skg_plan *plan, cli_times *times) {
     int64_t count = 0;
-    skg_status status = skg_plan_stages(plan, &count);
+    skg_status status = skg_plan_stage_count(plan, &count);
     for (int64_t i = 0; status == SKG_OK && i < count; i++) {
         skg_stage stage;
         skg_stage_init(&stage);
-        status = skg_plan_stage(plan, i, &stage);
+        status = skg_plan_stage_get(plan, i, &stage);
         cli_stage_times *place = status == SKG_OK ? find_stage(times, stage.name) : NULL;
         if (place && place->count < times->repeats) place->ms[place->count++] = stage.ns * 1e-6;
     }

@@ -19,7 +19,7 @@ static const cli_flag flag_bands = {"--bands", "KEV,KEV,...",
                                     "photon-counting bands by their edges: a channel from each to the next"};
 
 /* "20,40,60" to edges. */
-static int read_bands(const cli_arguments *arguments, double edges[SKG_MOST_CHANNELS + 1], int64_t *bands) {
+static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_MAX + 1], int64_t *bands) {
     const char *value = cli_value(arguments, &flag_bands), *at = value;
     int64_t count = 0;
     while (at) {
@@ -29,8 +29,8 @@ static int read_bands(const cli_arguments *arguments, double edges[SKG_MOST_CHAN
             (count > 0 && !(edge > edges[count - 1])))
             return cli_error(CLI_USAGE, "--bands %s: \"%.*s\" is no energy in keV above the one before it",
                              value, (int)strcspn(at, ","), at);
-        if (count > SKG_MOST_CHANNELS)
-            return cli_error(CLI_USAGE, "--bands %s: more than %d bands", value, SKG_MOST_CHANNELS);
+        if (count > SKG_CHANNELS_MAX)
+            return cli_error(CLI_USAGE, "--bands %s: more than %d bands", value, SKG_CHANNELS_MAX);
         edges[count++] = edge;
         at = *end ? end + 1 : NULL;
     }
@@ -47,8 +47,8 @@ static skg_status one_image(skg_plan *plan, const skg_output *output, const void
 
 static int run(const cli_arguments *arguments) {
     cli_rendering rendering = {.arguments = arguments, .frame = one_image};
-    int32_t quantity = SKG_ENERGY, display = SKG_DISPLAY_RADIOGRAPH;
-    double edges[SKG_MOST_CHANNELS + 1];
+    int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH;
+    double edges[SKG_CHANNELS_MAX + 1];
     int64_t bands = 0;
     int exit_status = cli_choice(arguments, &flag_quantity, quantity_names, 5, &quantity);
     if (exit_status == CLI_DONE)

@@ -20,7 +20,7 @@ static skg_status one_buffer(skg_plan *plan, const skg_output *output, const voi
 }
 
 static int run(const cli_arguments *arguments) {
-    wanted_lengths wanted = {0, cli_given(arguments, &flag_surface) ? SKG_SURFACE : SKG_NET};
+    wanted_lengths wanted = {0, cli_given(arguments, &flag_surface) ? SKG_LENGTHS_SURFACE : SKG_LENGTHS_NET};
     cli_rendering rendering = {
         .arguments = arguments, .frame = one_buffer, .frame_user = &wanted, .lengths = 1};
     const char *label = cli_value(arguments, &flag_part);

@@ -76,30 +76,32 @@ static skg_status fill_row(const cli_matter *m, cli_matter_row *r) {
     if (m->has_parts) {
         skg_coefficients c;
         skg_coefficients_init(&c);
-        status = skg_material_coefficients(m->material, r->kev, &c);
+        status = skg_material_coefficients_get(m->material, r->kev, &c);
         const double process[CLI_PROCESSES] = {c.rayleigh, c.compton, c.photo, c.pair};
         memcpy(r->process, process, sizeof process);
         r->mu_rho = c.total;
     }
-    if (status == SKG_OK && m->has_per_cm) status = skg_material_attenuation(m->material, r->kev, &r->per_cm);
-    if (status == SKG_OK && m->has_per_cm) status = skg_material_to_hounsfield(m->material, r->kev, &r->hu);
-    if (status == SKG_OK && m->naive) status = skg_material_attenuation(m->naive, r->kev, &r->naive_per_cm);
+    if (status == SKG_OK && m->has_per_cm)
+        status = skg_material_attenuation_get(m->material, r->kev, &r->per_cm);
+    if (status == SKG_OK && m->has_per_cm) status = skg_material_hounsfield_get(m->material, r->kev, &r->hu);
+    if (status == SKG_OK && m->naive)
+        status = skg_material_attenuation_get(m->naive, r->kev, &r->naive_per_cm);
     return status;
 }
 
 static skg_status find_matter(const char *name, double density, cli_matter *m) {
     int64_t parts = 0;
-    skg_status status = skg_material_named(name, &m->material);
+    skg_status status = skg_material_create_named(name, &m->material);
     if (status == SKG_OK && density > 0) {
         skg_material *tabled = m->material;
         m->material = NULL;
-        status = skg_material_at_density(tabled, density, &m->material);
+        status = skg_material_create_at_density(tabled, density, &m->material);
         skg_material_release(&tabled);
     }
-    if (status == SKG_OK) status = skg_material_name(m->material, &m->name);
-    if (status == SKG_OK) status = skg_material_note(m->material, &m->note);
-    if (status == SKG_OK) status = skg_material_density(m->material, &m->density);
-    if (status == SKG_OK) status = skg_material_size(m->material, &parts);
+    if (status == SKG_OK) status = skg_material_name_get(m->material, &m->name);
+    if (status == SKG_OK) status = skg_material_note_get(m->material, &m->note);
+    if (status == SKG_OK) status = skg_material_density_get(m->material, &m->density);
+    if (status == SKG_OK) status = skg_material_element_count(m->material, &parts);
     m->has_parts = parts > 0;
     m->has_per_cm = m->density > 0 || !m->has_parts;
     return status;
@@ -112,8 +114,8 @@ static int find_naive(const cli_arguments *arguments, const char *name, cli_matt
     if (exit_status != CLI_DONE || interpolation < 0) return exit_status;
     double hu = strncasecmp(name, "HU:", 3) == 0 ? strtod(name + 3, &end) : (double)NAN;
     if (!end || *end) return cli_error(CLI_USAGE, "--naive goes with a Hounsfield number, HU:52");
-    skg_status status =
-        skg_material_naive_hounsfield(hu, interpolation == 0 ? SKG_BILINEAR : SKG_BILOGARITHMIC, &m->naive);
+    skg_status status = skg_material_create_naive_hounsfield(
+        hu, interpolation == 0 ? SKG_INTERPOLATION_BILINEAR : SKG_INTERPOLATION_BILOGARITHMIC, &m->naive);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -191,11 +193,11 @@ static int write_outputs(const cli_arguments *arguments, const cli_matter *m, in
 static int list_names(int json) {
     int64_t count = 0;
     json_t *list = json ? json_array() : NULL;
-    skg_material_names(&count);
+    skg_material_tabled_count(&count);
     for (int64_t i = 0; i < count; i++) {
         const char *name;
         double density;
-        if (skg_material_tabled(i, &name, &density) != SKG_OK) break;
+        if (skg_material_tabled_get(i, &name, &density) != SKG_OK) break;
         if (json) {
             json_t *object = json_object();
             json_object_set_new(object, "name", cli_json_text(name));

@@ -11,12 +11,12 @@ const char *const cli_processes[CLI_PROCESSES] = {"Rayleigh", "Compton", "photo"
 
 static void print_parts(const cli_matter *m) {
     int64_t count = 0;
-    skg_material_size(m->material, &count);
+    skg_material_element_count(m->material, &count);
     for (int64_t i = 0; i < count; i++) {
         int32_t z = 0;
         double fraction = 0;
         const char *symbol = "";
-        if (skg_material_part(m->material, i, &z, &fraction) != SKG_OK ||
+        if (skg_material_element_get(m->material, i, &z, &fraction) != SKG_OK ||
             skg_element_symbol(z, &symbol) != SKG_OK)
             break;
         printf("%s%s %.6g %%", i == 0 ? "  by mass: " : ", ", symbol, 100 * fraction);
@@ -27,9 +27,9 @@ static void print_parts(const cli_matter *m) {
 double *cli_matter_edges(const cli_matter *m, int64_t *count) {
     int64_t all = 0;
     *count = 0;
-    if (skg_material_edges(m->material, 0, NULL, &all) != SKG_OK) return NULL;
+    if (skg_material_edges_get(m->material, 0, NULL, &all) != SKG_OK) return NULL;
     double *edges = calloc((size_t)all + 1, sizeof *edges);
-    if (!edges || skg_material_edges(m->material, all, edges, &all) != SKG_OK) return edges;
+    if (!edges || skg_material_edges_get(m->material, all, edges, &all) != SKG_OK) return edges;
     for (int64_t i = 0; i < all; i++)
         if (edges[i] >= m->low && edges[i] <= m->high) edges[(*count)++] = edges[i];
     return edges;

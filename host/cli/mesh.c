@@ -64,7 +64,7 @@ static skg_status examine(const char *path, double unit_mm, skg_mesh_health *hea
     skg_mesh *mesh = NULL;
     skg_mesh_health_init(health);
     skg_status status = skg_mesh_load(NULL, path, unit_mm, &mesh);
-    if (status == SKG_OK) status = skg_mesh_get_health(mesh, health);
+    if (status == SKG_OK) status = skg_mesh_health_get(mesh, health);
     skg_mesh_release(&mesh);
     return status;
 }

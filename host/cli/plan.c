@@ -10,7 +10,7 @@ static int measure(skg_plan *plan, const skg_view *view) {
     int64_t channels = 1;
     skg_output output;
     skg_output_init(&output);
-    skg_status status = skg_plan_channels(plan, &channels);
+    skg_status status = skg_plan_channel_count(plan, &channels);
     if (status != SKG_OK) return cli_fail(status);
     output.data = calloc((size_t)(view->columns * view->rows * channels), sizeof(float));
     if (!output.data) return cli_error(CLI_DEVICE, "out of host memory for the image");

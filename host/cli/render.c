@@ -50,8 +50,8 @@ static void find_range(const skg_picture *picture, int64_t channel, double *low,
     int found = 0;
     *low = *high = 0;
     for (int64_t i = channel * pixels; i < (channel + 1) * pixels; i++) {
-        double value = picture->type == SKG_FLOAT64 ? ((const double *)picture->data)[i]
-                                                    : (double)((const float *)picture->data)[i];
+        double value = picture->type == SKG_TYPE_FLOAT64 ? ((const double *)picture->data)[i]
+                                                         : (double)((const float *)picture->data)[i];
         if (!isfinite(value)) continue;
         if (!found || value < *low) *low = value;
         if (!found || value > *high) *high = value;
@@ -90,17 +90,17 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
 static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
     skg_picture *picture = &rendering->picture;
     if (rendering->lengths) return CLI_DONE;
-    skg_status status = skg_plan_channels(plan, &picture->channels);
+    skg_status status = skg_plan_channel_count(plan, &picture->channels);
     for (int64_t c = 0; status == SKG_OK && c < picture->channels; c++) {
         skg_channel channel;
         skg_channel_init(&channel);
-        status = skg_plan_channel(plan, c, &channel);
+        status = skg_plan_channel_get(plan, c, &channel);
         if (status != SKG_OK) break;
         rendering->channel_names[c] = channel.name;
         if (c > 0) continue;
         picture->name = channel.name;
         picture->unit = channel.unit;
-        picture->open = channel.open;
+        picture->flat_field = channel.flat_field;
     }
     picture->channel_names = rendering->channel_names;
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -110,9 +110,9 @@ static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
 static int make_room(cli_rendering *rendering, skg_output *output) {
     const int64_t channels = rendering->picture.channels;
     const skg_view *view = &rendering->session.view;
-    int twice = rendering->session.options.precision == SKG_DOUBLE;
+    int twice = rendering->session.options.precision == SKG_PRECISION_DOUBLE;
     skg_output_init(output);
-    output->type = twice ? SKG_FLOAT64 : SKG_FLOAT32;
+    output->type = twice ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     output->data = calloc((size_t)(view->columns * view->rows * channels), twice ? 8 : 4);
     if (!output->data) return cli_error(CLI_DEVICE, "out of host memory for the image");
     rendering->picture.type = output->type;

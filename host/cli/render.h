@@ -11,7 +11,7 @@ typedef struct {
     cli_session session;
     cli_frame frame;
     const void *frame_user;
-    const char *channel_names[SKG_MOST_CHANNELS];
+    const char *channel_names[SKG_CHANNELS_MAX];
     int lengths;         /* 1: one channel, whatever the plan's images have */
     skg_picture picture; /* quantity and display, of lengths also name and unit; the rest is filled in here */
 } cli_rendering;

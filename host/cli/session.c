@@ -30,10 +30,10 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, cli
     if (status != SKG_OK) return cli_fail(status);
     skg_view_init(&session->view);
     skg_plan_options_init(&session->options);
-    status = skg_setup_scene(session->setup, &session->scene);
-    if (status == SKG_OK) status = skg_setup_spectrum(session->setup, &session->spectrum);
-    if (status == SKG_OK) status = skg_setup_view(session->setup, &session->view);
-    if (status == SKG_OK) status = skg_setup_options(session->setup, &session->options);
+    status = skg_setup_scene_get(session->setup, &session->scene);
+    if (status == SKG_OK) status = skg_setup_spectrum_get(session->setup, &session->spectrum);
+    if (status == SKG_OK) status = skg_setup_view_get(session->setup, &session->view);
+    if (status == SKG_OK) status = skg_setup_options_get(session->setup, &session->options);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

@@ -10,14 +10,14 @@ static const cli_flag flag_folder = {"-o", "DIR", "where to write; made where it
 static const cli_flag flag_triangles = {"--triangles", "N", "in all, about: 10000 to 20000000; 42000"};
 
 static int count_all(const skg_thorax *thorax, int64_t *parts, int64_t *triangles) {
-    skg_status status = skg_thorax_size(thorax, parts);
+    skg_status status = skg_thorax_part_count(thorax, parts);
     *triangles = 0;
     for (int64_t i = 0; i < *parts && status == SKG_OK; i++) {
         skg_thorax_part part;
         int64_t its_vertices, its;
         skg_thorax_part_init(&part);
-        status = skg_thorax_get_part(thorax, i, &part);
-        if (status == SKG_OK) status = skg_mesh_size(part.mesh, &its_vertices, &its);
+        status = skg_thorax_part_get(thorax, i, &part);
+        if (status == SKG_OK) status = skg_mesh_count(part.mesh, &its_vertices, &its);
         if (status == SKG_OK) *triangles += its;
     }
     return status == SKG_OK ? CLI_DONE : cli_fail(status);

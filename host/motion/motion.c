@@ -85,7 +85,7 @@ static skg_status find_lung(skg_motion *motion) {
     motion->lung_hu = (double)NAN;
     for (int64_t p = 0; p < scene->count && isnan(motion->lung_hu); p++)
         if (skg_label_begins(organ_of(motion, p)->label, "lung"))
-            SKG_TRY(skg_material_to_hounsfield(scene->parts[p].material, HU_KEV, &motion->lung_hu));
+            SKG_TRY(skg_material_hounsfield_get(scene->parts[p].material, HU_KEV, &motion->lung_hu));
     return SKG_OK;
 }
 
@@ -159,7 +159,7 @@ static double value_at(const skg_curve *curve, double time) {
 static skg_status pose(skg_motion *motion) {
     const skg_breathing_section *section = &motion->setup->breathing;
     if (!isnan(motion->needle_mm))
-        SKG_TRY(skg_body_set_needle(motion->body, motion->needle_mm - motion->state.needle_mm));
+        SKG_TRY(skg_body_needle_set(motion->body, motion->needle_mm - motion->state.needle_mm));
     SKG_TRY(skg_body_pose(motion->body, &motion->state.breath));
     motion->state.lung_density_ratio = section->lung_density ? skg_body_lung_ratio(motion->body) : 1;
     motion->state.lung_hu = skg_lung_hounsfield(motion->lung_hu, motion->state.lung_density_ratio);
@@ -172,7 +172,7 @@ skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
     if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_time: no motion");
     const skg_breathing_section *section = &motion->setup->breathing;
     skg_motion_state *state = &motion->state;
-    SKG_TRY(skg_breath_at_time(&section->breath, time_s, &state->breath));
+    SKG_TRY(skg_breath_state_at_time(&section->breath, time_s, &state->breath));
     state->time_s = time_s;
     state->needle_mm = section->needle.count ? value_at(&section->needle, time_s) : motion->needle_mm;
     if (section->weight.count) {
@@ -188,7 +188,7 @@ skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
 
 skg_status skg_motion_at_phase(skg_motion *motion, double phase) {
     if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_phase: no motion");
-    SKG_TRY(skg_breath_at_phase(&motion->setup->breathing.breath, phase, &motion->state.breath));
+    SKG_TRY(skg_breath_state_at_phase(&motion->setup->breathing.breath, phase, &motion->state.breath));
     motion->state.time_s = (double)NAN;
     motion->state.needle_mm = motion->needle_mm;
     for (int64_t k = 0; k < motion->matters; k++) motion->share[k] = 1;
@@ -200,48 +200,48 @@ skg_status skg_motion_fill(const skg_motion *motion, skg_frame *frame) {
     skg_frame ours;
     skg_frame_init(&ours);
     SKG_TRY(skg_struct_read(frame, "skg_frame", &ours, sizeof ours));
-    ours.matters = motion->matters;
-    ours.matter_ids = motion->ids;
-    ours.matter_density = motion->density;
-    ours.matter_share = motion->share;
+    ours.override_count = motion->matters;
+    ours.override_parts = motion->ids;
+    ours.density_ratios = motion->density;
+    ours.fill_fractions = motion->share;
     return skg_struct_write(&ours, sizeof ours, "skg_frame", frame);
 }
 
-skg_status skg_motion_get_state(const skg_motion *motion, skg_motion_state *state) {
-    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_get_state: no motion");
+skg_status skg_motion_state_get(const skg_motion *motion, skg_motion_state *state) {
+    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_state_get: no motion");
     return skg_struct_write(&motion->state, sizeof motion->state, "skg_motion_state", state);
 }
 
-skg_status skg_motion_period(const skg_motion *motion, double *period_s) {
-    if (!motion || !period_s) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_period: NULL");
+skg_status skg_motion_period_get(const skg_motion *motion, double *period_s) {
+    if (!motion || !period_s) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_period_get: NULL");
     *period_s = motion->setup->breathing.breath.period_s;
     return SKG_OK;
 }
 
-skg_status skg_motion_body(const skg_motion *motion, skg_body **body) {
-    if (!motion || !body) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_body: NULL");
+skg_status skg_motion_body_get(const skg_motion *motion, skg_body **body) {
+    if (!motion || !body) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_body_get: NULL");
     *body = motion->body;
     return SKG_OK;
 }
 
-skg_status skg_motion_options(const skg_setup *setup, int32_t *breathes, skg_body_options *options) {
-    if (!setup || !breathes) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_options: NULL");
+skg_status skg_setup_body_options_get(const skg_setup *setup, int32_t *breathes, skg_body_options *options) {
+    if (!setup || !breathes) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_body_options_get: NULL");
     SKG_TRY(
         skg_struct_write(&setup->breathing.body, sizeof setup->breathing.body, "skg_body_options", options));
     *breathes = setup->breathing.is_given;
     return SKG_OK;
 }
 
-skg_status skg_motion_moves(const skg_motion *motion, int64_t part, int32_t *moves) {
+skg_status skg_motion_part_moves(const skg_motion *motion, int64_t part, int32_t *moves) {
     if (!motion || !moves || part < 0 || part >= motion->setup->scene->count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_moves: no part %" PRId64, part);
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_part_moves: no part %" PRId64, part);
     *moves = organ_of(motion, part)->role != ROLE_STATIC;
     return SKG_OK;
 }
 
-skg_status skg_motion_rest(const skg_motion *motion, int64_t part, double *positions) {
+skg_status skg_motion_rest_get(const skg_motion *motion, int64_t part, double *positions) {
     if (!motion || !positions || part < 0 || part >= motion->setup->scene->count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_rest: no part %" PRId64, part);
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_rest_get: no part %" PRId64, part);
     const skg_body_organ *organ = organ_of(motion, part);
     memcpy(positions, organ->rest, (size_t)(3 * organ->vertices) * sizeof *positions);
     return SKG_OK;

@@ -54,11 +54,11 @@ static skg_status gather_mesh(const skg_mesh *mesh, const double low[3], const d
                               triangle_grid *grid) {
     skg_mesh_arrays a = {0};
     skg_status status = SKG_OK;
-    SKG_TRY(skg_mesh_size(mesh, &a.vertices, &a.triangles));
+    SKG_TRY(skg_mesh_count(mesh, &a.vertices, &a.triangles));
     SKG_TRY_CLEANUP(skg_alloc(3 * a.vertices, sizeof *a.positions, "thorax", &a.positions));
     SKG_TRY_CLEANUP(skg_alloc(3 * a.triangles, sizeof *a.corners, "thorax", &a.corners));
-    SKG_TRY_CLEANUP(skg_mesh_read_positions(mesh, a.positions, 0));
-    SKG_TRY_CLEANUP(skg_mesh_read_triangles(mesh, a.corners, 0));
+    SKG_TRY_CLEANUP(skg_mesh_positions_get(mesh, a.positions, 0));
+    SKG_TRY_CLEANUP(skg_mesh_triangles_get(mesh, a.corners, 0));
     SKG_TRY_CLEANUP(gather(&a, low, high, grid));
 cleanup:
     skg_mesh_arrays_free(&a);

@@ -115,13 +115,13 @@ void skg_thorax_release(skg_thorax **thorax) {
     skg_free(thorax);
 }
 
-skg_status skg_thorax_size(const skg_thorax *thorax, int64_t *parts) {
+skg_status skg_thorax_part_count(const skg_thorax *thorax, int64_t *parts) {
     if (!thorax || !parts) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
     *parts = thorax->parts;
     return SKG_OK;
 }
 
-skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number, skg_thorax_part *part) {
+skg_status skg_thorax_part_get(const skg_thorax *thorax, int64_t number, skg_thorax_part *part) {
     if (!thorax) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
     if (number < 0 || number >= thorax->parts)
         return skg_fail(SKG_ERR_ARGUMENT, "thorax: no part %" PRId64 "; 0 to %" PRId64, number,

@@ -1,8 +1,8 @@
 /* The key Beam of a source: energies, a file of them, or a tube. */
 #include "core/context.h"
 #include "core/units.h"
-#include "setup/setup.h"
 #include "core/vector.h"
+#include "setup/setup.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -53,7 +53,7 @@ static skg_status read_channel(const skg_json_node *node, double *energy_kev, do
     *energy_kev = energy * kev;
     /* One energy, to have its fault told in its own place. */
     skg_spectrum *check = NULL;
-    status = skg_spectrum_mono(*energy_kev, *photons, &check);
+    status = skg_spectrum_create_mono(*energy_kev, *photons, &check);
     skg_spectrum_release(&check);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
@@ -70,7 +70,7 @@ static skg_status read_channels(skg_setup *setup, const skg_json_node *node) {
         skg_json_node channel = skg_json_element(node, i);
         SKG_TRY_CLEANUP(read_channel(&channel, &energies[i], &photons[i]));
     }
-    SKG_TRY_CLEANUP(skg_spectrum_bins(count, energies, photons, &setup->spectrum));
+    SKG_TRY_CLEANUP(skg_spectrum_create_bins(count, energies, photons, &setup->spectrum));
 cleanup:
     skg_free(&energies);
     skg_free(&photons);
@@ -86,7 +86,7 @@ static skg_status read_file(skg_setup_reader *reader, const skg_json_object *bea
     SKG_TRY(skg_json_need(beam, "Unit", "\"keV\"", &unit_node));
     SKG_TRY(skg_json_text(&unit_node, &unit));
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
-    skg_status status = skg_spectrum_file(resolved, unit, &reader->setup->spectrum);
+    skg_status status = skg_spectrum_load(resolved, unit, &reader->setup->spectrum);
     skg_free(&resolved);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
@@ -149,10 +149,10 @@ static skg_status read_filter(const skg_json_node *node, filter_list *list) {
     skg_status status;
     if (json_is_integer(material.value)) {
         SKG_TRY(skg_json_integer(&material, 1, 92, &z));
-        status = skg_material_element((int32_t)z, place);
+        status = skg_material_create_element((int32_t)z, place);
     } else {
         SKG_TRY(skg_json_text(&material, &name));
-        status = skg_material_named(name, place);
+        status = skg_material_create_named(name, place);
     }
     if (status != SKG_OK) return skg_json_fail(&material, status, "%s", skg_last_error());
     list->filters[list->count] = (skg_filter){*place, thickness * mm};
@@ -212,7 +212,7 @@ static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
         if (status != SKG_OK) return skg_json_fail(&anode, status, "%s", skg_last_error());
     }
     if (model.value) SKG_TRY(skg_json_choice(&model, "model of a tube", models, 2, &choice));
-    tube->model = choice == 0 ? SKG_EBEL : SKG_BIRCH;
+    tube->model = choice == 0 ? SKG_TUBE_MODEL_EBEL : SKG_TUBE_MODEL_BIRCH;
     if (bins.value) {
         SKG_TRY(skg_json_integer(&bins, 2, 5000, &most));
         tube->bin_kev = fmax(1, tube->kvp / (double)most);
@@ -232,7 +232,7 @@ static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *bea
     SKG_TRY_CLEANUP(read_filters(beam, &list));
     tube.filters = list.filters;
     tube.filter_count = list.count;
-    status = skg_spectrum_tube(&tube, &reader->setup->spectrum);
+    status = skg_spectrum_create_tube(&tube, &reader->setup->spectrum);
     if (status != SKG_OK) status = skg_json_fail(beam->node, status, "%s", skg_last_error());
 cleanup:
     for (int64_t i = 0; i < MOST_FILTERS; i++) skg_material_release(&list.materials[i]);
@@ -262,7 +262,7 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
     double normal[3], way[3];
     skg_spectrum *placed = NULL;
     if (!setup->absolute) return SKG_OK;
-    if (view->projection != SKG_POINT)
+    if (view->projection != SKG_PROJECTION_POINT)
         return skg_json_fail(
             node, SKG_ERR_BEAM,
             "a parallel beam has no distance from the tube; leave out mAs, or use PointSource");
@@ -270,7 +270,7 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
     double area = skg_length(normal);
     skg_add_scaled(view->centre, -1, view->source, way);
     double distance = fabs(skg_dot(way, normal)) / area;
-    SKG_TRY(skg_spectrum_scaled(setup->spectrum, area * pow(1000 / distance, 2), &placed));
+    SKG_TRY(skg_spectrum_create_scaled(setup->spectrum, area * pow(1000 / distance, 2), &placed));
     skg_spectrum_release(&setup->spectrum);
     setup->spectrum = placed;
     skg_log(reader->context, SKG_LOG_NOTE,

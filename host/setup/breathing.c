@@ -47,7 +47,7 @@ static skg_status read_samples(skg_breathing_section *section, const skg_json_no
         SKG_TRY(skg_json_number(&sample, &section->samples[i]));
     }
     breath->samples = section->samples;
-    breath->waveform = SKG_BREATH_SAMPLED;
+    breath->waveform = SKG_WAVEFORM_SAMPLED;
     return SKG_OK;
 }
 

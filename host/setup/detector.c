@@ -1,5 +1,5 @@
-#include "setup/setup.h"
 #include "core/vector.h"
+#include "setup/setup.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,7 +56,7 @@ static skg_status read_axes(const skg_json_object *detector, const skg_view *vie
     skg_json_node right_node = skg_json_member(detector, "RightVector");
     if (right_node.value) return skg_json_direction(&right_node, right);
     double towards_source[3];
-    if (view->projection == SKG_PARALLEL_FROM_INFINITY)
+    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
         skg_scale_vector(-1, view->source, towards_source);
     else
         skg_add_scaled(view->source, -1, view->centre, towards_source);

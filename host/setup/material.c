@@ -41,14 +41,14 @@ static skg_status read_named(const skg_json_node *node, const char *before, skg_
         return skg_json_fail(node, SKG_ERR_FORMAT, "is too long for a material");
     strcpy(text, before);
     strcat(text, name);
-    skg_status status = skg_material_named(text, material);
+    skg_status status = skg_material_create_named(text, material);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
 
 static skg_status read_element(const skg_json_node *node, skg_material **material) {
     int32_t z = 0;
     SKG_TRY(read_z(node, &z));
-    return skg_material_element(z, material);
+    return skg_material_create_element(z, material);
 }
 
 /* [1, 0.112, 8, 0.888]: elements and fractions by mass. */
@@ -70,9 +70,9 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
         SKG_TRY(read_z(&element, &z[i / 2]));
         SKG_TRY(skg_json_number(&fraction, &fractions[i / 2]));
     }
-    skg_status status = skg_material_mixture(label, count / 2, z, fractions, 0, material);
+    skg_status status = skg_material_create_mixture(label, count / 2, z, fractions, 0, material);
     if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
-    SKG_TRY(skg_material_note(*material, &note));
+    SKG_TRY(skg_material_note_get(*material, &note));
     if (*note) {
         char place[256];
         skg_json_place(node, place, sizeof place);
@@ -85,14 +85,14 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
 static skg_status read_compound(const skg_json_node *node, skg_material **material) {
     const char *formula = NULL;
     SKG_TRY(skg_json_text(node, &formula));
-    if (skg_material_formula(formula, 0, material) == SKG_OK) return SKG_OK;
+    if (skg_material_create_formula(formula, 0, material) == SKG_OK) return SKG_OK;
     return read_named(node, "", material);
 }
 
 static skg_status read_hounsfield(const skg_json_node *node, skg_material **material) {
     double hu = 0;
     SKG_TRY(skg_json_number(node, &hu));
-    skg_status status = skg_material_hounsfield(hu, material);
+    skg_status status = skg_material_create_hounsfield(hu, material);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
 
@@ -104,7 +104,7 @@ static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path
     SKG_TRY(skg_json_text(path_node, &path));
     SKG_TRY(skg_json_text(unit_node, &unit));
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
-    skg_status status = skg_material_table_file(resolved, unit, material);
+    skg_status status = skg_material_load_table(resolved, unit, material);
     skg_free(&resolved);
     return status == SKG_OK ? SKG_OK : skg_json_fail(path_node, status, "%s", skg_last_error());
 }
@@ -133,7 +133,7 @@ static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node,
     if (kind == HU) return read_hounsfield(&value, material);
     if (kind == TABLE) return read_table(reader, &value, &unit, material);
     SKG_TRY(read_mu(&value, &per_cm));
-    skg_status status = skg_material_mu(label, per_cm, material);
+    skg_status status = skg_material_create_mu(label, per_cm, material);
     return status == SKG_OK ? SKG_OK : skg_json_fail(&value, status, "%s", skg_last_error());
 }
 
@@ -147,15 +147,15 @@ skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node
     if (density->value && !(g_cm3 > 0))
         return skg_json_fail(density, SKG_ERR_MATERIAL, "is %g; a density in g/cm3 is above 0", g_cm3);
     SKG_TRY(read_kind(reader, node, label, &made));
-    SKG_TRY_CLEANUP(skg_material_size(made, &elements));
-    SKG_TRY_CLEANUP(skg_material_density(made, &known));
+    SKG_TRY_CLEANUP(skg_material_element_count(made, &elements));
+    SKG_TRY_CLEANUP(skg_material_density_get(made, &known));
     if (elements == 0 ||
         (known > 0 && !density->value)) { /* given by its attenuation, or nothing to change */
         *material = made;
         return SKG_OK;
     }
     if (density->value)
-        status = skg_material_at_density(made, g_cm3, material);
+        status = skg_material_create_at_density(made, g_cm3, material);
     else
         status = skg_json_fail(node, SKG_ERR_MATERIAL,
                                "its density is not known; give \"Density\", in g/cm3, beside it");

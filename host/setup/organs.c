@@ -1,6 +1,6 @@
 /* The key Organs of a scene file's section Breathing. */
-#include "setup/setup.h"
 #include "core/vector.h"
+#include "setup/setup.h"
 
 #include <math.h>
 #include <string.h>

@@ -22,7 +22,7 @@ static skg_status read_file(skg_setup_reader *reader, const skg_json_node *node,
     char *resolved = NULL;
     SKG_TRY(skg_json_text(node, &path));
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
-    skg_status status = skg_response_file(resolved, unit, &reader->setup->response);
+    skg_status status = skg_response_load(resolved, unit, &reader->setup->response);
     skg_free(&resolved);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
@@ -42,7 +42,7 @@ static skg_status read_rows(skg_setup_reader *reader, const skg_json_node *node,
         energies[i] = pair[0] * kev;
         recorded[i] = pair[1] * kev;
     }
-    status = skg_response_table(count, energies, recorded, NULL, &reader->setup->response);
+    status = skg_response_create_table(count, energies, recorded, NULL, &reader->setup->response);
     if (status != SKG_OK) status = skg_json_fail(node, status, "%s", skg_last_error());
 cleanup:
     skg_free(&energies);
@@ -87,10 +87,11 @@ static skg_status make_scintillator(skg_setup_reader *reader, const skg_json_obj
         if (packing_node.value)
             return skg_json_fail(&packing_node, SKG_ERR_FORMAT,
                                  "has no meaning with a mass per area; leave it out");
-        status = skg_response_screen(material, thickness, &reader->setup->response);
+        status = skg_response_create_screen(material, thickness, &reader->setup->response);
     } else {
         SKG_TRY(skg_json_unit_of_length(&unit_node, &mm));
-        status = skg_response_scintillator(material, thickness * mm, packing, &reader->setup->response);
+        status =
+            skg_response_create_scintillator(material, thickness * mm, packing, &reader->setup->response);
     }
     return status == SKG_OK ? SKG_OK : skg_json_fail(object->node, status, "%s", skg_last_error());
 }

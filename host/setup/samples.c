@@ -75,7 +75,7 @@ static skg_status centre_mesh(const skg_mesh *mesh, double *pose) {
     skg_mesh_health health;
     double move[16];
     skg_mesh_health_init(&health);
-    SKG_TRY(skg_mesh_get_health(mesh, &health));
+    SKG_TRY(skg_mesh_health_get(mesh, &health));
     const double *b = health.bounds;
     skg_pose_translation(-0.5 * (b[0] + b[3]), -0.5 * (b[1] + b[4]), -0.5 * (b[2] + b[5]), move);
     skg_pose_multiply(pose, move, pose);
@@ -169,9 +169,9 @@ static skg_status read_parent(skg_scene *scene, const skg_json_node *samples, co
 static skg_status add_bounds(const skg_scene_part_data *part, double *bounds) {
     int64_t vertices = 0, triangles = 0;
     double *positions = NULL;
-    SKG_TRY(skg_mesh_size(part->mesh, &vertices, &triangles));
+    SKG_TRY(skg_mesh_count(part->mesh, &vertices, &triangles));
     SKG_TRY(skg_alloc(vertices, 3 * sizeof *positions, part->label, &positions));
-    skg_status status = skg_mesh_read_positions(part->mesh, positions, 3);
+    skg_status status = skg_mesh_positions_get(part->mesh, positions, 3);
     for (int64_t i = 0; status == SKG_OK && i < vertices; i++) {
         double x[3];
         skg_pose_point(part->pose, positions + 3 * i, x);
@@ -191,7 +191,7 @@ static skg_status move_all_to_centre(skg_scene *scene) {
         double pose[16];
         memcpy(pose, scene->parts[i].pose, sizeof pose);
         for (int k = 0; k < 3; k++) pose[4 * k + 3] -= 0.5 * (bounds[k] + bounds[3 + k]);
-        SKG_TRY(skg_scene_set_pose(scene, i, pose));
+        SKG_TRY(skg_scene_pose_set(scene, i, pose));
     }
     return SKG_OK;
 }

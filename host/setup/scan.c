@@ -1,6 +1,6 @@
 #include "core/pose.h"
-#include "setup/setup.h"
 #include "core/vector.h"
+#include "setup/setup.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,7 +63,7 @@ static void turn_view(skg_view *view, const skg_scan_section *scan, double degre
     skg_pose_rotation(-degrees * RADIANS, scan->axis, turn);
     double *points[] = {view->source, view->centre}, *steps[] = {view->column_step, view->row_step};
     for (int k = 0; k < 2; k++) {
-        int is_point = k == 1 || view->projection != SKG_PARALLEL_FROM_INFINITY;
+        int is_point = k == 1 || view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY;
         if (is_point) skg_add_scaled(points[k], -1, scan->centre, points[k]);
         skg_pose_point(turn, points[k], points[k]);
         if (is_point) skg_add_scaled(points[k], 1, scan->centre, points[k]);

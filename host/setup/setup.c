@@ -42,7 +42,7 @@ static skg_status read_version(const skg_json_object *top) {
 
 static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     static const char *const names[] = {"single", "double", "half"};
-    static const int32_t values[] = {SKG_SINGLE, SKG_DOUBLE, SKG_HALF};
+    static const int32_t values[] = {SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE, SKG_PRECISION_HALF};
     skg_json_node node = skg_json_member(top, "Precision");
     if (!node.value) return SKG_OK;
     int64_t choice = 0;
@@ -151,25 +151,26 @@ void skg_setup_release(skg_setup **setup) {
     skg_free(setup);
 }
 
-skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene) {
-    if (!setup || !scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_scene: no set-up or no result");
+skg_status skg_setup_scene_get(const skg_setup *setup, skg_scene **scene) {
+    if (!setup || !scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_scene_get: no set-up or no result");
     *scene = setup->scene;
     return SKG_OK;
 }
 
-skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum) {
-    if (!setup || !spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_spectrum: no set-up or no result");
+skg_status skg_setup_spectrum_get(const skg_setup *setup, skg_spectrum **spectrum) {
+    if (!setup || !spectrum)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_spectrum_get: no set-up or no result");
     *spectrum = setup->spectrum;
     return SKG_OK;
 }
 
-skg_status skg_setup_view(const skg_setup *setup, skg_view *view) {
-    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_view: no set-up");
+skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_view_get: no set-up");
     return skg_struct_write(&setup->view, sizeof setup->view, "skg_view", view);
 }
 
-skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options) {
-    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_options: no set-up");
+skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options) {
+    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_options_get: no set-up");
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;

@@ -11,8 +11,8 @@
 #ifndef SKG_SETUP_PRIVATE_H
 #define SKG_SETUP_PRIVATE_H
 
-#include "setup/json.h"
 #include "scene/scene.h"
+#include "setup/json.h"
 
 #include <skiagraph/breathing.h>
 #include <skiagraph/setup.h>

@@ -44,7 +44,7 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
                                   skg_mesh **mesh) {
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    SKG_TRY(skg_mesh_get_health(*mesh, &health));
+    SKG_TRY(skg_mesh_health_get(*mesh, &health));
     if (health.closed) {
         char place[256];
         skg_json_place(node, place, sizeof place);
@@ -57,11 +57,11 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
     int32_t *corners = NULL;
     skg_mesh *turned = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_mesh_name(*mesh, &name));
+    SKG_TRY_CLEANUP(skg_mesh_name_get(*mesh, &name));
     SKG_TRY_CLEANUP(skg_alloc(health.vertices, 3 * sizeof *positions, name, &positions));
     SKG_TRY_CLEANUP(skg_alloc(health.triangles, 3 * sizeof *corners, name, &corners));
-    SKG_TRY_CLEANUP(skg_mesh_read_positions(*mesh, positions, 3));
-    SKG_TRY_CLEANUP(skg_mesh_read_triangles(*mesh, corners, 3));
+    SKG_TRY_CLEANUP(skg_mesh_positions_get(*mesh, positions, 3));
+    SKG_TRY_CLEANUP(skg_mesh_triangles_get(*mesh, corners, 3));
     for (int64_t i = 0; i < health.triangles; i++) {
         int32_t second = corners[3 * i + 1];
         corners[3 * i + 1] = corners[3 * i + 2];
@@ -133,7 +133,8 @@ static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
         return skg_json_fail(node, SKG_ERR_UNSUPPORTED,
                              "a first step of another height than the others is not made yet; give the same "
                              "FirstStepHeight and OtherStepHeight");
-    skg_status status = skg_mesh_step_wedge(length[0], length[1], (double)steps * length[2], steps, mesh);
+    skg_status status =
+        skg_mesh_create_step_wedge(length[0], length[1], (double)steps * length[2], steps, mesh);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
 
@@ -161,10 +162,10 @@ static skg_status make(const skg_json_node *node, int shape, skg_mesh **mesh, do
         length[k] *= mm;
     }
     if (shape == CYLINDER) memcpy(own, Y_FROM_Z, sizeof Y_FROM_Z);
-    skg_status status = shape == CUBE     ? skg_mesh_cube(length[0], mesh)
-                        : shape == CUBOID ? skg_mesh_cuboid(length[0], length[1], length[2], mesh)
-                        : shape == SPHERE ? skg_mesh_sphere(length[0], sectors, mesh)
-                                          : skg_mesh_cylinder(length[1], length[0], sectors, mesh);
+    skg_status status = shape == CUBE     ? skg_mesh_create_cube(length[0], mesh)
+                        : shape == CUBOID ? skg_mesh_create_cuboid(length[0], length[1], length[2], mesh)
+                        : shape == SPHERE ? skg_mesh_create_sphere(length[0], sectors, mesh)
+                                          : skg_mesh_create_cylinder(length[1], length[0], sectors, mesh);
     return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
 

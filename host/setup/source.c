@@ -24,11 +24,11 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
         if (position.value)
             return skg_json_fail(&direction, SKG_ERR_FORMAT,
                                  "give either Position or Direction (a beam from infinity), not both");
-        setup->view.projection = SKG_PARALLEL_FROM_INFINITY;
+        setup->view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
         SKG_TRY(skg_json_direction(&direction, setup->view.source));
     } else {
         static const char *const example = "[0, -500, 0, \"mm\"]";
-        setup->view.projection = parallel ? SKG_PARALLEL : SKG_POINT;
+        setup->view.projection = parallel ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         SKG_TRY(skg_json_need(&source, "Position", example, &position));
         SKG_TRY(skg_json_lengths(&position, example, 3, setup->view.source));
     }

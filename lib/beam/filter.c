@@ -15,18 +15,18 @@ skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double ene
         if (!(isfinite(filters[i].mm) && filters[i].mm >= 0))
             return skg_fail(SKG_ERR_BEAM, "filter %" PRId64 " is %g mm thick; give at least 0", i + 1,
                             filters[i].mm);
-        SKG_TRY(skg_material_attenuation(filters[i].material, energy_kev, &per_cm));
+        SKG_TRY(skg_material_attenuation_get(filters[i].material, energy_kev, &per_cm));
         exponent += per_cm * filters[i].mm / 10;
     }
     *passed = exp(-exponent);
     return SKG_OK;
 }
 
-skg_status skg_spectrum_filtered(const skg_spectrum *spectrum, int64_t count, const skg_filter *filters,
-                                 skg_spectrum **behind) {
-    if (!behind) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_filtered: no place for the spectrum");
+skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, int64_t count,
+                                        const skg_filter *filters, skg_spectrum **behind) {
+    if (!behind) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_filtered: no place for the spectrum");
     *behind = NULL;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_filtered: no spectrum");
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_filtered: no spectrum");
     skg_spectrum *made = NULL;
     skg_status status = SKG_OK;
     double strongest = 0;

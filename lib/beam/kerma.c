@@ -77,7 +77,7 @@ skg_status skg_half_value_layers(const skg_spectrum *spectrum, const skg_materia
     SKG_TRY_CLEANUP(skg_alloc(l.count, sizeof(double), "half-value layer", &l.per_mm));
     for (int64_t i = 0; i < l.count; i++) {
         double per_cm = 0;
-        SKG_TRY_CLEANUP(skg_material_attenuation(material, spectrum->energy_kev[i], &per_cm));
+        SKG_TRY_CLEANUP(skg_material_attenuation_get(material, spectrum->energy_kev[i], &per_cm));
         l.per_mm[i] = per_cm / 10;
         l.kerma[i] = spectrum->photons[i] * skg_air_kerma(spectrum->energy_kev[i]);
     }

@@ -6,16 +6,16 @@ void skg_quality_init(skg_quality *quality) {
 
 static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first, double *second) {
     skg_material *metal = NULL;
-    SKG_TRY(skg_material_element(z, &metal));
+    SKG_TRY(skg_material_create_element(z, &metal));
     skg_status status = skg_half_value_layers(spectrum, metal, first, second);
     skg_material_release(&metal);
     return status;
 }
 
-skg_status skg_spectrum_quality(const skg_spectrum *spectrum, skg_quality *quality) {
+skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality) {
     enum { ALUMINIUM = 13, COPPER = 29 };
     if (!spectrum || !quality)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_quality: no spectrum or no result");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_quality_get: no spectrum or no result");
     skg_quality ours;
     skg_quality_init(&ours);
     for (int64_t i = 0; i < spectrum->count; i++) {

@@ -42,9 +42,9 @@ static skg_status copy(int64_t count, const double *from, double **to) {
     return SKG_OK;
 }
 
-skg_status skg_response_table(int64_t count, const double *energies_kev, const double *recorded_kev,
-                              const double *efficiency, skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_table: no place for the response");
+skg_status skg_response_create_table(int64_t count, const double *energies_kev, const double *recorded_kev,
+                                     const double *efficiency, skg_response **response) {
+    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_table: no place for the response");
     *response = NULL;
     SKG_TRY(check_table(count, energies_kev, recorded_kev, efficiency));
     skg_response *made = NULL;
@@ -62,16 +62,16 @@ cleanup:
     return status;
 }
 
-skg_status skg_response_file(const char *path, const char *unit, skg_response **response) {
+skg_status skg_response_load(const char *path, const char *unit, skg_response **response) {
     if (!path || !unit || !response)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_file: no path, unit or place for the response");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_load: no path, unit or place for the response");
     double kev = 1, *energies = NULL, *recorded = NULL;
     int64_t count = 0;
     *response = NULL;
     SKG_TRY(skg_unit_of_energy(unit, &kev));
     SKG_TRY(skg_read_columns(path, NULL, &count, &energies, &recorded));
     for (int64_t i = 0; i < count; i++) energies[i] *= kev, recorded[i] *= kev;
-    skg_status status = skg_response_table(count, energies, recorded, NULL, response);
+    skg_status status = skg_response_create_table(count, energies, recorded, NULL, response);
     skg_free(&energies);
     skg_free(&recorded);
     if (status == SKG_ERR_BEAM) return skg_fail(status, "%s: %s", path, skg_last_error());
@@ -82,10 +82,10 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
     skg_response *made = NULL;
     skg_material *own = NULL;
     double unused = 0, density = 0;
-    SKG_TRY(skg_material_density(material, &density));
-    SKG_TRY(skg_material_attenuation(material, 60, &unused)); /* a density is known */
+    SKG_TRY(skg_material_density_get(material, &density));
+    SKG_TRY(skg_material_attenuation_get(material, 60, &unused)); /* a density is known */
     /* A material of its own, since the caller's is not ours to retain. */
-    SKG_TRY(skg_material_at_density(material, density, &own));
+    SKG_TRY(skg_material_create_at_density(material, density, &own));
     skg_status status = skg_alloc(1, sizeof *made, "energy response", &made);
     if (status != SKG_OK) {
         skg_material_release(&own);
@@ -98,9 +98,10 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
     return SKG_OK;
 }
 
-skg_status skg_response_scintillator(const skg_material *material, double mm, double packing,
-                                     skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_scintillator: no place for the response");
+skg_status skg_response_create_scintillator(const skg_material *material, double mm, double packing,
+                                            skg_response **response) {
+    if (!response)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_scintillator: no place for the response");
     *response = NULL;
     if (!(isfinite(mm) && mm > 0))
         return skg_fail(SKG_ERR_BEAM, "a scintillator of %g mm is not usable; give a thickness above 0", mm);
@@ -110,13 +111,13 @@ skg_status skg_response_scintillator(const skg_material *material, double mm, do
     return make_layer(material, mm * packing, response);
 }
 
-skg_status skg_response_screen(const skg_material *material, double mg_cm2, skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_screen: no place for the response");
+skg_status skg_response_create_screen(const skg_material *material, double mg_cm2, skg_response **response) {
+    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_screen: no place for the response");
     *response = NULL;
     double density = 0;
     if (!(isfinite(mg_cm2) && mg_cm2 > 0))
         return skg_fail(SKG_ERR_BEAM, "a screen of %g mg/cm2 is not usable; give a mass above 0", mg_cm2);
-    SKG_TRY(skg_material_density(material, &density));
+    SKG_TRY(skg_material_density_get(material, &density));
     if (!(density > 0)) return make_layer(material, 1, response); /* fails, and says why */
     return make_layer(material, mg_cm2 / 1000 / density * 10, response);
 }
@@ -159,8 +160,8 @@ static skg_status look_up(const skg_response *r, double energy_kev, double *reco
     return SKG_OK;
 }
 
-skg_status skg_response_at(const skg_response *response, double energy_kev, double oblique,
-                           double *recorded_kev, double *efficiency) {
+skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
+                            double *recorded_kev, double *efficiency) {
     double recorded = energy_kev, seen = 1;
     if (!(energy_kev > 0))
         return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV is not usable", energy_kev);
@@ -170,7 +171,7 @@ skg_status skg_response_at(const skg_response *response, double energy_kev, doub
         SKG_TRY(look_up(response, energy_kev, &recorded, &seen));
     } else if (response) {
         double per_cm = 0;
-        SKG_TRY(skg_material_attenuation(response->material, energy_kev, &per_cm));
+        SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
         seen = -expm1(-per_cm * response->mm / 10 * oblique);
         recorded = energy_kev * seen;
     }

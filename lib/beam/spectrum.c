@@ -26,8 +26,8 @@ static skg_status check_energy(double energy_kev) {
                     SKG_LOWEST_KEV, SKG_HIGHEST_KEV);
 }
 
-skg_status skg_spectrum_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_mono: no place for the spectrum");
+skg_status skg_spectrum_create_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_mono: no place for the spectrum");
     *spectrum = NULL;
     SKG_TRY(check_energy(energy_kev));
     if (!(isfinite(photons) && photons > 0))
@@ -61,9 +61,9 @@ static int64_t merge(int64_t count, bin *bins) {
     return used;
 }
 
-skg_status skg_spectrum_bins(int64_t count, const double *energies_kev, const double *photons,
-                             skg_spectrum **spectrum) {
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bins: no place for the spectrum");
+skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, const double *photons,
+                                    skg_spectrum **spectrum) {
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_bins: no place for the spectrum");
     *spectrum = NULL;
     if (count < 1 || !energies_kev || !photons)
         return skg_fail(SKG_ERR_BEAM, "a spectrum has at least one energy");
@@ -87,10 +87,10 @@ skg_status skg_spectrum_bins(int64_t count, const double *energies_kev, const do
     return status;
 }
 
-skg_status skg_spectrum_scaled(const skg_spectrum *spectrum, double factor, skg_spectrum **scaled) {
-    if (!scaled) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_scaled: no place for the spectrum");
+skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor, skg_spectrum **scaled) {
+    if (!scaled) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_scaled: no place for the spectrum");
     *scaled = NULL;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_scaled: no spectrum");
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_scaled: no spectrum");
     if (!(isfinite(factor) && factor > 0))
         return skg_fail(SKG_ERR_BEAM, "a spectrum times %g makes no beam; give a factor above 0", factor);
     SKG_TRY(skg_spectrum_make(spectrum->count, scaled));
@@ -117,18 +117,19 @@ void skg_spectrum_release(skg_spectrum **spectrum) {
     *spectrum = NULL;
 }
 
-skg_status skg_spectrum_size(const skg_spectrum *spectrum, int64_t *count) {
-    if (!spectrum || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_size: no spectrum or no result");
+skg_status skg_spectrum_bin_count(const skg_spectrum *spectrum, int64_t *count) {
+    if (!spectrum || !count)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin_count: no spectrum or no result");
     *count = spectrum->count;
     return SKG_OK;
 }
 
-skg_status skg_spectrum_bin(const skg_spectrum *spectrum, int64_t index, double *energy_kev,
-                            double *photons) {
+skg_status skg_spectrum_bin_get(const skg_spectrum *spectrum, int64_t index, double *energy_kev,
+                                double *photons) {
     if (!spectrum || !energy_kev || !photons)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin: no spectrum or no result");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin_get: no spectrum or no result");
     if (index < 0 || index >= spectrum->count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin: energy %" PRId64 " of %" PRId64, index,
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin_get: energy %" PRId64 " of %" PRId64, index,
                         spectrum->count);
     *energy_kev = spectrum->energy_kev[index];
     *photons = spectrum->photons[index];

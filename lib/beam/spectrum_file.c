@@ -21,9 +21,9 @@ static skg_status find_word(const char *path, const char **word) {
     return SKG_OK;
 }
 
-skg_status skg_spectrum_file(const char *path, const char *unit, skg_spectrum **spectrum) {
+skg_status skg_spectrum_load(const char *path, const char *unit, skg_spectrum **spectrum) {
     if (!path || !unit || !spectrum)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_file: no path, unit or place for the spectrum");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_load: no path, unit or place for the spectrum");
     const char *word = NULL;
     double kev = 1, *energies = NULL, *photons = NULL;
     int64_t count = 0;
@@ -32,7 +32,7 @@ skg_status skg_spectrum_file(const char *path, const char *unit, skg_spectrum **
     SKG_TRY(find_word(path, &word));
     SKG_TRY(skg_read_columns(path, word, &count, &energies, &photons));
     for (int64_t i = 0; i < count; i++) energies[i] *= kev;
-    skg_status status = skg_spectrum_bins(count, energies, photons, spectrum);
+    skg_status status = skg_spectrum_create_bins(count, energies, photons, spectrum);
     skg_free(&energies);
     skg_free(&photons);
     if (status == SKG_ERR_BEAM) return skg_fail(status, "%s: %s", path, skg_last_error());

@@ -29,8 +29,10 @@ static skg_status check_value(const char *what, double value, double lowest, dou
 
 static skg_status check_tube(const skg_tube *tube) {
     const char *symbol;
-    if (tube->model != SKG_EBEL && tube->model != SKG_BIRCH)
-        return skg_fail(SKG_ERR_BEAM, "tube model %" PRId32 " is not known; give SKG_EBEL or SKG_BIRCH",
+    if (tube->model != SKG_TUBE_MODEL_EBEL && tube->model != SKG_TUBE_MODEL_BIRCH)
+        return skg_fail(SKG_ERR_BEAM,
+                        "tube model %" PRId32
+                        " is not known; give SKG_TUBE_MODEL_EBEL or SKG_TUBE_MODEL_BIRCH",
                         tube->model);
     SKG_TRY(check_value("a tube voltage", tube->kvp, 10, 450, "kV"));
     SKG_TRY(check_value("an anode angle", tube->angle_deg, 3, 60, "degrees"));
@@ -71,7 +73,7 @@ static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spec
     for (int64_t i = 0; i < count; i++) {
         double low = first + (double)i * w, high = fmin(low + w, tube->kvp), middle = (low + high) / 2;
         s->energy_kev[i] = middle;
-        s->photons[i] = (high - low) * (model == SKG_EBEL
+        s->photons[i] = (high - low) * (model == SKG_TUBE_MODEL_EBEL
                                             ? continuum_factor(tube->kvp) * skg_ebel_continuum(&anode, middle)
                                             : skg_birch_continuum(&anode, middle));
     }
@@ -96,9 +98,9 @@ static skg_status hardened(const skg_spectrum *spectrum, double *kerma, double *
     skg_spectrum *behind = NULL;
     double second = 0;
     skg_status status = SKG_OK;
-    SKG_TRY(skg_material_element(13, &aluminium));
+    SKG_TRY(skg_material_create_element(13, &aluminium));
     filter.material = aluminium;
-    SKG_TRY_CLEANUP(skg_spectrum_filtered(spectrum, 1, &filter, &behind));
+    SKG_TRY_CLEANUP(skg_spectrum_create_filtered(spectrum, 1, &filter, &behind));
     *kerma = skg_spectrum_kerma(behind);
     if (hvl) SKG_TRY_CLEANUP(skg_half_value_layers(behind, aluminium, hvl, &second));
 cleanup:
@@ -111,11 +113,11 @@ cleanup:
 static skg_status unfiltered(const skg_tube *tube, skg_spectrum **spectrum) {
     SKG_TRY(shape(tube, tube->model, spectrum));
     skg_status status = SKG_OK;
-    if (tube->model == SKG_BIRCH) {
+    if (tube->model == SKG_TUBE_MODEL_BIRCH) {
         skg_spectrum *reference = NULL;
         double own = 0, wanted = 0;
         SKG_TRY_CLEANUP(hardened(*spectrum, &own, NULL));
-        SKG_TRY_CLEANUP(shape(tube, SKG_EBEL, &reference));
+        SKG_TRY_CLEANUP(shape(tube, SKG_TUBE_MODEL_EBEL, &reference));
         status = hardened(reference, &wanted, NULL);
         skg_spectrum_release(&reference);
         if (status != SKG_OK) goto cleanup;
@@ -142,7 +144,7 @@ static skg_status warn(const skg_tube *tube, const skg_spectrum *open, const skg
     double kerma = 0, needed = 0, hvl = 0, second = 0;
     skg_material *aluminium = NULL;
     SKG_TRY(hardened(open, &kerma, &needed));
-    SKG_TRY(skg_material_element(13, &aluminium));
+    SKG_TRY(skg_material_create_element(13, &aluminium));
     skg_status status = skg_half_value_layers(behind, aluminium, &hvl, &second);
     skg_material_release(&aluminium);
     if (status == SKG_OK && hvl < needed * (1 - 1e-9))
@@ -154,22 +156,22 @@ static skg_status warn(const skg_tube *tube, const skg_spectrum *open, const skg
     return status;
 }
 
-skg_status skg_spectrum_tube(const skg_tube *tube, skg_spectrum **spectrum) {
+skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectrum) {
     skg_tube ours;
     skg_spectrum *open = NULL, *behind = NULL;
     skg_status status = SKG_OK;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_tube: no place for the spectrum");
+    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_tube: no place for the spectrum");
     *spectrum = NULL;
     skg_tube_init(&ours);
     SKG_TRY(skg_struct_read(tube, "skg_tube", &ours, sizeof ours));
     SKG_TRY(check_tube(&ours));
     SKG_TRY(unfiltered(&ours, &open));
-    SKG_TRY_CLEANUP(skg_spectrum_filtered(open, ours.filter_count, ours.filters, &behind));
+    SKG_TRY_CLEANUP(skg_spectrum_create_filtered(open, ours.filter_count, ours.filters, &behind));
     SKG_TRY_CLEANUP(warn(&ours, open, behind));
     double scale = ours.mas * ours.pixel_mm2 * pow(1000 / ours.distance_mm, 2);
     if (ours.output_ugy_mas > 0)
         scale *= ours.output_ugy_mas * pow(ours.output_at_mm / 1000, 2) / skg_spectrum_kerma(behind);
-    status = skg_spectrum_scaled(behind, scale, spectrum);
+    status = skg_spectrum_create_scaled(behind, scale, spectrum);
 cleanup:
     skg_spectrum_release(&open);
     skg_spectrum_release(&behind);

@@ -14,7 +14,7 @@ void skg_log(skg_context *context, int32_t level, const char *format, ...) {
     context->log(level, sentence, context->log_user);
 }
 
-skg_status skg_context_set_log(skg_context *context, skg_log_function log, void *user) {
+skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user) {
     SKG_TRY(skg_context_enter(context));
     context->log = log;
     context->log_user = user;

@@ -89,7 +89,7 @@ skg_status skg_device_count(int64_t *count) {
     return SKG_OK;
 }
 
-skg_status skg_device_describe(int64_t index, skg_device_info *info) {
+skg_status skg_device_get(int64_t index, skg_device_info *info) {
     found_device found[MOST_DEVICES];
     int32_t all = 0;
     SKG_TRY(find_devices(found, &all));

@@ -181,7 +181,7 @@ void skg_context_release(skg_context **context) {
     skg_free(&last);
 }
 
-skg_status skg_context_device(skg_context *context, skg_device_info *info) {
+skg_status skg_context_device_get(skg_context *context, skg_device_info *info) {
     SKG_TRY(skg_context_enter(context));
     return skg_struct_write(&context->device->info, sizeof context->device->info, "skg_device_info", info);
 }

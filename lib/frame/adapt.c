@@ -35,7 +35,7 @@ static skg_status take(skg_plan *plan, int64_t samples, float *image) {
     output.data = image;
     plan->samples.spot_count = samples;
     plan->samples.shifts = 1;
-    if (quantity == SKG_ATTENUATION) plan->options.quantity = SKG_TRANSMISSION;
+    if (quantity == SKG_QUANTITY_ATTENUATION) plan->options.quantity = SKG_QUANTITY_TRANSMISSION;
     skg_status status = skg_plan_image(plan, &output);
     if (status == SKG_RANGE) status = SKG_OK; /* how it differs from the last one does not depend on it */
     plan->options.quantity = quantity;

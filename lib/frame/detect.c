@@ -17,7 +17,7 @@ skg_status skg_plan_check_detector(const skg_plan_options *options) {
     SKG_TRY(check_kev("the quantisation's step", options->quantum_step_kev));
     if (!(options->swank > 0 && options->swank <= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "the Swank factor is %g; above 0, at most 1", options->swank);
-    if (kev && options->quantity == SKG_PHOTONS)
+    if (kev && options->quantity == SKG_QUANTITY_PHOTONS)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "electronic noise and quantisation are in keV, but photons are counted; take "
                         "another quantity or leave them out");
@@ -27,12 +27,12 @@ skg_status skg_plan_check_detector(const skg_plan_options *options) {
 /* The stage after the blur, where anything is left to do there. */
 static skg_status make_last_stage(skg_plan *plan) {
     const skg_plan_options *options = &plan->options;
-    const int ratio = skg_quantity_is_ratio(options), areas = options->quantity == SKG_FLUENCE;
+    const int ratio = skg_quantity_is_ratio(options), areas = options->quantity == SKG_QUANTITY_FLUENCE;
     const skg_detection detection = {.electronic = options->electronic_kev,
                                      .step = options->quantum_step_kev,
                                      .channels = plan->model.channels,
                                      .over_field = ratio && (options->world || options->falloff)};
-    double factors[SKG_MOST_CHANNELS];
+    double factors[SKG_CHANNELS_MAX];
     if (!skg_quantity_is_absolute(options)) return SKG_OK;
     if (!ratio && !areas && !(detection.electronic > 0) && !(detection.step > 0)) return SKG_OK;
     for (int32_t c = 0; c < plan->model.channels; c++) {
@@ -63,7 +63,8 @@ skg_status skg_plan_detect(skg_plan *plan, skg_job *job, const skg_frame_work *w
     if (plan->blur) SKG_TRY(skg_blur_run(plan->blur, image, columns, rows, plan->model.channels, &job->log));
     if (!plan->detector) return SKG_OK;
     SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
-    const double factor = plan->options.quantity == SKG_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
+    const double factor =
+        plan->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
     SKG_TRY(skg_field_find(plan, job, work));
     return skg_detector_run(plan->detector, &work->noise, factor, plan->field.image.memory, image, columns,
                             rows, &job->log);

@@ -49,7 +49,8 @@ static skg_status list_lengths(const skg_plan *plan, const skg_frame_work *work,
     SKG_TRY(skg_alloc(parts + 1, sizeof *frame->first_write, "parts of a frame", &frame->first_write));
     int64_t count = 0;
     for (int64_t p = 0; p < parts; p++) {
-        const int is_child = work->kind == SKG_NET && plan->scene->parts[p].inside == work->lengths_of;
+        const int is_child =
+            work->kind == SKG_LENGTHS_NET && plan->scene->parts[p].inside == work->lengths_of;
         frame->first_write[p] = count;
         if (p == work->lengths_of || is_child)
             frame->writes[count++] = (skg_contribution){.weight = is_child ? -1 : 1};
@@ -63,7 +64,8 @@ static skg_status list_lengths(const skg_plan *plan, const skg_frame_work *work,
 
 static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
     if (work->lengths_of >= 0) return list_lengths(plan, work, frame);
-    if (work->frame && work->frame->matters != 0) return skg_frame_list_matter(plan, work->frame, frame);
+    if (work->frame && work->frame->override_count != 0)
+        return skg_frame_list_matter(plan, work->frame, frame);
     frame->all_writes = plan->model.writes;
     frame->firsts = plan->model.first_write;
     frame->planes = plan->model.planes;
@@ -121,14 +123,14 @@ static skg_status place_parts(skg_plan *plan, const skg_frame_work *work, skg_fr
         scales[adding++] = frame->extents[p].scale;
         frame->kernels.source_plane |= frame->extents[p].near_source && frame->extents[p].on_detector;
     }
-    skg_scale_find(&plan->grid, adding, scales, plan->options.precision == SKG_DOUBLE ? 64 : 32,
+    skg_scale_find(&plan->grid, adding, scales, plan->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32,
                    &frame->scale);
     return SKG_OK;
 }
 
 /* Vertices that have changed since they were last uploaded, as they are now. */
 static skg_status upload(skg_plan *plan, skg_job *job) {
-    const int is_double = plan->options.precision == SKG_DOUBLE;
+    const int is_double = plan->options.precision == SKG_PRECISION_DOUBLE;
     SKG_TRY(skg_plan_meshes_check(&plan->meshes, plan->scene));
     for (int64_t i = 0; i < plan->meshes.count; i++) {
         skg_plan_mesh *mesh = &plan->meshes.meshes[i];
@@ -146,7 +148,7 @@ static skg_status upload(skg_plan *plan, skg_job *job) {
 /* The lists of the frame's accumulators, brought to the device where they differ from those it has. */
 static skg_status upload_lists(skg_plan *plan, skg_job *job, const skg_frame_parts *frame) {
     const int64_t count = (int64_t)plan->mixed * plan->model.planes;
-    const int is_double = plan->options.precision == SKG_DOUBLE;
+    const int is_double = plan->options.precision == SKG_PRECISION_DOUBLE;
     void *staged = NULL;
     if (!frame->mix.sums) return SKG_OK;
     if (plan->mix_sent && memcmp(plan->mix_sent, frame->mix.lists, (size_t)count * sizeof(double)) == 0)
@@ -169,7 +171,8 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
                           const skg_frame_parts *frame) {
     const int lengths = work->lengths_of >= 0;
     /* Noise is that of photons in a pixel: the area comes later. */
-    const int areas = plan->options.quantity == SKG_FLUENCE && !skg_quantity_is_absolute(&plan->options);
+    const int areas =
+        plan->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&plan->options);
     const double area = areas ? skg_camera_pixel_area(&frame->camera) : 1;
     const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&plan->samples));
     /* A length may be off by some of its bound where a face lies nearly along the ray (contracts 3): a
@@ -194,7 +197,8 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
 
 /* Who competes for intervals in this frame; a mesh's own lengths know nothing of others. */
 static skg_status find_contest(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
-    if (!plan->contest_possible || (work->lengths_of >= 0 && work->kind == SKG_SURFACE)) return SKG_OK;
+    if (!plan->contest_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
+        return SKG_OK;
     SKG_TRY(skg_contest_find(plan->scene, plan->options.clip, frame->extents, &frame->contest));
     for (int64_t s = 0; s < frame->contest.count; s++)
         frame->kernels.source_plane |= frame->extents[frame->contest.parts[s]].near_source;
@@ -212,8 +216,9 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     SKG_TRY(mix_planes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
     SKG_TRY(find_contest(plan, work, frame));
-    frame->kernels.precision = plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE;
-    frame->kernels.half = plan->options.precision == SKG_HALF;
+    frame->kernels.precision =
+        plan->options.precision == SKG_PRECISION_DOUBLE ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
+    frame->kernels.half = plan->options.precision == SKG_PRECISION_HALF;
     frame->kernels.bits =
         frame->kernels.half ? 32 : frame->scale.bits; /* half: 2^-24 m, whatever the scene */
     frame->kernels.parallel = frame->camera.parallel;
@@ -283,6 +288,6 @@ skg_status skg_frame_enqueue(skg_plan *plan, skg_job *job, const skg_frame_work 
     const int64_t end = first < 0 ? 0 : skg_samples_count(&plan->samples);
     for (int64_t s = first; s < end; s++) SKG_TRY(enqueue_pass(plan, job, work, s));
     SKG_TRY(skg_plan_detect(plan, job, work));
-    if (plan->options.quantity != SKG_ATTENUATION || !skg_plan_is_late(plan)) return SKG_OK;
+    if (plan->options.quantity != SKG_QUANTITY_ATTENUATION || !skg_plan_is_late(plan)) return SKG_OK;
     return skg_attenuate_logarithm(plan->attenuator, plan->main, &plan->attenuation, &work->place, &job->log);
 }

@@ -2,8 +2,8 @@
 #ifndef SKG_FRAME_H
 #define SKG_FRAME_H
 
-#include "geometry/extent.h"
 #include "frame/plan.h"
+#include "geometry/extent.h"
 
 /* What a frame is to show. */
 typedef struct {
@@ -11,7 +11,7 @@ typedef struct {
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
     const skg_frame *frame;     /* the caller's, for its matter; NULL: as planned */
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
-    int32_t kind;               /* of lengths: SKG_NET or SKG_SURFACE */
+    int32_t kind;               /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE */
     int32_t reserved;
     skg_noise_args noise; /* its key */
     skg_image_place place;

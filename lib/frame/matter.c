@@ -17,9 +17,9 @@ static const double MOST_DENSITY = 1000;
 
 static skg_status read_one(const skg_frame *given, int64_t k, matter *m) {
     const skg_scene *scene = m->plan->scene;
-    const int64_t part = given->matter_ids[k];
-    const double density = given->matter_density ? given->matter_density[k] : 1;
-    const double share = given->matter_share ? given->matter_share[k] : 1;
+    const int64_t part = given->override_parts[k];
+    const double density = given->density_ratios ? given->density_ratios[k] : 1;
+    const double share = given->fill_fractions ? given->fill_fractions[k] : 1;
     if (part < 0 || part >= scene->count)
         return skg_fail(SKG_ERR_ARGUMENT, "a frame gives matter to part %" PRId64 " of %" PRId64, part,
                         scene->count);
@@ -81,7 +81,7 @@ skg_status skg_frame_list_matter(const skg_plan *plan, const skg_frame *given, s
     const int64_t parts = plan->scene->count, planes = model->planes;
     matter m = {.plan = plan};
     skg_status status = SKG_OK;
-    if (given->matters < 0 || !given->matter_ids)
+    if (given->override_count < 0 || !given->override_parts)
         return skg_fail(SKG_ERR_ARGUMENT, "a frame gives matter, but to no ids");
     SKG_TRY_CLEANUP(skg_alloc(2 * parts, sizeof *m.density, "matter of a frame", &m.density));
     SKG_TRY_CLEANUP(skg_alloc(2 * parts, 1, "matter of a frame", &m.known));
@@ -91,7 +91,7 @@ skg_status skg_frame_list_matter(const skg_plan *plan, const skg_frame *given, s
         skg_alloc(parts + 1, sizeof *frame->first_write, "parts of a frame", &frame->first_write));
     m.share = m.density + parts, m.listed = m.known + parts;
     for (int64_t p = 0; p < parts; p++) m.density[p] = m.share[p] = 1;
-    for (int64_t k = 0; k < given->matters; k++) SKG_TRY_CLEANUP(read_one(given, k, &m));
+    for (int64_t k = 0; k < given->override_count; k++) SKG_TRY_CLEANUP(read_one(given, k, &m));
     if (model->world_plane >= 0) m.own[parts * planes + model->world_plane] = model->world_weight;
     for (int64_t p = 0; p < parts; p++) find_own(&m, p);
     for (int64_t p = 0; p < parts; p++)

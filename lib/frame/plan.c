@@ -9,7 +9,7 @@
 void skg_plan_options_init(skg_plan_options *options) {
     if (options)
         *options = (skg_plan_options){.size = (int32_t)sizeof *options,
-                                      .precision = SKG_SINGLE,
+                                      .precision = SKG_PRECISION_SINGLE,
                                       .overlaps = 1,
                                       .supersampling = 1,
                                       .swank = 1,
@@ -17,11 +17,12 @@ void skg_plan_options_init(skg_plan_options *options) {
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
-    if (options->precision < SKG_SINGLE || options->precision > SKG_HALF)
+    if (options->precision < SKG_PRECISION_SINGLE || options->precision > SKG_PRECISION_HALF)
         return skg_fail(SKG_ERR_ARGUMENT,
-                        "precision %" PRId32 " is unknown; SKG_SINGLE, SKG_DOUBLE or SKG_HALF",
+                        "precision %" PRId32
+                        " is unknown; SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE or SKG_PRECISION_HALF",
                         options->precision);
-    if (options->precision == SKG_DOUBLE && !context->device->info.has_double)
+    if (options->precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "%s has no fp64, so precision double cannot be had there; take single",
                         context->device->info.name);
@@ -30,8 +31,9 @@ static skg_status check_options(const skg_context *context, const skg_plan_optio
                         "strategy %" PRId32 " is unknown; SKG_STRATEGY_AUTO, _COPIES, _TILES or "
                         "_ATOMICS",
                         options->strategy);
-    if (options->quantity < SKG_ENERGY || options->quantity > SKG_ATTENUATION)
-        return skg_fail(SKG_ERR_ARGUMENT, "quantity %" PRId32 " is unknown; SKG_ENERGY to SKG_ATTENUATION",
+    if (options->quantity < SKG_QUANTITY_ENERGY || options->quantity > SKG_QUANTITY_ATTENUATION)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "quantity %" PRId32 " is unknown; SKG_QUANTITY_ENERGY to SKG_QUANTITY_ATTENUATION",
                         options->quantity);
     if (options->falloff != 0 && options->falloff != 1)
         return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
@@ -60,7 +62,7 @@ static void start_report(skg_plan *plan) {
         report->triangles += plan->scene->parts[i].mesh->triangles;
     for (int64_t i = 0; i < plan->meshes.count; i++)
         report->vertices += plan->meshes.meshes[i].mesh->vertices;
-    report->open_parts = plan->open_count;
+    report->leaky_parts = plan->open_count;
     report->planes = plan->model.planes;
     report->accumulators = plan->mixed ? plan->mixed : plan->model.planes;
     report->nodes = plan->model.nodes;
@@ -92,9 +94,10 @@ static skg_status make_geometry(skg_plan *plan) {
         SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, sorted[i], &reordered));
         list[i] = (skg_geometry_mesh){mesh->vertices, mesh->triangles, sorted[i]};
     }
-    SKG_TRY_CLEANUP(
-        skg_geometry_create(plan->context, plan->options.precision == SKG_DOUBLE ? SKG_DOUBLE : SKG_SINGLE,
-                            meshes->count, list, plan->scene->count, meshes->of_part, &plan->geometry));
+    SKG_TRY_CLEANUP(skg_geometry_create(
+        plan->context,
+        plan->options.precision == SKG_PRECISION_DOUBLE ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+        meshes->count, list, plan->scene->count, meshes->of_part, &plan->geometry));
 cleanup:
     for (int64_t i = 0; sorted && i < meshes->count; i++) skg_free(&sorted[i]);
     skg_free(&sorted);
@@ -106,7 +109,7 @@ static skg_status make_attenuation(skg_plan *plan) {
     const skg_model *model = &plan->model;
     /* The attenuation of one energy is the exponent itself. */
     const int is_ratio = skg_quantity_is_ratio(&plan->options) && !skg_quantity_is_absolute(&plan->options);
-    const int32_t shown = plan->options.quantity != SKG_ATTENUATION || skg_plan_is_late(plan)
+    const int32_t shown = plan->options.quantity != SKG_QUANTITY_ATTENUATION || skg_plan_is_late(plan)
                               ? SKG_SHOWN_INTENSITY
                           : model->nodes == 1 ? SKG_SHOWN_EXPONENT
                                               : SKG_SHOWN_LOGARITHM;
@@ -121,7 +124,7 @@ static skg_status make_attenuation(skg_plan *plan) {
                                    .ratio = has_world && is_ratio,
                                    .falloff = plan->options.falloff && !is_ratio,
                                    .noise = plan->options.noise,
-                                   .energies = plan->options.quantity == SKG_ENERGY};
+                                   .energies = plan->options.quantity == SKG_QUANTITY_ENERGY};
     const skg_attenuation_tables tables = {model->coefficients, model->weights, model->variances,
                                            model->range};
     return skg_attenuation_create(plan->context, plan->options.precision, &image, &tables,
@@ -143,7 +146,7 @@ static skg_status make_lengths(skg_plan *plan) {
 }
 
 static skg_status make_samples(skg_plan *plan) {
-    const int parallel = plan->view.projection != SKG_POINT;
+    const int parallel = plan->view.projection != SKG_PROJECTION_POINT;
     SKG_TRY(
         skg_samples_make(parallel ? NULL : plan->options.spot, plan->options.supersampling, &plan->samples));
     plan->options.spot = NULL; /* the caller's, and copied */
@@ -178,8 +181,8 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
 
 /* What the paper's buffers could not hold is not offered in them. */
 static skg_status check_half(const skg_plan *plan) {
-    if (plan->options.precision != SKG_HALF) return SKG_OK;
-    if (plan->view.projection != SKG_POINT || plan->open_count > 0 || plan->options.world ||
+    if (plan->options.precision != SKG_PRECISION_HALF) return SKG_OK;
+    if (plan->view.projection != SKG_PROJECTION_POINT || plan->open_count > 0 || plan->options.world ||
         plan->contest_possible || plan->options.blur || skg_quantity_is_absolute(&plan->options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
@@ -237,9 +240,9 @@ static skg_status keep_options(skg_plan *plan) {
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
     SKG_TRY(keep_views(plan));
-    if (options->bands < 0 || options->bands > SKG_MOST_CHANNELS || (options->bands > 0 && !edges))
+    if (options->bands < 0 || options->bands > SKG_CHANNELS_MAX || (options->bands > 0 && !edges))
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " bands of energy; 0 to %d, with their edges",
-                        options->bands, SKG_MOST_CHANNELS);
+                        options->bands, SKG_CHANNELS_MAX);
     if (options->bands == 0) return SKG_OK;
     SKG_TRY(skg_alloc(options->bands + 1, sizeof *plan->band_kev, "bands", &plan->band_kev));
     for (int64_t c = 0; c <= options->bands; c++) plan->band_kev[c] = edges[c];

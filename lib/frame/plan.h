@@ -2,19 +2,19 @@
 #ifndef SKG_PLAN_PRIVATE_H
 #define SKG_PLAN_PRIVATE_H
 
-#include "stage/attenuate.h"
-#include "stage/blur.h"
-#include "geometry/caps.h"
 #include "frame/job.h"
+#include "geometry/caps.h"
+#include "geometry/overlap.h"
+#include "geometry/samples.h"
+#include "geometry/scale.h"
 #include "plan/meshes.h"
 #include "spectral/mix.h"
 #include "spectral/model.h"
 #include "spectral/quantity.h"
-#include "stage/noise.h"
-#include "geometry/overlap.h"
+#include "stage/attenuate.h"
+#include "stage/blur.h"
 #include "stage/hits.h"
-#include "geometry/samples.h"
-#include "geometry/scale.h"
+#include "stage/noise.h"
 
 /* Effects that a plan knows, in the order in which they are reported. */
 #define SKG_EFFECT_LIST(X)                                                                                   \

@@ -29,7 +29,7 @@ void skg_output_init(skg_output *output) {
 }
 
 static int64_t element_size(const skg_output *output) {
-    return output->type == SKG_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
+    return output->type == SKG_TYPE_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
 }
 
 /* So large that products of strides and counts stay numbers. */
@@ -65,11 +65,13 @@ static skg_status check_output(submission *s, const skg_output *output) {
     skg_output_init(&s->output);
     if (!output) return skg_fail(SKG_ERR_ARGUMENT, "there is no output to put images into");
     SKG_TRY(skg_struct_read(output, "skg_output", &s->output, sizeof s->output));
-    if (s->output.type != SKG_FLOAT32 && s->output.type != SKG_FLOAT64)
-        return skg_fail(SKG_ERR_ARGUMENT, "output type %" PRId32 " is unknown; SKG_FLOAT32 or SKG_FLOAT64",
+    if (s->output.type != SKG_TYPE_FLOAT32 && s->output.type != SKG_TYPE_FLOAT64)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "output type %" PRId32 " is unknown; SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64",
                         s->output.type);
-    if (s->output.type == SKG_FLOAT64 && !s->plan->context->device->info.has_double)
-        return skg_fail(SKG_ERR_UNSUPPORTED, "%s has no fp64, so it cannot write doubles; take SKG_FLOAT32",
+    if (s->output.type == SKG_TYPE_FLOAT64 && !s->plan->context->device->info.has_double)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s has no fp64, so it cannot write doubles; take SKG_TYPE_FLOAT32",
                         s->plan->context->device->info.name);
     if (!s->buffer && !s->output.data)
         return skg_fail(SKG_ERR_ARGUMENT, "the output has no memory: its data is NULL");
@@ -111,17 +113,17 @@ static skg_status read_frame(const submission *s, int64_t index, skg_frame *fram
         SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
         SKG_TRY(skg_plan_check_size(plan, view));
     }
-    if (frame->posed < 0 || (frame->posed > 0 && (!frame->posed_ids || !frame->posed_poses)))
+    if (frame->pose_count < 0 || (frame->pose_count > 0 && (!frame->pose_parts || !frame->poses)))
         return skg_fail(SKG_ERR_ARGUMENT,
                         "frame %" PRId64 " has %" PRId64 " posed parts, but no ids or poses", index,
-                        frame->posed);
-    for (int64_t k = 0; k < frame->posed; k++) {
-        const int64_t part = frame->posed_ids[k];
+                        frame->pose_count);
+    for (int64_t k = 0; k < frame->pose_count; k++) {
+        const int64_t part = frame->pose_parts[k];
         if (part < 0 || part >= plan->scene->count)
             return skg_fail(SKG_ERR_ARGUMENT, "frame %" PRId64 " poses part %" PRId64 " of %" PRId64, index,
                             part, plan->scene->count);
-        SKG_TRY(skg_scene_check_pose(plan->scene->parts[part].label, frame->posed_poses + 16 * k));
-        poses[part] = frame->posed_poses + 16 * k;
+        SKG_TRY(skg_scene_check_pose(plan->scene->parts[part].label, frame->poses + 16 * k));
+        poses[part] = frame->poses + 16 * k;
     }
     return SKG_OK;
 }
@@ -131,7 +133,7 @@ static skg_status place_image(submission *s, int64_t index, skg_image_place *pla
     skg_plan *plan = s->plan;
     const skg_output *output = &s->output;
     *place = (skg_image_place){.memory = s->buffer,
-                               .output_double = output->type == SKG_FLOAT64,
+                               .output_double = output->type == SKG_TYPE_FLOAT64,
                                .offset = s->first + index * output->frame_stride,
                                .row_stride = output->row_stride,
                                .channel_stride = output->channel_stride};
@@ -261,8 +263,9 @@ skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t 
     if (part < 0 || part >= plan->scene->count)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_lengths: part %" PRId64 " of %" PRId64, part,
                         plan->scene->count);
-    if (kind != SKG_NET && kind != SKG_SURFACE)
-        return skg_fail(SKG_ERR_ARGUMENT, "lengths of kind %" PRId32 " are unknown; SKG_NET or SKG_SURFACE",
+    if (kind != SKG_LENGTHS_NET && kind != SKG_LENGTHS_SURFACE)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "lengths of kind %" PRId32 " are unknown; SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE",
                         kind);
     submission s = {.plan = plan, .count = count, .frames = frames, .lengths_of = part, .kind = kind};
     SKG_TRY(check_submission(&s, output));

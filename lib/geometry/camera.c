@@ -18,7 +18,7 @@ static double invert(const double a[3], const double b[3], const double c[3], do
 /* t at which the paths of a parallel beam start: the plane through the source across the direction d; t - 1 =
  * -((D0 + i Du + j Dv - S) . d) / d.d */
 static void parallel_start(const skg_view *view, const double pixel[3], skg_camera *camera) {
-    if (view->projection == SKG_PARALLEL_FROM_INFINITY) {
+    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY) {
         camera->start[0] = -1e30;
         return;
     }
@@ -33,7 +33,7 @@ static void parallel_start(const skg_view *view, const double pixel[3], skg_came
 /* Nothing is rounded: from infinity, the direction is only brought to a length near 1 by a power of two. */
 static void parallel_direction(const skg_view *view, double direction[3]) {
     int exponent = 0;
-    if (view->projection == SKG_PARALLEL) {
+    if (view->projection == SKG_PROJECTION_PARALLEL) {
         skg_add_scaled(view->centre, -1, view->source, direction);
         return;
     }
@@ -47,7 +47,7 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
     const double column = shift_column - 0.5 * (double)(view->columns - 1);
     const double row = shift_row - 0.5 * (double)(view->rows - 1);
     double pixel[3];
-    camera->parallel = view->projection != SKG_POINT;
+    camera->parallel = view->projection != SKG_PROJECTION_POINT;
     for (int k = 0; k < 3; k++) {
         camera->column[k] = view->column_step[k];
         camera->row[k] = view->row_step[k];

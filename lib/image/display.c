@@ -6,20 +6,22 @@
 #include <stdlib.h>
 
 double skg_picture_value(const skg_picture *picture, int64_t index) {
-    return picture->type == SKG_FLOAT64 ? ((const double *)picture->data)[index]
-                                        : (double)((const float *)picture->data)[index];
+    return picture->type == SKG_TYPE_FLOAT64 ? ((const double *)picture->data)[index]
+                                             : (double)((const float *)picture->data)[index];
 }
 
 /* Whether I/I0 can be formed. */
 static int is_relative(const skg_picture *picture) {
-    return picture->quantity == SKG_TRANSMISSION || picture->quantity == SKG_ATTENUATION || picture->open > 0;
+    return picture->quantity == SKG_QUANTITY_TRANSMISSION || picture->quantity == SKG_QUANTITY_ATTENUATION ||
+           picture->flat_field > 0;
 }
 
 double skg_picture_shown(const skg_picture *picture, double value) {
     if (!is_relative(picture)) return value;
     int radiograph = picture->display == SKG_DISPLAY_RADIOGRAPH;
-    if (picture->quantity == SKG_ATTENUATION) return radiograph ? value : exp(-value);
-    double transmission = picture->quantity == SKG_TRANSMISSION ? value : value / picture->open;
+    if (picture->quantity == SKG_QUANTITY_ATTENUATION) return radiograph ? value : exp(-value);
+    double transmission =
+        picture->quantity == SKG_QUANTITY_TRANSMISSION ? value : value / picture->flat_field;
     if (!radiograph) return transmission;
     /* Nothing comes through (or noise says less than nothing): infinitely dense. 0 - keeps -0 away. */
     return transmission <= 0 ? HUGE_VAL : 0 - log(transmission);

@@ -81,12 +81,12 @@ static void write_header(const skg_picture *picture, FILE *stream) {
         fputc('\n', stream);
     }
     fprintf(stream, "ElementType = %s\nElementDataFile = LOCAL\n",
-            picture->type == SKG_FLOAT64 ? "MET_DOUBLE" : "MET_FLOAT");
+            picture->type == SKG_TYPE_FLOAT64 ? "MET_DOUBLE" : "MET_FLOAT");
 }
 
 /* One row with its channels side by side, as MetaImage has them. */
 static void gather(const skg_picture *picture, int64_t row, char *to) {
-    size_t element = picture->type == SKG_FLOAT64 ? 8 : 4;
+    size_t element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
     for (int64_t c = 0; c < picture->columns; c++)
         for (int64_t channel = 0; channel < picture->channels; channel++) {
             int64_t at = (channel * picture->rows + row) * picture->columns + c;
@@ -98,7 +98,7 @@ static void gather(const skg_picture *picture, int64_t row, char *to) {
 /* A failed write is found by skg_output_commit. */
 skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file) {
     char *row = NULL;
-    size_t element = picture->type == SKG_FLOAT64 ? 8 : 4;
+    size_t element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
     int64_t elements = picture->columns * picture->channels;
     SKG_TRY(skg_alloc(elements, element, "row of a MetaImage", &row));
     write_header(picture, file->stream);

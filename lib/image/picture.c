@@ -38,8 +38,9 @@ static skg_status check_range(const skg_picture *picture) {
 static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
     skg_picture_init(picture);
     SKG_TRY(skg_struct_read(theirs, "skg_picture", picture, sizeof *picture));
-    if (picture->type != SKG_FLOAT32 && picture->type != SKG_FLOAT64)
-        return skg_fail(SKG_ERR_ARGUMENT, "picture: type %" PRId32 " is neither SKG_FLOAT32 nor SKG_FLOAT64",
+    if (picture->type != SKG_TYPE_FLOAT32 && picture->type != SKG_TYPE_FLOAT64)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "picture: type %" PRId32 " is neither SKG_TYPE_FLOAT32 nor SKG_TYPE_FLOAT64",
                         picture->type);
     if (picture->columns < 1 || picture->rows < 1 || picture->channels < 1 || picture->columns > INT32_MAX ||
         picture->rows > INT32_MAX || picture->channels > UINT16_MAX)
@@ -51,13 +52,13 @@ static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
     if (picture->display != SKG_DISPLAY_RADIOGRAPH && picture->display != SKG_DISPLAY_TRANSMISSION)
         return skg_fail(SKG_ERR_ARGUMENT, "picture: display %" PRId32 " is no SKG_DISPLAY_ value",
                         picture->display);
-    if (picture->quantity < SKG_ENERGY || picture->quantity > SKG_ATTENUATION)
+    if (picture->quantity < SKG_QUANTITY_ENERGY || picture->quantity > SKG_QUANTITY_ATTENUATION)
         return skg_fail(SKG_ERR_ARGUMENT, "picture: quantity %" PRId32 " is none that images have",
                         picture->quantity);
-    if (!(picture->open >= 0) || isinf(picture->open))
+    if (!(picture->flat_field >= 0) || isinf(picture->flat_field))
         return skg_fail(SKG_ERR_ARGUMENT,
                         "picture: an open beam of %g; it has to be finite, and 0 where there is none",
-                        picture->open);
+                        picture->flat_field);
     if (picture->view && (picture->view->columns != picture->columns || picture->view->rows != picture->rows))
         return skg_fail(SKG_ERR_ARGUMENT,
                         "picture: %" PRId64 " x %" PRId64 " pixels, but its view has %" PRId64 " x %" PRId64,

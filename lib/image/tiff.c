@@ -42,7 +42,7 @@ static double norm(const double v[3]) {
 static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
     skg_picture page = *picture;
     char description[SKG_DESCRIPTION_LENGTH];
-    int bits = picture->type == SKG_FLOAT64 ? 64 : 32;
+    int bits = picture->type == SKG_TYPE_FLOAT64 ? 64 : 32;
     if (page.channel_names) page.name = page.channel_names[channel];
     skg_picture_describe(&page, description, sizeof description);
     int done = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, (uint32_t)picture->columns) &&
@@ -68,7 +68,7 @@ static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
 
 /* row: room for one row, since libtiff takes its data writable. */
 static int write_pages(TIFF *tiff, const skg_picture *picture, void *row) {
-    size_t row_bytes = (size_t)picture->columns * (picture->type == SKG_FLOAT64 ? 8 : 4);
+    size_t row_bytes = (size_t)picture->columns * (picture->type == SKG_TYPE_FLOAT64 ? 8 : 4);
     for (int64_t channel = 0; channel < picture->channels; channel++) {
         if (!set_tags(tiff, picture, channel)) return 0;
         for (int64_t r = 0; r < picture->rows; r++) {
@@ -85,7 +85,7 @@ skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
     reason kept = {""};
     TIFF *tiff = NULL;
     char *row = NULL;
-    int written = 0, element = picture->type == SKG_FLOAT64 ? 8 : 4;
+    int written = 0, element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
     double bytes = (double)picture->columns * (double)picture->rows * (double)picture->channels * element;
     SKG_TRY(skg_alloc(picture->columns, (size_t)element, "row of a TIFF file", &row));
     /* TIFFClose closes its descriptor; the stream keeps its own for the sync. */

@@ -34,9 +34,9 @@ static double total(const double sections[SKG_PROCESSES]) {
     return sections[SKG_RAYLEIGH] + sections[SKG_COMPTON] + sections[SKG_PHOTO] + sections[SKG_PAIR];
 }
 
-skg_status skg_material_attenuation(const skg_material *material, double energy_kev, double *per_cm) {
+skg_status skg_material_attenuation_get(const skg_material *material, double energy_kev, double *per_cm) {
     if (!material || !per_cm)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_attenuation: no material or no result");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_attenuation_get: no material or no result");
     SKG_TRY(skg_check_energy(material->name, energy_kev));
     if (material->kind == SKG_MATTER_CONSTANT) {
         *per_cm = material->mu_per_cm;
@@ -55,10 +55,10 @@ void skg_coefficients_init(skg_coefficients *coefficients) {
     if (coefficients) *coefficients = (skg_coefficients){.size = (int32_t)sizeof *coefficients};
 }
 
-skg_status skg_material_coefficients(const skg_material *material, double energy_kev,
-                                     skg_coefficients *coefficients) {
+skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,
+                                         skg_coefficients *coefficients) {
     if (!material || !coefficients)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_coefficients: no material or no result");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_coefficients_get: no material or no result");
     if (material->kind != SKG_MATTER_COMPOSITION)
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: a material given by its linear attenuation coefficient has no mass coefficients",
@@ -76,10 +76,10 @@ skg_status skg_material_coefficients(const skg_material *material, double energy
     return skg_struct_write(&ours, sizeof ours, "skg_coefficients", coefficients);
 }
 
-skg_status skg_material_to_hounsfield(const skg_material *material, double energy_kev, double *hu) {
+skg_status skg_material_hounsfield_get(const skg_material *material, double energy_kev, double *hu) {
     double mu = 0, sections[SKG_PROCESSES];
-    if (!hu) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_to_hounsfield: no result");
-    SKG_TRY(skg_material_attenuation(material, energy_kev, &mu));
+    if (!hu) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_hounsfield_get: no result");
+    SKG_TRY(skg_material_attenuation_get(material, energy_kev, &mu));
     skg_mixed_sections(2, water, energy_kev, sections);
     *hu = 1000 * (mu / total(sections) - 1);
     return SKG_OK;
@@ -97,9 +97,10 @@ static void add_edge(double energy_kev, int64_t most, double *edges, int64_t *co
     ++*count;
 }
 
-skg_status skg_material_edges(const skg_material *material, int64_t most, double *edges_kev, int64_t *count) {
+skg_status skg_material_edges_get(const skg_material *material, int64_t most, double *edges_kev,
+                                  int64_t *count) {
     if (!material || !count || most < 0 || (most > 0 && !edges_kev))
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_edges: no material or no result");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_edges_get: no material or no result");
     *count = 0;
     if (material->kind == SKG_MATTER_TABLE)
         for (int64_t i = 1; i < material->count; i++)

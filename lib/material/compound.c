@@ -12,21 +12,23 @@ static skg_status check_density(const char *name, double density) {
                     density);
 }
 
-skg_status skg_material_element(int32_t z, skg_material **material) {
+skg_status skg_material_create_element(int32_t z, skg_material **material) {
     const char *symbol;
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_element: no place for the material");
+    if (!material)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_element: no place for the material");
     *material = NULL;
     SKG_TRY(skg_element_symbol(z, &symbol));
     skg_mass_fraction part = {z, 1};
     return skg_material_compose(symbol, NULL, 1, &part, skg_elements[z].density, material);
 }
 
-skg_status skg_material_formula(const char *formula, double density, skg_material **material) {
+skg_status skg_material_create_formula(const char *formula, double density, skg_material **material) {
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     int64_t count = 0;
     double sum = 0;
     if (!material || !formula)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_formula: no formula or no place for the material");
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_material_create_formula: no formula or no place for the material");
     *material = NULL;
     SKG_TRY(check_density(formula, density));
     SKG_TRY(skg_read_formula(formula, 0, &count, parts, &sum));
@@ -39,13 +41,14 @@ skg_status skg_material_formula(const char *formula, double density, skg_materia
 enum { LONGEST_NOTE = 160 };
 static const double SUM_TOLERANCE = 5e-3;
 
-skg_status skg_material_mixture(const char *name, int64_t count, const int32_t *z, const double *fractions,
-                                double density, skg_material **material) {
+skg_status skg_material_create_mixture(const char *name, int64_t count, const int32_t *z,
+                                       const double *fractions, double density, skg_material **material) {
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     double of[SKG_LAST_ELEMENT + 1] = {0}, sum = 0;
     char note[LONGEST_NOTE] = "";
     const char *symbol;
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_mixture: no place for the material");
+    if (!material)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_mixture: no place for the material");
     *material = NULL;
     if (!name || !*name) name = "mixture";
     if (count < 1 || !z || !fractions)

@@ -35,8 +35,8 @@ skg_status skg_material_compose(const char *name, const char *note, int64_t coun
     return SKG_OK;
 }
 
-skg_status skg_material_mu(const char *name, double per_cm, skg_material **material) {
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_mu: no place for the material");
+skg_status skg_material_create_mu(const char *name, double per_cm, skg_material **material) {
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_mu: no place for the material");
     *material = NULL;
     if (!isfinite(per_cm) || per_cm < 0)
         return skg_fail(
@@ -68,10 +68,12 @@ void skg_material_release(skg_material **material) {
     *material = NULL;
 }
 
-skg_status skg_material_at_density(const skg_material *material, double density, skg_material **dense) {
-    if (!dense) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_at_density: no place for the material");
+skg_status skg_material_create_at_density(const skg_material *material, double density,
+                                          skg_material **dense) {
+    if (!dense)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_at_density: no place for the material");
     *dense = NULL;
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_at_density: no material");
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_at_density: no material");
     if (material->kind != SKG_MATTER_COMPOSITION)
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: a material given by its linear attenuation coefficient has no density to change",
@@ -83,35 +85,39 @@ skg_status skg_material_at_density(const skg_material *material, double density,
                                 dense);
 }
 
-skg_status skg_material_name(const skg_material *material, const char **name) {
-    if (!material || !name) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_name: no material or no result");
+skg_status skg_material_name_get(const skg_material *material, const char **name) {
+    if (!material || !name)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_name_get: no material or no result");
     *name = material->name;
     return SKG_OK;
 }
 
-skg_status skg_material_note(const skg_material *material, const char **note) {
-    if (!material || !note) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_note: no material or no result");
+skg_status skg_material_note_get(const skg_material *material, const char **note) {
+    if (!material || !note)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_note_get: no material or no result");
     *note = material->note;
     return SKG_OK;
 }
 
-skg_status skg_material_density(const skg_material *material, double *density) {
+skg_status skg_material_density_get(const skg_material *material, double *density) {
     if (!material || !density)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_density: no material or no result");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_density_get: no material or no result");
     *density = material->density;
     return SKG_OK;
 }
 
-skg_status skg_material_size(const skg_material *material, int64_t *count) {
-    if (!material || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_size: no material or no result");
+skg_status skg_material_element_count(const skg_material *material, int64_t *count) {
+    if (!material || !count)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_element_count: no material or no result");
     *count = material->kind == SKG_MATTER_COMPOSITION ? material->count : 0;
     return SKG_OK;
 }
 
-skg_status skg_material_part(const skg_material *material, int64_t index, int32_t *z, double *fraction) {
+skg_status skg_material_element_get(const skg_material *material, int64_t index, int32_t *z,
+                                    double *fraction) {
     int64_t count = 0;
-    if (!z || !fraction) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_part: no result");
-    SKG_TRY(skg_material_size(material, &count));
+    if (!z || !fraction) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_element_get: no result");
+    SKG_TRY(skg_material_element_count(material, &count));
     if (index < 0 || index >= count)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: element %" PRId64 " of %" PRId64, material->name, index,
                         count);

@@ -18,8 +18,8 @@ typedef struct {
 
 static skg_status climb(ladder *l) {
     for (int i = 0; i < STEPS; i++) {
-        SKG_TRY(skg_material_named(steps[i], &l->material[i]));
-        SKG_TRY(skg_material_to_hounsfield(l->material[i], 80, &l->hu[i]));
+        SKG_TRY(skg_material_create_named(steps[i], &l->material[i]));
+        SKG_TRY(skg_material_hounsfield_get(l->material[i], 80, &l->hu[i]));
     }
     return SKG_OK;
 }
@@ -29,8 +29,8 @@ static skg_status between(const ladder *l, double hu, int logarithmic, double en
     int i = 0;
     double low = 0, high = 0;
     while (i + 2 < STEPS && hu >= l->hu[i + 1]) i++;
-    SKG_TRY(skg_material_attenuation(l->material[i], energy_kev, &low));
-    SKG_TRY(skg_material_attenuation(l->material[i + 1], energy_kev, &high));
+    SKG_TRY(skg_material_attenuation_get(l->material[i], energy_kev, &low));
+    SKG_TRY(skg_material_attenuation_get(l->material[i + 1], energy_kev, &high));
     double a = l->hu[i], b = l->hu[i + 1];
     double part =
         logarithmic ? log((hu + 1000) / (a + 1000)) / log((b + 1000) / (a + 1000)) : (hu - a) / (b - a);
@@ -43,22 +43,22 @@ static skg_status fill(const ladder *l, double hu, int32_t interpolation, skg_ma
     for (int32_t i = hydrogen->first; i < hydrogen->last && skg_knots[i].energy_kev <= SKG_HIGHEST_KEV; i++)
         material->energy_kev[material->count++] = skg_knots[i].energy_kev;
     for (int64_t i = 0; i < material->count; i++)
-        SKG_TRY(between(l, hu, interpolation == SKG_BILOGARITHMIC, material->energy_kev[i],
+        SKG_TRY(between(l, hu, interpolation == SKG_INTERPOLATION_BILOGARITHMIC, material->energy_kev[i],
                         &material->per_cm[i]));
-    material->linear = interpolation == SKG_BILINEAR;
+    material->linear = interpolation == SKG_INTERPOLATION_BILINEAR;
     return SKG_OK;
 }
 
-skg_status skg_material_naive_hounsfield(double hu, int32_t interpolation, skg_material **material) {
+skg_status skg_material_create_naive_hounsfield(double hu, int32_t interpolation, skg_material **material) {
     char name[64];
     ladder l = {{NULL}, {0}};
     skg_material *made = NULL;
     skg_status status = SKG_OK;
     if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_naive_hounsfield: no place for the material");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_naive_hounsfield: no place for the material");
     *material = NULL;
-    if (interpolation != SKG_BILINEAR && interpolation != SKG_BILOGARITHMIC)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_naive_hounsfield: no such interpolation");
+    if (interpolation != SKG_INTERPOLATION_BILINEAR && interpolation != SKG_INTERPOLATION_BILOGARITHMIC)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_naive_hounsfield: no such interpolation");
     SKG_TRY_CLEANUP(climb(&l));
     if (!(hu >= l.hu[0] && hu <= l.hu[STEPS - 1])) {
         status = skg_fail(SKG_ERR_MATERIAL,
@@ -67,7 +67,7 @@ skg_status skg_material_naive_hounsfield(double hu, int32_t interpolation, skg_m
         goto cleanup;
     }
     snprintf(name, sizeof name, "HU %g, naive, %s", hu,
-             interpolation == SKG_BILINEAR ? "bilinear" : "bilogarithmic");
+             interpolation == SKG_INTERPOLATION_BILINEAR ? "bilinear" : "bilogarithmic");
     SKG_TRY_CLEANUP(
         skg_material_make(name, "not for images: no tissue is like this", SKG_MATTER_TABLE, &made));
     int64_t room = skg_elements[1].last - skg_elements[1].first;

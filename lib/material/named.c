@@ -154,7 +154,7 @@ static skg_status from_formula(const char *text, skg_material **material) {
     double sum = 0;
     SKG_TRY(skg_read_formula(text, 0, &count, parts, &sum));
     SKG_TRY(check_reading(text, sum, count, parts));
-    return skg_material_formula(text, 0, material);
+    return skg_material_create_formula(text, 0, material);
 }
 
 static skg_status from_mass(const char *text, skg_material **material) {
@@ -186,24 +186,24 @@ static skg_status number_of(const char *text, const char *digits, double *value)
     return SKG_OK;
 }
 
-skg_status skg_material_named(const char *text, skg_material **material) {
+skg_status skg_material_create_named(const char *text, skg_material **material) {
     char list[SUGGESTIONS * LONGEST];
     const char *rest;
     double value = 0;
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_named: no place for the material");
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_named: no place for the material");
     *material = NULL;
     if (!text || !*text) return skg_fail(SKG_ERR_MATERIAL, "a material without a name; give H2O, Fe, HU:52");
     if ((rest = after(text, "weight"))) return from_mass(rest, material);
     if ((rest = after(text, "hu"))) {
         SKG_TRY(number_of(text, rest, &value));
-        return skg_material_hounsfield(value, material);
+        return skg_material_create_hounsfield(value, material);
     }
     if ((rest = after(text, "mu"))) {
         SKG_TRY(number_of(text, rest, &value));
-        return skg_material_mu(text, value, material);
+        return skg_material_create_mu(text, value, material);
     }
     int32_t z = skg_find_element(text);
-    if (z) return skg_material_element(z, material);
+    if (z) return skg_material_create_element(z, material);
     const skg_mixture_row *row = skg_find_mixture(text);
     if (row) return from_row(row, material);
     skg_status status = from_formula(text, material);
@@ -217,16 +217,16 @@ skg_status skg_material_named(const char *text, skg_material **material) {
     return fail_unknown(text, skg_last_error());
 }
 
-skg_status skg_material_names(int64_t *count) {
-    if (!count) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_names: no result");
+skg_status skg_material_tabled_count(int64_t *count) {
+    if (!count) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled_count: no result");
     *count = skg_mixture_count;
     return SKG_OK;
 }
 
-skg_status skg_material_tabled(int64_t index, const char **name, double *density) {
-    if (!name || !density) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled: no result");
+skg_status skg_material_tabled_get(int64_t index, const char **name, double *density) {
+    if (!name || !density) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled_get: no result");
     if (index < 0 || index >= skg_mixture_count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled: no entry %lld", (long long)index);
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled_get: no entry %lld", (long long)index);
     *name = skg_mixtures[index].names;
     *density = skg_mixtures[index].density;
     return SKG_OK;

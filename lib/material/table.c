@@ -25,9 +25,9 @@ static skg_status check_rows(const char *name, int64_t count, const double *ener
     return SKG_OK;
 }
 
-skg_status skg_material_table(const char *name, int64_t count, const double *energies_kev,
-                              const double *per_cm, skg_material **material) {
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_table: no place for the material");
+skg_status skg_material_create_table(const char *name, int64_t count, const double *energies_kev,
+                                     const double *per_cm, skg_material **material) {
+    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_table: no place for the material");
     *material = NULL;
     if (!name || !*name) name = "table";
     SKG_TRY(check_rows(name, count, energies_kev, per_cm));
@@ -46,16 +46,16 @@ cleanup:
     return status;
 }
 
-skg_status skg_material_table_file(const char *path, const char *unit, skg_material **material) {
+skg_status skg_material_load_table(const char *path, const char *unit, skg_material **material) {
     double *energies = NULL, *values = NULL, kev = 1;
     int64_t count = 0;
     if (!material || !path || !unit)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_table_file: no path, unit or place for the material");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_load_table: no path, unit or place for the material");
     *material = NULL;
     SKG_TRY(skg_unit_of_energy(unit, &kev));
     SKG_TRY(skg_read_columns(path, NULL, &count, &energies, &values));
     for (int64_t i = 0; i < count; i++) energies[i] *= kev;
-    skg_status status = skg_material_table(path, count, energies, values, material);
+    skg_status status = skg_material_create_table(path, count, energies, values, material);
     skg_free(&energies);
     skg_free(&values);
     return status;

@@ -63,13 +63,13 @@ static skg_status make_cuboid(const char *shape, const double length[3], skg_mes
     return skg_mesh_adopt(NULL, shape, &arrays, mesh);
 }
 
-skg_status skg_mesh_cube(double edge, skg_mesh **mesh) {
+skg_status skg_mesh_create_cube(double edge, skg_mesh **mesh) {
     SKG_TRY(check_place("cube", mesh));
     SKG_TRY(check_length("cube", "edge", edge));
     return make_cuboid("cube", (double[3]){edge, edge, edge}, mesh);
 }
 
-skg_status skg_mesh_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh) {
+skg_status skg_mesh_create_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh) {
     SKG_TRY(check_place("cuboid", mesh));
     SKG_TRY(check_length("cuboid", "length along x", length_x));
     SKG_TRY(check_length("cuboid", "length along y", length_y));
@@ -101,7 +101,7 @@ static void add_wall(skg_mesh_arrays *arrays, int64_t lower, int64_t upper, int6
     }
 }
 
-skg_status skg_mesh_sphere(double radius, int64_t segments, skg_mesh **mesh) {
+skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **mesh) {
     skg_mesh_arrays arrays;
     SKG_TRY(check_place("sphere", mesh));
     SKG_TRY(check_length("sphere", "radius", radius));
@@ -121,7 +121,7 @@ skg_status skg_mesh_sphere(double radius, int64_t segments, skg_mesh **mesh) {
     return skg_mesh_adopt(NULL, "sphere", &arrays, mesh);
 }
 
-skg_status skg_mesh_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh) {
+skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh) {
     skg_mesh_arrays arrays;
     SKG_TRY(check_place("cylinder", mesh));
     SKG_TRY(check_length("cylinder", "radius", radius));
@@ -140,8 +140,8 @@ skg_status skg_mesh_cylinder(double radius, double height, int64_t segments, skg
 
 /* The outline in the plane of x and z, counter-clockwise as seen from -y: the foot of every edge between
  * steps, then the stairs down from the last step. Front (-y) and back (+y) have `outline` vertices each. */
-skg_status skg_mesh_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
-                               skg_mesh **mesh) {
+skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
+                                      skg_mesh **mesh) {
     skg_mesh_arrays arrays;
     SKG_TRY(check_place("step wedge", mesh));
     SKG_TRY(check_length("step wedge", "length along x", length_x));

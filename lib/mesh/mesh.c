@@ -217,20 +217,20 @@ void skg_mesh_release(skg_mesh **mesh) {
     skg_free(&last);
 }
 
-skg_status skg_mesh_size(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles) {
+skg_status skg_mesh_count(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles) {
     SKG_TRY(check_mesh(mesh, mesh, __func__));
     if (vertices) *vertices = mesh->vertices;
     if (triangles) *triangles = mesh->triangles;
     return SKG_OK;
 }
 
-skg_status skg_mesh_name(const skg_mesh *mesh, const char **name) {
+skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name) {
     SKG_TRY(check_mesh(mesh, name, __func__));
     *name = mesh->name;
     return SKG_OK;
 }
 
-skg_status skg_mesh_version(const skg_mesh *mesh, int64_t *version) {
+skg_status skg_mesh_version_get(const skg_mesh *mesh, int64_t *version) {
     SKG_TRY(check_mesh(mesh, version, __func__));
     *version = mesh->version;
     return SKG_OK;
@@ -242,14 +242,14 @@ void skg_mesh_bounds(const skg_mesh *mesh, float lowest[3], float highest[3], in
     *first_bad = mesh->first_bad;
 }
 
-skg_status skg_mesh_read_positions(const skg_mesh *mesh, double *positions, int64_t position_stride) {
+skg_status skg_mesh_positions_get(const skg_mesh *mesh, double *positions, int64_t position_stride) {
     SKG_TRY(check_mesh(mesh, positions, __func__));
     SKG_TRY(check_stride(mesh->name, "position", &position_stride));
     for (int64_t i = 0; i < mesh->vertices; i++) skg_mesh_vertex(mesh, i, positions + i * position_stride);
     return SKG_OK;
 }
 
-skg_status skg_mesh_read_triangles(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride) {
+skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride) {
     SKG_TRY(check_mesh(mesh, corners, __func__));
     SKG_TRY(check_stride(mesh->name, "triangle", &triangle_stride));
     for (int64_t i = 0; i < mesh->triangles; i++)
@@ -266,7 +266,7 @@ static skg_status torn(const skg_mesh *mesh, int64_t vertex) {
         mesh->name, mesh->weld[vertex], vertex);
 }
 
-skg_status skg_mesh_write_positions(skg_mesh *mesh, const double *positions, int64_t position_stride) {
+skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride) {
     double centre[3], reach;
     int far = 0;
     SKG_TRY(check_mesh(mesh, positions, __func__));
@@ -290,14 +290,14 @@ skg_status skg_mesh_write_positions(skg_mesh *mesh, const double *positions, int
     return SKG_OK;
 }
 
-skg_status skg_mesh_positions(skg_mesh *mesh, float **offsets, const double **origin) {
+skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin) {
     SKG_TRY(check_mesh(mesh, offsets, __func__));
     *offsets = mesh->offsets;
     if (origin) *origin = mesh->origin;
     return SKG_OK;
 }
 
-skg_status skg_mesh_moved(skg_mesh *mesh) {
+skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
     SKG_TRY(check_mesh(mesh, mesh, __func__));
     mesh->positions_stale = 1;
     mesh->version++;
@@ -313,7 +313,7 @@ void skg_mesh_health_init(skg_mesh_health *health) {
     if (health) *health = (skg_mesh_health){.size = sizeof *health, .first_open_vertex = -1};
 }
 
-skg_status skg_mesh_get_health(const skg_mesh *mesh, skg_mesh_health *health) {
+skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health) {
     SKG_TRY(check_mesh(mesh, health, __func__));
     skg_mesh_health now = mesh->health;
     if (mesh->version > 1) {

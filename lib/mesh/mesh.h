@@ -62,7 +62,7 @@ static inline void skg_mesh_vertex(const skg_mesh *mesh, int64_t vertex, double 
 }
 
 /* Bounds of the offsets (mm from the origin) over the finite vertices; *first_bad: the first vertex that is
- * not finite, or -1. Kept up to date by every write and skg_mesh_moved: costs nothing. */
+ * not finite, or -1. Kept up to date by every write and skg_mesh_offsets_moved: costs nothing. */
 void skg_mesh_bounds(const skg_mesh *mesh, float lowest[3], float highest[3], int64_t *first_bad);
 
 /* Corners (3 * triangles) in an order for the device: along a space-filling curve where the caller's order

@@ -26,11 +26,11 @@ skg_status skg_plan_name_channels(skg_plan *plan) {
 static double open_beam(const skg_plan *plan, int64_t channel) {
     skg_camera camera;
     switch (plan->options.quantity) {
-    case SKG_TRANSMISSION:
+    case SKG_QUANTITY_TRANSMISSION:
         return 1;
-    case SKG_ATTENUATION:
+    case SKG_QUANTITY_ATTENUATION:
         return 0;
-    case SKG_FLUENCE:
+    case SKG_QUANTITY_FLUENCE:
         if (skg_camera_make(&plan->view, NULL, 0, 0, &camera) != SKG_OK) return 0;
         return plan->model.open[channel] / skg_camera_pixel_area(&camera);
     default:
@@ -42,20 +42,20 @@ void skg_channel_init(skg_channel *channel) {
     if (channel) *channel = (skg_channel){.size = (int32_t)sizeof *channel};
 }
 
-skg_status skg_plan_channels(const skg_plan *plan, int64_t *channels) {
-    if (!plan || !channels) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channels: no plan or no result");
+skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *channels) {
+    if (!plan || !channels) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel_count: no plan or no result");
     *channels = plan->model.channels;
     return SKG_OK;
 }
 
-skg_status skg_plan_channel(const skg_plan *plan, int64_t index, skg_channel *channel) {
-    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel: no plan");
+skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel *channel) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel_get: no plan");
     if (index < 0 || index >= plan->model.channels)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel: channel %" PRId64 " of %" PRId32, index,
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel_get: channel %" PRId64 " of %" PRId32, index,
                         plan->model.channels);
     const skg_channel ours = {.size = sizeof ours,
                               .name = plan->channel_names[index].text,
                               .unit = quantity_units[plan->options.quantity],
-                              .open = open_beam(plan, index)};
+                              .flat_field = open_beam(plan, index)};
     return skg_struct_write(&ours, sizeof ours, "skg_channel", channel);
 }

@@ -1,7 +1,7 @@
 /* What effects cost, estimated from what they do: counts of operations per pixel, over those of a frame
  * without any. */
-#include "spectral/compress.h"
 #include "plan/report.h"
+#include "spectral/compress.h"
 
 #include <math.h>
 

@@ -88,8 +88,8 @@ static void tell_samples(skg_plan *plan) {
     const char *shape = shapes[samples->spot.shape];
     if (samples->spot.shape == SKG_SPOT_POINT)
         set(plan, SKG_EFFECT_SOURCE, 0, "%s",
-            plan->view.projection == SKG_POINT ? "the source is a point: one pass"
-                                               : "the beam is parallel: one pass");
+            plan->view.projection == SKG_PROJECTION_POINT ? "the source is a point: one pass"
+                                                          : "the beam is parallel: one pass");
     else if (plan->report.sample_error > 0)
         set(plan, SKG_EFFECT_SOURCE, 1,
             "%s: %" PRId64
@@ -108,7 +108,7 @@ static void tell_samples(skg_plan *plan) {
 static void tell_detector(skg_plan *plan) {
     const skg_plan_options *options = &plan->options;
     const char *world = "";
-    if (options->world && skg_material_name(options->world, &world) == SKG_OK)
+    if (options->world && skg_material_name_get(options->world, &world) == SKG_OK)
         set(plan, SKG_EFFECT_WORLD, 1, "the parts stand in %s", world);
     else
         set(plan, SKG_EFFECT_WORLD, 0, "the parts stand in vacuum");
@@ -116,7 +116,7 @@ static void tell_detector(skg_plan *plan) {
         set(plan, SKG_EFFECT_RESPONSE, 1, "photons count by what the detector records of their energy");
     else
         set(plan, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: all photons, all their energy");
-    if (plan->attenuation.falloff && plan->view.projection != SKG_POINT)
+    if (plan->attenuation.falloff && plan->view.projection != SKG_PROJECTION_POINT)
         set(plan, SKG_EFFECT_FALLOFF, 0, "the beam is parallel: its intensity is the same everywhere");
     else if (plan->attenuation.falloff)
         set(plan, SKG_EFFECT_FALLOFF, 1,
@@ -138,7 +138,7 @@ static void tell_compression(skg_plan *plan) {
             model->variances ? " and variances" : "", model->bound, model->verified);
     else if (model->bins == 1)
         set(plan, effect, 0, "the beam has one energy");
-    else if (plan->options.precision == SKG_HALF)
+    else if (plan->options.precision == SKG_PRECISION_HALF)
         set(plan, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
     else if (plan->options.tolerance > 0)
         set(plan, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
@@ -196,21 +196,22 @@ void skg_effect_init(skg_effect *effect) {
     if (effect) *effect = (skg_effect){.size = (int32_t)sizeof *effect};
 }
 
-skg_status skg_plan_effects(const skg_plan *plan, int64_t *count) {
-    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effects: no plan or no result");
+skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect_count: no plan or no result");
     *count = SKG_EFFECTS;
     return SKG_OK;
 }
 
-skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect) {
+skg_status skg_plan_effect_get(const skg_plan *plan, int64_t index, skg_effect *effect) {
     static const char *const names[] = {
 #define SKG_EFFECT_TEXT(name, text) text,
         SKG_EFFECT_LIST(SKG_EFFECT_TEXT)
 #undef SKG_EFFECT_TEXT
     };
-    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect: no plan");
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect_get: no plan");
     if (index < 0 || index >= SKG_EFFECTS)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect: effect %" PRId64 " of %d", index, SKG_EFFECTS);
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_effect_get: effect %" PRId64 " of %d", index,
+                        SKG_EFFECTS);
     skg_effect ours = {.size = sizeof ours,
                        .on = plan->effects[index].on,
                        .name = names[index],

@@ -76,16 +76,16 @@ void skg_overlap_init(skg_overlap *overlap) {
     if (overlap) *overlap = (skg_overlap){.size = (int32_t)sizeof *overlap};
 }
 
-skg_status skg_plan_overlaps(const skg_plan *plan, int64_t *count) {
-    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlaps: no plan or no result");
+skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap_count: no plan or no result");
     *count = plan->overlap_count;
     return SKG_OK;
 }
 
-skg_status skg_plan_overlap(const skg_plan *plan, int64_t index, skg_overlap *overlap) {
-    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap: no plan");
+skg_status skg_plan_overlap_get(const skg_plan *plan, int64_t index, skg_overlap *overlap) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap_get: no plan");
     if (index < 0 || index >= plan->overlap_count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap: pair %" PRId64 " of %" PRId64, index,
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_overlap_get: pair %" PRId64 " of %" PRId64, index,
                         plan->overlap_count);
     const skg_overlap_pair *pair = &plan->overlaps[index];
     skg_overlap ours = {.size = sizeof ours,
@@ -208,8 +208,8 @@ void skg_plan_report_init(skg_plan_report *report) {
     if (report) *report = (skg_plan_report){.size = (int32_t)sizeof *report};
 }
 
-skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
-    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_get_report: no plan");
+skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_report_get: no plan");
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
                         plan->bad.bytes + plan->gaps.bytes + plan->field.image.bytes +
@@ -223,12 +223,13 @@ skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report) {
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 
-skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
-                         double *weights) {
-    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node: no plan");
+skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                             double *weights) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node_get: no plan");
     const skg_model *model = &plan->model;
     if (index < 0 || index >= model->nodes)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node: node %" PRId64 " of %" PRId32, index, model->nodes);
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node_get: node %" PRId64 " of %" PRId32, index,
+                        model->nodes);
     if (energy_kev) *energy_kev = model->node_kev[index];
     if (photons) *photons = model->node_photons[index];
     if (weights)
@@ -240,16 +241,16 @@ void skg_stage_init(skg_stage *stage) {
     if (stage) *stage = (skg_stage){.size = (int32_t)sizeof *stage};
 }
 
-skg_status skg_plan_stages(const skg_plan *plan, int64_t *count) {
-    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stages: no plan or no result");
+skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage_count: no plan or no result");
     *count = plan->stage_count;
     return SKG_OK;
 }
 
-skg_status skg_plan_stage(const skg_plan *plan, int64_t index, skg_stage *stage) {
-    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage: no plan");
+skg_status skg_plan_stage_get(const skg_plan *plan, int64_t index, skg_stage *stage) {
+    if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage_get: no plan");
     if (index < 0 || index >= plan->stage_count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage: stage %" PRId64 " of %" PRId64, index,
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_stage_get: stage %" PRId64 " of %" PRId64, index,
                         plan->stage_count);
     skg_stage ours = {.size = sizeof ours, .name = plan->stages[index].name, .ns = plan->stages[index].ns};
     return skg_struct_write(&ours, sizeof ours, "skg_stage", stage);

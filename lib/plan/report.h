@@ -3,8 +3,8 @@
 #ifndef SKG_REPORT_H
 #define SKG_REPORT_H
 
-#include "geometry/extent.h"
 #include "frame/plan.h"
+#include "geometry/extent.h"
 
 /* Fills the effects of a new plan. */
 skg_status skg_report_effects(skg_plan *plan);

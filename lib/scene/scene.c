@@ -135,7 +135,7 @@ skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
         return skg_fail(SKG_ERR_ARGUMENT, "part %s has no mesh; give it one",
                         ours.label ? ours.label : "without label");
     const char *label = ours.label;
-    if (!label) SKG_TRY(skg_mesh_name(ours.mesh, &label));
+    if (!label) SKG_TRY(skg_mesh_name_get(ours.mesh, &label));
     SKG_TRY(check_part(scene, &ours, label));
     if (scene->count == scene->capacity) {
         int64_t capacity = 2 * scene->capacity + 8;
@@ -185,14 +185,14 @@ skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
     return SKG_OK;
 }
 
-skg_status skg_scene_size(const skg_scene *scene, int64_t *parts) {
-    if (!scene || !parts) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_size: no scene or no result");
+skg_status skg_scene_part_count(const skg_scene *scene, int64_t *parts) {
+    if (!scene || !parts) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_part_count: no scene or no result");
     *parts = scene->count;
     return SKG_OK;
 }
 
-skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part) {
-    SKG_TRY(check_id(scene, id, "skg_scene_part"));
+skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part) {
+    SKG_TRY(check_id(scene, id, "skg_scene_part_get"));
     const skg_scene_part_data *data = &scene->parts[id];
     skg_part ours = {.size = sizeof ours,
                      .priority = data->priority,
@@ -226,17 +226,17 @@ skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id
     return SKG_ERR_SCENE;
 }
 
-skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose) {
-    SKG_TRY(check_id(scene, id, "skg_scene_set_pose"));
-    if (!pose) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_set_pose: no pose");
+skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) {
+    SKG_TRY(check_id(scene, id, "skg_scene_pose_set"));
+    if (!pose) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_pose_set: no pose");
     SKG_TRY(skg_scene_check_pose(scene->parts[id].label, pose));
     memcpy(scene->parts[id].pose, pose, sizeof scene->parts[id].pose);
     scene->poses++;
     return SKG_OK;
 }
 
-skg_status skg_scene_set_material(skg_scene *scene, int64_t id, skg_material *material) {
-    SKG_TRY(check_id(scene, id, "skg_scene_set_material"));
+skg_status skg_scene_material_set(skg_scene *scene, int64_t id, skg_material *material) {
+    SKG_TRY(check_id(scene, id, "skg_scene_material_set"));
     if (!material)
         return skg_fail(SKG_ERR_ARGUMENT, "part %s has no material; give it one", scene->parts[id].label);
     skg_material_retain(material);

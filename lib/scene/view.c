@@ -38,16 +38,16 @@ static skg_status check_vector(const char *what, const double *v) {
 }
 
 static skg_status check_numbers(const skg_view *view) {
-    if (view->projection != SKG_POINT && view->projection != SKG_PARALLEL &&
-        view->projection != SKG_PARALLEL_FROM_INFINITY)
-        return skg_fail(SKG_ERR_SCENE, "the view's projection is %" PRId32 "; SKG_POINT is %d",
-                        view->projection, SKG_POINT);
+    if (view->projection != SKG_PROJECTION_POINT && view->projection != SKG_PROJECTION_PARALLEL &&
+        view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+        return skg_fail(SKG_ERR_SCENE, "the view's projection is %" PRId32 "; SKG_PROJECTION_POINT is %d",
+                        view->projection, SKG_PROJECTION_POINT);
     if (view->columns < 1 || view->rows < 1 || view->columns > LARGEST_SIDE || view->rows > LARGEST_SIDE)
         return skg_fail(SKG_ERR_SCENE,
                         "the detector has %" PRId64 " columns and %" PRId64
                         " rows; 1 to %d of each can be imaged",
                         view->columns, view->rows, LARGEST_SIDE);
-    if (view->projection != SKG_PARALLEL_FROM_INFINITY)
+    if (view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY)
         SKG_TRY(check_vector("source's position", view->source));
     else if (!skg_all_finite(view->source, 3))
         return skg_fail(SKG_ERR_SCENE, "the beam's direction is not finite");
@@ -106,7 +106,7 @@ static skg_status check_point(const skg_view *view, const detector_plane *plane)
 
 /* Direction of a parallel beam, length 1; 0 where it has none. */
 static int find_direction(const skg_view *view, double *direction) {
-    if (view->projection == SKG_PARALLEL_FROM_INFINITY)
+    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
         memcpy(direction, view->source, 3 * sizeof *direction);
     else
         skg_add_scaled(view->centre, -1, view->source, direction);
@@ -122,7 +122,7 @@ static skg_status check_parallel(const skg_view *view, const detector_plane *pla
     double direction[3];
     if (!find_direction(view, direction))
         return skg_fail(SKG_ERR_SCENE,
-                        view->projection == SKG_PARALLEL_FROM_INFINITY
+                        view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY
                             ? "the beam's direction is (0, 0, 0); give it a length"
                             : "the source is at the detector's centre, so the parallel beam has "
                               "no direction; move it away");
@@ -141,5 +141,6 @@ skg_status skg_view_check(const skg_view *view) {
     SKG_TRY(skg_struct_read(view, "skg_view", &ours, sizeof ours));
     SKG_TRY(check_numbers(&ours));
     SKG_TRY(check_detector(&ours, &plane));
-    return ours.projection == SKG_POINT ? check_point(&ours, &plane) : check_parallel(&ours, &plane);
+    return ours.projection == SKG_PROJECTION_POINT ? check_point(&ours, &plane)
+                                                   : check_parallel(&ours, &plane);
 }

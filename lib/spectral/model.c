@@ -53,7 +53,7 @@ static skg_status look_up(making *m, const skg_model *model) {
             continue;
         }
         for (int32_t n = 0; n < model->nodes; n++) {
-            SKG_TRY(skg_material_attenuation(material, m->spectrum->energy_kev[m->bins[n]], &mu[n]));
+            SKG_TRY(skg_material_attenuation_get(material, m->spectrum->energy_kev[m->bins[n]], &mu[n]));
             mu[n] *= 0.1; /* 1/cm to 1/mm */
         }
     }
@@ -62,7 +62,7 @@ static skg_status look_up(making *m, const skg_model *model) {
 
 /* Half precision sums distances as they are: a plane a material, of which parts add 1 or -1 times theirs. */
 static int is_unweighted(const making *m) {
-    return m->options->precision == SKG_HALF;
+    return m->options->precision == SKG_PRECISION_HALF;
 }
 
 /* The factor by which mu is a basis, or 0 where it is not proportional to it. */
@@ -133,10 +133,10 @@ static skg_status list_writes(const making *m, skg_model *model) {
 
 /* What a photon of an energy counts for: recorded energy, or 1 where photons are counted. */
 static skg_status worth_of(const making *m, double energy, double *worth) {
-    const int counts = m->options->quantity == SKG_PHOTONS;
+    const int counts = m->options->quantity == SKG_QUANTITY_PHOTONS;
     *worth = counts ? 1 : energy;
     if (!m->options->response) return SKG_OK;
-    return skg_response_at(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
+    return skg_response_get(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
 }
 
 /* Variance of what a photon that arrives adds (contracts 4.6): it is recorded with the probability
@@ -144,8 +144,8 @@ static skg_status worth_of(const making *m, double energy, double *worth) {
  * the Swank factor. */
 static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
     double efficiency = 1;
-    if (m->options->response) SKG_TRY(skg_response_at(m->options->response, energy, 1, NULL, &efficiency));
-    const double swank = m->options->quantity == SKG_PHOTONS ? 1 : m->options->swank;
+    if (m->options->response) SKG_TRY(skg_response_get(m->options->response, energy, 1, NULL, &efficiency));
+    const double swank = m->options->quantity == SKG_QUANTITY_PHOTONS ? 1 : m->options->swank;
     *variance = efficiency > 0 ? worth * worth / (efficiency * swank) : 0;
     return SKG_OK;
 }

@@ -5,5 +5,5 @@ int skg_quantity_is_absolute(const skg_plan_options *options) {
 }
 
 int skg_quantity_is_ratio(const skg_plan_options *options) {
-    return options->quantity == SKG_TRANSMISSION || options->quantity == SKG_ATTENUATION;
+    return options->quantity == SKG_QUANTITY_TRANSMISSION || options->quantity == SKG_QUANTITY_ATTENUATION;
 }

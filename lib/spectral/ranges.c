@@ -1,7 +1,7 @@
 #include "spectral/ranges.h"
 
-#include "geometry/extent.h"
 #include "core/vector.h"
+#include "geometry/extent.h"
 
 #include <math.h>
 #include <string.h>

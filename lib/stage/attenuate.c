@@ -42,7 +42,7 @@ static skg_status upload(skg_context *context, int32_t is_double, int64_t count,
 
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
                                   const skg_attenuation_tables *tables, skg_attenuation *attenuation) {
-    const int32_t is_double = precision == SKG_DOUBLE;
+    const int32_t is_double = precision == SKG_PRECISION_DOUBLE;
     const int64_t count = (int64_t)shape->nodes * shape->planes;
     double *scaled = NULL;
     SKG_TRY(skg_alloc(count, sizeof *scaled, "attenuation", &scaled));
@@ -130,7 +130,7 @@ static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
 static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key *key,
                               const skg_camera *camera, const skg_attenuation *attenuation,
                               const skg_noise_args *noise, double photons) {
-    const int single = key->options.precision == SKG_SINGLE;
+    const int single = key->options.precision == SKG_PRECISION_SINGLE;
     if (key->world) {
         /* |ray| times path: the whole ray of a point source; with a parallel beam, whose |ray| is 1 mm, from
          * the start. */
@@ -186,7 +186,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
     const kernel_key key = key_of(raster, camera, attenuation, place, sums->mixed);
-    const int single = key.options.precision == SKG_SINGLE;
+    const int single = key.options.precision == SKG_PRECISION_SINGLE;
     /* As the kernel counts: powers of two above a limit. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : 1.4426950408889634);
     const float factor_single = (float)factor, limit_single = (float)limit;

@@ -151,7 +151,8 @@ static skg_status upload(const skg_blur *blur, int is_double, int64_t count, con
 
 static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
     static const char *const files[] = {"blur.cl"};
-    const skg_kernel_options options = {.precision = is_double ? SKG_DOUBLE : SKG_SINGLE, .bits = 32};
+    const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                                        .bits = 32};
     const int64_t down = blur->separable ? blur->rows : 1;
     blur_type *type = *got = &blur->type[is_double];
     cl_program program = NULL;
@@ -194,7 +195,8 @@ static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, in
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
                         int64_t channels, skg_stage_log *log) {
     const int is_double = image->output_double != 0;
-    const int64_t lanes = skg_kernel_lanes(blur->context, is_double ? SKG_DOUBLE : SKG_SINGLE);
+    const int64_t lanes =
+        skg_kernel_lanes(blur->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
     const int64_t left = blur->columns / 2, above = blur->separable ? 0 : blur->rows / 2;
     /* Runs of the second pass may end past the image, and read as far to the right as any. */
     const int64_t stride = rounded_up(rounded_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);

@@ -47,7 +47,7 @@ static skg_status upload(contest_run *run, skg_buffer *buffer, int64_t bytes, co
 /* Depths are listed relative to the first competitor's reference, so that they keep their digits. */
 static skg_status upload_shifts(contest_run *run) {
     const skg_contest *contest = &run->frame->contest;
-    const int is_double = run->plan->options.precision == SKG_DOUBLE;
+    const int is_double = run->plan->options.precision == SKG_PRECISION_DOUBLE;
     const int64_t size = is_double ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
     double common = 0;
     void *shifts = NULL;
@@ -135,7 +135,7 @@ static skg_status place_hits(contest_run *run) {
         clEnqueueReadBuffer(queue, m->total.memory, CL_TRUE, 0, sizeof total, &total, 0, NULL, NULL);
     if (code != CL_SUCCESS) status = skg_cl_fail(code, "clEnqueueReadBuffer", __FILE__, __LINE__);
     /* A depth and an int, as skg_listed. */
-    const int64_t hit = run->plan->options.precision == SKG_DOUBLE ? 16 : 8;
+    const int64_t hit = run->plan->options.precision == SKG_PRECISION_DOUBLE ? 16 : 8;
     if (status == SKG_OK)
         status = reserve(run, &m->hits, (total > 0 ? total : 1) * hit, "hits of parts that compete");
 cleanup:

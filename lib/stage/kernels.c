@@ -6,7 +6,7 @@
 
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision) {
     const int32_t width = context->device->info.float_width;
-    if (precision == SKG_DOUBLE) return width >= 16 ? 8 : 4;
+    if (precision == SKG_PRECISION_DOUBLE) return width >= 16 ? 8 : 4;
     return width >= 16 ? 16 : width >= 8 ? 8 : 4;
 }
 
@@ -24,9 +24,10 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
     snprintf(text, sizeof text,
              "-D SKG_DOUBLE=%d -D SKG_BITS=%d -D SKG_WIDE=%d -D SKG_PARALLEL=%d -D SKG_SOURCE_PLANE=%d "
              "-D SKG_WRITES=%d -D SKG_HALF=%d %s",
-             options->precision == SKG_DOUBLE, options->bits, skg_kernel_lanes(context, options->precision),
-             options->parallel != 0, options->source_plane != 0, options->listed_writes ? 0 : 1,
-             options->half != 0, more_options ? more_options : "");
+             options->precision == SKG_PRECISION_DOUBLE, options->bits,
+             skg_kernel_lanes(context, options->precision), options->parallel != 0,
+             options->source_plane != 0, options->listed_writes ? 0 : 1, options->half != 0,
+             more_options ? more_options : "");
     return skg_program_get(context, HEADERS + files, all, text, program);
 }
 

@@ -6,7 +6,7 @@
 #include "device/device.h"
 
 typedef struct {
-    int32_t precision;     /* SKG_SINGLE, SKG_DOUBLE */
+    int32_t precision;     /* SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE */
     int32_t bits;          /* of the accumulators: 32 or 64 */
     int32_t parallel;      /* parallel beam */
     int32_t source_plane;  /* some part may reach the source, or the plane where parallel paths start */

@@ -53,11 +53,12 @@ skg_noise_args skg_noise_key(int64_t seed, int64_t index) {
 static skg_status get_type(skg_detector *detector, int is_double, detector_type **got) {
     static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "noise.cl"};
     const skg_detection *detection = &detector->detection;
-    const skg_kernel_options options = {.precision = is_double ? SKG_DOUBLE : SKG_SINGLE, .bits = 32};
+    const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                                        .bits = 32};
     const size_t element = is_double ? sizeof(double) : sizeof(float);
     detector_type *type = *got = &detector->type[is_double];
     cl_program program = NULL;
-    float rounded[SKG_MOST_CHANNELS];
+    float rounded[SKG_CHANNELS_MAX];
     char more[96];
     if (type->kernel) return SKG_OK;
     for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
@@ -92,7 +93,8 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
     SKG_TRY(skg_kernel_set_memory(type->kernel, 9, 1, &type->factor.memory));
     SKG_TRY(set_real(type->kernel, 10, is_double, factor));
     if (detector->detection.over_field) SKG_TRY(skg_kernel_set_memory(type->kernel, 11, 1, &field));
-    const int64_t lanes = skg_kernel_lanes(detector->context, is_double ? SKG_DOUBLE : SKG_SINGLE);
+    const int64_t lanes =
+        skg_kernel_lanes(detector->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
     const size_t local[3] = {8, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[3] = {(size_t)((columns + 8 * lanes - 1) / (8 * lanes) * 8),
                               (size_t)((rows + 15) / 16 * 16), (size_t)detector->detection.channels};

@@ -10,7 +10,7 @@
 enum { RUN = 256 };
 
 static int is_double(const skg_geometry *geometry) {
-    return geometry->precision == SKG_DOUBLE;
+    return geometry->precision == SKG_PRECISION_DOUBLE;
 }
 
 static size_t real_size(const skg_geometry *geometry) {

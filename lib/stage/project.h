@@ -18,10 +18,9 @@ typedef struct {
     const double *pose;   /* 4x4, row by row */
     const double *origin; /* of its mesh's offsets, mm */
     int32_t flipped;      /* its mesh is drawn with triangles turned round */
-    double
-        reference;   /* path parameter that its depths are measured from: the middle of those that lie on
+    double reference;     /* path parameter that its depths are measured from: the middle of those that lie on
                         paths, so     that no term is larger than their extent. Above 0 with a point source */
-    int32_t weights; /* how many planes; 0: the part is not drawn, but keeps its place */
+    int32_t weights;      /* how many planes; 0: the part is not drawn, but keeps its place */
     const skg_contribution *weight;
 } skg_geometry_part;
 
@@ -39,7 +38,7 @@ typedef struct {
     int64_t meshes, parts;
     int64_t vertices, triangles; /* over all parts */
     int64_t mesh_vertices;       /* over all meshes */
-    int32_t precision;           /* SKG_SINGLE: offsets and tables in float; SKG_DOUBLE */
+    int32_t precision;           /* SKG_PRECISION_SINGLE: offsets and tables in float; SKG_PRECISION_DOUBLE */
     int32_t reserved;
     int64_t *mesh_vertex;  /* [meshes + 1] first vertex of each mesh in the vertex buffer */
     int64_t *first_vertex; /* [parts + 1] in the numbering over all parts */

@@ -1,7 +1,7 @@
 /* The rasterisers of a plan: which strategy, and one for each set of abilities that its frames have called
  * for. */
-#include "geometry/extent.h"
 #include "frame/plan.h"
+#include "geometry/extent.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,8 +27,8 @@ static double mean_box(const skg_plan *plan, const skg_camera *camera) {
 skg_status skg_plan_choose_mix(skg_plan *plan) {
     const skg_model *model = &plan->model;
     plan->mixed = 0;
-    skg_free(&plan->mix_sent);                              /* the next frame sends its own */
-    if (plan->options.precision == SKG_HALF) return SKG_OK; /* as the paper's buffers */
+    skg_free(&plan->mix_sent);                                        /* the next frame sends its own */
+    if (plan->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* as the paper's buffers */
     return skg_mix_choose(plan->scene->count, model->planes, model->writes, model->first_write, &plan->mixed);
 }
 
@@ -41,13 +41,13 @@ skg_status skg_plan_choose_strategy(skg_plan *plan) {
         .workers = info->compute_units,
         .image_bytes = plan->view.rows * plan->view.columns *
                        (plan->mixed ? plan->mixed : plan->model.planes) *
-                       (plan->options.precision == SKG_DOUBLE ? 8 : 4),
+                       (plan->options.precision == SKG_PRECISION_DOUBLE ? 8 : 4),
         .triangles = plan->geometry.triangles,
         .triangle_pixels = mean_box(plan, &camera),
     };
     plan->strategy = plan->options.strategy;
     plan->strategy_reason = "asked for";
-    if (plan->options.precision == SKG_HALF) {
+    if (plan->options.precision == SKG_PRECISION_HALF) {
         plan->strategy = SKG_STRATEGY_ATOMICS;
         plan->strategy_reason = "precision half has no other";
     }

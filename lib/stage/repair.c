@@ -1,8 +1,8 @@
 /* Repair of open parts: what their bad pixels get, added to the shared sums as integers, so that every
  * strategy leaves the same bits. */
 #include "frame/frame.h"
-#include "stage/raster_private.h"
 #include "geometry/recast.h"
+#include "stage/raster_private.h"
 
 #include <math.h>
 #include <string.h>

@@ -47,9 +47,9 @@ static void add(skg_mesh *mesh, const char *name, double x, double y, int64_t in
     skg_part part;
     char label[16];
     int64_t number = 0;
-    ck_skg(skg_scene_size(scene, &number));
+    ck_skg(skg_scene_part_count(scene, &number));
     snprintf(label, sizeof label, "part %d", (int)number);
-    ck_skg(skg_material_named(name, &material));
+    ck_skg(skg_material_create_named(name, &material));
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside, part.label = label;
     part.pose[3] = x, part.pose[7] = y;
@@ -71,15 +71,15 @@ static void add_parts(int count) {
                                         "Fe",
                                         "Gd"};
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_cuboid(200, 180, 150 * next_random() + 60, &mesh));
+    ck_skg(skg_mesh_create_cuboid(200, 180, 150 * next_random() + 60, &mesh));
     add(mesh, "Tissue, Soft (ICRU-44)", 0, 0, -1);
     for (int k = 0; k < count; k++) {
         const int which = (int)(10 * next_random());
         const double size = which < 7 ? 20 + 30 * next_random() : 0.3 + next_random();
         if (which < 7)
-            ck_skg(skg_mesh_sphere(size / 2, 24, &mesh));
+            ck_skg(skg_mesh_create_sphere(size / 2, 24, &mesh));
         else
-            ck_skg(skg_mesh_cuboid(15, 15, size, &mesh));
+            ck_skg(skg_mesh_create_cuboid(15, 15, size, &mesh));
         add(mesh, names[which], 140 * next_random() - 70, 120 * next_random() - 60, 0);
     }
 }
@@ -88,11 +88,11 @@ static skg_spectrum *tube(double kvp) {
     skg_tube t;
     skg_spectrum *spectrum = NULL;
     skg_material *aluminium = NULL;
-    ck_skg(skg_material_element(13, &aluminium));
+    ck_skg(skg_material_create_element(13, &aluminium));
     const skg_filter filter = {aluminium, 2.5};
     skg_tube_init(&t);
     t.kvp = kvp, t.filter_count = 1, t.filters = &filter;
-    ck_skg(skg_spectrum_tube(&t, &spectrum));
+    ck_skg(skg_spectrum_create_tube(&t, &spectrum));
     skg_material_release(&aluminium);
     return spectrum;
 }
@@ -101,32 +101,32 @@ static void take(skg_spectrum *spectrum, const skg_plan_options *options, pictur
     skg_plan *plan = NULL;
     skg_output output;
     ck_skg(skg_plan_create(context, scene, &view, spectrum, options, &plan));
-    ck_skg(skg_plan_channels(plan, &shown->channels));
+    ck_skg(skg_plan_channel_count(plan, &shown->channels));
     ck_assert_int_le(shown->channels, MOST_CHANNELS);
     for (int64_t c = 0; c < shown->channels; c++) {
         skg_channel channel;
         skg_channel_init(&channel);
-        ck_skg(skg_plan_channel(plan, c, &channel));
-        shown->open[c] = channel.open;
+        ck_skg(skg_plan_channel_get(plan, c, &channel));
+        shown->open[c] = channel.flat_field;
     }
     skg_output_init(&output);
     output.data = shown->pixels;
-    output.type = options->precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
+    output.type = options->precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     ck_skg(skg_plan_image(plan, &output));
-    if (output.type == SKG_FLOAT32) /* from the end: doubles do not overwrite what is still to be read */
+    if (output.type == SKG_TYPE_FLOAT32) /* from the end: doubles do not overwrite what is still to be read */
         for (int64_t k = shown->channels * SIDE * SIDE - 1; k >= 0; k--) {
             float pixel;
             memcpy(&pixel, (const char *)shown->pixels + (size_t)k * sizeof pixel, sizeof pixel);
             shown->pixels[k] = (double)pixel;
         }
     skg_plan_report_init(&shown->report);
-    ck_skg(skg_plan_get_report(plan, &shown->report));
+    ck_skg(skg_plan_report_get(plan, &shown->report));
     skg_plan_release(&plan);
 }
 
 /* Error of a pixel in the words of the tolerance. */
 static double error_of(const skg_plan_options *options, double found, double truth, double open) {
-    if (options->quantity == SKG_ATTENUATION) {
+    if (options->quantity == SKG_QUANTITY_ATTENUATION) {
         found = exp(-found), truth = exp(-truth);
         open = 1;
     }
@@ -147,7 +147,8 @@ static void compare(skg_spectrum *spectrum, skg_plan_options *options) {
     ck_assert_int_eq(exact.report.verified, 0);
     ck_assert_double_eq(exact.report.bound, 0);
     /* Single precision: exponents up to 14 carry 2^-24 of themselves from each of a few operations. */
-    const double bar = fewer.report.bound + (options->precision == SKG_DOUBLE ? 1e-11 : 14 * 8 * 0x1p-24);
+    const double bar =
+        fewer.report.bound + (options->precision == SKG_PRECISION_DOUBLE ? 1e-11 : 14 * 8 * 0x1p-24);
     for (int64_t k = 0; k < exact.channels * SIDE * SIDE; k++) {
         const double open = exact.open[k / (SIDE * SIDE)];
         ck_assert_double_le(error_of(options, fewer.pixels[k], exact.pixels[k], open), bar);
@@ -157,7 +158,7 @@ static void compare(skg_spectrum *spectrum, skg_plan_options *options) {
 static int has_double(void) {
     skg_device_info info;
     skg_device_info_init(&info);
-    ck_skg(skg_context_device(context, &info));
+    ck_skg(skg_context_device_get(context, &info));
     return info.has_double;
 }
 
@@ -171,12 +172,14 @@ START_TEST(random_scenes) {
     skg_spectrum *spectrum = tube(60 + floor(90 * next_random()));
     skg_plan_options_init(&options);
     options.overlaps = 0;
-    options.precision = has_double() ? SKG_DOUBLE : SKG_SINGLE;
-    options.quantity = _i == 4 ? SKG_ATTENUATION : _i % 2 ? SKG_PHOTONS : SKG_ENERGY;
+    options.precision = has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
+    options.quantity = _i == 4  ? SKG_QUANTITY_ATTENUATION
+                       : _i % 2 ? SKG_QUANTITY_PHOTONS
+                                : SKG_QUANTITY_ENERGY;
     options.tolerance = pow(10, -2 - 3 * next_random());
     if (_i % 10 == 7) {
-        options.quantity = SKG_TRANSMISSION;
-        ck_skg(skg_material_named("water", &air)); /* in water: what air does not show */
+        options.quantity = SKG_QUANTITY_TRANSMISSION;
+        ck_skg(skg_material_create_named("water", &air)); /* in water: what air does not show */
         options.world = air;
     }
     if (_i == 3) options.bands = 3, options.band_kev = edges;
@@ -209,19 +212,19 @@ START_TEST(leaving_the_verified_range) {
     ck_skg(skg_plan_image(plan, &output));
     const float before = pixels[SIDE * SIDE / 2 + SIDE / 2];
     skg_frame_init(&frame);
-    frame.posed = 1, frame.posed_ids = &part, frame.posed_poses = larger;
+    frame.pose_count = 1, frame.pose_parts = &part, frame.poses = larger;
     ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
     ck_skg_fails(skg_job_wait(&job), SKG_RANGE, "bound");
     ck_assert_ptr_null(job);
     const float after = pixels[SIDE * SIDE / 2 + SIDE / 2];
     ck_assert(after > 0 && after < before);
     skg_plan_report_init(&report);
-    ck_skg(skg_plan_get_report(plan, &report));
+    ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_gt(report.outside_pixels, SIDE);
     larger[10] = 1.2; /* within the quarter more */
     ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
     ck_skg(skg_job_wait(&job));
-    ck_skg(skg_plan_get_report(plan, &report));
+    ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_eq(report.outside_pixels, 0);
     skg_plan_release(&plan);
     skg_spectrum_release(&spectrum);
@@ -250,9 +253,9 @@ START_TEST(views_of_a_scan_stay_within_the_range) {
     skg_output output;
     open_scene(1);
     view.column_step[0] = 3;
-    ck_skg(skg_mesh_cuboid(120, 40, 20, &mesh));
+    ck_skg(skg_mesh_create_cuboid(120, 40, 20, &mesh));
     add(mesh, "Bone, Cortical (ICRU-44)", 30, 0, -1);
-    ck_skg(skg_mesh_sphere(30, 24, &mesh));
+    ck_skg(skg_mesh_create_sphere(30, 24, &mesh));
     add(mesh, "Tissue, Soft (ICRU-44)", -60, 0, -1);
     skg_spectrum *spectrum = tube(100);
     skg_plan_options_init(&options);
@@ -326,9 +329,9 @@ START_TEST(a_fold_is_within_the_verified_range) {
     ck_skg(skg_plan_image(plan, &output));
     skg_channel channel;
     skg_channel_init(&channel);
-    ck_skg(skg_plan_channel(plan, 0, &channel));
+    ck_skg(skg_plan_channel_get(plan, 0, &channel));
     int brighter = 0;
-    for (int k = 0; k < FINE * FINE; k++) brighter += (double)pixels[k] > 1.02 * channel.open;
+    for (int k = 0; k < FINE * FINE; k++) brighter += (double)pixels[k] > 1.02 * channel.flat_field;
     ck_assert_int_gt(brighter, 2); /* the fold is seen */
     skg_plan_release(&plan);
     skg_spectrum_release(&spectrum);
@@ -347,16 +350,16 @@ START_TEST(nodes_are_a_beam) {
     skg_spectrum *spectrum = tube(110), *nodes = NULL;
     skg_plan_options_init(&options);
     options.overlaps = 0;
-    options.precision = has_double() ? SKG_DOUBLE : SKG_SINGLE;
+    options.precision = has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
     take(spectrum, &options, &exact);
     options.tolerance = 1e-3;
     take(spectrum, &options, &fewer);
     ck_assert_int_le(fewer.report.nodes, 64);
     ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
     for (int64_t n = 0; n < fewer.report.nodes; n++)
-        ck_skg(skg_plan_node(plan, n, &kev[n], &photons[n], NULL));
+        ck_skg(skg_plan_node_get(plan, n, &kev[n], &photons[n], NULL));
     skg_plan_release(&plan);
-    ck_skg(skg_spectrum_bins(fewer.report.nodes, kev, photons, &nodes));
+    ck_skg(skg_spectrum_create_bins(fewer.report.nodes, kev, photons, &nodes));
     options.tolerance = 0;
     take(nodes, &options, &given);
     ck_assert_int_eq(given.report.nodes, fewer.report.nodes);

@@ -27,10 +27,10 @@ static skg_scene *paper_object(skg_context *context) {
     skg_mesh *cube = NULL, *rod = NULL;
     skg_material *outer = NULL, *inner = NULL;
     ck_skg(skg_scene_create(context, &scene));
-    ck_skg(skg_mesh_cube(30, &cube));
-    ck_skg(skg_mesh_cylinder(10, 30, 20, &rod));
-    ck_skg(skg_material_table("soft tissue", 4, kev, soft, &outer));
-    ck_skg(skg_material_table("bone", 4, kev, bone, &inner));
+    ck_skg(skg_mesh_create_cube(30, &cube));
+    ck_skg(skg_mesh_create_cylinder(10, 30, 20, &rod));
+    ck_skg(skg_material_create_table("soft tissue", 4, kev, soft, &outer));
+    ck_skg(skg_material_create_table("bone", 4, kev, bone, &inner));
     add(scene, cube, outer, -1);
     add(scene, rod, inner, 0);
     return scene;
@@ -63,15 +63,15 @@ START_TEST(printed_values) {
     skg_context *context = NULL;
     skg_spectrum *one = NULL, *three = NULL;
     ck_skg(skg_context_create(NULL, &context));
-    ck_skg(skg_spectrum_mono(80, 1, &one));
-    ck_skg(skg_spectrum_bins(3, kev, photons, &three));
+    ck_skg(skg_spectrum_create_mono(80, 1, &one));
+    ck_skg(skg_spectrum_create_bins(3, kev, photons, &three));
     skg_scene *scene = paper_object(context);
     /* exactly: a value of 16 bits, in keV as float */
-    ck_assert_double_eq_tol(middle(context, scene, one, SKG_HALF), ldexp(1955, -16) * 1000, 1e-5);
-    ck_assert_double_eq_tol(middle(context, scene, three, SKG_HALF), ldexp(1115, -8) * 1000, 1e-3);
+    ck_assert_double_eq_tol(middle(context, scene, one, SKG_PRECISION_HALF), ldexp(1955, -16) * 1000, 1e-5);
+    ck_assert_double_eq_tol(middle(context, scene, three, SKG_PRECISION_HALF), ldexp(1115, -8) * 1000, 1e-3);
     /* single: the closed form of the printed coefficients, 2 cm of bone and 1 cm of tissue */
     const double truth = 80 * exp(-2 * .3971 - .1937);
-    ck_assert_double_eq_tol(middle(context, scene, one, SKG_SINGLE), truth, 1e-6 * truth);
+    ck_assert_double_eq_tol(middle(context, scene, one, SKG_PRECISION_SINGLE), truth, 1e-6 * truth);
     skg_scene_release(&scene);
     skg_spectrum_release(&one);
     skg_spectrum_release(&three);
@@ -86,16 +86,16 @@ START_TEST(what_half_cannot_hold_is_refused) {
     skg_plan_options options;
     skg_view view;
     ck_skg(skg_context_create(NULL, &context));
-    ck_skg(skg_spectrum_mono(80, 1, &one));
+    ck_skg(skg_spectrum_create_mono(80, 1, &one));
     skg_scene *scene = paper_object(context);
     skg_view_init(&view);
     view.columns = view.rows = SIDE;
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     view.source[2] = -100;
     view.centre[2] = 100;
     view.column_step[0] = view.row_step[1] = 0.3;
     skg_plan_options_init(&options);
-    options.precision = SKG_HALF;
+    options.precision = SKG_PRECISION_HALF;
     ck_skg_fails(skg_plan_create(context, scene, &view, one, &options, &plan), SKG_ERR_UNSUPPORTED, "half");
     skg_scene_release(&scene);
     skg_spectrum_release(&one);

@@ -40,8 +40,8 @@ static void ends(const skg_view *view, int64_t p, double *from, double *to) {
     const double r = (double)(p / view->columns) - (double)(view->rows - 1) / 2;
     for (int k = 0; k < 3; k++) {
         to[k] = view->centre[k] + c * view->column_step[k] + r * view->row_step[k];
-        from[k] =
-            view->projection == SKG_POINT ? view->source[k] : to[k] - (view->centre[k] - view->source[k]);
+        from[k] = view->projection == SKG_PROJECTION_POINT ? view->source[k]
+                                                           : to[k] - (view->centre[k] - view->source[k]);
     }
 }
 
@@ -66,13 +66,13 @@ static void check_convex(const char *what, skg_mesh *mesh, const skg_view *view,
         low[p] = within(count, hair > 0 ? smaller : all, from, to);
         high[p] = within(count, hair > 0 ? larger : all, from, to);
     }
-    for (int32_t precision = SKG_SINGLE; precision <= (run_has_double() ? SKG_DOUBLE : SKG_SINGLE);
-         precision++) {
+    for (int32_t precision = SKG_PRECISION_SINGLE;
+         precision <= (run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE); precision++) {
         skg_plan *plan = run_plan(scene, view, (run_choice){.precision = precision});
         double *got = run_lengths(plan, view);
         verdict v = {0};
         verdict_add(&v, pixels, got, low, high);
-        for (int64_t p = 0; p < pixels && precision == SKG_SINGLE && depth > 0; p++)
+        for (int64_t p = 0; p < pixels && precision == SKG_PRECISION_SINGLE && depth > 0; p++)
             v.errors[p] *= v.longest / depth;
         verdict_check(&v, precision, what);
         verdict_free(&v);
@@ -95,8 +95,8 @@ static void box_sides(double x, double y, double z, half_space sides[6]) {
 START_TEST(cube_and_slab) {
     skg_mesh *cube = NULL, *slab = NULL;
     half_space sides[6];
-    ck_skg(skg_mesh_cube(100, &cube));
-    ck_skg(skg_mesh_cuboid(2000, 1600, 7, &slab));
+    ck_skg(skg_mesh_create_cube(100, &cube));
+    ck_skg(skg_mesh_create_cuboid(2000, 1600, 7, &slab));
     skg_view view = run_view(96, 1.7);
     for (int tilted = 0; tilted < 2; tilted++) {
         view.source[0] = tilted * 130;
@@ -108,9 +108,9 @@ START_TEST(cube_and_slab) {
         /* Seen from a tilted detector the slab is 665 mm deep, and its corners' depths are floats. */
         const double depth = tilted ? 2000 * sin(atan2(0.6, 1.7)) : 0;
         check_convex("slab", slab, &view, 6, sides, 0, depth);
-        view.projection = SKG_PARALLEL;
+        view.projection = SKG_PROJECTION_PARALLEL;
         check_convex("slab, parallel", slab, &view, 6, sides, 0, depth);
-        view.projection = SKG_POINT;
+        view.projection = SKG_PROJECTION_POINT;
     }
     skg_mesh_release(&cube);
     skg_mesh_release(&slab);
@@ -121,13 +121,13 @@ START_TEST(cylinder) {
     enum { SEGMENTS = 36 };
     half_space sides[SEGMENTS + 2];
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_cylinder(40, 120, SEGMENTS, &mesh));
+    ck_skg(skg_mesh_create_cylinder(40, 120, SEGMENTS, &mesh));
     /* The prism's own corners say where its sides stand. */
     double corners[3 * (2 * SEGMENTS + 2)], first = 0;
     int64_t vertices = 0, triangles = 0;
-    ck_skg(skg_mesh_size(mesh, &vertices, &triangles));
+    ck_skg(skg_mesh_count(mesh, &vertices, &triangles));
     ck_assert_int_le(vertices, 2 * SEGMENTS + 2);
-    ck_skg(skg_mesh_read_positions(mesh, corners, 0));
+    ck_skg(skg_mesh_positions_get(mesh, corners, 0));
     for (int64_t n = 0; n < vertices; n++)
         if (hypot(corners[3 * n], corners[3 * n + 1]) > 39) first = atan2(corners[3 * n + 1], corners[3 * n]);
     for (int n = 0; n < SEGMENTS; n++) {
@@ -142,7 +142,7 @@ START_TEST(cylinder) {
     view.source[2] = -300;
     view.centre[0] = -250;
     check_convex("cylinder across the beam", mesh, &view, SEGMENTS + 2, sides, 0, 0);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     check_convex("cylinder across a parallel beam", mesh, &view, SEGMENTS + 2, sides, 0, 0);
     skg_mesh_release(&mesh);
 }
@@ -174,7 +174,7 @@ START_TEST(the_papers_cube) {
     enum { SECTORS = 20 };
     skg_view view;
     skg_view_init(&view);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     view.columns = 301;
     view.rows = 1;
     view.source[2] = -100;
@@ -250,7 +250,7 @@ static double torus_form(double x, double y) {
  * range is wide. */
 static void check_round(const char *what, const solid *s, form *of, double sagitta) {
     skg_view view = run_view(101, 1.1);
-    view.projection = SKG_PARALLEL_FROM_INFINITY;
+    view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
     view.source[2] = 1;
     const int64_t pixels = view.rows * view.columns;
     uint64_t seed = 5;
@@ -267,8 +267,8 @@ static void check_round(const char *what, const solid *s, form *of, double sagit
         }
         low[p] = fmax(low[p], 0);
     }
-    for (int32_t precision = SKG_SINGLE; precision <= (run_has_double() ? SKG_DOUBLE : SKG_SINGLE);
-         precision++) {
+    for (int32_t precision = SKG_PRECISION_SINGLE;
+         precision <= (run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE); precision++) {
         double *got = run_solid(s, NULL, &view, (run_choice){.precision = precision});
         for (int64_t p = 0; p < pixels; p++)
             ck_assert_msg(got[p] >= low[p] && got[p] <= high[p],

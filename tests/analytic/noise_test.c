@@ -23,16 +23,16 @@ static void open_scene(void) {
     skg_part part;
     ck_skg(skg_context_create(NULL, &context));
     ck_skg(skg_scene_create(context, &scene));
-    ck_skg(skg_material_named("Tissue, Soft (ICRU-44)", &tissue));
-    ck_skg(skg_material_named("CsI", &iodide));
-    ck_skg(skg_response_scintillator(iodide, 0.6, 0.8, &scintillator));
-    ck_skg(skg_mesh_cuboid(1000, 1000, THICKNESS, &slab));
+    ck_skg(skg_material_create_named("Tissue, Soft (ICRU-44)", &tissue));
+    ck_skg(skg_material_create_named("CsI", &iodide));
+    ck_skg(skg_response_create_scintillator(iodide, 0.6, 0.8, &scintillator));
+    ck_skg(skg_mesh_create_cuboid(1000, 1000, THICKNESS, &slab));
     skg_part_init(&part);
     part.mesh = slab, part.material = tissue, part.label = "slab";
     ck_skg(skg_scene_add(scene, &part, NULL));
     skg_mesh_release(&slab);
     skg_view_init(&view);
-    view.projection = SKG_PARALLEL_FROM_INFINITY;
+    view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
     view.columns = view.rows = SIDE;
     view.source[2] = 1; /* direction */
     view.centre[2] = 200;
@@ -49,7 +49,7 @@ static void close_scene(void) {
 
 static skg_spectrum *energies(int64_t count, const double *kev, const double *photons) {
     skg_spectrum *spectrum = NULL;
-    ck_skg(skg_spectrum_bins(count, kev, photons, &spectrum));
+    ck_skg(skg_spectrum_create_bins(count, kev, photons, &spectrum));
     return spectrum;
 }
 
@@ -74,7 +74,7 @@ static void take(const skg_spectrum *spectrum, const skg_plan_options *options, 
     }
     ck_skg(skg_plan_create(context, scene, &view, (skg_spectrum *)spectrum, options, &plan));
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = images;
+    output.type = SKG_TYPE_FLOAT64, output.data = images;
     ck_skg(skg_plan_submit(plan, count, frames, &output, &job));
     ck_skg(skg_job_wait(&job));
     skg_plan_release(&plan);
@@ -103,8 +103,8 @@ static truth sum_energies(int64_t count, const double *kev, const double *photon
     truth t = {0};
     for (int64_t i = 0; i < count; i++) {
         double per_cm = 0, recorded = kev[i], efficiency = 1;
-        ck_skg(skg_material_attenuation(tissue, kev[i], &per_cm));
-        if (options->response) ck_skg(skg_response_at(options->response, kev[i], 1, &recorded, &efficiency));
+        ck_skg(skg_material_attenuation_get(tissue, kev[i], &per_cm));
+        if (options->response) ck_skg(skg_response_get(options->response, kev[i], 1, &recorded, &efficiency));
         const double detected = photons[i] * exp(-0.1 * per_cm * THICKNESS) * efficiency * options->swank;
         const double each = recorded / efficiency / options->swank;
         t.detected += detected;
@@ -146,7 +146,7 @@ START_TEST(two_energies_in_iodide) {
     options.swank = 0.9;
     check_two_energies(many, &options);
     check_two_energies(few, &options);
-    options.precision = SKG_DOUBLE;
+    options.precision = SKG_PRECISION_DOUBLE;
     check_two_energies(many, &options);
     check_two_energies(few, &options);
 }
@@ -172,7 +172,7 @@ START_TEST(compressed_spectra) {
         options.tolerance = 1e-3;
         skg_plan_report_init(&report);
         ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
-        ck_skg(skg_plan_get_report(plan, &report));
+        ck_skg(skg_plan_report_get(plan, &report));
         ck_assert_int_lt(report.nodes, 16);
         ck_assert(report.bound > 0 && report.bound <= 1e-3);
         skg_plan_release(&plan);
@@ -192,7 +192,7 @@ START_TEST(few_photons_are_exact) {
     double counts[MOST] = {0}, chi = 0, expected;
     int bins = 0;
     skg_plan_options options = noisy();
-    options.quantity = SKG_PHOTONS;
+    options.quantity = SKG_QUANTITY_PHOTONS;
     options.response = scintillator;
     skg_spectrum *spectrum = energies(1, &kev, &photons);
     const truth t = sum_energies(1, &kev, &photons, &options);
@@ -225,8 +225,8 @@ START_TEST(detective_quantum_efficiency) {
     skg_spectrum *spectrum = energies(1, &kev, &photons);
     take(spectrum, &options, 11, 4, images);
     const moments m = moments_of(4 * PIXELS, images);
-    ck_skg(skg_material_attenuation(tissue, kev, &per_cm));
-    ck_skg(skg_response_at(scintillator, kev, 1, NULL, &efficiency));
+    ck_skg(skg_material_attenuation_get(tissue, kev, &per_cm));
+    ck_skg(skg_response_get(scintillator, kev, 1, NULL, &efficiency));
     const double arriving = photons * exp(-0.1 * per_cm * THICKNESS);
     /* of a variance from n values: sqrt(2 / n) */
     ck_assert_double_eq_tol(m.mean * m.mean / m.variance / arriving / (efficiency * 0.92), 1,
@@ -246,7 +246,7 @@ START_TEST(shares_of_an_extended_source) {
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 8;
     options.spot = &spot;
     options.supersampling = 2;
-    view.projection = SKG_POINT;
+    view.projection = SKG_PROJECTION_POINT;
     view.source[2] = -1e5;
     check_two_energies(many, &options);
     check_two_energies(few, &options);
@@ -364,13 +364,13 @@ START_TEST(quantities) {
     skg_spectrum *spectrum = energies(2, two_kev, photons);
     options.electronic_kev = 10;
     take(spectrum, &options, 5, 1, energy);
-    options.quantity = SKG_TRANSMISSION;
+    options.quantity = SKG_QUANTITY_TRANSMISSION;
     take(spectrum, &options, 5, 1, other);
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i] * open / energy[i], 1, 1e-6);
-    options.quantity = SKG_ATTENUATION;
+    options.quantity = SKG_QUANTITY_ATTENUATION;
     take(spectrum, &options, 5, 1, other);
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i], -log(energy[i] / open), 1e-6);
-    options.quantity = SKG_FLUENCE;
+    options.quantity = SKG_QUANTITY_FLUENCE;
     take(spectrum, &options, 5, 1, other);
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i] * 0.04 / energy[i], 1, 1e-6);
     skg_spectrum_release(&spectrum);
@@ -385,17 +385,17 @@ static void check_over_the_open_field(skg_plan_options options, const skg_spectr
     const double pose[16] = {1, 0, 0, 9000, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const double home[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     skg_plan_options quiet = options;
-    options.quantity = SKG_ENERGY;
+    options.quantity = SKG_QUANTITY_ENERGY;
     take(spectrum, &options, 5, channels > 1 ? 1 : 2, energy);
-    options.quantity = SKG_TRANSMISSION;
+    options.quantity = SKG_QUANTITY_TRANSMISSION;
     take(spectrum, &options, 5, channels > 1 ? 1 : 2, ratio);
     quiet.noise = 0, quiet.electronic_kev = 0;
-    ck_skg(skg_scene_set_pose(scene, 0, pose));
+    ck_skg(skg_scene_pose_set(scene, 0, pose));
     take(spectrum, &quiet, 5, 1, field);
-    ck_skg(skg_scene_set_pose(scene, 0, home));
+    ck_skg(skg_scene_pose_set(scene, 0, home));
     ck_assert_double_gt(field[PIXELS / 2 + SIDE / 2], 1.001 * field[0]);
     /* a few roundings, of single precision where images are */
-    const double bar = options.precision == SKG_DOUBLE ? 1e-12 : 16 * 0x1p-24;
+    const double bar = options.precision == SKG_PRECISION_DOUBLE ? 1e-12 : 16 * 0x1p-24;
     for (int i = 0; i < 2 * PIXELS; i++) { /* two frames, or two channels */
         const double expected = energy[i] / field[channels > 1 ? i : i % PIXELS];
         ck_assert_double_eq_tol(ratio[i], expected, bar * fabs(expected));
@@ -410,8 +410,8 @@ START_TEST(over_the_open_field) {
     skg_spectrum *spectrum = energies(2, two_kev, photons);
     skg_material *water = NULL;
     skg_spot spot;
-    ck_skg(skg_material_named("water", &water));
-    view.projection = SKG_POINT;
+    ck_skg(skg_material_create_named("water", &water));
+    view.projection = SKG_PROJECTION_POINT;
     view.source[2] = -60;
     view.column_step[0] = view.row_step[1] = 1;
     options.electronic_kev = 10;
@@ -424,7 +424,7 @@ START_TEST(over_the_open_field) {
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 4;
     options.spot = &spot;
     options.bands = 2, options.band_kev = edges;
-    options.precision = SKG_DOUBLE;
+    options.precision = SKG_PRECISION_DOUBLE;
     check_over_the_open_field(options, spectrum);
     skg_material_release(&water);
     skg_spectrum_release(&spectrum);
@@ -443,7 +443,7 @@ START_TEST(refused) {
     options.electronic_kev = -1;
     ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &plan), SKG_ERR_ARGUMENT,
                  "electronic noise is -1 keV");
-    options.electronic_kev = 1, options.quantity = SKG_PHOTONS;
+    options.electronic_kev = 1, options.quantity = SKG_QUANTITY_PHOTONS;
     ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &plan), SKG_ERR_ARGUMENT,
                  "photons are counted");
     skg_spectrum_release(&spectrum);

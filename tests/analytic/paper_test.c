@@ -30,9 +30,9 @@ static skg_spectrum *beam_of(int equation) {
     static const double photons[3] = {10, 20, 10};
     skg_spectrum *spectrum = NULL;
     if (equation == 14)
-        ck_skg(skg_spectrum_mono(80, 1, &spectrum));
+        ck_skg(skg_spectrum_create_mono(80, 1, &spectrum));
     else
-        ck_skg(skg_spectrum_bins(3, kev + 1, photons, &spectrum));
+        ck_skg(skg_spectrum_create_bins(3, kev + 1, photons, &spectrum));
     return spectrum;
 }
 
@@ -54,12 +54,12 @@ static int image(skg_material *bone, skg_material *soft, int equation, int32_t p
     skg_plan_options options;
     skg_output output;
     ck_skg(skg_scene_create(context, &scene));
-    ck_skg(skg_mesh_cube(cube, &box));
-    ck_skg(skg_mesh_cylinder(radius, cube, SECTORS, &rod));
+    ck_skg(skg_mesh_create_cube(cube, &box));
+    ck_skg(skg_mesh_create_cylinder(radius, cube, SECTORS, &rod));
     add(scene, box, soft, -1);
     add(scene, rod, bone, 0);
     skg_view_init(&view);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     view.columns = PIXELS, view.rows = 1;
     view.source[0] = -100, view.centre[0] = 100;
     view.column_step[1] = view.row_step[2] = 0.3;
@@ -67,11 +67,11 @@ static int image(skg_material *bone, skg_material *soft, int equation, int32_t p
     options.precision = precision;
     skg_spectrum *spectrum = beam_of(equation);
     skg_status status = skg_plan_create(context, scene, &view, spectrum, &options, &plan);
-    int has_precision = precision == SKG_SINGLE || status != SKG_ERR_UNSUPPORTED;
+    int has_precision = precision == SKG_PRECISION_SINGLE || status != SKG_ERR_UNSUPPORTED;
     if (has_precision) {
         ck_skg(status);
         skg_output_init(&output);
-        output.type = SKG_FLOAT64, output.data = pixels;
+        output.type = SKG_TYPE_FLOAT64, output.data = pixels;
         ck_skg(skg_plan_image(plan, &output));
     }
     skg_plan_release(&plan);
@@ -105,12 +105,12 @@ static double expected(int equation, double bone_cm, double soft_cm) {
  * 1e-6: sixteen roundings of single precision; 1e-12: thousands of double. */
 START_TEST(equations_14_and_15_from_printed_coefficients) {
     const int equation = 14 + _i % 2;
-    const int32_t precision = _i / 2 ? SKG_DOUBLE : SKG_SINGLE;
-    const double bar = precision == SKG_DOUBLE ? 1e-12 : 1e-6;
+    const int32_t precision = _i / 2 ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
+    const double bar = precision == SKG_PRECISION_DOUBLE ? 1e-12 : 1e-6;
     static double pixels[PIXELS];
     skg_material *bone = NULL, *soft = NULL;
-    ck_skg(skg_material_table("printed bone", ENERGIES, kev, printed_bone, &bone));
-    ck_skg(skg_material_table("printed soft tissue", ENERGIES, kev, printed_soft, &soft));
+    ck_skg(skg_material_create_table("printed bone", ENERGIES, kev, printed_bone, &bone));
+    ck_skg(skg_material_create_table("printed soft tissue", ENERGIES, kev, printed_soft, &soft));
     if (image(bone, soft, equation, precision, pixels)) {
         ck_assert_double_eq_tol(pixels[MIDDLE] / (equation == 14 ? 29.788626 : 4352.8505), 1, 1e-6);
         for (int i = 0; i < PIXELS; i++) {
@@ -131,9 +131,9 @@ START_TEST(equations_14_and_15_from_hounsfield_numbers) {
     const int equation = 14 + _i % 2, is_cut = _i / 2;
     static double pixels[PIXELS];
     skg_material *bone = NULL, *soft = NULL;
-    ck_skg(skg_material_hounsfield(is_cut ? 1329 : 1329.885683, &bone));
-    ck_skg(skg_material_hounsfield(is_cut ? 51 : 51.714752, &soft));
-    ck_assert(image(bone, soft, equation, SKG_SINGLE, pixels));
+    ck_skg(skg_material_create_hounsfield(is_cut ? 1329 : 1329.885683, &bone));
+    ck_skg(skg_material_create_hounsfield(is_cut ? 51 : 51.714752, &soft));
+    ck_assert(image(bone, soft, equation, SKG_PRECISION_SINGLE, pixels));
     ck_assert_double_eq_tol(pixels[MIDDLE] / (equation == 14 ? 29.789 : 4353.175), 1, 6e-4);
     skg_material_release(&bone);
     skg_material_release(&soft);

@@ -23,8 +23,8 @@ static void open_scene(void) {
     for (int i = 0; i < PARTS; i++) {
         skg_mesh *box = NULL;
         skg_part part;
-        ck_skg(skg_material_named(matter[i], &materials[i]));
-        ck_skg(skg_mesh_cuboid(100 - 30 * i, 100 - 30 * i, thickness[i], &box));
+        ck_skg(skg_material_create_named(matter[i], &materials[i]));
+        ck_skg(skg_mesh_create_cuboid(100 - 30 * i, 100 - 30 * i, thickness[i], &box));
         skg_part_init(&part);
         part.mesh = box, part.material = materials[i], part.inside = i - 1;
         part.label = matter[i];
@@ -54,18 +54,18 @@ static skg_spectrum *tube(double kvp) {
     skg_tube t;
     skg_spectrum *spectrum = NULL;
     skg_material *aluminium = NULL;
-    ck_skg(skg_material_element(13, &aluminium));
+    ck_skg(skg_material_create_element(13, &aluminium));
     const skg_filter filter = {aluminium, 2.5};
     skg_tube_init(&t);
     t.kvp = kvp, t.filter_count = 1, t.filters = &filter;
-    ck_skg(skg_spectrum_tube(&t, &spectrum));
+    ck_skg(skg_spectrum_create_tube(&t, &spectrum));
     skg_material_release(&aluminium);
     return spectrum;
 }
 
 static double mu_of(const skg_material *material, double kev) {
     double per_cm = 0;
-    ck_skg(skg_material_attenuation(material, kev, &per_cm));
+    ck_skg(skg_material_attenuation_get(material, kev, &per_cm));
     return 0.1 * per_cm;
 }
 
@@ -73,20 +73,20 @@ static double mu_of(const skg_material *material, double kev) {
 static void sum_bins(const skg_spectrum *spectrum, const skg_plan_options *options, double longer, double low,
                      double high, double *behind, double *before) {
     int64_t count = 0;
-    ck_skg(skg_spectrum_size(spectrum, &count));
+    ck_skg(skg_spectrum_bin_count(spectrum, &count));
     *behind = *before = 0;
     for (int64_t i = 0; i < count; i++) {
         double kev = 0, photons = 0, recorded = 0, efficiency = 1, exponent = 0;
-        ck_skg(skg_spectrum_bin(spectrum, i, &kev, &photons));
+        ck_skg(skg_spectrum_bin_get(spectrum, i, &kev, &photons));
         if (kev < low || kev >= high) continue;
         recorded = kev;
-        if (options->response) ck_skg(skg_response_at(options->response, kev, 1, &recorded, &efficiency));
+        if (options->response) ck_skg(skg_response_get(options->response, kev, 1, &recorded, &efficiency));
         for (int p = 0; p < PARTS; p++) {
             const double inner = p + 1 < PARTS ? thickness[p + 1] : 0;
             exponent += mu_of(materials[p], kev) * (thickness[p] - inner) * longer;
         }
         double world = options->world ? mu_of(options->world, kev) * 1200 * longer : 0;
-        const double worth = options->quantity == SKG_PHOTONS ? efficiency : recorded;
+        const double worth = options->quantity == SKG_QUANTITY_PHOTONS ? efficiency : recorded;
         *before += photons * worth * exp(-world);
         if (options->world) world -= mu_of(options->world, kev) * thickness[0] * longer;
         *behind += photons * worth * exp(-exponent - world);
@@ -95,11 +95,11 @@ static void sum_bins(const skg_spectrum *spectrum, const skg_plan_options *optio
 
 static double expected(const skg_plan_options *options, double behind, double before, double longer) {
     switch (options->quantity) {
-    case SKG_TRANSMISSION:
+    case SKG_QUANTITY_TRANSMISSION:
         return behind / before;
-    case SKG_ATTENUATION:
+    case SKG_QUANTITY_ATTENUATION:
         return -log(behind / before);
-    case SKG_FLUENCE:
+    case SKG_QUANTITY_FLUENCE:
         behind /= 16;
     }
     return options->falloff ? behind / (longer * longer * longer) : behind;
@@ -112,15 +112,15 @@ static void check(const skg_spectrum *spectrum, const skg_plan_options *options,
     skg_output output;
     int64_t channels = 0;
     ck_skg(skg_plan_create(context, scene, &view, (skg_spectrum *)spectrum, options, &plan));
-    ck_skg(skg_plan_channels(plan, &channels));
+    ck_skg(skg_plan_channel_count(plan, &channels));
     ck_assert_int_eq(channels, options->bands ? options->bands : 1);
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = image;
+    output.type = SKG_TYPE_FLOAT64, output.data = image;
     ck_skg(skg_plan_image(plan, &output));
     for (int64_t c = 0; c < channels; c++) {
         skg_channel channel;
         skg_channel_init(&channel);
-        ck_skg(skg_plan_channel(plan, c, &channel));
+        ck_skg(skg_plan_channel_get(plan, c, &channel));
         for (int k = -3; k <= 3; k++) {
             const double longer = secant(SIDE / 2 + k, SIDE / 2 - 1);
             double behind = 0, before = 0;
@@ -129,11 +129,11 @@ static void check(const skg_spectrum *spectrum, const skg_plan_options *options,
             const double truth = expected(options, behind, before, longer);
             ck_assert_double_eq_tol(image[c][SIDE / 2 - 1][SIDE / 2 + k] / truth, 1, tolerance);
             if (k == 0 && !options->world)
-                ck_assert_double_eq_tol(channel.open,
-                                        options->quantity == SKG_TRANSMISSION  ? 1
-                                        : options->quantity == SKG_ATTENUATION ? 0
-                                        : options->quantity == SKG_FLUENCE     ? before / 16
-                                                                               : before,
+                ck_assert_double_eq_tol(channel.flat_field,
+                                        options->quantity == SKG_QUANTITY_TRANSMISSION  ? 1
+                                        : options->quantity == SKG_QUANTITY_ATTENUATION ? 0
+                                        : options->quantity == SKG_QUANTITY_FLUENCE     ? before / 16
+                                                                                        : before,
                                         1e-12 * before);
         }
     }
@@ -151,16 +151,16 @@ static skg_plan_options options_of(int32_t precision, int32_t quantity) {
 /* Single: exponents up to 20 carry 2^-24 of themselves from each of coefficient, length and product. Double:
  * the scale of the planes leaves 2^-50 of the depth. */
 static double bar(int32_t precision) {
-    return precision == SKG_SINGLE ? 20 * 4 * 0x1p-24 : 20 * 1e-12;
+    return precision == SKG_PRECISION_SINGLE ? 20 * 4 * 0x1p-24 : 20 * 1e-12;
 }
 
 START_TEST(every_quantity) {
     const int32_t precision = _i % 2, quantity = _i / 2;
-    if (precision == SKG_DOUBLE) { /* where the device has it */
+    if (precision == SKG_PRECISION_DOUBLE) { /* where the device has it */
         skg_plan *plan = NULL;
-        skg_plan_options trial = options_of(SKG_DOUBLE, quantity);
+        skg_plan_options trial = options_of(SKG_PRECISION_DOUBLE, quantity);
         skg_spectrum *mono = NULL;
-        ck_skg(skg_spectrum_mono(60, 1, &mono));
+        ck_skg(skg_spectrum_create_mono(60, 1, &mono));
         const skg_status status = skg_plan_create(context, scene, &view, mono, &trial, &plan);
         skg_plan_release(&plan);
         skg_spectrum_release(&mono);
@@ -171,11 +171,11 @@ START_TEST(every_quantity) {
     check(spectrum, &options, bar(precision));
     skg_material *csi = NULL, *air = NULL;
     skg_response *response = NULL;
-    ck_skg(skg_material_named("CsI", &csi));
-    ck_skg(skg_response_scintillator(csi, 0.6, 1, &response));
+    ck_skg(skg_material_create_named("CsI", &csi));
+    ck_skg(skg_response_create_scintillator(csi, 0.6, 1, &response));
     options.response = response;
     check(spectrum, &options, bar(precision));
-    ck_skg(skg_material_named("water", &air)); /* in water: what air does not show */
+    ck_skg(skg_material_create_named("water", &air)); /* in water: what air does not show */
     options.world = air;
     check(spectrum, &options, 2 * bar(precision));
     options.falloff = 1;
@@ -190,19 +190,19 @@ END_TEST
 START_TEST(one_energy_has_one_plane) {
     skg_spectrum *spectrum = NULL;
     skg_material *water = NULL;
-    ck_skg(skg_spectrum_mono(60, 1000, &spectrum));
-    ck_skg(skg_material_named("water", &water));
-    for (int32_t quantity = SKG_ENERGY; quantity <= SKG_ATTENUATION; quantity++) {
-        skg_plan_options options = options_of(SKG_SINGLE, quantity);
-        check(spectrum, &options, bar(SKG_SINGLE));
+    ck_skg(skg_spectrum_create_mono(60, 1000, &spectrum));
+    ck_skg(skg_material_create_named("water", &water));
+    for (int32_t quantity = SKG_QUANTITY_ENERGY; quantity <= SKG_QUANTITY_ATTENUATION; quantity++) {
+        skg_plan_options options = options_of(SKG_PRECISION_SINGLE, quantity);
+        check(spectrum, &options, bar(SKG_PRECISION_SINGLE));
         options.world = water;
-        check(spectrum, &options, 2 * bar(SKG_SINGLE));
+        check(spectrum, &options, 2 * bar(SKG_PRECISION_SINGLE));
     }
     skg_plan *plan = NULL;
     skg_plan_report report;
     skg_plan_report_init(&report);
     ck_skg(skg_plan_create(context, scene, &view, spectrum, NULL, &plan));
-    ck_skg(skg_plan_get_report(plan, &report));
+    ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_eq(report.planes, 1);
     skg_plan_release(&plan);
     skg_material_release(&water);
@@ -213,21 +213,21 @@ END_TEST
 START_TEST(bands_are_channels) {
     static const double edges[5] = {10, 33, 50, 70, 200};
     skg_spectrum *spectrum = tube(110);
-    for (int32_t quantity = SKG_ENERGY; quantity <= SKG_ATTENUATION; quantity++) {
-        skg_plan_options options = options_of(SKG_SINGLE, quantity);
+    for (int32_t quantity = SKG_QUANTITY_ENERGY; quantity <= SKG_QUANTITY_ATTENUATION; quantity++) {
+        skg_plan_options options = options_of(SKG_PRECISION_SINGLE, quantity);
         options.bands = 4, options.band_kev = edges;
-        check(spectrum, &options, bar(SKG_SINGLE));
+        check(spectrum, &options, bar(SKG_PRECISION_SINGLE));
     }
     static const double falling[3] = {30, 20, 40}, nothing[3] = {10, 100, 200};
-    skg_plan_options options = options_of(SKG_SINGLE, SKG_TRANSMISSION);
+    skg_plan_options options = options_of(SKG_PRECISION_SINGLE, SKG_QUANTITY_TRANSMISSION);
     skg_plan *plan = NULL;
     options.bands = 2, options.band_kev = falling;
     ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &plan), SKG_ERR_BEAM, "rise");
     options.band_kev = nothing;
     skg_spectrum *mono = NULL;
-    ck_skg(skg_spectrum_mono(60, 1, &mono));
+    ck_skg(skg_spectrum_create_mono(60, 1, &mono));
     ck_skg_fails(skg_plan_create(context, scene, &view, mono, &options, &plan), SKG_ERR_BEAM, "channel 1");
-    options.bands = SKG_MOST_CHANNELS + 1;
+    options.bands = SKG_CHANNELS_MAX + 1;
     ck_skg_fails(skg_plan_create(context, scene, &view, mono, &options, &plan), SKG_ERR_ARGUMENT, "bands");
     skg_spectrum_release(&mono);
     skg_spectrum_release(&spectrum);
@@ -243,22 +243,22 @@ START_TEST(attenuation_beyond_any_float) {
     skg_part part;
     skg_plan *plan = NULL;
     static float image[SIDE * SIDE];
-    ck_skg(skg_material_element(82, &lead));
-    ck_skg(skg_mesh_cube(1000, &block));
+    ck_skg(skg_material_create_element(82, &lead));
+    ck_skg(skg_mesh_create_cube(1000, &block));
     ck_skg(skg_scene_create(context, &thick));
     skg_part_init(&part);
     part.mesh = block, part.material = lead;
     part.pose[11] = -400;
     ck_skg(skg_scene_add(thick, &part, NULL));
-    for (int32_t quantity = SKG_TRANSMISSION; quantity <= SKG_ATTENUATION; quantity++) {
-        skg_plan_options options = options_of(SKG_SINGLE, quantity);
+    for (int32_t quantity = SKG_QUANTITY_TRANSMISSION; quantity <= SKG_QUANTITY_ATTENUATION; quantity++) {
+        skg_plan_options options = options_of(SKG_PRECISION_SINGLE, quantity);
         skg_output output;
         skg_output_init(&output);
         output.data = image;
         ck_skg(skg_plan_create(context, thick, &view, spectrum, &options, &plan));
         ck_skg(skg_plan_image(plan, &output));
         const double centre = (double)image[SIDE * SIDE / 2];
-        if (quantity == SKG_TRANSMISSION)
+        if (quantity == SKG_QUANTITY_TRANSMISSION)
             ck_assert_double_eq(centre, 0);
         else { /* the least attenuated energy rules: within a few ln of its share */
             double least = HUGE_VAL;
@@ -277,7 +277,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
-    tcase_add_loop_test(tests, every_quantity, 0, 2 * (SKG_ATTENUATION + 1));
+    tcase_add_loop_test(tests, every_quantity, 0, 2 * (SKG_QUANTITY_ATTENUATION + 1));
     tcase_add_test(tests, one_energy_has_one_plane);
     tcase_add_test(tests, bands_are_channels);
     tcase_add_test(tests, attenuation_beyond_any_float);

@@ -18,7 +18,7 @@ static const double energies[2] = {45, 80}, photons[2] = {1000, 700};
 
 static void open_context(void) {
     ck_skg(skg_context_create(NULL, &context));
-    for (int k = 0; k < 3; k++) ck_skg(skg_material_named(matter[k], &materials[k]));
+    for (int k = 0; k < 3; k++) ck_skg(skg_material_create_named(matter[k], &materials[k]));
 }
 
 static void close_context(void) {
@@ -50,11 +50,11 @@ static void list_planes(body *b, const skg_mesh *mesh) {
     static double positions[3 * CORNERS];
     static int32_t corners[3 * CORNERS];
     int64_t vertices = 0;
-    ck_skg(skg_mesh_size(mesh, &vertices, &b->planes));
+    ck_skg(skg_mesh_count(mesh, &vertices, &b->planes));
     ck_assert_int_le(vertices, CORNERS);
     ck_assert_int_le(b->planes, CORNERS);
-    ck_skg(skg_mesh_read_positions(mesh, positions, 3));
-    ck_skg(skg_mesh_read_triangles(mesh, corners, 3));
+    ck_skg(skg_mesh_positions_get(mesh, positions, 3));
+    ck_skg(skg_mesh_triangles_get(mesh, corners, 3));
     for (int64_t t = 0; t < b->planes; t++) {
         long double at[3][3], u[3], v[3];
         for (int c = 0; c < 3; c++)
@@ -95,7 +95,7 @@ static void begin(int32_t energy_count, int32_t clip) {
     set.view.column_step[0] = set.view.row_step[1] = 4.1;
     set.view.row_step[0] = 0.3;
     ck_skg(skg_scene_create(context, &scene));
-    ck_skg(skg_spectrum_bins(energy_count, energies, photons, &beam));
+    ck_skg(skg_spectrum_create_bins(energy_count, energies, photons, &beam));
 }
 
 static void end(void) {
@@ -112,7 +112,7 @@ static void ray_of(int row, int column, long double from[3], long double to[3]) 
                 (row - 0.5L * (SIDE - 1)) * (long double)set.view.row_step[k];
         from[k] = (long double)set.view.source[k];
     }
-    if (set.view.projection == SKG_POINT) return;
+    if (set.view.projection == SKG_PROJECTION_POINT) return;
     long double along[3], square = 0, ahead = 0;
     for (int k = 0; k < 3; k++) along[k] = (long double)set.view.centre[k] - (long double)set.view.source[k];
     for (int k = 0; k < 3; k++) square += along[k] * along[k], ahead += along[k] * (to[k] - from[k]);
@@ -178,10 +178,10 @@ static long double attenuation_of(const long double *mm) {
         for (int64_t p = 0; p < set.count; p++) {
             const body *b = &set.bodies[p];
             double own = 0, other = 0;
-            ck_skg(skg_material_attenuation(materials[b->matter], energies[e], &own));
+            ck_skg(skg_material_attenuation_get(materials[b->matter], energies[e], &own));
             if (b->inside >= 0)
-                ck_skg(
-                    skg_material_attenuation(materials[set.bodies[b->inside].matter], energies[e], &other));
+                ck_skg(skg_material_attenuation_get(materials[set.bodies[b->inside].matter], energies[e],
+                                                    &other));
             exponent += 0.1L * ((long double)own - (long double)other) * mm[p];
         }
         behind += (long double)(photons[e] * energies[e]) * expl(-exponent);
@@ -199,7 +199,7 @@ static skg_plan *plan_for(int32_t precision, int32_t strategy) {
     skg_plan_options options;
     skg_plan_options_init(&options);
     options.precision = precision, options.strategy = strategy, options.clip = set.clip;
-    options.quantity = SKG_ATTENUATION;
+    options.quantity = SKG_QUANTITY_ATTENUATION;
     options.overlaps = 0; /* priorities do not need to know them */
     ck_skg(skg_plan_create(context, scene, &set.view, beam, &options, &plan));
     return plan;
@@ -209,18 +209,18 @@ static void take(skg_plan *plan, const skg_frame *frame, picture image) {
     skg_output output;
     skg_job *job = NULL;
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = image;
+    output.type = SKG_TYPE_FLOAT64, output.data = image;
     ck_skg(skg_plan_submit(plan, 1, frame, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 
 static int is_on(const skg_plan *plan, const char *name) {
     int64_t count = 0;
-    ck_skg(skg_plan_effects(plan, &count));
+    ck_skg(skg_plan_effect_count(plan, &count));
     for (int64_t i = 0; i < count; i++) {
         skg_effect effect;
         skg_effect_init(&effect);
-        ck_skg(skg_plan_effect(plan, i, &effect));
+        ck_skg(skg_plan_effect_get(plan, i, &effect));
         if (strcmp(effect.name, name) == 0) return effect.on;
     }
     ck_abort_msg("no effect %s", name);
@@ -257,12 +257,12 @@ static void compare(picture image, picture expected, double tolerance, double rm
 static void check(void) {
     static picture image, other, expected;
     expect(expected);
-    skg_plan *plan = plan_for(SKG_DOUBLE, SKG_STRATEGY_AUTO);
+    skg_plan *plan = plan_for(SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
     take(plan, NULL, image);
     compare(image, expected, DOUBLE_TOLERANCE, DOUBLE_TOLERANCE);
     skg_plan_release(&plan);
     for (int32_t strategy = SKG_STRATEGY_COPIES; strategy <= SKG_STRATEGY_ATOMICS; strategy++) {
-        plan = plan_for(SKG_SINGLE, strategy);
+        plan = plan_for(SKG_PRECISION_SINGLE, strategy);
         take(plan, NULL, strategy == SKG_STRATEGY_COPIES ? image : other);
         if (strategy == SKG_STRATEGY_COPIES)
             compare(image, expected, SINGLE_TOLERANCE, SINGLE_RMS);
@@ -274,13 +274,13 @@ static void check(void) {
 
 static skg_mesh *sphere(double radius) {
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_sphere(radius, 32, &mesh));
+    ck_skg(skg_mesh_create_sphere(radius, 32, &mesh));
     return mesh;
 }
 
 static skg_mesh *cuboid(double x, double y, double z) {
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_cuboid(x, y, z, &mesh));
+    ck_skg(skg_mesh_create_cuboid(x, y, z, &mesh));
     return mesh;
 }
 
@@ -296,7 +296,7 @@ START_TEST(overlapping_spheres) {
         begin(energy_count, 0);
         add_three((int32_t[]){1, 0, 0});
         check();
-        skg_plan *plan = plan_for(SKG_SINGLE, SKG_STRATEGY_AUTO);
+        skg_plan *plan = plan_for(SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
         ck_assert_int_eq(is_on(plan, "priority"), 1);
         skg_plan_release(&plan);
         end();
@@ -308,7 +308,7 @@ START_TEST(equal_priorities_add) {
     begin(1, 0);
     add_three((int32_t[]){3, 3, 3});
     check();
-    skg_plan *plan = plan_for(SKG_SINGLE, SKG_STRATEGY_AUTO);
+    skg_plan *plan = plan_for(SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
     ck_assert_int_eq(is_on(plan, "priority"), 0);
     skg_plan_release(&plan);
     end();
@@ -340,7 +340,7 @@ START_TEST(at_the_source) {
     for (int k = 0; k < 2; k++) {
         begin(1, 0);
         set.view.source[0] = 3, set.view.source[2] = -60;
-        set.view.projection = k ? SKG_PARALLEL : SKG_POINT;
+        set.view.projection = k ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         add_body("first", sphere(50), -1, 1, 0, (double[]){0, 0.3, -45});
         add_body("second", sphere(45), -1, 4, 1, (double[]){20, 3, 10});
         add_body("third", cuboid(70, 200, 30), -1, 2, 2, (double[]){10, 20, -52});
@@ -375,12 +375,12 @@ START_TEST(parts_that_move) {
     double away[16];
     memcpy(away, pose, sizeof away);
     away[3] = 900;
-    ck_skg(skg_scene_set_pose(scene, 1, away));
-    ck_skg(skg_scene_set_pose(scene, 2, away));
-    skg_plan *plan = plan_for(SKG_DOUBLE, SKG_STRATEGY_AUTO);
+    ck_skg(skg_scene_pose_set(scene, 1, away));
+    ck_skg(skg_scene_pose_set(scene, 2, away));
+    skg_plan *plan = plan_for(SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
     ck_assert_int_eq(is_on(plan, "priority"), 0);
     skg_frame_init(&frame);
-    frame.posed = 1, frame.posed_ids = &id, frame.posed_poses = pose;
+    frame.pose_count = 1, frame.pose_parts = &id, frame.poses = pose;
     set.count = 2;
     take(plan, &frame, image);
     expect(expected);
@@ -395,16 +395,16 @@ START_TEST(lengths) {
     static picture net, surface;
     begin(1, 1);
     add_nest();
-    skg_plan *plan = plan_for(SKG_DOUBLE, SKG_STRATEGY_AUTO);
+    skg_plan *plan = plan_for(SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
     for (int64_t p = 0; p < set.count; p++) {
         skg_output output;
         skg_job *job = NULL;
         skg_output_init(&output);
-        output.type = SKG_FLOAT64, output.data = net;
-        ck_skg(skg_plan_lengths(plan, p, SKG_NET, 1, NULL, &output, &job));
+        output.type = SKG_TYPE_FLOAT64, output.data = net;
+        ck_skg(skg_plan_lengths(plan, p, SKG_LENGTHS_NET, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         output.data = surface;
-        ck_skg(skg_plan_lengths(plan, p, SKG_SURFACE, 1, NULL, &output, &job));
+        ck_skg(skg_plan_lengths(plan, p, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int r = 0; r < SIDE; r++)
             for (int c = 0; c < SIDE; c++) {

@@ -25,12 +25,12 @@ static void open_world(world *w, int energies) {
     skg_part part;
     ck_skg(skg_context_create(NULL, &w->context));
     ck_skg(skg_scene_create(w->context, &w->scene));
-    ck_skg(skg_spectrum_bins(energies, kev, photons, &w->beam));
+    ck_skg(skg_spectrum_create_bins(energies, kev, photons, &w->beam));
     for (int i = 0; i < PARTS; i++) {
         skg_material *material = NULL;
-        ck_skg(skg_mesh_sphere(i == 0 ? 60 : 15, 24, &w->meshes[i]));
-        ck_skg(skg_mesh_read_positions(w->meshes[i], rest[i], 0));
-        ck_skg(skg_material_hounsfield(-100 + 60 * i, &material));
+        ck_skg(skg_mesh_create_sphere(i == 0 ? 60 : 15, 24, &w->meshes[i]));
+        ck_skg(skg_mesh_positions_get(w->meshes[i], rest[i], 0));
+        ck_skg(skg_material_create_hounsfield(-100 + 60 * i, &material));
         skg_part_init(&part);
         part.mesh = w->meshes[i], part.material = material, part.inside = i == 0 ? -1 : 0;
         part.label = (const char *[]){"envelope", "a", "b", "c"}[i];
@@ -60,15 +60,15 @@ static void change(world *w, uint64_t *seed) {
     int64_t vertices = 0, triangles = 0;
     static double positions[3 * 4096];
     skg_part_init(&now);
-    ck_skg(skg_scene_part(w->scene, part, &now));
+    ck_skg(skg_scene_part_get(w->scene, part, &now));
     for (int k = 0; k < 3; k++) now.pose[4 * k + 3] = 40 * draw(seed, 0, 1) - 20;
-    ck_skg(skg_scene_set_pose(w->scene, part, now.pose));
-    ck_skg(skg_mesh_size(w->meshes[part], &vertices, &triangles));
+    ck_skg(skg_scene_pose_set(w->scene, part, now.pose));
+    ck_skg(skg_mesh_count(w->meshes[part], &vertices, &triangles));
     const double stretch = 0.5 + draw(seed, 0, 1);
     for (int64_t k = 0; k < 3 * vertices; k++) positions[k] = rest[part][k] * (k % 3 == 0 ? stretch : 1);
-    ck_skg(skg_mesh_write_positions(w->meshes[part], positions, 0));
-    ck_skg(skg_material_hounsfield(-900 + 2000 * draw(seed, 0, 1), &material));
-    ck_skg(skg_scene_set_material(w->scene, part, material));
+    ck_skg(skg_mesh_positions_set(w->meshes[part], positions, 0));
+    ck_skg(skg_material_create_hounsfield(-900 + 2000 * draw(seed, 0, 1), &material));
+    ck_skg(skg_scene_material_set(w->scene, part, material));
     skg_material_release(&material);
     w->view.source[0] = 100 * draw(seed, 0, 1) - 50;
 }
@@ -117,12 +117,12 @@ START_TEST(compressed_energies_are_stale) {
     skg_spectrum_release(&w.beam);
     skg_tube_init(&tube);
     tube.kvp = 60;
-    ck_skg(skg_spectrum_tube(&tube, &w.beam));
+    ck_skg(skg_spectrum_create_tube(&tube, &w.beam));
     skg_plan_options_init(&options);
     options.tolerance = 1e-3;
     ck_skg(skg_plan_create(w.context, w.scene, &w.view, w.beam, &options, &plan));
-    ck_skg(skg_material_named("I", &other));
-    ck_skg(skg_scene_set_material(w.scene, 1, other));
+    ck_skg(skg_material_create_named("I", &other));
+    ck_skg(skg_scene_material_set(w.scene, 1, other));
     skg_output_init(&output);
     output.data = image;
     ck_assert_int_eq(skg_plan_image(plan, &output), SKG_STALE);

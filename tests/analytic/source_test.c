@@ -21,15 +21,15 @@ static void open_scene(void) {
     skg_part part;
     ck_skg(skg_context_create(NULL, &context));
     ck_skg(skg_scene_create(context, &scene));
-    ck_skg(skg_mesh_cuboid(200, 400, 1, &block));
-    ck_skg(skg_material_mu("lead", 400, &lead));
+    ck_skg(skg_mesh_create_cuboid(200, 400, 1, &block));
+    ck_skg(skg_material_create_mu("lead", 400, &lead));
     skg_part_init(&part);
     part.mesh = block, part.material = lead;
     part.pose[3] = 100;
     ck_skg(skg_scene_add(scene, &part, NULL));
     skg_mesh_release(&block);
     skg_material_release(&lead);
-    ck_skg(skg_spectrum_mono(60, 1, &beam));
+    ck_skg(skg_spectrum_create_mono(60, 1, &beam));
     skg_view_init(&view);
     view.columns = view.rows = SIDE;
     view.source[2] = -500;
@@ -56,11 +56,11 @@ static void take(const skg_plan_options *options, const skg_view *from, double *
     skg_plan *plan = NULL;
     skg_output output;
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = image;
+    output.type = SKG_TYPE_FLOAT64, output.data = image;
     ck_skg(skg_plan_create(context, scene, from, beam, options, &plan));
     ck_skg(skg_plan_image(plan, &output));
     skg_plan_report_init(report);
-    ck_skg(skg_plan_get_report(plan, report));
+    ck_skg(skg_plan_report_get(plan, report));
     skg_plan_release(&plan);
 }
 
@@ -75,12 +75,12 @@ START_TEST(grids_are_means_of_point_sources) {
     spot.extent[0] = 4, spot.extent[1] = 2, spot.extent[2] = 30;
     spot.grid = N;
     const int count[3] = {N, _i >= 1 ? N : 1, _i >= 2 ? N : 1};
-    skg_plan_options options = options_of(&spot, SKG_TRANSMISSION);
+    skg_plan_options options = options_of(&spot, SKG_QUANTITY_TRANSMISSION);
     take(&options, &view, image, &report);
     const int total = count[0] * count[1] * count[2];
     ck_assert_int_eq(report.samples, total);
     memset(mean, 0, sizeof mean);
-    skg_plan_options point = options_of(NULL, SKG_TRANSMISSION);
+    skg_plan_options point = options_of(NULL, SKG_QUANTITY_TRANSMISSION);
     for (int k = 0; k < total; k++) {
         skg_view from = view;
         const int at[3] = {k % count[0], k / count[0] % count[1], k / count[0] / count[1]};
@@ -104,7 +104,7 @@ START_TEST(penumbra_is_a_ramp) {
     skg_spot spot;
     skg_spot_init(&spot);
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = 4, spot.extent[1] = 1, spot.samples = 1024;
-    skg_plan_options options = options_of(&spot, SKG_TRANSMISSION);
+    skg_plan_options options = options_of(&spot, SKG_QUANTITY_TRANSMISSION);
     take(&options, &view, image, &report);
     ck_assert_int_eq(report.samples, 1024);
     for (int c = 0; c < SIDE; c++) {
@@ -123,7 +123,7 @@ START_TEST(shapes_have_their_penumbra) {
     skg_spot spot;
     skg_spot_init(&spot);
     spot.shape = shapes[_i], spot.extent[0] = 4, spot.extent[1] = 4, spot.samples = 4096;
-    skg_plan_options options = options_of(&spot, SKG_TRANSMISSION);
+    skg_plan_options options = options_of(&spot, SKG_QUANTITY_TRANSMISSION);
     take(&options, &view, image, &report);
     for (int c = 0; c < SIDE; c += 3) {
         const double x = (c - 0.5 * (SIDE - 1)) * 0.25, u = fmin(fmax(x / 2, -1), 1);
@@ -142,23 +142,23 @@ START_TEST(samples_are_doubled_until_it_suffices) {
     skg_spot spot;
     skg_spot_init(&spot);
     spot.shape = SKG_SPOT_DISC, spot.extent[0] = 2, spot.tolerance = 0.02;
-    for (int32_t quantity = SKG_ENERGY; quantity <= SKG_ATTENUATION; quantity += 4) {
+    for (int32_t quantity = SKG_QUANTITY_ENERGY; quantity <= SKG_QUANTITY_ATTENUATION; quantity += 4) {
         skg_plan_options options = options_of(&spot, quantity);
         take(&options, &view, image, &report);
         ck_assert_int_ge(report.samples, 16);
         ck_assert_int_le(report.samples, 1024);
         ck_assert(report.sample_error > 0 && report.sample_error < 0.02);
     }
-    skg_plan_options options = options_of(&spot, SKG_ENERGY);
+    skg_plan_options options = options_of(&spot, SKG_QUANTITY_ENERGY);
     take(&options, &view, image, &report);
     spot.samples = 4096;
-    options = options_of(&spot, SKG_ENERGY);
+    options = options_of(&spot, SKG_QUANTITY_ENERGY);
     take(&options, &view, fine, &all);
     int beyond = 0;
     for (int p = 0; p < SIDE * SIDE; p++) beyond += fabs(image[p] - fine[p]) / 60 > 2 * 0.02;
     ck_assert_int_le(beyond, SIDE * SIDE / 500);
     /* attenuation is that of the mean, not the mean of attenuations */
-    options = options_of(&spot, SKG_ATTENUATION);
+    options = options_of(&spot, SKG_QUANTITY_ATTENUATION);
     take(&options, &view, image, &report);
     for (int p = 0; p < SIDE * SIDE; p++)
         ck_assert_double_eq_tol(image[p], fmin(-log(fine[p] / 60), 87.34), 1e-4 * fmax(1, image[p]));
@@ -169,7 +169,8 @@ START_TEST(pixels_are_means_of_their_pieces) {
     enum { N = 4 };
     static double image[SIDE * SIDE], one[SIDE * SIDE], mean[SIDE * SIDE];
     skg_plan_report report;
-    skg_plan_options options = options_of(NULL, SKG_FLUENCE), plain = options_of(NULL, SKG_FLUENCE);
+    skg_plan_options options = options_of(NULL, SKG_QUANTITY_FLUENCE),
+                     plain = options_of(NULL, SKG_QUANTITY_FLUENCE);
     options.supersampling = N;
     take(&options, &view, image, &report);
     ck_assert_int_eq(report.samples, N * N);
@@ -194,7 +195,7 @@ START_TEST(open_field_does_not_depend_on_the_source) {
         skg_spot spot;
         skg_spot_init(&spot);
         spot.shape = shape, spot.extent[0] = spot.extent[1] = spot.extent[2] = 3, spot.samples = 37;
-        skg_plan_options options = options_of(&spot, SKG_ENERGY);
+        skg_plan_options options = options_of(&spot, SKG_QUANTITY_ENERGY);
         take(&options, &aside, image, &report);
         for (int p = 0; p < SIDE * SIDE; p++) ck_assert_double_eq_tol(image[p], 60, 60 * 64 * 0x1p-24);
     }
@@ -206,7 +207,7 @@ START_TEST(bad_spots_are_refused) {
     skg_spot spot;
     skg_spot_init(&spot);
     spot.shape = 7;
-    skg_plan_options options = options_of(&spot, SKG_ENERGY);
+    skg_plan_options options = options_of(&spot, SKG_QUANTITY_ENERGY);
 #define REFUSED(code, what)                                                                                  \
     ck_skg_fails(skg_plan_create(context, scene, &view, beam, &options, &plan), code, what)
     REFUSED(SKG_ERR_ARGUMENT, "shape 7");

@@ -10,17 +10,17 @@
 
 static skg_material *named(const char *text) {
     skg_material *material = NULL;
-    ck_skg(skg_material_named(text, &material));
+    ck_skg(skg_material_create_named(text, &material));
     return material;
 }
 
 static void expect(const skg_spectrum *s, int64_t count, const double *energies, const double *photons) {
     int64_t size = 0;
-    ck_skg(skg_spectrum_size(s, &size));
+    ck_skg(skg_spectrum_bin_count(s, &size));
     ck_assert_int_eq(size, count);
     for (int64_t i = 0; i < count; i++) {
         double e = 0, n = 0;
-        ck_skg(skg_spectrum_bin(s, i, &e, &n));
+        ck_skg(skg_spectrum_bin_get(s, i, &e, &n));
         ck_assert_double_eq_tol(e, energies[i], 1e-9);
         ck_assert_double_eq_tol(n, photons[i], 1e-12 * photons[i]);
     }
@@ -29,14 +29,14 @@ static void expect(const skg_spectrum *s, int64_t count, const double *energies,
 START_TEST(bins_are_sorted_and_merged) {
     static const double e[5] = {80, 60, 80, 100, 70}, n[5] = {1, 2, 3, 0, 5};
     skg_spectrum *s = NULL;
-    ck_skg(skg_spectrum_bins(5, e, n, &s));
+    ck_skg(skg_spectrum_create_bins(5, e, n, &s));
     expect(s, 3, (double[3]){60, 70, 80}, (double[3]){2, 5, 4});
     skg_spectrum_release(&s);
-    ck_skg_fails(skg_spectrum_bins(0, e, n, &s), SKG_ERR_BEAM, "at least one");
-    ck_skg_fails(skg_spectrum_bins(1, e + 3, n + 3, &s), SKG_ERR_BEAM, "without photons");
-    ck_skg_fails(skg_spectrum_bins(1, e, (double[1]){-1}, &s), SKG_ERR_BEAM, "-1 photons");
-    ck_skg_fails(skg_spectrum_bins(1, (double[1]){0.5}, n, &s), SKG_ERR_BEAM, "outside");
-    ck_skg_fails(skg_spectrum_bins(1, (double[1]){(double)NAN}, n, &s), SKG_ERR_BEAM, "outside");
+    ck_skg_fails(skg_spectrum_create_bins(0, e, n, &s), SKG_ERR_BEAM, "at least one");
+    ck_skg_fails(skg_spectrum_create_bins(1, e + 3, n + 3, &s), SKG_ERR_BEAM, "without photons");
+    ck_skg_fails(skg_spectrum_create_bins(1, e, (double[1]){-1}, &s), SKG_ERR_BEAM, "-1 photons");
+    ck_skg_fails(skg_spectrum_create_bins(1, (double[1]){0.5}, n, &s), SKG_ERR_BEAM, "outside");
+    ck_skg_fails(skg_spectrum_create_bins(1, (double[1]){(double)NAN}, n, &s), SKG_ERR_BEAM, "outside");
 }
 END_TEST
 
@@ -51,12 +51,12 @@ START_TEST(files_of_two_columns) {
     char path[] = "/tmp/skg_spectrum_XXXXXX";
     write_file(path, "Energy,Photons\n# comment\n0.06, 2e3\n0.07;5\n\n.08\t1.5e+1\r\n");
     skg_spectrum *s = NULL;
-    ck_skg(skg_spectrum_file(path, "MeV", &s));
+    ck_skg(skg_spectrum_load(path, "MeV", &s));
     expect(s, 3, (double[3]){60, 70, 80}, (double[3]){2000, 5, 15});
     skg_spectrum_release(&s);
-    ck_skg_fails(skg_spectrum_file(path, "keV", &s), SKG_ERR_BEAM, path); /* 0.06 keV */
+    ck_skg_fails(skg_spectrum_load(path, "keV", &s), SKG_ERR_BEAM, path); /* 0.06 keV */
     unlink(path);
-    ck_skg_fails(skg_spectrum_file(path, "keV", &s), SKG_ERR_FILE, path);
+    ck_skg_fails(skg_spectrum_load(path, "keV", &s), SKG_ERR_FILE, path);
 }
 END_TEST
 
@@ -66,13 +66,13 @@ START_TEST(gate_macros) {
                "# beam\n/gate/source/mybeam/gps/emin 0.01 MeV\n/gate/source/mybeam/gps/histpoint 0.02 3\n"
                "/gate/source/mybeam/gps/histpoint 0.03 4\n");
     skg_spectrum *s = NULL;
-    ck_skg(skg_spectrum_file(path, "MeV", &s));
+    ck_skg(skg_spectrum_load(path, "MeV", &s));
     expect(s, 2, (double[2]){20, 30}, (double[2]){3, 4});
     skg_spectrum_release(&s);
     unlink(path);
     char bad[] = "/tmp/skg_macro_XXXXXX";
     write_file(bad, "/gps/hist/point 0.02 3\n/gps/hist/point 0.03\n");
-    ck_skg_fails(skg_spectrum_file(bad, "MeV", &s), SKG_ERR_FORMAT, "line 2");
+    ck_skg_fails(skg_spectrum_load(bad, "MeV", &s), SKG_ERR_FORMAT, "line 2");
     unlink(bad);
 }
 END_TEST
@@ -84,9 +84,9 @@ START_TEST(half_value_layers_of_one_energy) {
     skg_quality_init(&q);
     skg_material *al = named("Al");
     double mu = 0;
-    ck_skg(skg_material_attenuation(al, 60, &mu));
-    ck_skg(skg_spectrum_mono(60, 7, &s));
-    ck_skg(skg_spectrum_quality(s, &q));
+    ck_skg(skg_material_attenuation_get(al, 60, &mu));
+    ck_skg(skg_spectrum_create_mono(60, 7, &s));
+    ck_skg(skg_spectrum_quality_get(s, &q));
     ck_assert_double_eq_tol(q.hvl1_mm_al, 10 * log(2) / mu, 1e-10);
     ck_assert_double_eq_tol(q.homogeneity, 1, 1e-10);
     ck_assert_double_eq_tol(q.mean_kev, 60, 1e-12);
@@ -105,8 +105,8 @@ START_TEST(air_kerma_per_photon) {
         skg_spectrum *s = NULL;
         skg_quality q;
         skg_quality_init(&q);
-        ck_skg(skg_spectrum_mono(rows[i][0], 1, &s));
-        ck_skg(skg_spectrum_quality(s, &q));
+        ck_skg(skg_spectrum_create_mono(rows[i][0], 1, &s));
+        ck_skg(skg_spectrum_quality_get(s, &q));
         double expected = 100 * rows[i][0] * 1.602176634e-16 * rows[i][1] * 1e9;
         ck_assert_msg(fabs(q.air_kerma_ugy / expected - 1) < 7e-3, "%g keV: %+.2f %%", rows[i][0],
                       100 * (q.air_kerma_ugy / expected - 1));
@@ -121,20 +121,20 @@ START_TEST(filters_harden) {
     skg_filter filter = {copper, 0.5};
     skg_spectrum *s = NULL, *behind = NULL;
     double low = 0, high = 0;
-    ck_skg(skg_spectrum_bins(2, e, n, &s));
-    ck_skg(skg_spectrum_filtered(s, 1, &filter, &behind));
-    ck_skg(skg_material_attenuation(copper, 30, &low));
-    ck_skg(skg_material_attenuation(copper, 80, &high));
+    ck_skg(skg_spectrum_create_bins(2, e, n, &s));
+    ck_skg(skg_spectrum_create_filtered(s, 1, &filter, &behind));
+    ck_skg(skg_material_attenuation_get(copper, 30, &low));
+    ck_skg(skg_material_attenuation_get(copper, 80, &high));
     expect(behind, 2, e, (double[2]){1000 * exp(-0.05 * low), 1000 * exp(-0.05 * high)});
     skg_spectrum_release(&behind);
     filter.mm = 5; /* nothing worth the name is left of 30 keV */
-    ck_skg(skg_spectrum_filtered(s, 1, &filter, &behind));
+    ck_skg(skg_spectrum_create_filtered(s, 1, &filter, &behind));
     expect(behind, 1, e + 1, (double[1]){1000 * exp(-0.5 * high)});
     skg_spectrum_release(&behind);
     filter.mm = -1;
-    ck_skg_fails(skg_spectrum_filtered(s, 1, &filter, &behind), SKG_ERR_BEAM, "-1 mm");
+    ck_skg_fails(skg_spectrum_create_filtered(s, 1, &filter, &behind), SKG_ERR_BEAM, "-1 mm");
     filter = (skg_filter){gas, 1};
-    ck_skg_fails(skg_spectrum_filtered(s, 1, &filter, &behind), SKG_ERR_MATERIAL, "density");
+    ck_skg_fails(skg_spectrum_create_filtered(s, 1, &filter, &behind), SKG_ERR_MATERIAL, "density");
     skg_spectrum_release(&s);
     skg_material_release(&copper);
     skg_material_release(&gas);
@@ -151,11 +151,11 @@ START_TEST(response_of_cesium_iodide) {
     int rows = 0;
     skg_material *csi = named("CsI");
     skg_response *layer = NULL;
-    ck_skg(skg_response_scintillator(csi, 0.6, 1, &layer));
+    ck_skg(skg_response_create_scintillator(csi, 0.6, 1, &layer));
     while (fgets(line, sizeof line, file)) {
         double e, efficiency, recorded, r = 0, seen = 0;
         if (sscanf(line, "%lf,%lf,%lf", &e, &efficiency, &recorded) != 3) continue;
-        ck_skg(skg_response_at(layer, e, 1, &r, &seen));
+        ck_skg(skg_response_get(layer, e, 1, &r, &seen));
         static const double table[] = {5, 6, 8, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150};
         int grid = 0;
         for (size_t i = 0; i < sizeof table / sizeof *table; i++) grid = grid || fabs(e - table[i]) < 1e-9;
@@ -177,29 +177,29 @@ START_TEST(response_of_cesium_iodide_in_print) {
                                      {80, 50.4}, {100, 42.3}, {160, 24.9}};
     skg_material *csi = named("CsI");
     skg_response *layer = NULL, *screen = NULL;
-    ck_skg(skg_response_scintillator(csi, 0.6, 1, &layer));
-    ck_skg(skg_response_screen(csi, 4.51 * 60, &screen)); /* mg/cm2 */
+    ck_skg(skg_response_create_scintillator(csi, 0.6, 1, &layer));
+    ck_skg(skg_response_create_screen(csi, 4.51 * 60, &screen)); /* mg/cm2 */
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         double r = 0, s = 0;
-        ck_skg(skg_response_at(layer, rows[i][0], 1, &r, NULL));
-        ck_skg(skg_response_at(screen, rows[i][0], 1, &s, NULL));
+        ck_skg(skg_response_get(layer, rows[i][0], 1, &r, NULL));
+        ck_skg(skg_response_get(screen, rows[i][0], 1, &s, NULL));
         ck_assert_double_eq_tol(r, rows[i][1], 0.055);
         ck_assert_double_eq_tol(s, r, 1e-12 * r);
     }
     skg_response_release(&layer);
     skg_response_release(&screen);
     double full = 0, packed = 0, oblique = 0; /* more on a longer path, less of less matter */
-    ck_skg(skg_response_scintillator(csi, 0.5, 0.8, &layer));
-    ck_skg(skg_response_at(layer, 60, 1, &packed, NULL));
-    ck_skg(skg_response_at(layer, 60, 1.25, &oblique, NULL));
+    ck_skg(skg_response_create_scintillator(csi, 0.5, 0.8, &layer));
+    ck_skg(skg_response_get(layer, 60, 1, &packed, NULL));
+    ck_skg(skg_response_get(layer, 60, 1.25, &oblique, NULL));
     skg_response_release(&layer);
-    ck_skg(skg_response_scintillator(csi, 0.5, 1, &layer));
-    ck_skg(skg_response_at(layer, 60, 1, &full, NULL));
+    ck_skg(skg_response_create_scintillator(csi, 0.5, 1, &layer));
+    ck_skg(skg_response_get(layer, 60, 1, &full, NULL));
     ck_assert_double_eq_tol(oblique, full, 1e-12 * full);
     ck_assert_double_lt(packed, full);
     skg_response_release(&layer);
-    ck_skg_fails(skg_response_scintillator(csi, 0, 1, &layer), SKG_ERR_BEAM, "0 mm");
-    ck_skg_fails(skg_response_scintillator(csi, 1, 1.1, &layer), SKG_ERR_BEAM, "packing");
+    ck_skg_fails(skg_response_create_scintillator(csi, 0, 1, &layer), SKG_ERR_BEAM, "0 mm");
+    ck_skg_fails(skg_response_create_scintillator(csi, 1, 1.1, &layer), SKG_ERR_BEAM, "packing");
     skg_material_release(&csi);
 }
 END_TEST
@@ -208,26 +208,26 @@ START_TEST(response_tables) {
     static const double e[3] = {10, 50, 100}, r[3] = {10, 40, 60}, eta[3] = {1, 0.9, 0.8};
     skg_response *t = NULL;
     double recorded = 0, seen = 0;
-    ck_skg(skg_response_table(3, e, r, NULL, &t));
-    ck_skg(skg_response_at(t, 30, 1, &recorded, &seen));
+    ck_skg(skg_response_create_table(3, e, r, NULL, &t));
+    ck_skg(skg_response_get(t, 30, 1, &recorded, &seen));
     ck_assert_double_eq_tol(recorded, 25, 1e-12);
     ck_assert_double_eq_tol(seen, 25.0 / 30, 1e-12);
-    ck_skg_fails(skg_response_at(t, 101, 1, &recorded, &seen), SKG_ERR_BEAM, "10 to 100 keV");
+    ck_skg_fails(skg_response_get(t, 101, 1, &recorded, &seen), SKG_ERR_BEAM, "10 to 100 keV");
     skg_response_release(&t);
-    ck_skg(skg_response_table(3, e, r, eta, &t));
-    ck_skg(skg_response_at(t, 75, 1, &recorded, &seen));
+    ck_skg(skg_response_create_table(3, e, r, eta, &t));
+    ck_skg(skg_response_get(t, 75, 1, &recorded, &seen));
     ck_assert_double_eq_tol(seen, 0.85, 1e-12);
     skg_response_release(&t);
-    ck_skg(skg_response_at(NULL, 75, 1, &recorded, &seen)); /* ideal */
+    ck_skg(skg_response_get(NULL, 75, 1, &recorded, &seen)); /* ideal */
     ck_assert_double_eq(recorded, 75);
     ck_assert_double_eq(seen, 1);
-    ck_skg_fails(skg_response_table(2, e + 1, (double[2]){1, 102}, NULL, &t), SKG_ERR_BEAM, "row 2");
-    ck_skg_fails(skg_response_table(2, e, e + 1, NULL, &t), SKG_ERR_BEAM,
+    ck_skg_fails(skg_response_create_table(2, e + 1, (double[2]){1, 102}, NULL, &t), SKG_ERR_BEAM, "row 2");
+    ck_skg_fails(skg_response_create_table(2, e, e + 1, NULL, &t), SKG_ERR_BEAM,
                  "50 keV recorded of a photon of 10");
     char path[] = "/tmp/skg_response_XXXXXX";
     write_file(path, "0.01 0.01\n0.1 0.06\n");
-    ck_skg(skg_response_file(path, "MeV", &t));
-    ck_skg(skg_response_at(t, 100, 1, &recorded, NULL));
+    ck_skg(skg_response_load(path, "MeV", &t));
+    ck_skg(skg_response_get(t, 100, 1, &recorded, NULL));
     ck_assert_double_eq_tol(recorded, 60, 1e-9);
     skg_response_release(&t);
     unlink(path);

@@ -9,7 +9,7 @@
 
 static skg_material *named(const char *text) {
     skg_material *material = NULL;
-    ck_skg(skg_material_named(text, &material));
+    ck_skg(skg_material_create_named(text, &material));
     return material;
 }
 
@@ -37,7 +37,7 @@ static skg_spectrum *tube(int32_t model, double kvp, double angle, const layer *
     t.angle_deg = angle;
     t.filters = filters;
     t.filter_count = count;
-    ck_skg(skg_spectrum_tube(&t, &spectrum));
+    ck_skg(skg_spectrum_create_tube(&t, &spectrum));
     while (count > 0) skg_material_release(&materials[--count]);
     return spectrum;
 }
@@ -46,7 +46,7 @@ static skg_quality quality(int32_t model, double kvp, double angle, const layer 
     skg_quality q;
     skg_quality_init(&q);
     skg_spectrum *spectrum = tube(model, kvp, angle, layers);
-    ck_skg(skg_spectrum_quality(spectrum, &q));
+    ck_skg(skg_spectrum_quality_get(spectrum, &q));
     skg_spectrum_release(&spectrum);
     return q;
 }
@@ -94,12 +94,12 @@ static void iec(int32_t model, const char *label, double first_bar, double secon
 }
 
 START_TEST(ebel_agrees_with_ptb) {
-    iec(SKG_EBEL, "Ebel", 0.06, 0.05, 0.025);
+    iec(SKG_TUBE_MODEL_EBEL, "Ebel", 0.06, 0.05, 0.025);
 }
 END_TEST
 
 START_TEST(birch_agrees_with_ptb) {
-    iec(SKG_BIRCH, "Birch", 0.07, 0.05, 0.025);
+    iec(SKG_TUBE_MODEL_BIRCH, "Birch", 0.07, 0.05, 0.025);
 }
 END_TEST
 
@@ -121,7 +121,7 @@ START_TEST(iso_qualities) {
             continue;
         layer layers[] = {{"Kapton", 0.25}, {"Be", be}, {"Al", al},   {"Cu", cu},
                           {"Sn", sn},       {"Pb", pb}, {"Air", 950}, {NULL, 0}};
-        skg_quality q = quality(SKG_EBEL, kv, 20, layers);
+        skg_quality q = quality(SKG_TUBE_MODEL_EBEL, kv, 20, layers);
         if (getenv("SKG_LIST"))
             printf("%s: HVL1 %+.1f %%, HVL2 %+.1f %%, mean %.2f keV\n", name, 100 * (q.hvl1_mm_cu / hvl1 - 1),
                    100 * (q.hvl2_mm_cu / hvl2 - 1), q.mean_kev);
@@ -150,7 +150,7 @@ START_TEST(homogeneity_of_rqr) {
         skg_quality q;
         do {
             layer layers[] = {{"Al", (low + high) / 2}, {NULL, 0}};
-            q = quality(SKG_EBEL, rqr[i].kv, 12, layers);
+            q = quality(SKG_TUBE_MODEL_EBEL, rqr[i].kv, 12, layers);
             if (q.hvl1_mm_al < rqr[i].hvl)
                 low = (low + high) / 2;
             else
@@ -173,7 +173,7 @@ START_TEST(output_per_mas) {
         {60, 48.9, 46.5}, {80, 82.0, 78.4}, {100, 118.9, 114.3}, {120, 158.7, 153.1}, {150, 222.8, 215.8}};
     static const layer vacuum[] = {{"Al", 2.5}, {NULL, 0}}, air[] = {{"Al", 2.5}, {"Air", 1000}, {NULL, 0}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        for (int32_t model = SKG_EBEL; model <= SKG_BIRCH; model++) {
+        for (int32_t model = SKG_TUBE_MODEL_EBEL; model <= SKG_TUBE_MODEL_BIRCH; model++) {
             double v = quality(model, rows[i].kv, 12, vacuum).air_kerma_ugy,
                    a = quality(model, rows[i].kv, 12, air).air_kerma_ugy;
             if (getenv("SKG_LIST"))
@@ -188,10 +188,10 @@ END_TEST
 static double lines_share(const skg_spectrum *spectrum) {
     double energy[512], photons[512], all = 0, lines = 0;
     int64_t count = 0;
-    ck_skg(skg_spectrum_size(spectrum, &count));
+    ck_skg(skg_spectrum_bin_count(spectrum, &count));
     ck_assert_int_lt(count, 512);
     for (int64_t i = 0; i < count; i++) {
-        ck_skg(skg_spectrum_bin(spectrum, i, &energy[i], &photons[i]));
+        ck_skg(skg_spectrum_bin_get(spectrum, i, &energy[i], &photons[i]));
         all += photons[i];
     }
     static const double windows[2][2] = {{56.5, 60.5}, {65.5, 70.5}};
@@ -211,7 +211,7 @@ START_TEST(k_lines_share) {
     static const double rows[][2] = {{80, .016}, {100, .057}, {120, .087}, {150, .112}};
     static const layer layers[] = {{"Al", 2.5}, {NULL, 0}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        for (int32_t model = SKG_EBEL; model <= SKG_BIRCH; model++) {
+        for (int32_t model = SKG_TUBE_MODEL_EBEL; model <= SKG_TUBE_MODEL_BIRCH; model++) {
             skg_spectrum *s = tube(model, rows[i][0], 12, layers);
             double share = lines_share(s);
             if (getenv("SKG_LIST"))
@@ -226,8 +226,8 @@ END_TEST
 /* The paper's Fig. 4: 90 kV behind twice 5 mm of copper, "80 keV". */
 START_TEST(beam_of_figure_4) {
     static const layer layers[] = {{"Cu", 5}, {"Cu", 5}, {NULL, 0}};
-    double mean = quality(SKG_EBEL, 90, 12, layers).mean_kev,
-           birch = quality(SKG_BIRCH, 90, 12, layers).mean_kev;
+    double mean = quality(SKG_TUBE_MODEL_EBEL, 90, 12, layers).mean_kev,
+           birch = quality(SKG_TUBE_MODEL_BIRCH, 90, 12, layers).mean_kev;
     if (getenv("SKG_LIST")) printf("Fig. 4: %.2f keV (Ebel), %.2f keV (Birch)\n", mean, birch);
     ck_assert(mean > 80 && mean < 83);
     ck_assert(birch > 80 && birch < 83);
@@ -247,23 +247,23 @@ START_TEST(output_scales) {
     t.kvp = 85;
     t.filters = &filter;
     t.filter_count = 1;
-    ck_skg(skg_spectrum_tube(&t, &s));
-    ck_skg(skg_spectrum_quality(s, &one));
+    ck_skg(skg_spectrum_create_tube(&t, &s));
+    ck_skg(skg_spectrum_quality_get(s, &one));
     skg_spectrum_release(&s);
     t.mas = 4, t.distance_mm = 2000, t.pixel_mm2 = 0.25; /* 4 / 4 / 4 */
-    ck_skg(skg_spectrum_tube(&t, &s));
-    ck_skg(skg_spectrum_quality(s, &other));
+    ck_skg(skg_spectrum_create_tube(&t, &s));
+    ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
     ck_assert_double_eq_tol(other.photons / one.photons, 0.25, 1e-12);
     t.mas = 1, t.distance_mm = 1000, t.pixel_mm2 = 1;
     t.output_ugy_mas = 65; /* at 1 m */
-    ck_skg(skg_spectrum_tube(&t, &s));
-    ck_skg(skg_spectrum_quality(s, &other));
+    ck_skg(skg_spectrum_create_tube(&t, &s));
+    ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
     ck_assert_double_eq_tol(other.air_kerma_ugy, 65, 1e-10);
     t.output_ugy_mas = 0, t.bin_kev = 0.5; /* bins of another width: the same beam */
-    ck_skg(skg_spectrum_tube(&t, &s));
-    ck_skg(skg_spectrum_quality(s, &other));
+    ck_skg(skg_spectrum_create_tube(&t, &s));
+    ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
     ck_assert_double_eq_tol(other.air_kerma_ugy / one.air_kerma_ugy, 1, 5e-3);
     skg_material_release(&al);
@@ -275,17 +275,17 @@ START_TEST(tubes_that_cannot_be) {
     skg_spectrum *s = NULL;
     skg_filter none = {NULL, 1};
     skg_tube_init(&t);
-    ck_skg_fails(skg_spectrum_tube(&t, &s), SKG_ERR_BEAM, "tube voltage of 0 kV");
+    ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "tube voltage of 0 kV");
     t.kvp = 90, t.angle_deg = 0;
-    ck_skg_fails(skg_spectrum_tube(&t, &s), SKG_ERR_BEAM, "angle");
+    ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "angle");
     t.angle_deg = 12, t.anode = 6;
-    ck_skg_fails(skg_spectrum_tube(&t, &s), SKG_ERR_BEAM, "anode of C");
+    ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "anode of C");
     t.anode = 74, t.filters = &none, t.filter_count = 1;
-    ck_skg_fails(skg_spectrum_tube(&t, &s), SKG_ERR_BEAM, "filter 1 has no material");
+    ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "filter 1 has no material");
     t.filter_count = 0, t.model = 7;
-    ck_skg_fails(skg_spectrum_tube(&t, &s), SKG_ERR_BEAM, "model 7");
+    ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "model 7");
     t.model = 0, t.mas = -1;
-    ck_skg_fails(skg_spectrum_tube(&t, &s), SKG_ERR_BEAM, "tube load");
+    ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "tube load");
     ck_assert_ptr_null(s);
 }
 END_TEST

@@ -9,16 +9,16 @@ static void use_spectrum(const char *path, const char *unit) {
     skg_spectrum *spectrum = NULL;
     skg_quality quality;
     skg_quality_init(&quality);
-    fuzz_expect_sentence(skg_spectrum_file(path, unit, &spectrum));
-    if (spectrum) fuzz_expect_sentence(skg_spectrum_quality(spectrum, &quality));
+    fuzz_expect_sentence(skg_spectrum_load(path, unit, &spectrum));
+    if (spectrum) fuzz_expect_sentence(skg_spectrum_quality_get(spectrum, &quality));
     skg_spectrum_release(&spectrum);
 }
 
 static void use_response(const char *path, const char *unit) {
     skg_response *response = NULL;
     double recorded, efficiency;
-    fuzz_expect_sentence(skg_response_file(path, unit, &response));
-    if (response) fuzz_expect_sentence(skg_response_at(response, 60, 1.1, &recorded, &efficiency));
+    fuzz_expect_sentence(skg_response_load(path, unit, &response));
+    if (response) fuzz_expect_sentence(skg_response_get(response, 60, 1.1, &recorded, &efficiency));
     skg_response_release(&response);
 }
 
@@ -26,10 +26,10 @@ static void use_material(const char *path, const char *unit) {
     skg_material *material = NULL;
     double per_cm, edges[8];
     int64_t count;
-    fuzz_expect_sentence(skg_material_table_file(path, unit, &material));
+    fuzz_expect_sentence(skg_material_load_table(path, unit, &material));
     if (material) {
-        fuzz_expect_sentence(skg_material_attenuation(material, 60, &per_cm));
-        fuzz_expect_sentence(skg_material_edges(material, 8, edges, &count));
+        fuzz_expect_sentence(skg_material_attenuation_get(material, 60, &per_cm));
+        fuzz_expect_sentence(skg_material_edges_get(material, 8, edges, &count));
     }
     skg_material_release(&material);
 }

@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_expect_sentence(status);
     if (status != SKG_OK) return 0;
     skg_mesh_health_init(&health);
-    if (skg_mesh_get_health(mesh, &health) != SKG_OK) abort();
+    if (skg_mesh_health_get(mesh, &health) != SKG_OK) abort();
     if (data[0] & 64) {
         if (skg_mesh_save(mesh, fuzz_path("saved.ply")) != SKG_OK) abort();
         if (skg_mesh_load(NULL, fuzz_path("saved.ply"), 1, &again) != SKG_OK) abort();

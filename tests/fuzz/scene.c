@@ -29,8 +29,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         skg_plan_options options;
         skg_view_init(&view);
         skg_plan_options_init(&options);
-        fuzz_expect_sentence(skg_setup_view(setup, &view));
-        fuzz_expect_sentence(skg_setup_options(setup, &options));
+        fuzz_expect_sentence(skg_setup_view_get(setup, &view));
+        fuzz_expect_sentence(skg_setup_options_get(setup, &options));
         fuzz_expect_sentence(skg_view_check(&view));
         fuzz_expect_sentence(skg_motion_create(NULL, setup, &motion));
         skg_motion_release(&motion);

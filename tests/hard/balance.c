@@ -12,8 +12,9 @@ solid stray(const skg_view *view, double column, double row, double pixels) {
                 view->centre[k] +
                 (column + pixels * at[n][0] - (double)(view->columns - 1) / 2) * view->column_step[k] +
                 (row + pixels * at[n][1] - (double)(view->rows - 1) / 2) * view->row_step[k];
-            const double from =
-                view->projection == SKG_POINT ? view->source[k] : pixel + view->source[k] - view->centre[k];
+            const double from = view->projection == SKG_PROJECTION_POINT
+                                    ? view->source[k]
+                                    : pixel + view->source[k] - view->centre[k];
             s.positions[3 * n + k] = (from + pixel) / 2;
         }
     }
@@ -30,8 +31,8 @@ int64_t count_bad(const solid *body, const double *pose, const skg_view *view, d
     skg_plan *plan = run_plan(scene, view, choice);
     free(run_image(plan, view));
     skg_plan_report_init(&report);
-    ck_skg(skg_plan_get_report(plan, &report));
-    ck_assert_int_eq(report.open_parts, 1);
+    ck_skg(skg_plan_report_get(plan, &report));
+    ck_assert_int_eq(report.leaky_parts, 1);
     skg_plan_release(&plan);
     skg_scene_release(&scene);
     solid_free(&extra);

@@ -127,7 +127,7 @@ START_TEST(batches) {
     for (int n = 0; n < FRAMES; n++) {
         views[n] = run_view(SIDE, 2);
         views[n].source[0] = 40 * n;
-        views[n].projection = n == 4 ? SKG_PARALLEL : SKG_POINT;
+        views[n].projection = n == 4 ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         if (n == 5) views[n].source[2] = 0; /* within: another path through the kernels */
         skg_frame_init(&frames[n]);
         frames[n].view = &views[n];

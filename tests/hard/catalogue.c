@@ -54,9 +54,9 @@ static void judge_lengths(const hard_solid *s, int32_t precision, const double *
     const double by = s->size > 0 ? v.longest / s->size : 1, worst = by * verdict_worst(&v),
                  rms = by * verdict_rms(&v), most = s->sliver ? 3.2e-6 : 3e-7;
     o->worst[precision] = worst;
-    o->bar[precision] = precision == SKG_SINGLE ? 1e-3 : s->double_bar > 0 ? s->double_bar : 1e-11;
+    o->bar[precision] = precision == SKG_PRECISION_SINGLE ? 1e-3 : s->double_bar > 0 ? s->double_bar : 1e-11;
     if (!(worst <= o->bar[precision])) hard_fault(o, "worst %.3g", worst);
-    if (precision == SKG_SINGLE && !(rms <= most)) hard_fault(o, "rms %.3g above %.3g", rms, most);
+    if (precision == SKG_PRECISION_SINGLE && !(rms <= most)) hard_fault(o, "rms %.3g above %.3g", rms, most);
     const double longest = s->size > 0 ? s->size : v.longest;
     hard_check_values(o, got, pixels, -longest);
     for (int64_t p = 0; p < pixels; p++) below += got[p] < -o->bar[precision] * longest;
@@ -78,7 +78,7 @@ static void run_body(const hard_solid *s, hard_outcome *o) {
             double *got = run_lengths(plan, &s->view);
             hard_same_bits(o, way, got, pixels, &first);
             if (way == 0) judge_lengths(s, precision, got, o);
-            if (way == 0 && precision == SKG_SINGLE) hard_compare_time(o, scene, plan, &s->view);
+            if (way == 0 && precision == SKG_PRECISION_SINGLE) hard_compare_time(o, scene, plan, &s->view);
             free(got);
             skg_plan_release(&plan);
         }

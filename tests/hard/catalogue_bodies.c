@@ -64,13 +64,13 @@ static void rigid_cycle(hard_outcome *o) {
 static skg_scene *scene_of(skg_thorax *thorax, skg_body *body) {
     int64_t parts = 0;
     skg_scene *scene = NULL;
-    ck_skg(skg_thorax_size(thorax, &parts));
+    ck_skg(skg_thorax_part_count(thorax, &parts));
     ck_skg(skg_scene_create(run_context, &scene));
     for (int64_t n = 0; n < parts; n++) {
         skg_thorax_part part;
         skg_organ organ;
         skg_thorax_part_init(&part);
-        ck_skg(skg_thorax_get_part(thorax, n, &part));
+        ck_skg(skg_thorax_part_get(thorax, n, &part));
         skg_organ_init(&organ);
         organ.inside = part.inside;
         organ.mesh = part.mesh;
@@ -102,7 +102,7 @@ static void inverted(hard_outcome *o) {
     state.thoracic = state.diaphragmatic = 4;
     ck_skg(skg_body_pose(body, &state));
     skg_body_measure_init(&measure);
-    ck_skg(skg_body_get_measure(body, &measure));
+    ck_skg(skg_body_measure_get(body, &measure));
     if (measure.flipped_triangles == 0) hard_fault(o, "nothing is inverted: the case is not hard");
     if (measure.broken_links) hard_fault(o, "%lld links broken", (long long)measure.broken_links);
     o->worst[1] = 0;
@@ -114,7 +114,7 @@ static void inverted(hard_outcome *o) {
     uint64_t first = 0;
     for (int way = 0; way < HARD_WAYS; way++) {
         run_choice choice = hard_ways[way];
-        choice.quantity = SKG_TRANSMISSION;
+        choice.quantity = SKG_QUANTITY_TRANSMISSION;
         skg_plan *plan = run_plan(scene, &view, choice);
         double *got = run_image(plan, &view);
         hard_same_bits(o, way, got, 96 * 96, &first);

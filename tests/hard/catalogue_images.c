@@ -53,7 +53,7 @@ static void judge_scene(hard_outcome *o, const judgement *j, skg_scene *scene, c
             double *got = run_image(plan, view);
             hard_same_bits(o, way, got, PIXELS, &first);
             if (way == 0) judge_pixels(o, j, precision, got);
-            if (way == 0 && precision == SKG_SINGLE) hard_compare_time(o, scene, plan, view);
+            if (way == 0 && precision == SKG_PRECISION_SINGLE) hard_compare_time(o, scene, plan, view);
             free(got);
             skg_plan_release(&plan);
         }
@@ -86,12 +86,12 @@ static void part_of(skg_scene *scene, const char *label, const solid *s, double 
 
 static void transmission(hard_outcome *o) {
     enum { STEPS = 16 };
-    static judgement j = {.quantity = SKG_TRANSMISSION, .least = 1e-30, .bar = {5e-5, 1e-11}};
+    static judgement j = {.quantity = SKG_QUANTITY_TRANSMISSION, .least = 1e-30, .bar = {5e-5, 1e-11}};
     o->name = "transmission from 1 to 1e-30 and beyond";
     o->danger = "exp of -200 leaves the range of floats; small ones lose digits";
     o->unit = "relative, above 1e-30";
     skg_view view = run_view(SIDE, 1);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     solid all = solid_box(0.01, 0.01, 0.01);
     for (int n = 1; n < STEPS; n++) { /* 4 columns each; 6 mm more, exponent 12 more */
         solid step = solid_box(4, 200, 6.0 * n);
@@ -115,13 +115,13 @@ static void iodine(hard_outcome *o, judgement *j, skg_spectrum *spectrum, const 
     skg_scene *scene = NULL;
     double mu[2];
     solid plate = solid_box(200, 200, 0.1);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     ck_skg(skg_scene_create(run_context, &scene));
     skg_part_init(&part);
     part.mesh = run_mesh(&plate);
     part.label = "iodine";
-    ck_skg(skg_material_element(53, &part.material));
-    for (int k = 0; k < 2; k++) ck_skg(skg_material_attenuation(part.material, kev[k], &mu[k]));
+    ck_skg(skg_material_create_element(53, &part.material));
+    for (int k = 0; k < 2; k++) ck_skg(skg_material_attenuation_get(part.material, kev[k], &mu[k]));
     if (!(mu[1] > 4 * mu[0])) hard_fault(o, "mu goes from %g to %g per cm: there is no edge", mu[0], mu[1]);
     ck_skg(skg_scene_add(scene, &part, NULL));
     for (int p = 0; p < PIXELS; p++)
@@ -134,19 +134,19 @@ static void iodine(hard_outcome *o, judgement *j, skg_spectrum *spectrum, const 
 }
 
 static void k_edge(hard_outcome *o) {
-    static judgement j = {.quantity = SKG_TRANSMISSION, .least = 1e-6, .bar = {2e-6, 1e-12}};
+    static judgement j = {.quantity = SKG_QUANTITY_TRANSMISSION, .least = 1e-6, .bar = {2e-6, 1e-12}};
     const double kev[2] = {33.168, 33.171}, photons[2] = {1, 1}; /* the edge: 33.1694 keV */
     skg_spectrum *spectrum = NULL;
     o->name = "lines on both sides of a K edge";
     o->danger = "interpolation across the edge smears it";
     o->unit = "relative";
-    ck_skg(skg_spectrum_bins(2, kev, photons, &spectrum));
+    ck_skg(skg_spectrum_create_bins(2, kev, photons, &spectrum));
     iodine(o, &j, spectrum, kev);
     skg_spectrum_release(&spectrum);
 }
 
 static void empty_bins(hard_outcome *o) {
-    static judgement j = {.quantity = SKG_TRANSMISSION, .least = 1e-6, .bar = {2e-6, 1e-12}};
+    static judgement j = {.quantity = SKG_QUANTITY_TRANSMISSION, .least = 1e-6, .bar = {2e-6, 1e-12}};
     const double line[2] = {33.168, 33.171};
     double kev[100], photons[100];
     skg_spectrum *spectrum = NULL;
@@ -157,7 +157,7 @@ static void empty_bins(hard_outcome *o) {
         kev[n] = n == 32 ? line[0] : n == 33 ? line[1] : n + 1;
         photons[n] = n == 32 || n == 33 ? 1 : 0;
     }
-    ck_skg(skg_spectrum_bins(100, kev, photons, &spectrum));
+    ck_skg(skg_spectrum_create_bins(100, kev, photons, &spectrum));
     iodine(o, &j, spectrum, line);
     skg_spectrum_release(&spectrum);
 }
@@ -166,7 +166,7 @@ static void empty_bins(hard_outcome *o) {
  */
 
 static void neighbours(hard_outcome *o) {
-    static judgement j = {.quantity = SKG_ATTENUATION, .bar = {3e-6, 1e-11}};
+    static judgement j = {.quantity = SKG_QUANTITY_ATTENUATION, .bar = {3e-6, 1e-11}};
     o->name = "parts that share a face";
     o->danger = "a gap or an overlap at the shared face";
     o->unit = "of the largest exponent";
@@ -189,7 +189,7 @@ static void neighbours(hard_outcome *o) {
 
 static void shells(hard_outcome *o) {
     enum { SHELLS = 12 };
-    static judgement j = {.quantity = SKG_ATTENUATION, .bar = {3e-5, 1e-10}};
+    static judgement j = {.quantity = SKG_QUANTITY_ATTENUATION, .bar = {3e-5, 1e-10}};
     o->name = "nested shells of 2 micrometres";
     o->danger = "each shell is the small difference of two large lengths";
     o->unit = "of the largest exponent";
@@ -212,7 +212,7 @@ static void shells(hard_outcome *o) {
 
 static void overlapping(hard_outcome *o) {
     enum { PARTS = 3000 };
-    static judgement j = {.quantity = SKG_ATTENUATION, .bar = {1e-5, 1e-11}};
+    static judgement j = {.quantity = SKG_QUANTITY_ATTENUATION, .bar = {1e-5, 1e-11}};
     uint64_t seed = 9;
     o->name = "3000 overlapping parts";
     o->danger = "the sum of all wraps; a launch for each part";
@@ -251,17 +251,17 @@ static void overlapping(hard_outcome *o) {
 
 /* A beam from very far against the parallel one. */
 static void far_beam(hard_outcome *o) {
-    static judgement j = {.quantity = SKG_ATTENUATION, .bar = {1e-3, 1e-3}};
+    static judgement j = {.quantity = SKG_QUANTITY_ATTENUATION, .bar = {1e-3, 1e-3}};
     o->name = "source at 1e9 mm against the parallel beam";
     o->danger = "two paths through the kernels that have to agree";
     o->unit = "of the largest exponent";
     skg_view far = run_view(SIDE, 2.1), parallel = far;
     far.source[2] = -1e9;
-    parallel.projection = SKG_PARALLEL;
+    parallel.projection = SKG_PROJECTION_PARALLEL;
     solid blob = solid_blob(55, 60, 30, 10);
     skg_scene *scene = run_scene(&blob, NULL);
-    skg_plan *plan =
-        run_plan(scene, &parallel, (run_choice){.precision = run_has_double(), .quantity = SKG_ATTENUATION});
+    skg_plan *plan = run_plan(
+        scene, &parallel, (run_choice){.precision = run_has_double(), .quantity = SKG_QUANTITY_ATTENUATION});
     double *straight = run_image(plan, &parallel);
     for (int p = 0; p < PIXELS; p++) j.truth[p] = straight[p];
     j.least = largest_truth(&j);

@@ -32,25 +32,25 @@ static void judge_open(hard_outcome *o, const solid *s, int64_t least_bad) {
             run_choice choice = hard_ways[way];
             skg_plan_report report;
             choice.precision = precision;
-            choice.quantity = SKG_ATTENUATION;
+            choice.quantity = SKG_QUANTITY_ATTENUATION;
             skg_plan *plan = run_plan(scene, &view, choice);
             double *got = run_image(plan, &view); /* 1 per cm: a tenth of the length in mm */
             hard_same_bits(o, way, got, PIXELS, &first);
             skg_plan_report_init(&report);
-            ck_skg(skg_plan_get_report(plan, &report));
-            if (report.open_parts == 1 && report.bad_pixels != bad)
+            ck_skg(skg_plan_report_get(plan, &report));
+            if (report.leaky_parts == 1 && report.bad_pixels != bad)
                 hard_fault(o, "%lld open pixels told, %lld are", (long long)report.bad_pixels,
                            (long long)bad);
-            if (report.open_parts == 0 && bad) hard_fault(o, "an open mesh was taken for a closed one");
+            if (report.leaky_parts == 0 && bad) hard_fault(o, "an open mesh was taken for a closed one");
             double worst = 0;
             for (int p = 0; p < PIXELS && way == 0; p++)
                 if (!isnan(truth[p])) worst = fmax(worst, fabs(10 * got[p] - truth[p]) / fmax(longest, 1));
             hard_check_values(o, got, PIXELS, -0.2 * fmax(longest, 1));
             if (way == 0) {
                 o->worst[precision] = worst;
-                o->bar[precision] = precision == SKG_SINGLE ? 1e-3 : 1e-11;
+                o->bar[precision] = precision == SKG_PRECISION_SINGLE ? 1e-3 : 1e-11;
                 if (!(worst <= o->bar[precision])) hard_fault(o, "worst %.3g", worst);
-                if (precision == SKG_SINGLE) hard_compare_time(o, scene, plan, &view);
+                if (precision == SKG_PRECISION_SINGLE) hard_compare_time(o, scene, plan, &view);
             }
             free(got);
             skg_plan_release(&plan);
@@ -135,7 +135,7 @@ static void million_parts(hard_outcome *o) {
     ck_skg(skg_scene_create(run_context, &scene));
     skg_part_init(&part);
     part.mesh = mesh;
-    ck_skg(skg_material_mu("m", 0.1, &part.material));
+    ck_skg(skg_material_create_mu("m", 0.1, &part.material));
     for (int n = 0; n < PARTS; n++) {
         char label[16];
         pose[3] = n % ROW - 49.5;
@@ -147,7 +147,7 @@ static void million_parts(hard_outcome *o) {
         ck_skg(skg_scene_add(scene, &part, NULL));
     }
     skg_material_release(&part.material);
-    skg_plan *plan = run_plan(scene, &view, (run_choice){.quantity = SKG_ATTENUATION});
+    skg_plan *plan = run_plan(scene, &view, (run_choice){.quantity = SKG_QUANTITY_ATTENUATION});
     double *got = run_image(plan, &view);
     hard_check_values(o, got, PIXELS, 0);
     /* 40 x 40 pixels of 1 mm in the middle plane: there are 1 x 1 x 100 mm of parts behind each. */

@@ -151,12 +151,12 @@ static skg_status plan_it(run *r) {
     skg_plan_options options;
     skg_spectrum *spectrum = NULL;
     skg_spot spot;
-    TRY(skg_setup_scene(r->setup, &r->scene));
-    TRY(skg_setup_spectrum(r->setup, &spectrum));
+    TRY(skg_setup_scene_get(r->setup, &r->scene));
+    TRY(skg_setup_spectrum_get(r->setup, &spectrum));
     skg_view_init(&r->view);
-    TRY(skg_setup_view(r->setup, &r->view));
+    TRY(skg_setup_view_get(r->setup, &r->view));
     skg_plan_options_init(&options);
-    TRY(skg_setup_options(r->setup, &options));
+    TRY(skg_setup_options_get(r->setup, &options));
     options.strategy = r->with->strategy;
     options.profile = 1;
     options.bands = r->with->bands;
@@ -201,7 +201,7 @@ static skg_status draw(run *r) {
     TRY(skg_plan_submit(r->plan, 2, frames, &output, &job));
     TRY(skg_job_wait(&job));
     output.data = r->lengths;
-    TRY(skg_plan_lengths(r->plan, 0, SKG_NET, 1, NULL, &output, &job));
+    TRY(skg_plan_lengths(r->plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));
     return skg_job_wait(&job);
 }
 
@@ -216,14 +216,14 @@ static skg_status save(const run *r) {
     picture.channels = 1;
     picture.data = r->image;
     picture.view = &r->view;
-    picture.open = 1;
+    picture.flat_field = 1;
     for (int n = 0; n < 3; n++) {
         snprintf(path, sizeof path, "%s/%s", folder, names[n]);
         TRY(skg_picture_write(&picture, path));
     }
     snprintf(path, sizeof path, "%s/bone.ply", folder);
     skg_part_init(&part);
-    TRY(skg_scene_part(r->scene, 1, &part));
+    TRY(skg_scene_part_get(r->scene, 1, &part));
     return skg_mesh_save(part.mesh, path);
 }
 

@@ -30,12 +30,12 @@ typedef struct {
 
 static void add_organs(patient *p) {
     int64_t parts = 0;
-    ck_skg(skg_thorax_size(p->thorax, &parts));
+    ck_skg(skg_thorax_part_count(p->thorax, &parts));
     for (int64_t n = 0; n < parts; n++) {
         skg_thorax_part part;
         skg_organ organ;
         skg_thorax_part_init(&part);
-        ck_skg(skg_thorax_get_part(p->thorax, n, &part));
+        ck_skg(skg_thorax_part_get(p->thorax, n, &part));
         skg_organ_init(&organ);
         organ.inside = part.inside;
         organ.mesh = part.mesh;
@@ -75,7 +75,7 @@ static void take_frame(patient *p, int64_t frame, float *image) {
     skg_output output;
     skg_breath_state_init(&state);
     /* Phases of the cycle itself: times of later cycles are rounded otherwise. */
-    ck_skg(skg_breath_at_phase(&p->breath, (double)(frame % CYCLE) / CYCLE, &state));
+    ck_skg(skg_breath_state_at_phase(&p->breath, (double)(frame % CYCLE) / CYCLE, &state));
     ck_skg(skg_body_pose(p->body, &state));
     skg_output_init(&output);
     output.data = image;

@@ -18,7 +18,7 @@ static path path_to(const skg_view *view, double column, double row) {
     const double c = column - 0.5 * (double)(view->columns - 1), r = row - 0.5 * (double)(view->rows - 1);
     for (int k = 0; k < 3; k++) {
         const double pixel = view->centre[k] + c * view->column_step[k] + r * view->row_step[k];
-        p.way[k] = (view->projection == SKG_POINT ? pixel : view->centre[k]) - view->source[k];
+        p.way[k] = (view->projection == SKG_PROJECTION_POINT ? pixel : view->centre[k]) - view->source[k];
         p.from[k] = pixel - p.way[k];
     }
     return p;
@@ -53,12 +53,12 @@ static size_of_scene measure(const skg_scene *scene, const skg_view *view) {
     double *rest = NULL, *posed = NULL;
     int32_t *corners = NULL;
     const skg_mesh *known = NULL;
-    ck_skg(skg_scene_size(scene, &parts));
+    ck_skg(skg_scene_part_count(scene, &parts));
     for (int64_t i = 0; i < parts; i++) {
         skg_part part;
         skg_part_init(&part);
-        ck_skg(skg_scene_part(scene, i, &part));
-        ck_skg(skg_mesh_size(part.mesh, &vertices, &triangles));
+        ck_skg(skg_scene_part_get(scene, i, &part));
+        ck_skg(skg_mesh_count(part.mesh, &vertices, &triangles));
         size.triangles += triangles;
     }
     count = 30000000 / size.triangles < 8 ? 8 : 30000000 / size.triangles;
@@ -69,15 +69,15 @@ static size_of_scene measure(const skg_scene *scene, const skg_view *view) {
     for (int64_t i = 0; i < parts; i++) {
         skg_part part;
         skg_part_init(&part);
-        ck_skg(skg_scene_part(scene, i, &part));
+        ck_skg(skg_scene_part_get(scene, i, &part));
         if (part.mesh != known) {
             known = part.mesh;
-            ck_skg(skg_mesh_size(part.mesh, &vertices, &triangles));
+            ck_skg(skg_mesh_count(part.mesh, &vertices, &triangles));
             rest = realloc(rest, (size_t)vertices * 3 * sizeof *rest);
             posed = realloc(posed, (size_t)vertices * 3 * sizeof *posed);
             corners = realloc(corners, (size_t)triangles * 3 * sizeof *corners);
-            ck_skg(skg_mesh_read_positions(part.mesh, rest, 0));
-            ck_skg(skg_mesh_read_triangles(part.mesh, corners, 0));
+            ck_skg(skg_mesh_positions_get(part.mesh, rest, 0));
+            ck_skg(skg_mesh_triangles_get(part.mesh, corners, 0));
         }
         for (int64_t v = 0; v < vertices; v++)
             for (int k = 0; k < 3; k++) {

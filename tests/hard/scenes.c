@@ -3,15 +3,15 @@
 #include <string.h>
 
 static void octahedra(hard_scene *h, int projection, int edges) {
-    h->name = edges                     ? "octahedra with edges along rays"
-              : projection == SKG_POINT ? "octahedra"
-                                        : "octahedra, parallel";
+    h->name = edges                                ? "octahedra with edges along rays"
+              : projection == SKG_PROJECTION_POINT ? "octahedra"
+                                                   : "octahedra, parallel";
     h->turned = edges ? 1e-4 : 0;
     h->view = run_view(512, 0.75); /* steps and places of pixels are floats */
     h->view.projection = projection;
     h->wobble =
         0x1p-15; /* an ulp of a corner's float place, 256 pixels from the part's own: these are steep */
-    h->body = solid_octahedra(3000, &h->view, projection == SKG_POINT ? 3 : 0, edges ? 1 : 2, 11);
+    h->body = solid_octahedra(3000, &h->view, projection == SKG_PROJECTION_POINT ? 3 : 0, edges ? 1 : 2, 11);
 }
 
 static void cubes_on_centres(hard_scene *h) {
@@ -95,7 +95,7 @@ static void large(hard_scene *h, int which) {
                                               : "mostly behind the detector, parallel";
         h->body = solid_box(150, 90, 1000);
         solid_shift(&h->body, 0, 0, 650);
-        h->view.projection = which == HARD_MOSTLY_BEHIND ? SKG_POINT : SKG_PARALLEL;
+        h->view.projection = which == HARD_MOSTLY_BEHIND ? SKG_PROJECTION_POINT : SKG_PROJECTION_PARALLEL;
     }
 }
 
@@ -103,7 +103,7 @@ static void simple(hard_scene *h, int which) {
     if (which == HARD_CUBE_ON_CENTRES) {
         h->name = "cube on centres";
         h->view = run_view(65, 1);
-        h->view.projection = SKG_PARALLEL;
+        h->view.projection = SKG_PROJECTION_PARALLEL;
         h->body = solid_box(32, 32, 32);
         h->wobble = 1e-4;
     } else {
@@ -118,13 +118,13 @@ hard_scene hard_make(int which) {
     hard_scene h = {.pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
     switch (which) {
     case HARD_OCTAHEDRA:
-        octahedra(&h, SKG_POINT, 0);
+        octahedra(&h, SKG_PROJECTION_POINT, 0);
         break;
     case HARD_OCTAHEDRA_EDGES:
-        octahedra(&h, SKG_POINT, 1);
+        octahedra(&h, SKG_PROJECTION_POINT, 1);
         break;
     case HARD_OCTAHEDRA_PARALLEL:
-        octahedra(&h, SKG_PARALLEL, 0);
+        octahedra(&h, SKG_PROJECTION_PARALLEL, 0);
         break;
     case HARD_CUBES_ON_CENTRES:
         cubes_on_centres(&h);

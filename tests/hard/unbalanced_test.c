@@ -52,7 +52,7 @@ END_TEST
 
 /* Slivers have bars of their own, twice what prototypes measured: rms 3.2e-6 Lmax. */
 static void check_bars(const verdict *v, const hard_scene *h, int32_t precision) {
-    if (!h->sliver || precision == SKG_DOUBLE) {
+    if (!h->sliver || precision == SKG_PRECISION_DOUBLE) {
         verdict_check(v, precision, h->name);
         return;
     }
@@ -120,7 +120,7 @@ START_TEST(thin_wall) {
             ck_assert_double_lt(v.longest, 0.02);
             /* Double: the wall's own corners are doubles, 43 mm off by 4e-15: 1e-12 of the wall's thickness;
              * and the source at 1e6 mm costs a part in 1e-16 of that distance. */
-            if (precision == SKG_DOUBLE)
+            if (precision == SKG_PRECISION_DOUBLE)
                 ck_assert_double_le(verdict_worst(&v), 1e-10 / 0.01);
             else
                 verdict_check(&v, precision, "thin wall");
@@ -152,12 +152,12 @@ START_TEST(a_hundred_plates) {
             run_part(scene, label, mesh, 0.5, pose, -1); /* 0.05 per mm: exponent 5 */
         }
         for (int32_t precision = 0; precision < precisions(); precision++) {
-            const run_choice choice = {.precision = precision, .quantity = SKG_ATTENUATION};
+            const run_choice choice = {.precision = precision, .quantity = SKG_QUANTITY_ATTENUATION};
             skg_plan *plan = run_plan(scene, &view, choice);
             double *image = run_image(plan, &view), *lengths = run_solid(&all, NULL, &view, choice);
             /* Single: 200 hits, each rounded to a few units of 1 mm's last place at 1200 mm depth: as the
              * bars. */
-            const double bar = precision == SKG_DOUBLE ? 1e-11 : 3e-6;
+            const double bar = precision == SKG_PRECISION_DOUBLE ? 1e-11 : 3e-6;
             for (int p = 0; p < PIXELS * PIXELS; p++) {
                 const double x = p % PIXELS - 15.5, y = (double)(p / PIXELS) - 15.5;
                 const double expected = PLATES * sqrt(1 + (x * x + y * y) / (1200.0 * 1200.0));

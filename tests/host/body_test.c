@@ -21,11 +21,11 @@ static skg_body *body;
 
 static void make(const skg_body_options *options) {
     ck_skg(skg_thorax_create(NULL, &thorax));
-    ck_skg(skg_thorax_size(thorax, &parts));
+    ck_skg(skg_thorax_part_count(thorax, &parts));
     ck_skg(skg_body_create(NULL, options, &body));
     for (int64_t i = 0; i < parts; i++) {
         skg_thorax_part_init(part + i);
-        ck_skg(skg_thorax_get_part(thorax, i, part + i));
+        ck_skg(skg_thorax_part_get(thorax, i, part + i));
         skg_organ organ;
         skg_organ_init(&organ);
         organ.mesh = part[i].mesh;
@@ -55,15 +55,15 @@ static skg_body_measure pose(double thoracic, double diaphragmatic) {
     ck_skg(skg_body_pose(body, &state));
     skg_body_measure measure;
     skg_body_measure_init(&measure);
-    ck_skg(skg_body_get_measure(body, &measure));
+    ck_skg(skg_body_measure_get(body, &measure));
     return measure;
 }
 
 static double *positions(const skg_mesh *mesh, int64_t *count) {
     int64_t triangles;
-    ck_skg(skg_mesh_size(mesh, count, &triangles));
+    ck_skg(skg_mesh_count(mesh, count, &triangles));
     double *p = malloc((size_t)*count * 3 * sizeof *p);
-    ck_skg(skg_mesh_read_positions(mesh, p, 0));
+    ck_skg(skg_mesh_positions_get(mesh, p, 0));
     return p;
 }
 
@@ -190,10 +190,10 @@ START_TEST(random_access_and_hysteresis) {
     make(&options);
     skg_breath breath;
     skg_breath_init(&breath);
-    breath.waveform = SKG_BREATH_ASYMMETRIC;
+    breath.waveform = SKG_WAVEFORM_ASYMMETRIC;
     skg_breath_state s;
     skg_breath_state_init(&s);
-    ck_skg(skg_breath_at_phase(&breath, 0.25, &s));
+    ck_skg(skg_breath_state_at_phase(&breath, 0.25, &s));
     if (_i > 0) {
         ck_skg_fails(skg_body_pose(body, &s), SKG_ERR_BREATHING, "skg_body_breathe");
         ck_skg(skg_body_breathe(body, &breath));
@@ -203,16 +203,16 @@ START_TEST(random_access_and_hysteresis) {
     double *first = positions(part[liver].mesh, &n);
     const double others[] = {0.9, 0.1, 0.6, 0.25};
     for (int i = 0; i < 4; i++) {
-        ck_skg(skg_breath_at_phase(&breath, others[i], &s));
+        ck_skg(skg_breath_state_at_phase(&breath, others[i], &s));
         ck_skg(skg_body_pose(body, &s));
     }
     double *again = positions(part[liver].mesh, &n);
     ck_assert_mem_eq(first, again, (size_t)n * 3 * sizeof(double));
-    ck_skg(skg_breath_at_phase(&breath, 0.8, &s)); /* the same amplitude, breathing in: 0.3 and 0.8 */
+    ck_skg(skg_breath_state_at_phase(&breath, 0.8, &s)); /* the same amplitude, breathing in: 0.3 and 0.8 */
     ck_skg(skg_body_pose(body, &s));
     free(again);
     again = positions(part[liver].mesh, &n);
-    ck_skg(skg_breath_at_phase(&breath, 0.3, &s));
+    ck_skg(skg_breath_state_at_phase(&breath, 0.3, &s));
     ck_skg(skg_body_pose(body, &s));
     free(first);
     first = positions(part[liver].mesh, &n);
@@ -301,7 +301,7 @@ START_TEST(the_needle_is_rigid_and_slides) {
     make(NULL);
     int64_t n, needle = find("needle");
     double *rest = positions(part[needle].mesh, &n);
-    ck_skg(skg_body_set_needle(body, 110));
+    ck_skg(skg_body_needle_set(body, 110));
     pose(0.7, 0.7);
     double *now = positions(part[needle].mesh, &n), along = 0;
     for (int64_t i = 1; i < n; i++) {
@@ -330,7 +330,7 @@ START_TEST(bad_bodies_are_refused) {
     skg_organ organ;
     skg_organ_init(&organ);
     ck_skg_fails(skg_body_add(body, &organ, NULL), SKG_ERR_ARGUMENT, "mesh");
-    ck_skg(skg_mesh_cube(10, &organ.mesh));
+    ck_skg(skg_mesh_create_cube(10, &organ.mesh));
     organ.label = "table";
     organ.inside = 0;
     ck_skg_fails(skg_body_add(body, &organ, NULL), SKG_ERR_BREATHING, "inside organ 0");
@@ -345,7 +345,7 @@ START_TEST(bad_bodies_are_refused) {
     make(NULL);
     state.thoracic = (double)NAN;
     ck_skg_fails(skg_body_pose(body, &state), SKG_ERR_BREATHING, "weights");
-    ck_skg_fails(skg_body_set_needle(body, HUGE_VAL), SKG_ERR_BREATHING, "needle");
+    ck_skg_fails(skg_body_needle_set(body, HUGE_VAL), SKG_ERR_BREATHING, "needle");
     ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "once");
     drop();
 }

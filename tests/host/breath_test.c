@@ -20,14 +20,14 @@ static skg_breath of_kind(int32_t kind) {
 static skg_breath_state at_phase(const skg_breath *b, double phase) {
     skg_breath_state s;
     skg_breath_state_init(&s);
-    ck_skg(skg_breath_at_phase(b, phase, &s));
+    ck_skg(skg_breath_state_at_phase(b, phase, &s));
     return s;
 }
 
 static skg_breath_state at_time(const skg_breath *b, double time) {
     skg_breath_state s;
     skg_breath_state_init(&s);
-    ck_skg(skg_breath_at_time(b, time, &s));
+    ck_skg(skg_breath_state_at_time(b, time, &s));
     return s;
 }
 
@@ -54,8 +54,8 @@ START_TEST(
 END_TEST
 
 START_TEST(closed_forms) {
-    skg_breath sine = of_kind(SKG_BREATH_SINE), lujan = of_kind(SKG_BREATH_LUJAN);
-    skg_breath half = of_kind(SKG_BREATH_ASYMMETRIC), list = of_kind(SKG_BREATH_SAMPLED);
+    skg_breath sine = of_kind(SKG_WAVEFORM_SINE), lujan = of_kind(SKG_WAVEFORM_LUJAN);
+    skg_breath half = of_kind(SKG_WAVEFORM_ASYMMETRIC), list = of_kind(SKG_WAVEFORM_SAMPLED);
     ck_assert_double_eq_tol(at_phase(&sine, 0.25).amplitude, 0.5, 1e-15);
     ck_assert_double_eq_tol(at_phase(&lujan, 0.25).amplitude, 0.25, 1e-15); /* cos^4 45 degrees */
     ck_assert_double_eq_tol(at_phase(&half, 0.6).amplitude, 0, 1e-15);      /* 1 : 1.5 */
@@ -71,7 +71,7 @@ START_TEST(closed_forms) {
 END_TEST
 
 START_TEST(channels) {
-    skg_breath b = of_kind(SKG_BREATH_SINE);
+    skg_breath b = of_kind(SKG_WAVEFORM_SINE);
     b.thoracic = 0.5, b.diaphragmatic = 2, b.thoracic_lag = 0.1;
     skg_breath_state s = at_phase(&b, 0.35), earlier = at_phase(&b, 0.25);
     ck_assert_double_eq_tol(s.thoracic, 0.5 * earlier.amplitude, 1e-15);
@@ -84,7 +84,7 @@ END_TEST
 
 START_TEST(holds_stop_the_clock) {
     const skg_breath_hold holds[] = {{1, 3}, {3, 4}, {10, 12.5}};
-    skg_breath b = of_kind(SKG_BREATH_LUJAN), free = b;
+    skg_breath b = of_kind(SKG_WAVEFORM_LUJAN), free = b;
     b.holds = holds, b.hold_count = 3;
     ck_assert_double_eq(at_time(&b, 0.5).phase, at_time(&free, 0.5).phase);
     for (int i = 0; i <= 30; i++) ck_assert_double_eq(at_time(&b, 1 + 0.1 * i).phase, 0.25);
@@ -105,15 +105,15 @@ START_TEST(bad_fields_are_named) {
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "period_s");
     b = of_kind(0), b.thoracic = (double)NAN;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "thoracic");
-    b = of_kind(SKG_BREATH_SAMPLED), b.samples = high, b.sample_count = 3;
+    b = of_kind(SKG_WAVEFORM_SAMPLED), b.samples = high, b.sample_count = 3;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "begin at end-inspiration");
     b.sample_count = 2;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "at least 3");
     b = of_kind(0), b.holds = crossed, b.hold_count = 2;
     ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "hold 1");
     b = of_kind(0);
-    ck_skg_fails(skg_breath_at_time(&b, HUGE_VAL, &s), SKG_ERR_BREATHING, "not finite");
-    ck_skg_fails(skg_breath_at_phase(&b, (double)NAN, &s), SKG_ERR_BREATHING, "not finite");
+    ck_skg_fails(skg_breath_state_at_time(&b, HUGE_VAL, &s), SKG_ERR_BREATHING, "not finite");
+    ck_skg_fails(skg_breath_state_at_phase(&b, (double)NAN, &s), SKG_ERR_BREATHING, "not finite");
     ck_skg_fails(skg_breath_check(NULL), SKG_ERR_ARGUMENT, "NULL");
 }
 END_TEST

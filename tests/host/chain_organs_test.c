@@ -32,14 +32,14 @@ static int compare_places(const void *a, const void *b) {
 /* Vertices in one place become one node; links are the edges between them. */
 static void weld(skg_mesh *mesh, organ *o) {
     int64_t vertices, triangles;
-    ck_skg(skg_mesh_size(mesh, &vertices, &triangles));
+    ck_skg(skg_mesh_count(mesh, &vertices, &triangles));
     int32_t *order = calloc((size_t)vertices, sizeof *order),
             *node_of = calloc((size_t)vertices, sizeof *order);
     int32_t *corners = calloc((size_t)triangles * 3, sizeof *corners);
     *o = (organ){.rest = calloc((size_t)vertices * 3, sizeof(double))};
     ck_assert(order && node_of && corners && o->rest);
-    ck_skg(skg_mesh_read_positions(mesh, o->rest, 0));
-    ck_skg(skg_mesh_read_triangles(mesh, corners, 0));
+    ck_skg(skg_mesh_positions_get(mesh, o->rest, 0));
+    ck_skg(skg_mesh_triangles_get(mesh, corners, 0));
     for (int32_t i = 0; i < vertices; i++) order[i] = i;
     sorted = o->rest;
     qsort(order, (size_t)vertices, sizeof *order, compare_places);
@@ -100,7 +100,7 @@ static int find_organ(int i, organ *o) {
     skg_thorax_part part;
     skg_thorax_part_init(&part);
     for (int64_t p = 0; !part.label || strcmp(part.label, generated[i]); p++)
-        ck_skg(skg_thorax_get_part(thorax, p, &part));
+        ck_skg(skg_thorax_part_get(thorax, p, &part));
     weld(part.mesh, o);
     skg_thorax_release(&thorax);
     return 1;

@@ -16,14 +16,14 @@ static skg_thorax *make(int64_t triangles, int64_t *parts) {
     skg_thorax_options_init(&options);
     options.triangles = triangles;
     ck_skg(skg_thorax_create(&options, &thorax));
-    ck_skg(skg_thorax_size(thorax, parts));
+    ck_skg(skg_thorax_part_count(thorax, parts));
     return thorax;
 }
 
 static skg_thorax_part part_of(const skg_thorax *thorax, int64_t i) {
     skg_thorax_part part;
     skg_thorax_part_init(&part);
-    ck_skg(skg_thorax_get_part(thorax, i, &part));
+    ck_skg(skg_thorax_part_get(thorax, i, &part));
     return part;
 }
 
@@ -42,11 +42,11 @@ START_TEST(no_facet_meets_another) {
     for (int64_t i = 0; i < parts; i++) {
         const skg_thorax_part part = part_of(thorax, i);
         skg_mesh_arrays a = {0};
-        ck_skg(skg_mesh_size(part.mesh, &a.vertices, &a.triangles));
+        ck_skg(skg_mesh_count(part.mesh, &a.vertices, &a.triangles));
         ck_skg(skg_alloc(3 * a.vertices, sizeof *a.positions, "test", &a.positions));
         ck_skg(skg_alloc(3 * a.triangles, sizeof *a.corners, "test", &a.corners));
-        ck_skg(skg_mesh_read_positions(part.mesh, a.positions, 0));
-        ck_skg(skg_mesh_read_triangles(part.mesh, a.corners, 0));
+        ck_skg(skg_mesh_positions_get(part.mesh, a.positions, 0));
+        ck_skg(skg_mesh_triangles_get(part.mesh, a.corners, 0));
         const int64_t folds = folds_of(&a);
         ck_assert_msg(folds == 0, "%s: %d of %d facets meet others", part.label, (int)folds,
                       (int)a.triangles);
@@ -89,7 +89,7 @@ START_TEST(no_length_is_below_0) {
         float least = 0, most = 0;
         skg_output_init(&output);
         output.data = lengths;
-        ck_skg(skg_plan_lengths(plan, i, SKG_SURFACE, 1, NULL, &output, &job));
+        ck_skg(skg_plan_lengths(plan, i, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int64_t p = 0; p < view.rows * view.columns; p++) {
             least = lengths[p] < least ? lengths[p] : least;

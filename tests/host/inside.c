@@ -23,12 +23,12 @@ static void cells(const solid *s, int64_t t, int range[4]) {
 void solid_make(const skg_mesh *mesh, solid *s) {
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    ck_skg(skg_mesh_get_health(mesh, &health));
-    ck_skg(skg_mesh_size(mesh, &s->vertices, &s->triangles));
+    ck_skg(skg_mesh_health_get(mesh, &health));
+    ck_skg(skg_mesh_count(mesh, &s->vertices, &s->triangles));
     s->position = malloc((size_t)s->vertices * 3 * sizeof(double));
     s->corner = malloc((size_t)s->triangles * 3 * sizeof(int32_t));
-    ck_skg(skg_mesh_read_positions(mesh, s->position, 0));
-    ck_skg(skg_mesh_read_triangles(mesh, s->corner, 0));
+    ck_skg(skg_mesh_positions_get(mesh, s->position, 0));
+    ck_skg(skg_mesh_triangles_get(mesh, s->corner, 0));
     memcpy(s->low, health.bounds, sizeof s->low);
     memcpy(s->high, health.bounds + 3, sizeof s->high);
     s->first = calloc(SOLID_GRID * SOLID_GRID + 1, sizeof(int32_t));

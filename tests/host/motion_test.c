@@ -56,7 +56,7 @@ START_TEST(the_key_is_read) {
     const skg_breathing_section *section;
     ck_skg(load(""));
     section = &setup->breathing; /* quiet breathing where there is no key */
-    ck_assert_int_eq(section->breath.waveform, SKG_BREATH_ASYMMETRIC);
+    ck_assert_int_eq(section->breath.waveform, SKG_WAVEFORM_ASYMMETRIC);
     ck_assert(section->breath.period_s == 4 && section->body.tendon_mm[2] == -15 &&
               section->lung_density == 1);
     ck_skg(
@@ -67,7 +67,7 @@ START_TEST(the_key_is_read) {
              "\"Events\": [{\"Hold\": [1, 2]}, {\"Needle\": [[0, 1], [2, 5]]},"
              "{\"Contrast\": \"inside\", \"Share\": [[0, 0.5]]}]}"));
     section = &setup->breathing;
-    ck_assert(section->breath.waveform == SKG_BREATH_SAMPLED && section->breath.samples[1] == 0.2);
+    ck_assert(section->breath.waveform == SKG_WAVEFORM_SAMPLED && section->breath.samples[1] == 0.2);
     ck_assert(section->breath.period_s == 5 && section->breath.start_phase == 0.5);
     ck_assert(section->breath.thoracic == 0.5 && section->breath.diaphragmatic == 2.5);
     ck_assert(section->body.reference_thoracic == 0.5 && section->body.reference_diaphragmatic == 2.5);
@@ -124,12 +124,12 @@ START_TEST(organs_move_as_they_are_told) { /* a quarter turn about z through the
                 "3], \"Angle\": 90, \"Centre\": [0, 0, 0, \"mm\"]}, \"lung right\": {\"Kind\": "
                 "\"Static\"}}}"));
     ck_skg(skg_motion_create(NULL, setup, &motion));
-    ck_skg(skg_scene_part(setup->scene, 1, &found));
-    ck_skg(skg_mesh_size(found.mesh, &n, &t));
+    ck_skg(skg_scene_part_get(setup->scene, 1, &found));
+    ck_skg(skg_mesh_count(found.mesh, &n, &t));
     ck_assert_int_le(n, 200);
-    ck_skg(skg_mesh_read_positions(found.mesh, before, 0));
+    ck_skg(skg_mesh_positions_get(found.mesh, before, 0));
     ck_skg(skg_motion_at_phase(motion, 0));
-    ck_skg(skg_mesh_read_positions(found.mesh, after, 0));
+    ck_skg(skg_mesh_positions_get(found.mesh, after, 0));
     for (int64_t i = 0; i < n; i++) { /* floats of some 100 mm */
         ck_assert_double_eq_tol(after[3 * i], -before[3 * i + 1], 1e-4);
         ck_assert_double_eq_tol(after[3 * i + 1], before[3 * i], 1e-4);
@@ -148,12 +148,12 @@ START_TEST(its_options_can_be_asked_for) {
     int32_t breathes = -1;
     skg_body_options_init(&options);
     ck_skg(load(""));
-    ck_skg(skg_motion_options(setup, &breathes, &options));
+    ck_skg(skg_setup_body_options_get(setup, &breathes, &options));
     ck_assert(breathes == 0 && options.relaxation == 0 && options.hysteresis == 0);
     ck_skg(load("{\"Relaxation\": 3, \"Hysteresis\": 0.25}"));
-    ck_skg(skg_motion_options(setup, &breathes, &options));
+    ck_skg(skg_setup_body_options_get(setup, &breathes, &options));
     ck_assert(breathes == 1 && options.relaxation == 3 && options.hysteresis == 0.25);
-    ck_assert_int_eq(skg_motion_options(NULL, &breathes, &options), SKG_ERR_ARGUMENT);
+    ck_assert_int_eq(skg_setup_body_options_get(NULL, &breathes, &options), SKG_ERR_ARGUMENT);
 }
 END_TEST
 
@@ -202,8 +202,8 @@ static double height_of(const char *label) { /* of the part's lowest vertex */
     skg_part_init(&found);
     skg_mesh_health_init(&health);
     ck_skg(skg_scene_find(setup->scene, label, &part));
-    ck_skg(skg_scene_part(setup->scene, part, &found));
-    ck_skg(skg_mesh_get_health(found.mesh, &health));
+    ck_skg(skg_scene_part_get(setup->scene, part, &found));
+    ck_skg(skg_mesh_health_get(found.mesh, &health));
     return health.bounds[2];
 }
 
@@ -215,7 +215,7 @@ START_TEST(parts_move_as_they_are_told) {
         "\"Events\": [{\"Weight\": [[0, 1], [4, 0]]}, {\"Contrast\": \"inside\", \"Share\": [[0, 0], [2, "
         "1]]}]}"));
     ck_skg(skg_motion_create(NULL, setup, &motion));
-    ck_skg(skg_motion_moves(motion, 1, &moves));
+    ck_skg(skg_motion_part_moves(motion, 1, &moves));
     ck_assert_int_eq(moves, 1);
     const double rest = height_of("flat");
     ck_skg(skg_motion_at_time(motion, 0));
@@ -223,16 +223,16 @@ START_TEST(parts_move_as_they_are_told) {
     skg_frame frame;
     skg_frame_init(&frame);
     ck_skg(skg_motion_fill(motion, &frame));
-    ck_assert(frame.matters == 2 && frame.matter_ids[0] == 0 && frame.matter_ids[1] == 2);
-    ck_assert(frame.matter_share[1] == 0);
+    ck_assert(frame.override_count == 2 && frame.override_parts[0] == 0 && frame.override_parts[1] == 2);
+    ck_assert(frame.fill_fractions[1] == 0);
     ck_skg(skg_motion_at_time(motion, 1)); /* f = 1/2, weight 3/4 */
     ck_assert_double_eq_tol(height_of("flat"), rest - 15 * 0.375, 1e-4);
     ck_skg(skg_motion_fill(motion, &frame));
-    ck_assert(frame.matter_share[1] == 0.5);
+    ck_assert(frame.fill_fractions[1] == 0.5);
     ck_skg(skg_motion_at_phase(motion, 0.5));
     ck_assert(height_of("flat") == rest);
     skg_motion_state_init(&state);
-    ck_skg(skg_motion_get_state(motion, &state));
+    ck_skg(skg_motion_state_get(motion, &state));
     ck_assert(isnan(state.time_s) && isnan(state.needle_mm) && state.breath.phase == 0.5);
     ck_skg(load("{\"Events\": [{\"Needle\": [[0, 0]]}]}"));
     ck_skg_fails(skg_motion_create(NULL, setup, &motion), SKG_ERR_BREATHING, "no needle");
@@ -283,8 +283,8 @@ START_TEST(a_scene_of_real_organs_breathes) {
     const double rest = height_of("liver");
     ck_skg(skg_motion_at_phase(motion, 0));
     ck_assert(height_of("liver") < rest - 7);
-    ck_skg(skg_motion_body(motion, &body));
-    ck_skg(skg_body_get_measure(body, &m));
+    ck_skg(skg_motion_body_get(motion, &body));
+    ck_skg(skg_body_measure_get(body, &m));
     ck_assert(m.broken_links == 0 && m.tidal_ml > 200 && m.tidal_ml < 1000);
 }
 END_TEST

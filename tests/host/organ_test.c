@@ -37,11 +37,11 @@ static void start(const skg_body_options *options) {
 static skg_status add(skg_organ *organ, const char *label, double x, double y, double z) {
     int64_t vertices, triangles;
     const double place[3] = {x, y, z};
-    ck_skg(skg_mesh_size(organ->mesh, &vertices, &triangles));
+    ck_skg(skg_mesh_count(organ->mesh, &vertices, &triangles));
     double *p = malloc((size_t)vertices * 3 * sizeof *p);
-    ck_skg(skg_mesh_read_positions(organ->mesh, p, 0));
+    ck_skg(skg_mesh_positions_get(organ->mesh, p, 0));
     for (int64_t i = 0; i < 3 * vertices; i++) p[i] += place[i % 3];
-    ck_skg(skg_mesh_write_positions(organ->mesh, p, 0));
+    ck_skg(skg_mesh_positions_set(organ->mesh, p, 0));
     free(p);
     organ->label = label;
     skg_status status = skg_body_add(body, organ, NULL);
@@ -54,7 +54,7 @@ static void add_block(const char *label, double edge, double x, const double tur
                       const double centre[3]) {
     skg_organ organ;
     skg_organ_init(&organ);
-    ck_skg(skg_mesh_cube(edge, &organ.mesh));
+    ck_skg(skg_mesh_create_cube(edge, &organ.mesh));
     organ.kind = SKG_ORGAN_RIGID;
     memcpy(organ.turn_rad, turn, sizeof organ.turn_rad);
     memcpy(organ.centre_mm, centre, sizeof organ.centre_mm);
@@ -65,7 +65,7 @@ static skg_status add_ball(const char *label, double radius, skg_tissue tissue, 
                            int64_t count) {
     skg_organ organ;
     skg_organ_init(&organ);
-    ck_skg(skg_mesh_sphere(radius, 32, &organ.mesh));
+    ck_skg(skg_mesh_create_sphere(radius, 32, &organ.mesh));
     organ.kind = SKG_ORGAN_DEFORMABLE;
     organ.tissue = tissue, organ.links = links, organ.link_count = count;
     return add(&organ, label, 0, 0, 0);
@@ -85,7 +85,7 @@ static skg_body_measure pose(double thoracic, double diaphragmatic) {
     skg_body_measure_init(&measure);
     state.thoracic = thoracic, state.diaphragmatic = diaphragmatic;
     ck_skg(skg_body_pose(body, &state));
-    ck_skg(skg_body_get_measure(body, &measure));
+    ck_skg(skg_body_measure_get(body, &measure));
     return measure;
 }
 
@@ -136,7 +136,7 @@ START_TEST(links_hold_and_give) {
     add_block("block", 40, -40, turn, centre);
     skg_organ post;
     skg_organ_init(&post);
-    ck_skg(skg_mesh_cube(40, &post.mesh));
+    ck_skg(skg_mesh_create_cube(40, &post.mesh));
     post.kind = SKG_ORGAN_STATIC;
     ck_skg(add(&post, "post", 46, 0, 0));
     ck_skg(add_ball("ball", 26, muscle, links, 2));
@@ -244,7 +244,7 @@ START_TEST(the_papers_two_angles) { /* one exponential map; alike on both sides 
         start(NULL);
         skg_organ organ;
         skg_organ_init(&organ);
-        ck_skg(skg_mesh_sphere(20, 12, &organ.mesh));
+        ck_skg(skg_mesh_create_sphere(20, 12, &organ.mesh));
         organ.kind = SKG_ORGAN_RIGID;
         organ.gamma_rad = gamma, organ.lambda_rad = lambda;
         for (int k = 0; k < 3; k++) organ.centre_mm[k] = 0;
@@ -288,14 +288,14 @@ static void make_thorax(const skg_body_options *options, void (*say)(const char 
     skg_thorax_options_init(&size);
     size.triangles = 10000;
     ck_skg(skg_thorax_create(&size, &thorax));
-    ck_skg(skg_thorax_size(thorax, &parts));
+    ck_skg(skg_thorax_part_count(thorax, &parts));
     start(options);
     for (int64_t i = 0; i < parts; i++) {
         skg_thorax_part part;
         skg_organ organ;
         skg_thorax_part_init(&part);
         skg_organ_init(&organ);
-        ck_skg(skg_thorax_get_part(thorax, i, &part));
+        ck_skg(skg_thorax_part_get(thorax, i, &part));
         organ.mesh = part.mesh, organ.label = part.label, organ.inside = part.inside;
         if (say) say(part.label, &organ);
         ck_skg(skg_body_add(body, &organ, NULL));
@@ -395,7 +395,7 @@ START_TEST(what_does_not_fit_is_refused) {
     skg_organ_init(&plain);
     plain.label = "bag";
     start(NULL);
-    ck_skg(skg_mesh_cube(10, &plain.mesh));
+    ck_skg(skg_mesh_create_cube(10, &plain.mesh));
 #define REFUSED(change, text)                                                                                \
     do {                                                                                                     \
         organ = plain;                                                                                       \

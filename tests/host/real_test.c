@@ -60,7 +60,7 @@ START_TEST(real_organs_breathe) {
         ck_skg(skg_body_pose(body, &state));
         skg_body_measure m;
         skg_body_measure_init(&m);
-        ck_skg(skg_body_get_measure(body, &m));
+        ck_skg(skg_body_measure_get(body, &m));
         ck_assert_int_eq(m.broken_links, 0); /* P1 on every deformable organ */
         ck_assert_double_eq_tol(m.diaphragm_mm[0], 7.5 * step, 1e-9);
         ck_assert_double_eq_tol(m.diaphragm_mm[1], 7.5 * step, 1e-9);
@@ -114,7 +114,7 @@ START_TEST(axes_from_bones) {
     ck_skg(skg_body_pose(body, &state));
     skg_body_measure m;
     skg_body_measure_init(&m);
-    ck_skg(skg_body_get_measure(body, &m));
+    ck_skg(skg_body_measure_get(body, &m));
     ck_assert_int_eq(m.broken_links, 0);
     ck_assert_msg(m.tidal_ml > 200 && m.tidal_ml < 1000, "tidal volume %g ml", m.tidal_ml);
     skg_body_release(&body);

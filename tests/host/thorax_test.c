@@ -1,7 +1,7 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
+#include "geometry/overlap.h"
 #include "host/inside.h"
 #include "phantom/thorax.h"
-#include "geometry/overlap.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -23,11 +23,11 @@ static void make(int64_t triangles) {
     skg_thorax_options_init(&options);
     options.triangles = triangles;
     ck_skg(skg_thorax_create(&options, &thorax));
-    ck_skg(skg_thorax_size(thorax, &parts));
+    ck_skg(skg_thorax_part_count(thorax, &parts));
     ck_assert_int_le(parts, MOST_PARTS);
     for (int64_t i = 0; i < parts; i++) {
         skg_thorax_part_init(part + i);
-        ck_skg(skg_thorax_get_part(thorax, i, part + i));
+        ck_skg(skg_thorax_part_get(thorax, i, part + i));
     }
 }
 
@@ -41,7 +41,7 @@ static int64_t find(const char *label) {
 static skg_mesh_health health_of(int64_t i) {
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    ck_skg(skg_mesh_get_health(part[i].mesh, &health));
+    ck_skg(skg_mesh_health_get(part[i].mesh, &health));
     return health;
 }
 
@@ -146,11 +146,11 @@ START_TEST(plans_find_no_overlap) {
     int64_t found = 0;
     make(sizes[_i]);
     for (int64_t i = 0; i < parts; i++) {
-        ck_skg(skg_mesh_size(part[i].mesh, &s[i].vertices, &s[i].triangles));
+        ck_skg(skg_mesh_count(part[i].mesh, &s[i].vertices, &s[i].triangles));
         double *positions = malloc((size_t)s[i].vertices * 3 * sizeof *positions);
         int32_t *corners = malloc((size_t)s[i].triangles * 3 * sizeof *corners);
-        ck_skg(skg_mesh_read_positions(part[i].mesh, positions, 0));
-        ck_skg(skg_mesh_read_triangles(part[i].mesh, corners, 0));
+        ck_skg(skg_mesh_positions_get(part[i].mesh, positions, 0));
+        ck_skg(skg_mesh_triangles_get(part[i].mesh, corners, 0));
         s[i].positions = positions, s[i].corners = corners, s[i].inside = part[i].inside;
     }
     ck_skg(skg_overlaps_find(parts, s, &found, &pairs));
@@ -199,7 +199,7 @@ START_TEST(saved_files_hold_the_same) {
         ck_skg(skg_mesh_load(NULL, path, 1, &mesh));
         skg_mesh_health h, ours = health_of(i);
         skg_mesh_health_init(&h);
-        ck_skg(skg_mesh_get_health(mesh, &h));
+        ck_skg(skg_mesh_health_get(mesh, &h));
         ck_assert_int_eq(h.closed, 1);
         ck_assert_int_eq(h.vertices, ours.vertices);
         ck_assert_double_eq(h.volume, ours.volume);
@@ -220,7 +220,7 @@ START_TEST(bad_arguments) {
     ck_skg_fails(skg_thorax_create(&options, &thorax), SKG_ERR_ARGUMENT, "10000");
     ck_skg_fails(skg_thorax_create(&options, NULL), SKG_ERR_ARGUMENT, "place");
     make(10000);
-    ck_skg_fails(skg_thorax_get_part(thorax, parts, part), SKG_ERR_ARGUMENT, "no part");
+    ck_skg_fails(skg_thorax_part_get(thorax, parts, part), SKG_ERR_ARGUMENT, "no part");
     skg_thorax_release(&thorax);
     skg_thorax_release(&thorax);
     skg_thorax_release(NULL);

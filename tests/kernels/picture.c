@@ -1,8 +1,8 @@
 #include "kernels/picture.h"
 
+#include "core/pose.h"
 #include "stage/attenuate.h"
 #include "stage/raster_private.h"
-#include "core/pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -127,7 +127,7 @@ shape shape_shuffle(const shape *from, unsigned seed) {
 
 skg_view view_make(int64_t columns, int64_t rows, double pitch) {
     skg_view view = {.size = sizeof view,
-                     .projection = SKG_POINT,
+                     .projection = SKG_PROJECTION_POINT,
                      .columns = columns,
                      .rows = rows,
                      .source = {0, 0, -1000},
@@ -167,7 +167,7 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
         for (int64_t k = 0; k < s->vertices * 3; k++) offsets[k] = (float)s->positions[k];
         status = skg_geometry_upload(
             context, geometry, mesh_of[b],
-            precision == SKG_DOUBLE ? (const void *)s->positions : (const void *)offsets, NULL);
+            precision == SKG_PRECISION_DOUBLE ? (const void *)s->positions : (const void *)offsets, NULL);
         clFinish(context->device->queue);
         free(offsets);
     }

@@ -18,7 +18,7 @@ static void close_context(void) {
 
 static skg_raster_options options_of(int32_t precision, int32_t strategy) {
     return (skg_raster_options){
-        .kernels = {.precision = precision, .bits = precision == SKG_DOUBLE ? 64 : 32},
+        .kernels = {.precision = precision, .bits = precision == SKG_PRECISION_DOUBLE ? 64 : 32},
         .strategy = strategy,
         .planes = 1};
 }
@@ -88,14 +88,14 @@ START_TEST(strategies_give_the_same_bits) {
     body bodies[THREE];
     three_bodies(&sphere, &box, bodies);
     for (int n = 0; n < 6; n++) {
-        skg_raster_options options = options_of(n == 1 ? SKG_DOUBLE : SKG_SINGLE, 0);
+        skg_raster_options options = options_of(n == 1 ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE, 0);
         skg_view view = view_make(75, 49, 1.7);
         if (n == 2) options.kernels.bits = 64;
         options.kernels.parallel = n == 3;
         options.kernels.source_plane = n >= 3;
-        view.projection = n == 3 ? SKG_PARALLEL : SKG_POINT;
+        view.projection = n == 3 ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         if (n == 3 || n == 4) view.source[0] = 5, view.source[2] = 10; /* inside the sphere */
-        if (options.kernels.precision == SKG_DOUBLE && !context->device->info.has_double) continue;
+        if (options.kernels.precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
         check_variants(&options, &view, THREE, bodies);
     }
     shape_free(&sphere);
@@ -108,7 +108,7 @@ START_TEST(planes_are_apart) {
     body bodies[THREE];
     three_bodies(&sphere, &box, bodies);
     skg_view view = view_make(75, 49, 1.7);
-    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES), one = options;
+    skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES), one = options;
     options.kernels.listed_writes = 1;
     options.planes = THREE;
     for (int b = 0; b < THREE; b++) bodies[b].plane = b;
@@ -133,7 +133,7 @@ START_TEST(order_and_threads_do_not_matter) {
           apart = shape_unweld(&sphere);
     const shape *same[3] = {&sphere, &shuffled, &apart};
     skg_view view = view_make(96, 96, 1.5);
-    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES);
     uint64_t hash = 0;
     for (int n = 0; n < 4; n++) {
         if (n == 3) {
@@ -161,13 +161,13 @@ END_TEST
 /* Signed hits of a closed shape cancel in every pixel, by copies (wide) and by atomics (scalar). */
 static void check_cancels(const char *what, const skg_view *view, const shape *s, const double *pose,
                           int32_t source) {
-    for (int32_t precision = SKG_SINGLE; precision <= SKG_DOUBLE; precision++) {
-        if (precision == SKG_DOUBLE && !context->device->info.has_double) continue;
+    for (int32_t precision = SKG_PRECISION_SINGLE; precision <= SKG_PRECISION_DOUBLE; precision++) {
+        if (precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
         for (int v = 0; v < 2; v++) {
             skg_raster_options options = options_of(precision, 0);
             options.kernels.listed_writes = 1;
             options.kernels.source_plane = source;
-            options.kernels.parallel = view->projection != SKG_POINT;
+            options.kernels.parallel = view->projection != SKG_PROJECTION_POINT;
             options = variant(&options, v);
             body b = body_make(s, 0);
             b.weight = 0;
@@ -190,7 +190,7 @@ START_TEST(corners_within_three_ulps_of_rays) {
         check_cancels("octahedra", &view, &s, NULL, 0);
         check_cancels("octahedra, corners not shared", &view, &apart, NULL, 0);
         skg_view parallel = view;
-        parallel.projection = SKG_PARALLEL;
+        parallel.projection = SKG_PROJECTION_PARALLEL;
         check_cancels("octahedra, parallel", &parallel, &s, NULL, 0);
         shape_free(&s);
         shape_free(&apart);
@@ -200,10 +200,10 @@ END_TEST
 
 START_TEST(edges_on_pixel_centres) {
     skg_view view = view_make(65, 65, 1);
-    view.projection = SKG_PARALLEL; /* corners and edges stand exactly on centres */
+    view.projection = SKG_PROJECTION_PARALLEL; /* corners and edges stand exactly on centres */
     shape cube = shape_box(32, 32, 32);
     check_cancels("cube on centres", &view, &cube, NULL, 0);
-    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES);
     options.kernels.parallel = 1;
     body b = body_make(&cube, 0);
     picture result = take(&options, &view, 1, &b);
@@ -276,26 +276,27 @@ START_TEST(lengths_are_those_of_the_referee) {
     for (int n = 0; n < 6; n++) {
         skg_view view = view_make(48, 40, 2.7);
         view.projection = n % 3;
-        if (n % 3 == SKG_PARALLEL_FROM_INFINITY) view.source[0] = 0.1, view.source[2] = 1;
-        if (n % 3 == SKG_PARALLEL) view.source[0] = 30;
-        if (n >= 3 && n % 3 != SKG_PARALLEL_FROM_INFINITY) view.source[2] = 6; /* within the bodies */
-        view.centre[2] = n == 4 ? 20 : 200;                                    /* and the detector, too */
-        view.row_step[2] = n == 1 || n == 4 ? 0.4 : 0;                         /* tilted */
+        if (n % 3 == SKG_PROJECTION_PARALLEL_FROM_INFINITY) view.source[0] = 0.1, view.source[2] = 1;
+        if (n % 3 == SKG_PROJECTION_PARALLEL) view.source[0] = 30;
+        if (n >= 3 && n % 3 != SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+            view.source[2] = 6;                        /* within the bodies */
+        view.centre[2] = n == 4 ? 20 : 200;            /* and the detector, too */
+        view.row_step[2] = n == 1 || n == 4 ? 0.4 : 0; /* tilted */
         double *truth = referee(&view, THREE, bodies);
-        for (int32_t precision = SKG_SINGLE; precision <= SKG_DOUBLE; precision++) {
-            if (precision == SKG_DOUBLE && !context->device->info.has_double) continue;
+        for (int32_t precision = SKG_PRECISION_SINGLE; precision <= SKG_PRECISION_DOUBLE; precision++) {
+            if (precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
             skg_raster_options options = options_of(precision, SKG_STRATEGY_COPIES);
-            options.kernels.parallel = n % 3 != SKG_POINT;
+            options.kernels.parallel = n % 3 != SKG_PROJECTION_POINT;
             options.kernels.source_plane = n >= 3;
             picture result;
             const double scale =
-                scale_of(&options) / (n % 3 == SKG_PARALLEL_FROM_INFINITY ? 256 : 1); /* mm */
+                scale_of(&options) / (n % 3 == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? 256 : 1); /* mm */
             ck_skg(picture_take(context, &options, &view, THREE, bodies, scale, &result));
             const errors e = compare(&view, &result, truth);
             /* Single: the bars of the contract. Double: a hundred times its epsilon, and the scale's own
              * step. */
-            ck_assert_double_le(e.rms, (precision == SKG_SINGLE ? 3e-7 : 1e-11) * e.longest);
-            ck_assert_double_le(e.worst, (precision == SKG_SINGLE ? 1e-3 : 1e-11) * e.longest);
+            ck_assert_double_le(e.rms, (precision == SKG_PRECISION_SINGLE ? 3e-7 : 1e-11) * e.longest);
+            ck_assert_double_le(e.worst, (precision == SKG_PRECISION_SINGLE ? 1e-3 : 1e-11) * e.longest);
             picture_free(&result);
         }
         free(truth);
@@ -314,7 +315,7 @@ START_TEST(plates_in_series_add_up) {
         plates[k].pose[11] = -700 + 8 * k;
     }
     skg_view view = view_make(32, 32, 1);
-    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES);
     picture result;
     ck_skg(picture_take(context, &options, &view, PLATES, plates, 0x1p32, &result));
     for (int64_t p = 0; p < 32 * 32; p++) {
@@ -336,7 +337,7 @@ START_TEST(vertex_that_is_not_finite) {
     bad.positions[3 * 30] = (double)INFINITY;
     body bodies[2] = {body_make(&sphere, 0), body_make(&bad, 0)};
     skg_view view = view_make(64, 64, 2);
-    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES);
     picture result;
     ck_skg(picture_take(context, &options, &view, 2, bodies, 0x1p28, &result));
     ck_assert_int_eq(result.bad, sphere.vertices + 17);
@@ -358,7 +359,7 @@ START_TEST(pixels_of_an_open_mesh) {
     b.weight = 0;
     b.bias = 1;
     skg_view view = view_make(64, 64, 2);
-    skg_raster_options options = options_of(SKG_SINGLE, SKG_STRATEGY_COPIES);
+    skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES);
     options.kernels.listed_writes = 1;
     picture result;
     ck_skg(picture_take(context, &options, &view, 1, &b, 0x1p28, &result));

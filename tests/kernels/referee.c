@@ -53,16 +53,16 @@ static ray ray_of(const skg_view *view, int64_t p) {
     for (int k = 0; k < 3; k++) {
         const real source = (real)view->source[k], centre = (real)view->centre[k];
         const real pixel = centre + column * (real)view->column_step[k] + row * (real)view->row_step[k];
-        r.direction[k] = view->projection == SKG_POINT      ? pixel - source
-                         : view->projection == SKG_PARALLEL ? centre - source
-                                                            : source;
+        r.direction[k] = view->projection == SKG_PROJECTION_POINT      ? pixel - source
+                         : view->projection == SKG_PROJECTION_PARALLEL ? centre - source
+                                                                       : source;
         r.source[k] = pixel - r.direction[k];
         r.length += r.direction[k] * r.direction[k];
         behind += (r.source[k] - source) * r.direction[k];
     }
-    r.least = view->projection == SKG_PARALLEL_FROM_INFINITY ? -1e9L
-              : view->projection == SKG_PARALLEL             ? -behind / r.length
-                                                             : 0;
+    r.least = view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? -1e9L
+              : view->projection == SKG_PROJECTION_PARALLEL             ? -behind / r.length
+                                                                        : 0;
     r.length = sqrtl(r.length);
     return r;
 }

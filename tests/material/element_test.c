@@ -106,12 +106,12 @@ END_TEST
 START_TEST(energies_outside_are_refused) {
     skg_material *iron = NULL;
     double mu;
-    ck_skg(skg_material_element(26, &iron));
-    ck_skg_fails(skg_material_attenuation(iron, 0.99, &mu), SKG_ERR_MATERIAL, "outside");
-    ck_skg_fails(skg_material_attenuation(iron, 20001, &mu), SKG_ERR_MATERIAL, "1 to 20000 keV");
-    ck_skg_fails(skg_material_attenuation(iron, (double)NAN, &mu), SKG_ERR_MATERIAL, "outside");
-    ck_skg(skg_material_attenuation(iron, 1, &mu));
-    ck_skg(skg_material_attenuation(iron, 20000, &mu));
+    ck_skg(skg_material_create_element(26, &iron));
+    ck_skg_fails(skg_material_attenuation_get(iron, 0.99, &mu), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_material_attenuation_get(iron, 20001, &mu), SKG_ERR_MATERIAL, "1 to 20000 keV");
+    ck_skg_fails(skg_material_attenuation_get(iron, (double)NAN, &mu), SKG_ERR_MATERIAL, "outside");
+    ck_skg(skg_material_attenuation_get(iron, 1, &mu));
+    ck_skg(skg_material_attenuation_get(iron, 20000, &mu));
     skg_material_release(&iron);
 }
 END_TEST
@@ -121,11 +121,11 @@ enum { THREADS = 8, ENERGIES = 500 };
 static void *look_up(void *place) {
     double *out = place;
     skg_material *bone = NULL;
-    if (skg_material_named("Bone, cortical (ICRU-44)", &bone) != SKG_OK) return NULL;
+    if (skg_material_create_named("Bone, cortical (ICRU-44)", &bone) != SKG_OK) return NULL;
     for (int i = 0; i < ENERGIES; i++)
-        if (skg_material_attenuation(bone, 5 + 0.7 * i, &out[i]) != SKG_OK) return NULL;
+        if (skg_material_attenuation_get(bone, 5 + 0.7 * i, &out[i]) != SKG_OK) return NULL;
     skg_material *none = NULL; /* errors meanwhile */
-    if (skg_material_named("Unobtainium", &none) != SKG_ERR_MATERIAL) out[0] = 0;
+    if (skg_material_create_named("Unobtainium", &none) != SKG_ERR_MATERIAL) out[0] = 0;
     skg_material_release(&bone);
     return place;
 }

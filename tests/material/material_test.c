@@ -10,27 +10,27 @@
 
 static skg_material *named(const char *text) {
     skg_material *material = NULL;
-    ck_skg(skg_material_named(text, &material));
+    ck_skg(skg_material_create_named(text, &material));
     return material;
 }
 
 static double mu_of(skg_material *material, double kev) {
     double mu = 0;
-    ck_skg(skg_material_attenuation(material, kev, &mu));
+    ck_skg(skg_material_attenuation_get(material, kev, &mu));
     return mu;
 }
 
 static double mass_mu(skg_material *material, double kev) {
     skg_coefficients c;
     skg_coefficients_init(&c);
-    ck_skg(skg_material_coefficients(material, kev, &c));
+    ck_skg(skg_material_coefficients_get(material, kev, &c));
     ck_assert_double_eq_tol(c.total, c.rayleigh + c.compton + c.photo + c.pair, 1e-15 * c.total);
     return c.total;
 }
 
 static double density_of(skg_material *material) {
     double density = 0;
-    ck_skg(skg_material_density(material, &density));
+    ck_skg(skg_material_density_get(material, &density));
     return density;
 }
 
@@ -55,7 +55,7 @@ START_TEST(table_2_of_the_paper) {
         double hu = 0;
         ck_assert_double_eq(density_of(material), rows[i].density);
         ck_assert_double_eq_tol(mass_mu(material, 80) / rows[i].mu_rho, 1, 3e-4);
-        ck_skg(skg_material_to_hounsfield(material, 80, &hu));
+        ck_skg(skg_material_hounsfield_get(material, 80, &hu));
         ck_assert_double_eq_tol(hu, rows[i].hu, rows[i].hu_bar);
         skg_material_release(&material);
     }
@@ -72,7 +72,7 @@ START_TEST(tables_3_and_4_of_the_paper) {
         {51, 1.063, {80, 100, 200, 300}, {.1823, .1694, .1360, .1177}, {.1937, .1800, .1445, .1251}}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         skg_material *tissue = NULL;
-        ck_skg(skg_material_hounsfield(rows[i].hu, &tissue));
+        ck_skg(skg_material_create_hounsfield(rows[i].hu, &tissue));
         ck_assert_double_eq_tol(density_of(tissue) / rows[i].density, 1, 1e-3);
         for (int k = 0; k < 4; k++) {
             ck_assert_double_eq_tol(mass_mu(tissue, rows[i].kev[k]) / rows[i].mu_rho[k], 1, 1e-3);
@@ -88,8 +88,8 @@ END_TEST
 START_TEST(equations_14_and_15_from_hounsfield_numbers) {
     static const double kev[4] = {80, 100, 200, 300}, photons[4] = {1, 10, 20, 10};
     skg_material *bone = NULL, *soft = NULL;
-    ck_skg(skg_material_hounsfield(1329.885683, &bone));
-    ck_skg(skg_material_hounsfield(51.714752, &soft));
+    ck_skg(skg_material_create_hounsfield(1329.885683, &bone));
+    ck_skg(skg_material_create_hounsfield(51.714752, &soft));
     double keV[4];
     for (int k = 0; k < 4; k++)
         keV[k] = photons[k] * kev[k] * exp(-2 * mu_of(bone, kev[k]) - 1 * mu_of(soft, kev[k]));
@@ -106,7 +106,7 @@ START_TEST(one_material_by_many_names) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         ck_assert_double_eq(mu_rho(names[i], 60), water);
     skg_material *formula = NULL;
-    ck_skg(skg_material_formula("H2O", 0, &formula)); /* by weights of today: 0.1119 of hydrogen */
+    ck_skg(skg_material_create_formula("H2O", 0, &formula)); /* by weights of today: 0.1119 of hydrogen */
     ck_assert_double_eq_tol(mass_mu(formula, 60) / water, 1, 1e-4);
     ck_assert_double_eq(density_of(formula), 1);
     skg_material_release(&formula);
@@ -122,7 +122,7 @@ START_TEST(one_material_by_many_names) {
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         skg_material *material = named(words[i][0]);
         const char *name = NULL;
-        ck_skg(skg_material_name(material, &name));
+        ck_skg(skg_material_name_get(material, &name));
         ck_assert_str_eq(name, words[i][1]);
         skg_material_release(&material);
     }
@@ -143,22 +143,23 @@ START_TEST(formulas) {
                                       "weight:",        "Qq2",     "weight:-1"};
     skg_material *none = NULL;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        ck_skg_fails(skg_material_named(bad[i], &none), SKG_ERR_MATERIAL, "");
+        ck_skg_fails(skg_material_create_named(bad[i], &none), SKG_ERR_MATERIAL, "");
         ck_assert_ptr_null(none);
     }
-    ck_skg_fails(skg_material_named("Ti90Al6V4", &none), SKG_ERR_MATERIAL, "weight:Ti90Al6V4");
-    ck_skg_fails(skg_material_named("weight:Ti90Al6", &none), SKG_ERR_MATERIAL, "sum to 96");
+    ck_skg_fails(skg_material_create_named("Ti90Al6V4", &none), SKG_ERR_MATERIAL, "weight:Ti90Al6V4");
+    ck_skg_fails(skg_material_create_named("weight:Ti90Al6", &none), SKG_ERR_MATERIAL, "sum to 96");
 }
 END_TEST
 
 START_TEST(names_that_are_not_found) {
     skg_material *none = NULL;
-    ck_skg_fails(skg_material_named("Watre", &none), SKG_ERR_MATERIAL, "did you mean \"Water\"");
-    ck_skg_fails(skg_material_named("Alumnium", &none), SKG_ERR_MATERIAL, "did you mean \"Aluminium\"");
-    ck_skg_fails(skg_material_named("tissue", &none), SKG_ERR_MATERIAL, "fits");
-    ck_skg_fails(skg_material_named("", &none), SKG_ERR_MATERIAL, "without a name");
-    ck_skg_fails(skg_material_named("HU:abc", &none), SKG_ERR_MATERIAL, "no number");
-    ck_skg_fails(skg_material_named("mu:-1", &none), SKG_ERR_MATERIAL, "not usable");
+    ck_skg_fails(skg_material_create_named("Watre", &none), SKG_ERR_MATERIAL, "did you mean \"Water\"");
+    ck_skg_fails(skg_material_create_named("Alumnium", &none), SKG_ERR_MATERIAL,
+                 "did you mean \"Aluminium\"");
+    ck_skg_fails(skg_material_create_named("tissue", &none), SKG_ERR_MATERIAL, "fits");
+    ck_skg_fails(skg_material_create_named("", &none), SKG_ERR_MATERIAL, "without a name");
+    ck_skg_fails(skg_material_create_named("HU:abc", &none), SKG_ERR_MATERIAL, "no number");
+    ck_skg_fails(skg_material_create_named("mu:-1", &none), SKG_ERR_MATERIAL, "not usable");
     int32_t z = 0;
     ck_skg_fails(skg_element_number("fe", &z), SKG_ERR_MATERIAL, "did you mean Fe");
     ck_skg_fails(skg_element_number("93", &z), SKG_ERR_MATERIAL, "no element");
@@ -170,17 +171,17 @@ END_TEST
 START_TEST(density_unknown_or_another) {
     skg_material *glass = named("Ca5(PO4)3OH"), *dense = NULL;
     double mu = 0;
-    ck_skg_fails(skg_material_attenuation(glass, 60, &mu), SKG_ERR_MATERIAL, "density");
-    ck_skg(skg_material_at_density(glass, 3.16, &dense));
+    ck_skg_fails(skg_material_attenuation_get(glass, 60, &mu), SKG_ERR_MATERIAL, "density");
+    ck_skg(skg_material_create_at_density(glass, 3.16, &dense));
     ck_assert_double_eq_tol(mu_of(dense, 60), 3.16 * mass_mu(glass, 60), 1e-14);
     skg_material_release(&glass);
     skg_material_release(&dense);
     glass = named("mu:0.2");
-    ck_skg_fails(skg_material_at_density(glass, 2, &dense), SKG_ERR_MATERIAL, "no density");
+    ck_skg_fails(skg_material_create_at_density(glass, 2, &dense), SKG_ERR_MATERIAL, "no density");
     skg_material_release(&glass);
     glass = named("Lung tissue");
     skg_material *lung = NULL;
-    ck_skg_fails(skg_material_at_density(glass, 0, &lung), SKG_ERR_MATERIAL, "above 0");
+    ck_skg_fails(skg_material_create_at_density(glass, 0, &lung), SKG_ERR_MATERIAL, "above 0");
     skg_material_release(&glass);
 }
 END_TEST
@@ -191,20 +192,21 @@ START_TEST(mixtures_by_fractions) {
                         negative[2] = {-0.1, 1.1};
     skg_material *m = NULL;
     const char *note = NULL;
-    ck_skg(skg_material_mixture("w", 2, z, good, 1, &m));
+    ck_skg(skg_material_create_mixture("w", 2, z, good, 1, &m));
     ck_assert_double_eq_tol(mass_mu(m, 60), mu_rho("Water", 60), 1e-15);
-    ck_skg(skg_material_note(m, &note));
+    ck_skg(skg_material_note_get(m, &note));
     ck_assert_str_eq(note, "");
     skg_material_release(&m);
-    ck_skg(skg_material_mixture("w", 2, z, near, 1, &m));
-    ck_skg(skg_material_note(m, &note));
+    ck_skg(skg_material_create_mixture("w", 2, z, near, 1, &m));
+    ck_skg(skg_material_note_get(m, &note));
     ck_assert_ptr_nonnull(strstr(note, "1.003"));
     ck_assert_double_eq_tol(mass_mu(m, 60) / mu_rho("Water", 60), 1, 1e-3);
     skg_material_release(&m);
-    ck_skg_fails(skg_material_mixture("w", 2, z, bad, 1, &m), SKG_ERR_MATERIAL, "sum to 0.9");
-    ck_skg_fails(skg_material_mixture("w", 2, z, negative, 1, &m), SKG_ERR_MATERIAL, "fraction of H");
-    ck_skg_fails(skg_material_mixture("w", 2, (int32_t[2]){1, 93}, good, 1, &m), SKG_ERR_MATERIAL, "93");
-    ck_skg_fails(skg_material_mixture("w", 2, z, good, -1, &m), SKG_ERR_MATERIAL, "density");
+    ck_skg_fails(skg_material_create_mixture("w", 2, z, bad, 1, &m), SKG_ERR_MATERIAL, "sum to 0.9");
+    ck_skg_fails(skg_material_create_mixture("w", 2, z, negative, 1, &m), SKG_ERR_MATERIAL, "fraction of H");
+    ck_skg_fails(skg_material_create_mixture("w", 2, (int32_t[2]){1, 93}, good, 1, &m), SKG_ERR_MATERIAL,
+                 "93");
+    ck_skg_fails(skg_material_create_mixture("w", 2, z, good, -1, &m), SKG_ERR_MATERIAL, "density");
 }
 END_TEST
 
@@ -212,13 +214,13 @@ END_TEST
  */
 START_TEST(every_name_of_the_tables) {
     int64_t count = 0;
-    ck_skg(skg_material_names(&count));
+    ck_skg(skg_material_tabled_count(&count));
     ck_assert_int_gt(count, 190);
     for (int64_t i = 0; i < count; i++) {
         const char *names = NULL;
         char name[256];
         double density = 0, sum = 0;
-        ck_skg(skg_material_tabled(i, &names, &density));
+        ck_skg(skg_material_tabled_get(i, &names, &density));
         for (const char *c = names; *c; c += strcspn(c, ";"), c += *c == ';') {
             while (*c == ' ') c++;
             snprintf(name, sizeof name, "%.*s", (int)strcspn(c, ";"), c);
@@ -226,11 +228,11 @@ START_TEST(every_name_of_the_tables) {
             ck_assert_msg(fabs(density_of(m) - density) < 1e-12, "%s", name);
             int64_t parts = 0;
             sum = 0;
-            ck_skg(skg_material_size(m, &parts));
+            ck_skg(skg_material_element_count(m, &parts));
             for (int64_t k = 0; k < parts; k++) {
                 int32_t z;
                 double w;
-                ck_skg(skg_material_part(m, k, &z, &w));
+                ck_skg(skg_material_element_get(m, k, &z, &w));
                 sum += w;
             }
             ck_assert_double_eq_tol(sum, 1, 1e-4);
@@ -252,7 +254,7 @@ START_TEST(hounsfield_joints) {
                                    {1600, 1.9642}};
     skg_material *m = NULL;
     for (size_t i = 0; i < sizeof hu / sizeof *hu; i++) {
-        ck_skg(skg_material_hounsfield(hu[i][0], &m));
+        ck_skg(skg_material_create_hounsfield(hu[i][0], &m));
         ck_assert_double_eq_tol(density_of(m), hu[i][1], 1e-12);
         skg_material_release(&m);
     }
@@ -261,19 +263,19 @@ START_TEST(hounsfield_joints) {
         int64_t parts = 0;
         double sum = 0, w = 0;
         int32_t z;
-        ck_skg(skg_material_hounsfield(h, &m));
-        ck_skg(skg_material_size(m, &parts));
+        ck_skg(skg_material_create_hounsfield(h, &m));
+        ck_skg(skg_material_element_count(m, &parts));
         for (int64_t k = 0; k < parts; k++) {
-            ck_skg(skg_material_part(m, k, &z, &w));
+            ck_skg(skg_material_element_get(m, k, &z, &w));
             sum += w;
         }
         ck_assert_double_eq_tol(sum, 1, 1e-12);
         ck_assert(density_of(m) >= 1.21e-3 && density_of(m) < 3);
         skg_material_release(&m);
     }
-    ck_skg_fails(skg_material_hounsfield(-1051, &m), SKG_ERR_MATERIAL, "outside");
-    ck_skg_fails(skg_material_hounsfield(3001, &m), SKG_ERR_MATERIAL, "outside");
-    ck_skg_fails(skg_material_hounsfield((double)NAN, &m), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_material_create_hounsfield(-1051, &m), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_material_create_hounsfield(3001, &m), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_material_create_hounsfield((double)NAN, &m), SKG_ERR_MATERIAL, "outside");
 }
 END_TEST
 
@@ -281,8 +283,8 @@ END_TEST
 START_TEST(hounsfield_numbers_depend_on_energy) {
     skg_material *bone = named("Cortical bone");
     double at_60 = 0, at_80 = 0;
-    ck_skg(skg_material_to_hounsfield(bone, 60, &at_60));
-    ck_skg(skg_material_to_hounsfield(bone, 80, &at_80));
+    ck_skg(skg_material_hounsfield_get(bone, 60, &at_60));
+    ck_skg(skg_material_hounsfield_get(bone, 80, &at_80));
     ck_assert_double_eq_tol(at_60, 1936, 2);
     ck_assert_double_eq_tol(at_80, 1330, 1);
     skg_material_release(&bone);
@@ -293,22 +295,23 @@ END_TEST
  */
 START_TEST(the_naive_way) {
     skg_material *naive = NULL, *water = named("Water");
-    for (int32_t way = SKG_BILINEAR; way <= SKG_BILOGARITHMIC; way++) {
-        ck_skg(skg_material_naive_hounsfield(0, way, &naive));
+    for (int32_t way = SKG_INTERPOLATION_BILINEAR; way <= SKG_INTERPOLATION_BILOGARITHMIC; way++) {
+        ck_skg(skg_material_create_naive_hounsfield(0, way, &naive));
         ck_assert_double_eq_tol(mu_of(naive, 80) / mu_of(water, 80), 1, 1e-9);
         skg_material_release(&naive);
         skg_material *bone = NULL;
-        ck_skg(skg_material_naive_hounsfield(700, way, &naive));
-        ck_skg(skg_material_hounsfield(700, &bone));
+        ck_skg(skg_material_create_naive_hounsfield(700, way, &naive));
+        ck_skg(skg_material_create_hounsfield(700, &bone));
         ck_assert_double_gt(fabs(mu_of(naive, 30) / mu_of(bone, 30) - 1), 0.02);
         skg_material_release(&bone);
         skg_material_release(&naive);
     }
-    ck_skg(skg_material_naive_hounsfield(0, SKG_BILINEAR, &naive)); /* a chord of a convex curve reads high */
+    ck_skg(skg_material_create_naive_hounsfield(0, SKG_INTERPOLATION_BILINEAR,
+                                                &naive)); /* a chord of a convex curve reads high */
     ck_assert_double_gt(mu_of(naive, 25), 1.02 * mu_of(water, 25));
     skg_material_release(&naive);
-    ck_skg_fails(skg_material_naive_hounsfield(1400, SKG_BILINEAR, &naive), SKG_ERR_MATERIAL,
-                 "cortical bone");
+    ck_skg_fails(skg_material_create_naive_hounsfield(1400, SKG_INTERPOLATION_BILINEAR, &naive),
+                 SKG_ERR_MATERIAL, "cortical bone");
     skg_material_release(&water);
 }
 END_TEST
@@ -318,19 +321,19 @@ START_TEST(tables_of_the_user) {
     skg_material *m = NULL;
     double edges[4];
     int64_t count = 0;
-    ck_skg(skg_material_table("mine", 5, kev, mu, &m));
+    ck_skg(skg_material_create_table("mine", 5, kev, mu, &m));
     ck_assert_double_eq_tol(mu_of(m, sqrt(200)), sqrt(8), 1e-13); /* log-log */
     ck_assert_double_eq_tol(mu_of(m, 33), 2, 1e-15);
     ck_assert_double_eq_tol(mu_of(m, 40), 1, 1e-15);
-    ck_skg(skg_material_edges(m, 4, edges, &count));
+    ck_skg(skg_material_edges_get(m, 4, edges, &count));
     ck_assert_int_eq(count, 1);
     ck_assert_double_eq(edges[0], 33);
     double value;
-    ck_skg_fails(skg_material_attenuation(m, 41, &value), SKG_ERR_MATERIAL, "10 to 40 keV");
+    ck_skg_fails(skg_material_attenuation_get(m, 41, &value), SKG_ERR_MATERIAL, "10 to 40 keV");
     skg_material_release(&m);
     static const double falling[3] = {10, 30, 20};
-    ck_skg_fails(skg_material_table("mine", 3, falling, mu, &m), SKG_ERR_MATERIAL, "row 3");
-    ck_skg_fails(skg_material_table("mine", 1, kev, mu, &m), SKG_ERR_MATERIAL, "two energies");
+    ck_skg_fails(skg_material_create_table("mine", 3, falling, mu, &m), SKG_ERR_MATERIAL, "row 3");
+    ck_skg_fails(skg_material_create_table("mine", 1, kev, mu, &m), SKG_ERR_MATERIAL, "two energies");
 }
 END_TEST
 
@@ -340,15 +343,15 @@ START_TEST(tables_from_files) {
     static const char text[] = "# MeV, 1/cm\n0.01, 8e0\n0.02 1.0\n\n0.04\t0.25\n";
     ck_assert_int_eq(write(file, text, sizeof text - 1), (int)sizeof text - 1);
     skg_material *m = NULL;
-    ck_skg(skg_material_table_file(path, "MeV", &m));
+    ck_skg(skg_material_load_table(path, "MeV", &m));
     ck_assert_double_eq_tol(mu_of(m, 20), 1, 1e-12);
     skg_material_release(&m);
-    ck_skg_fails(skg_material_table_file(path, "kg", &m), SKG_ERR_FORMAT, "no unit of energy");
+    ck_skg_fails(skg_material_load_table(path, "kg", &m), SKG_ERR_FORMAT, "no unit of energy");
     ck_assert_int_eq(write(file, "0.08 x\n", 7), 7);
-    ck_skg_fails(skg_material_table_file(path, "MeV", &m), SKG_ERR_FORMAT, "line 6");
+    ck_skg_fails(skg_material_load_table(path, "MeV", &m), SKG_ERR_FORMAT, "line 6");
     close(file);
     unlink(path);
-    ck_skg_fails(skg_material_table_file(path, "MeV", &m), SKG_ERR_FILE, path);
+    ck_skg_fails(skg_material_load_table(path, "MeV", &m), SKG_ERR_FILE, path);
 }
 END_TEST
 
@@ -356,8 +359,8 @@ START_TEST(edges_of_a_compound) {
     skg_material *csi = named("CsI");
     double edges[64];
     int64_t count = 0, again = 0;
-    ck_skg(skg_material_edges(csi, 0, NULL, &count));
-    ck_skg(skg_material_edges(csi, 64, edges, &again));
+    ck_skg(skg_material_edges_get(csi, 0, NULL, &count));
+    ck_skg(skg_material_edges_get(csi, 64, edges, &again));
     ck_assert_int_eq(count, again);
     ck_assert_double_eq_tol(edges[count - 1], 35.985, 2e-3);
     ck_assert_double_eq_tol(edges[count - 2], 33.169, 2e-3);

@@ -41,7 +41,7 @@ START_TEST(makers_are_outward_and_of_the_right_volume) {
         skg_mesh_health_init(&health);
         ck_skg(skg_mesh_create(NULL, "solid", all[n].vertices, all[n].positions, 0, all[n].triangles,
                                all[n].corners, 0, 1, &mesh));
-        ck_skg(skg_mesh_get_health(mesh, &health));
+        ck_skg(skg_mesh_health_get(mesh, &health));
         ck_assert_int_eq(health.closed, 1);
         ck_assert_int_eq(health.flipped, 0);
         ck_assert_double_eq_tol(health.volume, volume, 1e-9 * volume);
@@ -77,16 +77,16 @@ START_TEST(all_projections_and_the_pose) {
                                1, 0, 0,  40, 0, 0, 0, 1}; /* z across, x along; mirrored */
     caster *c = caster_create(&box, mirror);
     skg_view view = view_of(9, 1);
-    view.projection = SKG_PARALLEL;
+    view.projection = SKG_PROJECTION_PARALLEL;
     ck_assert_double_eq_tol((double)caster_length(c, &view, 4.3L, 4.2L), 10, 1200 * epsilon);
     view.source[2] = 38; /* within: from there to the far face at z = 45 */
     ck_assert_double_eq_tol((double)caster_length(c, &view, 4.3L, 4.2L), 7, 1200 * epsilon);
     view.centre[2] = 43;
     ck_assert_double_eq_tol((double)caster_length(c, &view, 4.3L, 4.2L), 5, 1200 * epsilon);
-    view.projection = SKG_PARALLEL_FROM_INFINITY;
+    view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
     view.source[2] = 1;
     ck_assert_double_eq_tol((double)caster_length(c, &view, 4.3L, 4.2L), 8, 1200 * epsilon);
-    view.projection = SKG_POINT;
+    view.projection = SKG_PROJECTION_POINT;
     view.source[2] = 39;
     ck_assert_double_eq_tol((double)caster_length(c, &view, 4, 4), 4, 1200 * epsilon);
     caster_free(c);
@@ -96,9 +96,9 @@ END_TEST
 
 START_TEST(signed_hits_always_cancel) {
     skg_view view = view_of(200, 1);
-    for (int projection = SKG_POINT; projection <= SKG_PARALLEL; projection++) {
+    for (int projection = SKG_PROJECTION_POINT; projection <= SKG_PROJECTION_PARALLEL; projection++) {
         view.projection = projection;
-        solid s = solid_octahedra(500, &view, projection == SKG_POINT ? 3 : 0, 1, 7),
+        solid s = solid_octahedra(500, &view, projection == SKG_PROJECTION_POINT ? 3 : 0, 1, 7),
               cube = solid_box(64, 64, 64);
         solid_add(&s, &cube);
         caster *c = caster_create(&s, NULL);

@@ -44,8 +44,9 @@ static skg_view view_anyhow(uint64_t *seed, int64_t columns, int64_t rows, doubl
         view.centre[k] = draw(seed, -300, 300);
         view.column_step[k] = pitch * axes[0][k];
         view.row_step[k] = pitch * uneven * (axes[1][k] + lean * axes[0][k]);
-        view.source[k] =
-            view.projection == SKG_PARALLEL_FROM_INFINITY ? -way : view.centre[k] + *distance * way / size;
+        view.source[k] = view.projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY
+                             ? -way
+                             : view.centre[k] + *distance * way / size;
     }
     return view;
 }
@@ -64,15 +65,16 @@ static void place(uint64_t *seed, const skg_view *view, double distance, double 
         pitch += view->column_step[k] * view->column_step[k];
         way += view->source[k] * view->source[k];
     }
-    double radius = sqrt(pitch) * wide / 2 * (view->projection == SKG_POINT ? t : 1);
+    double radius = sqrt(pitch) * wide / 2 * (view->projection == SKG_PROJECTION_POINT ? t : 1);
     radius = fmin(radius, 0.2 * distance); /* stays between source and detector */
     turn_anyhow(seed, axes);
     const double mirror = draw_below(seed, 4) == 0 ? -1 : 1;
     for (int k = 0; k < 3; k++) {
         const double pixel = view->centre[k] + c * view->column_step[k] + r * view->row_step[k];
-        const double towards = view->projection == SKG_POINT      ? view->source[k] - pixel
-                               : view->projection == SKG_PARALLEL ? view->source[k] - view->centre[k]
-                                                                  : -view->source[k] / sqrt(way) * distance;
+        const double towards = view->projection == SKG_PROJECTION_POINT ? view->source[k] - pixel
+                               : view->projection == SKG_PROJECTION_PARALLEL
+                                   ? view->source[k] - view->centre[k]
+                                   : -view->source[k] / sqrt(way) * distance;
         for (int n = 0; n < 3; n++) pose[4 * k + n] = axes[n][k] * radius * (n == 0 ? mirror : 1);
         pose[4 * k + 3] = pixel + (1 - t) * towards;
         pose[12 + k] = 0;
@@ -117,8 +119,8 @@ static void judge(uint64_t *seed, int64_t columns, int64_t rows, double wide, in
 
 /* Many pictures of solids of one size on the detector. */
 static void check_size(double wide, int pictures, uint64_t seed) {
-    for (int32_t precision = SKG_SINGLE; precision <= (run_has_double() ? SKG_DOUBLE : SKG_SINGLE);
-         precision++) {
+    for (int32_t precision = SKG_PRECISION_SINGLE;
+         precision <= (run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE); precision++) {
         verdict all = {0};
         char what[64];
         uint64_t state = seed;
@@ -159,7 +161,8 @@ END_TEST
 START_TEST(large_detectors) {
     uint64_t seed = 6;
     for (int n = 0; n < 6; n++) {
-        const int32_t precision = n % 3 == 2 && run_has_double() ? SKG_DOUBLE : SKG_SINGLE;
+        const int32_t precision =
+            n % 3 == 2 && run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
         verdict v = {0};
         judge(&seed, n < 3 ? 2048 : 1024, 1536, n % 2 ? 40 : 900, 24, 400, precision, &v);
         verdict_check(&v, precision, "a large detector");

@@ -64,12 +64,14 @@ static ray ray_to(const skg_view *view, real column, real row) {
     for (int k = 0; k < 3; k++) {
         r.pixel[k] = (real)view->centre[k] + c * (real)view->column_step[k] + w * (real)view->row_step[k];
         way[k] = r.pixel[k] - (real)view->source[k];
-        r.axes[2][k] = view->projection == SKG_POINT      ? way[k]
-                       : view->projection == SKG_PARALLEL ? (real)view->centre[k] - (real)view->source[k]
-                                                          : (real)view->source[k];
+        r.axes[2][k] = view->projection == SKG_PROJECTION_POINT ? way[k]
+                       : view->projection == SKG_PROJECTION_PARALLEL
+                           ? (real)view->centre[k] - (real)view->source[k]
+                           : (real)view->source[k];
     }
     normalise(r.axes[2]);
-    r.start = view->projection == SKG_PARALLEL_FROM_INFINITY ? -(real)HUGE_VAL : -dot(way, r.axes[2]);
+    r.start =
+        view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? -(real)HUGE_VAL : -dot(way, r.axes[2]);
     int least = 0; /* the axis most across the ray */
     for (int k = 1; k < 3; k++)
         if (fabsl(r.axes[2][k]) < fabsl(r.axes[2][least])) least = k;

@@ -17,7 +17,7 @@ void run_close(void) {
 int run_has_double(void) {
     skg_device_info info;
     skg_device_info_init(&info);
-    ck_skg(skg_context_device(run_context, &info));
+    ck_skg(skg_context_device_get(run_context, &info));
     return info.has_double;
 }
 
@@ -47,7 +47,7 @@ int64_t run_part(skg_scene *scene, const char *label, skg_mesh *mesh, double mu,
     part.label = label;
     part.inside = inside;
     for (int k = 0; k < 16 && pose; k++) part.pose[k] = pose[k];
-    ck_skg(skg_material_mu(label, mu, &part.material));
+    ck_skg(skg_material_create_mu(label, mu, &part.material));
     ck_skg(skg_scene_add(scene, &part, &id));
     skg_material_release(&part.material);
     return id;
@@ -72,7 +72,7 @@ skg_plan *run_plan(skg_scene *scene, const skg_view *view, run_choice choice) {
     options.tile = choice.tile;
     options.quantity = choice.quantity;
     options.overlaps = 0;
-    ck_skg(skg_spectrum_mono(100, 1, &spectrum));
+    ck_skg(skg_spectrum_create_mono(100, 1, &spectrum));
     ck_skg(skg_plan_create(run_context, scene, view, spectrum, &options, &plan));
     skg_spectrum_release(&spectrum);
     return plan;
@@ -96,18 +96,18 @@ static double *image_of(skg_plan *plan, const skg_view *view, int lengths) {
     const int64_t count = view->rows * view->columns;
     double *image = calloc((size_t)count, sizeof *image);
     skg_plan_report_init(&report);
-    ck_skg(skg_plan_get_report(plan, &report));
+    ck_skg(skg_plan_report_get(plan, &report));
     skg_frame_init(&frame);
     skg_output_init(&output);
-    output.type = report.precision == SKG_DOUBLE ? SKG_FLOAT64 : SKG_FLOAT32;
+    output.type = report.precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     output.data = image;
     if (lengths) {
-        ck_skg(skg_plan_lengths(plan, 0, SKG_SURFACE, 1, &frame, &output, &job));
+        ck_skg(skg_plan_lengths(plan, 0, SKG_LENGTHS_SURFACE, 1, &frame, &output, &job));
         ck_skg(skg_job_wait(&job));
     } else {
         ck_skg(skg_plan_image(plan, &output));
     }
-    if (output.type == SKG_FLOAT32) widen(image, count);
+    if (output.type == SKG_TYPE_FLOAT32) widen(image, count);
     return image;
 }
 

@@ -171,9 +171,9 @@ static void near_ray(double *at, const skg_view *view, double column, double row
     const double c = column - (double)(view->columns - 1) / 2, r = row - (double)(view->rows - 1) / 2;
     for (int k = 0; k < 3; k++) {
         const double pixel = view->centre[k] + c * view->column_step[k] + r * view->row_step[k];
-        float x =
-            (float)(view->projection == SKG_POINT ? view->source[k] + t * (pixel - view->source[k])
-                                                  : pixel + (t - 1) * (view->centre[k] - view->source[k]));
+        float x = (float)(view->projection == SKG_PROJECTION_POINT
+                              ? view->source[k] + t * (pixel - view->source[k])
+                              : pixel + (t - 1) * (view->centre[k] - view->source[k]));
         const int64_t steps = draw_below(seed, 2 * ulps + 1) - ulps;
         for (int64_t n = 0; n < steps || n < -steps; n++) x = nextafterf(x, steps > 0 ? FLT_MAX : -FLT_MAX);
         at[k] = (double)x;

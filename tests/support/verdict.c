@@ -55,16 +55,16 @@ void verdict_cast(verdict *v, caster *c, const skg_view *view, const double *got
 static int shadow(const skg_view *view, const double *point, double at[2]) {
     double way[3], to[3];
     for (int k = 0; k < 3; k++) {
-        way[k] = view->projection == SKG_POINT      ? point[k] - view->source[k]
-                 : view->projection == SKG_PARALLEL ? view->centre[k] - view->source[k]
-                                                    : view->source[k];
+        way[k] = view->projection == SKG_PROJECTION_POINT      ? point[k] - view->source[k]
+                 : view->projection == SKG_PROJECTION_PARALLEL ? view->centre[k] - view->source[k]
+                                                               : view->source[k];
         to[k] = point[k] - view->centre[k];
     }
     const double *u = view->column_step, *w = view->row_step;
     const double n[3] = {u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]};
     const double ahead = n[0] * way[0] + n[1] * way[1] + n[2] * way[2];
     const double t = -(n[0] * to[0] + n[1] * to[1] + n[2] * to[2]) / ahead; /* from the point on */
-    if (view->projection == SKG_POINT && !(t > -0.999)) return 0;
+    if (view->projection == SKG_PROJECTION_POINT && !(t > -0.999)) return 0;
     double hit[3], uu = 0, uw = 0, ww = 0, hu = 0, hw = 0;
     for (int k = 0; k < 3; k++) {
         hit[k] = to[k] + t * way[k];
@@ -122,8 +122,8 @@ void verdict_check(const verdict *v, int32_t precision, const char *what) {
     const double rms = verdict_rms(v), worst = verdict_worst(v), beyond = verdict_beyond(v, 3e-6);
     ck_assert_int_gt(v->count, 0);
     const int fine =
-        precision == SKG_DOUBLE ? worst <= 1e-11 : rms <= 3e-7 && beyond <= 1e-3 && worst <= 1e-3;
+        precision == SKG_PRECISION_DOUBLE ? worst <= 1e-11 : rms <= 3e-7 && beyond <= 1e-3 && worst <= 1e-3;
     ck_assert_msg(fine, "%s, %s: rms %.3g, %.4f %% beyond 3e-6, worst %.3g of Lmax (%.6g mm; %lld pixels)",
-                  what, precision == SKG_DOUBLE ? "double" : "single", rms, 100 * beyond, worst, v->longest,
-                  (long long)v->count);
+                  what, precision == SKG_PRECISION_DOUBLE ? "double" : "single", rms, 100 * beyond, worst,
+                  v->longest, (long long)v->count);
 }

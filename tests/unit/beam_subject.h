@@ -24,24 +24,24 @@ static void take_subject(subject *s, double kvp, int materials, const char *cons
     skg_material *aluminium = NULL;
     double sums[SUBJECT_SETS] = {0}, kev[SUBJECT_BINS];
     int64_t bins = 0;
-    ck_skg(skg_material_element(13, &aluminium));
+    ck_skg(skg_material_create_element(13, &aluminium));
     const skg_filter filter = {aluminium, 2.5};
     skg_tube_init(&tube);
     tube.kvp = kvp, tube.filter_count = 1, tube.filters = &filter;
-    ck_skg(skg_spectrum_tube(&tube, &spectrum));
-    ck_skg(skg_spectrum_size(spectrum, &bins));
+    ck_skg(skg_spectrum_create_tube(&tube, &spectrum));
+    ck_skg(skg_spectrum_bin_count(spectrum, &bins));
     ck_assert_int_le(bins, SUBJECT_BINS);
     for (int64_t b = 0; b < bins; b++) {
         double worth = 0;
-        ck_skg(skg_spectrum_bin(spectrum, b, &kev[b], &worth));
+        ck_skg(skg_spectrum_bin_get(spectrum, b, &kev[b], &worth));
         for (int k = 0; k < sets; k++) sums[k] += s->shares[b * sets + k] = worth *= kev[b];
     }
     for (int64_t k = 0; k < bins * sets; k++) s->shares[k] /= sums[k % sets];
     for (int m = 0; m < materials; m++) {
         skg_material *material = NULL;
-        ck_skg(skg_material_named(names[m], &material));
+        ck_skg(skg_material_create_named(names[m], &material));
         for (int64_t b = 0; b < bins; b++) {
-            ck_skg(skg_material_attenuation(material, kev[b], &s->mu[m * bins + b]));
+            ck_skg(skg_material_attenuation_get(material, kev[b], &s->mu[m * bins + b]));
             s->mu[m * bins + b] *= 0.1; /* 1/cm to 1/mm */
         }
         s->low[m] = 0, s->high[m] = most[m];

@@ -16,10 +16,10 @@ START_TEST(a_device_is_found_and_described) {
     skg_device_info_init(&info);
     ck_skg(skg_device_count(&count));
     ck_assert_int_ge(count, 1);
-    ck_skg(skg_device_describe(0, &info));
+    ck_skg(skg_device_get(0, &info));
     ck_assert_int_gt(info.compute_units, 0);
     ck_assert_str_ne(info.name, "");
-    ck_skg_fails(skg_device_describe(count, &info), SKG_ERR_ARGUMENT, "counted from 0");
+    ck_skg_fails(skg_device_get(count, &info), SKG_ERR_ARGUMENT, "counted from 0");
 }
 END_TEST
 
@@ -28,7 +28,7 @@ START_TEST(config_words_choose) {
     skg_device_info info;
     skg_device_info_init(&info);
     ck_skg(skg_context_create("device=0:0 threads=1", &context));
-    ck_skg(skg_context_device(context, &info));
+    ck_skg(skg_context_device_get(context, &info));
     ck_assert_int_eq(info.compute_units, 1);
     skg_context_release(&context);
     ck_assert_ptr_null(context);
@@ -81,7 +81,7 @@ START_TEST(a_forked_child_is_told) {
     if (child == 0) {
         skg_device_info info;
         skg_device_info_init(&info);
-        int told = skg_context_device(context, &info) == SKG_ERR_FORK;
+        int told = skg_context_device_get(context, &info) == SKG_ERR_FORK;
         skg_context_release(&context); /* must not hang */
         _exit(told ? 0 : 1);
     }

@@ -61,8 +61,10 @@ START_TEST(arguments) {
     ck_skg_fails(skg_plan_submit(plan, 1, &frame, NULL, &job), SKG_ERR_ARGUMENT, "output");
     ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, NULL), SKG_ERR_ARGUMENT, "job");
     ck_skg_fails(skg_plan_image(plan, NULL), SKG_ERR_ARGUMENT, "output");
-    ck_skg_fails(skg_plan_lengths(plan, 1, SKG_NET, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "part");
-    ck_skg_fails(skg_plan_lengths(plan, -1, SKG_NET, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "part");
+    ck_skg_fails(skg_plan_lengths(plan, 1, SKG_LENGTHS_NET, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
+                 "part");
+    ck_skg_fails(skg_plan_lengths(plan, -1, SKG_LENGTHS_NET, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
+                 "part");
     ck_skg_fails(skg_plan_lengths(plan, 0, 7, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "kind");
     refused(0, SKG_ERR_ARGUMENT, "frames");
     refused(-3, SKG_ERR_ARGUMENT, "frames");
@@ -93,10 +95,10 @@ END_TEST
 START_TEST(poses_and_views) {
     double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     int64_t id = 1;
-    frame.posed = 1;
+    frame.pose_count = 1;
     refused(1, SKG_ERR_ARGUMENT, "pose");
-    frame.posed_ids = &id;
-    frame.posed_poses = pose;
+    frame.pose_parts = &id;
+    frame.poses = pose;
     refused(1, SKG_ERR_ARGUMENT, "part");
     id = 0;
     pose[10] = 0;
@@ -104,9 +106,9 @@ START_TEST(poses_and_views) {
     pose[10] = (double)NAN;
     refused(1, SKG_ERR_SCENE, "box");
     pose[10] = 1;
-    frame.posed = -1;
+    frame.pose_count = -1;
     refused(1, SKG_ERR_ARGUMENT, "-1");
-    frame.posed = 0;
+    frame.pose_count = 0;
     skg_view other = view;
     frame.view = &other;
     other.source[2] = 200; /* on the detector */
@@ -134,17 +136,17 @@ END_TEST
 START_TEST(a_vertex_that_is_not_finite) {
     float *offsets = NULL;
     const double *origin = NULL;
-    ck_skg(skg_mesh_positions(box, &offsets, &origin));
+    ck_skg(skg_mesh_offsets_get(box, &offsets, &origin));
     const float kept = offsets[3 * 5 + 1];
     offsets[3 * 5 + 1] = NAN;
-    (void)skg_mesh_moved(box);
+    (void)skg_mesh_offsets_moved(box);
     skg_status status = skg_plan_submit(plan, 1, &frame, &output, &job);
     if (status == SKG_OK) status = skg_job_wait(&job); /* found by the host or by the device */
     ck_assert_int_eq(status, SKG_ERR_MESH);
     ck_assert_msg(strstr(skg_last_error(), "box") && strstr(skg_last_error(), "5"), "%s", skg_last_error());
     ck_assert_ptr_null(job);
     offsets[3 * 5 + 1] = kept;
-    ck_skg(skg_mesh_moved(box));
+    ck_skg(skg_mesh_offsets_moved(box));
     still_good();
 }
 END_TEST
@@ -209,10 +211,10 @@ START_TEST(nested_parts_and_quantities) {
     solid_free(&s);
     run_part(scene, "ball", ball, 0.5, NULL, 0);
     skg_mesh_release(&ball);
-    for (int32_t quantity = SKG_ENERGY; quantity <= SKG_ATTENUATION; quantity++) {
+    for (int32_t quantity = SKG_QUANTITY_ENERGY; quantity <= SKG_QUANTITY_ATTENUATION; quantity++) {
         skg_plan_release(&plan);
         plan = run_plan(scene, &view, (run_choice){.quantity = quantity});
-        const int32_t kinds[3] = {SKG_NET, SKG_NET, SKG_SURFACE};
+        const int32_t kinds[3] = {SKG_LENGTHS_NET, SKG_LENGTHS_NET, SKG_LENGTHS_SURFACE};
         for (int n = 0; n < 3; n++) {
             output.data = lengths[n];
             ck_skg(skg_plan_lengths(plan, n % 2, kinds[n], 1, &frame, &output, &job));
@@ -222,7 +224,8 @@ START_TEST(nested_parts_and_quantities) {
         ck_skg(skg_plan_image(plan, &output));
         for (int p = 0; p < PIXELS; p++) {
             const double exponent = mu[0] * (double)lengths[0][p] + mu[1] * (double)lengths[1][p];
-            const double expected = quantity == SKG_ATTENUATION ? exponent : open[quantity] * exp(-exponent);
+            const double expected =
+                quantity == SKG_QUANTITY_ATTENUATION ? exponent : open[quantity] * exp(-exponent);
             /* The net length is the surface's less the child's: floats of 60 mm. Exponents up to 2. */
             ck_assert_double_eq_tol((double)lengths[2][p], (double)lengths[0][p] + (double)lengths[1][p],
                                     60 * 0x1p-21);
@@ -252,15 +255,15 @@ START_TEST(invisible_and_negative) {
         ck_assert_double_eq_tol((double)with[p], (double)alone[p],
                                 100 * 0x1p-21); /* another scale: other rounding */
     skg_plan_report_init(&report);
-    ck_skg(skg_plan_get_report(plan, &report));
+    ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_eq(report.negative_pixels, 0);
     run_part(scene, "hole", ball, 0, aside, 0); /* beside the box that it is said to lie in */
     skg_plan_release(&plan);
-    plan = run_plan(scene, &view, (run_choice){.quantity = SKG_ATTENUATION});
+    plan = run_plan(scene, &view, (run_choice){.quantity = SKG_QUANTITY_ATTENUATION});
     ck_skg(skg_plan_image(plan, &output));
     int64_t negative = 0;
     for (int p = 0; p < PIXELS; p++) negative += with[p] < -1e-5F;
-    ck_skg(skg_plan_get_report(plan, &report));
+    ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_gt(negative, 0);
     ck_assert_int_eq(report.negative_pixels, negative);
     skg_mesh_release(&ball);

@@ -94,10 +94,11 @@ END_TEST
 START_TEST(floats_and_doubles) {
     static float narrow[PIXELS];
     static double wide[PIXELS];
-    for (int quantity = SKG_ENERGY; quantity <= SKG_ATTENUATION && run_has_double(); quantity++) {
+    for (int quantity = SKG_QUANTITY_ENERGY; quantity <= SKG_QUANTITY_ATTENUATION && run_has_double();
+         quantity++) {
         skg_plan *plan = run_plan(scene, &view, (run_choice){.quantity = quantity});
         skg_output output = output_of(wide);
-        output.type = SKG_FLOAT64;
+        output.type = SKG_TYPE_FLOAT64;
         image(plan, narrow);
         ck_skg(skg_plan_image(plan, &output));
         for (int p = 0; p < PIXELS; p++)
@@ -150,15 +151,15 @@ START_TEST(poses_of_a_frame) {
     shifted(poses, 12, -7, 5);
     shifted(poses + 16, -20, 3, 9);
     skg_frame_init(&frame);
-    frame.posed = 2;
-    frame.posed_ids = ids;
-    frame.posed_poses = poses;
+    frame.pose_count = 2;
+    frame.pose_parts = ids;
+    frame.poses = poses;
     ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
     ck_skg(skg_job_wait(&job));
     image(plan, after); /* the frame's poses were its own */
     ck_assert_mem_eq(after, plain, sizeof plain);
-    ck_skg(skg_scene_set_pose(scene, 1, poses));
-    ck_skg(skg_scene_set_pose(scene, 0, poses + 16));
+    ck_skg(skg_scene_pose_set(scene, 1, poses));
+    ck_skg(skg_scene_pose_set(scene, 0, poses + 16));
     image(plan, expected);
     ck_assert_mem_eq(posed, expected, sizeof posed);
     ck_assert_mem_ne(posed, plain, sizeof posed);
@@ -172,10 +173,10 @@ START_TEST(snapshots) {
     static float expected[FRAMES][PIXELS], taken[FRAMES][PIXELS];
     int64_t vertices = 0;
     double pose[16];
-    ck_skg(skg_mesh_size(ball, &vertices, NULL));
+    ck_skg(skg_mesh_count(ball, &vertices, NULL));
     double *positions = calloc((size_t)(3 * vertices), sizeof *positions),
            *moved = calloc((size_t)(3 * vertices), sizeof *moved);
-    ck_skg(skg_mesh_read_positions(ball, positions, 0));
+    ck_skg(skg_mesh_positions_get(ball, positions, 0));
     for (int late = 0; late < 2; late++) { /* first each frame waited for, then all at the end */
         skg_plan *plan = run_plan(scene, &view, (run_choice){0});
         skg_job *jobs[FRAMES] = {NULL};
@@ -184,9 +185,9 @@ START_TEST(snapshots) {
             skg_frame frame;
             const skg_output output = output_of(late ? taken[n] : expected[n]);
             for (int64_t k = 0; k < 3 * vertices; k++) moved[k] = positions[k] * (1 + 0.2 * n);
-            ck_skg(skg_mesh_write_positions(ball, moved, 0));
+            ck_skg(skg_mesh_positions_set(ball, moved, 0));
             shifted(pose, 6 * n, 0, 0);
-            ck_skg(skg_scene_set_pose(scene, 1, pose));
+            ck_skg(skg_scene_pose_set(scene, 1, pose));
             aside.source[1] = 30 * n;
             skg_frame_init(&frame);
             frame.view = &aside;
@@ -219,12 +220,12 @@ START_TEST(two_plans_share_a_mesh) {
     skg_plan *plans[2] = {run_plan(scene, &view, (run_choice){0}),
                           run_plan(scene, &view, (run_choice){.strategy = SKG_STRATEGY_ATOMICS})};
     image(plans[0], before);
-    ck_skg(skg_mesh_size(ball, &vertices, NULL));
-    ck_skg(skg_mesh_version(ball, &version));
-    ck_skg(skg_mesh_positions(ball, &offsets, &origin));
+    ck_skg(skg_mesh_count(ball, &vertices, NULL));
+    ck_skg(skg_mesh_version_get(ball, &version));
+    ck_skg(skg_mesh_offsets_get(ball, &offsets, &origin));
     for (int64_t k = 0; k < 3 * vertices; k++) offsets[k] *= 1.5F;
-    ck_skg(skg_mesh_moved(ball));
-    ck_skg(skg_mesh_version(ball, &later));
+    ck_skg(skg_mesh_offsets_moved(ball));
+    ck_skg(skg_mesh_version_get(ball, &later));
     ck_assert_int_eq(later, version + 1);
     image(plans[0], first);
     image(plans[1], second);

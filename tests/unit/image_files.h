@@ -65,7 +65,7 @@ static inline skg_picture picture_of(int32_t type) {
     picture.type = type;
     picture.columns = COLUMNS;
     picture.rows = ROWS;
-    picture.data = type == SKG_FLOAT64 ? (const void *)doubles : (const void *)floats;
+    picture.data = type == SKG_TYPE_FLOAT64 ? (const void *)doubles : (const void *)floats;
     picture.name = "energy";
     picture.unit = "keV per pixel";
     picture.view = &view;

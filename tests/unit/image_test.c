@@ -8,7 +8,7 @@
 #include <tiffio.h>
 
 static void check_tiff(const char *file, int32_t type, int channels) {
-    size_t element = type == SKG_FLOAT64 ? 8 : 4;
+    size_t element = type == SKG_TYPE_FLOAT64 ? 8 : 4;
     TIFF *tiff = TIFFOpen(file, "r");
     ck_assert_ptr_nonnull(tiff);
     ck_assert_int_eq(TIFFNumberOfDirectories(tiff), channels);
@@ -35,7 +35,7 @@ static void check_tiff(const char *file, int32_t type, int channels) {
             ck_assert_int_eq(TIFFReadScanline(tiff, row, r, 0), 1);
             size_t first = (size_t)channel * PIXELS + r * COLUMNS;
             const char *data =
-                type == SKG_FLOAT64 ? (const char *)(doubles + first) : (const char *)(floats + first);
+                type == SKG_TYPE_FLOAT64 ? (const char *)(doubles + first) : (const char *)(floats + first);
             ck_assert_int_eq(memcmp(row, data, COLUMNS * element), 0);
         }
     }
@@ -43,13 +43,13 @@ static void check_tiff(const char *file, int32_t type, int channels) {
 }
 
 START_TEST(tiff_keeps_every_bit) {
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     ck_skg(skg_picture_write(&picture, at("a.tif")));
-    check_tiff(path, SKG_FLOAT32, 1);
-    picture = picture_of(SKG_FLOAT64);
+    check_tiff(path, SKG_TYPE_FLOAT32, 1);
+    picture = picture_of(SKG_TYPE_FLOAT64);
     picture.channels = CHANNELS;
     ck_skg(skg_picture_write(&picture, at("A.TIFF")));
-    check_tiff(path, SKG_FLOAT64, CHANNELS);
+    check_tiff(path, SKG_TYPE_FLOAT64, CHANNELS);
 }
 END_TEST
 
@@ -84,7 +84,7 @@ static void read_field(const char *header, const char *key, int count, double *v
 START_TEST(metaimage_keeps_bits_and_place) {
     char header[2048];
     double data[CHANNELS * PIXELS + 1], numbers[9];
-    skg_picture picture = picture_of(SKG_FLOAT64);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
     ck_skg(skg_picture_write(&picture, at("a.mha")));
     ck_assert_int_eq(read_mha(path, header, sizeof header, data, sizeof data), PIXELS * 8);
     ck_assert_int_eq(memcmp(data, doubles, PIXELS * 8), 0);
@@ -108,7 +108,7 @@ START_TEST(channels_have_names_of_their_own) {
                                                                                                    NULL};
     char header[2048];
     float data[CHANNELS * PIXELS + 1];
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = CHANNELS, picture.channel_names = names;
     ck_skg(skg_picture_write(&picture, at("a.mha")));
     read_mha(path, header, sizeof header, data, sizeof data);
@@ -131,7 +131,7 @@ END_TEST
 START_TEST(metaimage_interleaves_channels) {
     char header[2048];
     float data[CHANNELS * PIXELS + 1];
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = CHANNELS;
     picture.view = NULL;
     ck_skg(skg_picture_write(&picture, at("a.mha")));
@@ -147,7 +147,7 @@ START_TEST(metaimage_interleaves_channels) {
 END_TEST
 
 START_TEST(skewed_steps_are_no_metaimage) {
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     view.row_step[0] = 0.25 * 0.6, view.row_step[2] = 0.25 * 0.8; /* 45 degrees off */
     ck_skg_fails(skg_picture_write(&picture, at("a.mha")), SKG_ERR_UNSUPPORTED, "write .tif instead");
     ck_assert_ptr_nonnull(strstr(skg_last_error(), "45 degrees"));
@@ -157,7 +157,7 @@ START_TEST(skewed_steps_are_no_metaimage) {
 END_TEST
 
 START_TEST(a_wrong_path_is_told) {
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     ck_skg_fails(skg_picture_write(&picture, at("a.jpg")), SKG_ERR_ARGUMENT,
                  "the extension .jpg is no image format; use .png, .tif or .mha");
     ck_skg_fails(skg_picture_write(&picture, at("a")), SKG_ERR_ARGUMENT, "the extension is missing");
@@ -183,7 +183,7 @@ START_TEST(a_full_disk_leaves_nothing) {
     static const char *const names[] = {"a.png", "a.tif", "a.mha"};
     struct rlimit limit = {64, 64};
     enum { SIDE = 300 }; /* more than any buffer keeps back */
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     float *noise = calloc(SIDE * SIDE, sizeof *noise);
     ck_assert_ptr_nonnull(noise);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) noise[i] = (float)(i * 2654435761u >> 8);
@@ -211,21 +211,21 @@ START_TEST(a_full_disk_leaves_nothing) {
 END_TEST
 
 START_TEST(an_unusable_picture_is_told) {
-    skg_picture picture = picture_of(SKG_FLOAT32);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.rows = 4;
     ck_skg_fails(skg_picture_write(&picture, at("a.tif")), SKG_ERR_ARGUMENT, "its view has 7 x 5");
-    picture = picture_of(SKG_FLOAT32);
+    picture = picture_of(SKG_TYPE_FLOAT32);
     picture.low = 2, picture.high = 1;
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "range 2:1");
     picture = picture_of(2);
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "type 2");
-    picture = picture_of(SKG_FLOAT32);
+    picture = picture_of(SKG_TYPE_FLOAT32);
     picture.data = NULL;
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "no data");
-    picture = picture_of(SKG_FLOAT32);
-    picture.open = nan("");
+    picture = picture_of(SKG_TYPE_FLOAT32);
+    picture.flat_field = nan("");
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "open beam");
-    picture = picture_of(SKG_FLOAT32);
+    picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = 0;
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "0 channels");
     ck_skg_fails(skg_picture_write(NULL, path), SKG_ERR_ARGUMENT, "skg_picture");

@@ -40,7 +40,7 @@ static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material
     skg_plan_options options;
     skg_plan_options_init(&options);
     options.overlaps = 0;
-    options.quantity = SKG_ATTENUATION;
+    options.quantity = SKG_QUANTITY_ATTENUATION;
     options.world = world;
     ck_skg(skg_scene_create(run_context, &scene));
     skg_part_init(&part);
@@ -50,7 +50,7 @@ static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material
     ck_skg(skg_scene_add(scene, &part, NULL));
     part.material = other, part.label = "other", part.pose[3] = 25, part.pose[11] = 25;
     ck_skg(skg_scene_add(scene, &part, NULL));
-    ck_skg(skg_spectrum_bins(2, kev, photons, &spectrum));
+    ck_skg(skg_spectrum_create_bins(2, kev, photons, &spectrum));
     ck_skg(skg_plan_create(run_context, scene, &view, spectrum, &options, &plan));
     skg_scene_release(&scene);
     skg_spectrum_release(&spectrum);
@@ -59,8 +59,8 @@ static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material
 
 static skg_material *dense(const char *name, double density) {
     skg_material *material, *result;
-    ck_skg(skg_material_named(name, &material));
-    ck_skg(skg_material_at_density(material, density, &result));
+    ck_skg(skg_material_create_named(name, &material));
+    ck_skg(skg_material_create_at_density(material, density, &result));
     skg_material_release(&material);
     return result;
 }
@@ -72,7 +72,8 @@ static skg_status submit(skg_plan *plan, int64_t count, const int64_t *ids, cons
     skg_output output;
     skg_frame_init(&frame);
     skg_output_init(&output);
-    frame.matters = count, frame.matter_ids = ids, frame.matter_density = density, frame.matter_share = share;
+    frame.override_count = count, frame.override_parts = ids, frame.density_ratios = density,
+    frame.fill_fractions = share;
     output.data = to;
     skg_status status = skg_plan_submit(plan, 1, &frame, &output, &job);
     return status == SKG_OK ? skg_job_wait(&job) : status;

@@ -41,16 +41,16 @@ static void check_same_bits(const skg_mesh *a, const skg_mesh *b) {
 
 START_TEST(ply_comes_back_bit_for_bit) {
     skg_mesh *mesh, *back;
-    ck_skg(skg_mesh_sphere(1. / 3, 20, &mesh)); /* no floats */
+    ck_skg(skg_mesh_create_sphere(1. / 3, 20, &mesh)); /* no floats */
     ck_skg(skg_mesh_save(mesh, in_folder("sphere.ply")));
     back = load(path);
     check_same_bits(mesh, back);
     const char *name;
-    ck_skg(skg_mesh_name(back, &name));
+    ck_skg(skg_mesh_name_get(back, &name));
     ck_assert_str_eq(name, "sphere.ply");
     skg_mesh_release(&mesh);
     skg_mesh_release(&back);
-    ck_skg(skg_mesh_cube(3, &mesh)); /* floats hold it: 12 bytes a vertex, 13 a triangle */
+    ck_skg(skg_mesh_create_cube(3, &mesh)); /* floats hold it: 12 bytes a vertex, 13 a triangle */
     ck_skg(skg_mesh_save(mesh, in_folder("cube.ply")));
     struct stat about;
     ck_assert_int_eq(stat(path, &about), 0);
@@ -68,7 +68,7 @@ END_TEST
 /* STL has floats and no shared vertices: corner by corner, in order. */
 START_TEST(stl_comes_back_corner_by_corner) {
     skg_mesh *mesh, *back;
-    ck_skg(skg_mesh_sphere(100. / 3, 20, &mesh));
+    ck_skg(skg_mesh_create_sphere(100. / 3, 20, &mesh));
     ck_skg(skg_mesh_save(mesh, in_folder("sphere.STL")));
     back = load(path);
     ck_assert_int_eq(back->vertices, 3 * mesh->triangles);
@@ -260,7 +260,7 @@ END_TEST
 
 START_TEST(nothing_is_left_where_nothing_can_be_written) {
     skg_mesh *mesh;
-    ck_skg(skg_mesh_cube(1, &mesh));
+    ck_skg(skg_mesh_create_cube(1, &mesh));
     ck_skg_fails(skg_mesh_save(mesh, in_folder("no/such/folder.ply")), SKG_ERR_OUTPUT, "folder.ply");
     ck_skg_fails(skg_mesh_save(mesh, folder), SKG_ERR_OUTPUT, folder); /* a folder is there */
     ck_skg_fails(skg_mesh_save(mesh, NULL), SKG_ERR_ARGUMENT, "no path");
@@ -272,7 +272,7 @@ END_TEST
 /* Every allocation fails once; each time a clean refusal, no mesh, no file, no leak (under the sanitizer). */
 START_TEST(memory_may_end_anywhere) {
     skg_mesh *mesh = NULL, *cube;
-    ck_skg(skg_mesh_cube(1, &cube));
+    ck_skg(skg_mesh_create_cube(1, &cube));
     file_of("a.obj", SQUARE "f 1 2 3 4\n");
     for (int what = 0; what < 3; what++) {
         skg_status status = SKG_ERR_MEMORY;
@@ -281,7 +281,7 @@ START_TEST(memory_may_end_anywhere) {
         snprintf(target, sizeof target, "%s/%s", folder, what == 2 ? "out.stl" : "a.obj");
         for (; status != SKG_OK; failures++) {
             allocations_left = failures;
-            if (what == 0) status = skg_mesh_sphere(1, 8, &mesh);
+            if (what == 0) status = skg_mesh_create_sphere(1, 8, &mesh);
             if (what == 1) status = skg_mesh_load(NULL, target, 1, &mesh);
             if (what == 2) status = skg_mesh_save(cube, target);
             allocations_left = -1;

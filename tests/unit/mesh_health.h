@@ -9,7 +9,7 @@
 static inline skg_mesh_health health_of(const skg_mesh *mesh) {
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    ck_skg(skg_mesh_get_health(mesh, &health));
+    ck_skg(skg_mesh_health_get(mesh, &health));
     return health;
 }
 

@@ -61,7 +61,7 @@ END_TEST
 START_TEST(own_readers_agree_with_assimp) {
     static const char *const names[] = {"a.stl", "b.ply", "c.stl", "d.obj"};
     skg_mesh *mesh;
-    ck_skg(skg_mesh_sphere(100. / 3, 12, &mesh));
+    ck_skg(skg_mesh_create_sphere(100. / 3, 12, &mesh));
     for (int i = 0; i < 4; i++) {
         if (i < 2)
             ck_skg(skg_mesh_save(mesh, in_folder(names[i])));

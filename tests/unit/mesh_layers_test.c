@@ -11,12 +11,12 @@ static skg_mesh *stacked_cubes(int count, double apart) {
     double one[24];
     int32_t one_corners[36];
     int64_t vertices = 0, triangles = 0;
-    ck_skg(skg_mesh_cube(1, &cube));
-    ck_skg(skg_mesh_size(cube, &vertices, &triangles));
+    ck_skg(skg_mesh_create_cube(1, &cube));
+    ck_skg(skg_mesh_count(cube, &vertices, &triangles));
     ck_assert_int_eq(vertices, 8);
     ck_assert_int_eq(triangles, 12);
-    ck_skg(skg_mesh_read_positions(cube, one, 0));
-    ck_skg(skg_mesh_read_triangles(cube, one_corners, 0));
+    ck_skg(skg_mesh_positions_get(cube, one, 0));
+    ck_skg(skg_mesh_triangles_get(cube, one_corners, 0));
     for (int i = 0; i < count; i++) {
         for (int v = 0; v < 24; v++) positions[24 * i + v] = one[v] + (v % 3 == 2 ? i * apart : 0);
         for (int c = 0; c < 36; c++) corners[36 * i + c] = one_corners[c] + 8 * i;

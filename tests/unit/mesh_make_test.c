@@ -36,11 +36,11 @@ static double polygon_area(double radius, int64_t corners) {
 
 START_TEST(cuboids_are_closed_and_outward) {
     skg_mesh *mesh;
-    ck_skg(skg_mesh_cube(10, &mesh));
+    ck_skg(skg_mesh_create_cube(10, &mesh));
     check_perfect(mesh, 1000, 600);
     skg_mesh_release(&mesh);
     ck_assert_ptr_null(mesh);
-    ck_skg(skg_mesh_cuboid(1, 2, 3, &mesh));
+    ck_skg(skg_mesh_create_cuboid(1, 2, 3, &mesh));
     check_perfect(mesh, 6, 22);
     ck_assert_double_eq(health_of(mesh).bounds[5], 1.5);
     skg_mesh_release(&mesh);
@@ -59,7 +59,7 @@ START_TEST(sphere_has_its_vertices_on_the_sphere) {
             volume += 50 * (cos(a) - cos(c)) / 3 * (lower + sqrt(lower * upper) + upper);
         }
         skg_mesh *mesh;
-        ck_skg(skg_mesh_sphere(50, n, &mesh));
+        ck_skg(skg_mesh_create_sphere(50, n, &mesh));
         skg_mesh_health health = health_of(mesh);
         ck_assert_double_eq_tol(health.volume / volume, 1, 1e-12);
         ck_assert_int_eq(health.closed && health.outward && health.consistent, 1);
@@ -79,12 +79,12 @@ END_TEST
 START_TEST(cylinder_is_a_prism) {
     skg_mesh *mesh;
     for (int64_t n = 4; n < 100; n += 24) {
-        ck_skg(skg_mesh_cylinder(7, 20, n, &mesh));
+        ck_skg(skg_mesh_create_cylinder(7, 20, n, &mesh));
         double side = 2 * 7 * sin(pi / (double)n);
         check_perfect(mesh, 20 * polygon_area(7, n), 2 * polygon_area(7, n) + 20 * side * (double)n);
         skg_mesh_release(&mesh);
     }
-    ck_skg(skg_mesh_cylinder(7, 20, 3, &mesh));
+    ck_skg(skg_mesh_create_cylinder(7, 20, 3, &mesh));
     ck_assert_double_eq_tol(health_of(mesh).volume, 20 * polygon_area(7, 3), 1e-11);
     skg_mesh_release(&mesh);
 }
@@ -95,7 +95,7 @@ START_TEST(step_wedge_has_its_steps) {
     for (int64_t n = 1; n < 12; n++) {
         skg_mesh *mesh;
         double side = 60 * 8 * (double)(n + 1) / (double)(2 * n);
-        ck_skg(skg_mesh_step_wedge(60, 20, 8, n, &mesh));
+        ck_skg(skg_mesh_create_step_wedge(60, 20, 8, n, &mesh));
         check_perfect(mesh, 20 * side, 2 * 60 * 20 + 2 * 20 * 8 + 2 * side);
         skg_mesh_release(&mesh);
     }
@@ -104,23 +104,23 @@ END_TEST
 
 START_TEST(makers_refuse_what_is_no_length_or_count) {
     skg_mesh *mesh;
-    ck_skg_fails(skg_mesh_cube(0, &mesh), SKG_ERR_ARGUMENT, "cube: edge 0 mm");
+    ck_skg_fails(skg_mesh_create_cube(0, &mesh), SKG_ERR_ARGUMENT, "cube: edge 0 mm");
     ck_assert_ptr_null(mesh);
-    ck_skg_fails(skg_mesh_cuboid(1, -2, 3, &mesh), SKG_ERR_ARGUMENT, "along y");
-    ck_skg_fails(skg_mesh_sphere((double)INFINITY, 8, &mesh), SKG_ERR_ARGUMENT, "radius");
-    ck_skg_fails(skg_mesh_sphere(1, 2, &mesh), SKG_ERR_ARGUMENT, "2 segments");
-    ck_skg_fails(skg_mesh_sphere(1, INT64_MAX, &mesh), SKG_ERR_ARGUMENT, "segments");
-    ck_skg_fails(skg_mesh_cylinder(1, (double)NAN, 8, &mesh), SKG_ERR_ARGUMENT, "height");
-    ck_skg_fails(skg_mesh_cylinder(1, 1, INT64_MAX, &mesh), SKG_ERR_ARGUMENT, "segments");
-    ck_skg_fails(skg_mesh_step_wedge(1, 1, 1, 0, &mesh), SKG_ERR_ARGUMENT, "0 steps");
-    ck_skg_fails(skg_mesh_cube(1, NULL), SKG_ERR_ARGUMENT, "cube");
+    ck_skg_fails(skg_mesh_create_cuboid(1, -2, 3, &mesh), SKG_ERR_ARGUMENT, "along y");
+    ck_skg_fails(skg_mesh_create_sphere((double)INFINITY, 8, &mesh), SKG_ERR_ARGUMENT, "radius");
+    ck_skg_fails(skg_mesh_create_sphere(1, 2, &mesh), SKG_ERR_ARGUMENT, "2 segments");
+    ck_skg_fails(skg_mesh_create_sphere(1, INT64_MAX, &mesh), SKG_ERR_ARGUMENT, "segments");
+    ck_skg_fails(skg_mesh_create_cylinder(1, (double)NAN, 8, &mesh), SKG_ERR_ARGUMENT, "height");
+    ck_skg_fails(skg_mesh_create_cylinder(1, 1, INT64_MAX, &mesh), SKG_ERR_ARGUMENT, "segments");
+    ck_skg_fails(skg_mesh_create_step_wedge(1, 1, 1, 0, &mesh), SKG_ERR_ARGUMENT, "0 steps");
+    ck_skg_fails(skg_mesh_create_cube(1, NULL), SKG_ERR_ARGUMENT, "cube");
 }
 END_TEST
 
 /* A fan of many triangles around vertex 0: one large group of edges. */
 START_TEST(many_triangles_at_one_vertex) {
     skg_mesh *mesh;
-    ck_skg(skg_mesh_cylinder(10, 10, 50000, &mesh));
+    ck_skg(skg_mesh_create_cylinder(10, 10, 50000, &mesh));
     check_perfect(mesh, 10 * polygon_area(10, 50000), 0);
     skg_mesh_release(&mesh);
 }

@@ -22,13 +22,13 @@ START_TEST(shuffled_triangles_are_put_in_order) {
     int64_t vertices, triangles;
     int32_t sorted, *corners, *given;
     double *positions;
-    ck_skg(skg_mesh_sphere(100, 128, &sphere));
-    ck_skg(skg_mesh_size(sphere, &vertices, &triangles));
+    ck_skg(skg_mesh_create_sphere(100, 128, &sphere));
+    ck_skg(skg_mesh_count(sphere, &vertices, &triangles));
     ck_skg(skg_alloc(3 * vertices, sizeof *positions, "test", &positions));
     ck_skg(skg_alloc(3 * triangles, sizeof *corners, "test", &corners));
     ck_skg(skg_alloc(3 * triangles, sizeof *given, "test", &given));
-    ck_skg(skg_mesh_read_positions(sphere, positions, 0));
-    ck_skg(skg_mesh_read_triangles(sphere, given, 0));
+    ck_skg(skg_mesh_positions_get(sphere, positions, 0));
+    ck_skg(skg_mesh_triangles_get(sphere, given, 0));
     ck_skg(skg_mesh_sorted_corners(sphere, corners, &sorted));
     ck_assert_int_eq(sorted, 0); /* rings are good enough */
     ck_assert_mem_eq(corners, given, 3 * (size_t)triangles * sizeof *given);

@@ -33,9 +33,9 @@ static double cube_positions[8 * 3];
 static int32_t cube_corners[12 * 3];
 static void take_cube(void) {
     skg_mesh *mesh;
-    ck_skg(skg_mesh_cube(2, &mesh));
-    ck_skg(skg_mesh_read_positions(mesh, cube_positions, 0));
-    ck_skg(skg_mesh_read_triangles(mesh, cube_corners, 0));
+    ck_skg(skg_mesh_create_cube(2, &mesh));
+    ck_skg(skg_mesh_positions_get(mesh, cube_positions, 0));
+    ck_skg(skg_mesh_triangles_get(mesh, cube_corners, 0));
     skg_mesh_release(&mesh);
 }
 
@@ -57,14 +57,14 @@ START_TEST(numbering_strides_and_units_are_the_callers) {
     skg_mesh *mesh;
     ck_skg(skg_mesh_create_float(NULL, NULL, 8, positions, 5, 12, corners, 4, 10, &mesh));
     const char *name;
-    ck_skg(skg_mesh_name(mesh, &name));
+    ck_skg(skg_mesh_name_get(mesh, &name));
     ck_assert_str_eq(name, "mesh");
     int64_t vertices, triangles;
-    ck_skg(skg_mesh_size(mesh, &vertices, &triangles));
+    ck_skg(skg_mesh_count(mesh, &vertices, &triangles));
     ck_assert_int_eq(vertices, 8);
     ck_assert_int_eq(triangles, 12);
-    ck_skg(skg_mesh_read_positions(mesh, back, 4));
-    ck_skg(skg_mesh_read_triangles(mesh, corners_back, 4));
+    ck_skg(skg_mesh_positions_get(mesh, back, 4));
+    ck_skg(skg_mesh_triangles_get(mesh, corners_back, 4));
     for (int i = 0; i < 24; i++) ck_assert_double_eq(back[i / 3 * 4 + i % 3], 10 * cube_positions[i] + 2.5);
     for (int i = 0; i < 36; i++) ck_assert_int_eq(corners_back[i / 3 * 4 + i % 3], cube_corners[i]);
     for (int i = 3; i < 48; i += 4) ck_assert_int_eq(corners_back[i], 99);
@@ -103,9 +103,9 @@ START_TEST(inverted_cube_is_turned_and_told) {
     ck_assert_double_eq(health.volume, 8);
     ck_assert_int_eq(mesh->orientation, -1);
     ck_assert_ptr_nonnull(strstr(last_warning, "thing: inverted"));
-    ck_skg(skg_mesh_read_triangles(mesh, back, 0));
+    ck_skg(skg_mesh_triangles_get(mesh, back, 0));
     ck_assert_mem_eq(back, corners, sizeof corners);
-    ck_skg(skg_mesh_write_positions(mesh, cube_positions, 0));
+    ck_skg(skg_mesh_positions_set(mesh, cube_positions, 0));
     ck_assert_double_eq(health_of(mesh).volume, 8); /* still as turned */
     skg_mesh_release(&mesh);
 }
@@ -136,14 +136,14 @@ START_TEST(equal_positions_are_welded_for_the_health) {
     ck_assert_double_eq(health.volume, 8);
     /* Moved together it stays closed; moved apart it would open. */
     for (int i = 0; i < 36 * 3; i++) soup[i] *= 3;
-    ck_skg(skg_mesh_write_positions(mesh, soup, 0));
+    ck_skg(skg_mesh_positions_set(mesh, soup, 0));
     soup[3 * 35] += 1e-9;
-    ck_skg_fails(skg_mesh_write_positions(mesh, soup, 0), SKG_ERR_MESH, "and 35 were at the same place");
+    ck_skg_fails(skg_mesh_positions_set(mesh, soup, 0), SKG_ERR_MESH, "and 35 were at the same place");
     ck_assert_double_eq(health_of(mesh).volume, 8 * 27);
     float *offsets;
-    ck_skg(skg_mesh_positions(mesh, &offsets, NULL));
+    ck_skg(skg_mesh_offsets_get(mesh, &offsets, NULL));
     offsets[3 * 35] += 1;
-    ck_skg_fails(skg_mesh_moved(mesh), SKG_ERR_MESH, "move them together");
+    ck_skg_fails(skg_mesh_offsets_moved(mesh), SKG_ERR_MESH, "move them together");
     skg_mesh_release(&mesh);
 }
 END_TEST
@@ -272,15 +272,15 @@ START_TEST(far_mesh_keeps_its_volume_and_offsets) {
     float *offsets, lowest[3], highest[3];
     const double *origin;
     int64_t bad;
-    ck_skg(skg_mesh_positions(mesh, &offsets, &origin));
+    ck_skg(skg_mesh_offsets_get(mesh, &offsets, &origin));
     for (int i = 0; i < 24; i++) ck_assert(offsets[i] == (float)cube_positions[i]);
     for (int k = 0; k < 3; k++) ck_assert_double_eq(origin[k], 1048576);
     /* Moved a little: the origin stays. Far: it follows. */
     positions[0] += 0.5;
-    ck_skg(skg_mesh_write_positions(mesh, positions, 0));
+    ck_skg(skg_mesh_positions_set(mesh, positions, 0));
     ck_assert_double_eq(origin[0], 1048576);
     for (int i = 0; i < 24; i++) positions[i] = cube_positions[i] + 0.125;
-    ck_skg(skg_mesh_write_positions(mesh, positions, 0));
+    ck_skg(skg_mesh_positions_set(mesh, positions, 0));
     ck_assert_double_eq(origin[0], 0.125);
     skg_mesh_bounds(mesh, lowest, highest, &bad);
     ck_assert(lowest[0] == -1 && highest[2] == 1 && bad == -1);
@@ -294,36 +294,36 @@ START_TEST(moving_in_place) {
     const double *origin;
     int64_t version, bad;
     double positions[24];
-    ck_skg(skg_mesh_cube(2, &mesh));
-    ck_skg(skg_mesh_version(mesh, &version));
+    ck_skg(skg_mesh_create_cube(2, &mesh));
+    ck_skg(skg_mesh_version_get(mesh, &version));
     ck_assert_int_eq(version, 1);
-    ck_skg(skg_mesh_positions(mesh, &offsets, &origin));
+    ck_skg(skg_mesh_offsets_get(mesh, &offsets, &origin));
     for (int i = 0; i < 24; i++) offsets[i] *= 2;
-    ck_skg(skg_mesh_moved(mesh));
-    ck_skg(skg_mesh_version(mesh, &version));
+    ck_skg(skg_mesh_offsets_moved(mesh));
+    ck_skg(skg_mesh_version_get(mesh, &version));
     ck_assert_int_eq(version, 2);
     skg_mesh_health health = health_of(mesh);
     ck_assert_double_eq(health.volume, 64);
     ck_assert_double_eq(health.area, 96);
     ck_assert_double_eq(health.bounds[0], -2);
     ck_assert_int_eq(health.closed, 1);
-    ck_skg(skg_mesh_read_positions(mesh, positions, 0));
+    ck_skg(skg_mesh_positions_get(mesh, positions, 0));
     for (int i = 0; i < 24; i++) ck_assert_double_eq(fabs(positions[i]), 2);
     skg_mesh_bounds(mesh, lowest, highest, &bad);
     ck_assert(lowest[1] == -2 && highest[1] == 2 && bad == -1);
     offsets[3 * 5 + 1] = INFINITY;
     offsets[3 * 6] = NAN;
-    ck_skg(skg_mesh_moved(mesh));
+    ck_skg(skg_mesh_offsets_moved(mesh));
     skg_mesh_bounds(mesh, lowest, highest, &bad);
     ck_assert(lowest[1] == -2 && highest[1] == 2 && bad == 5);
     ck_skg_fails(skg_mesh_save(mesh, "never.ply"), SKG_ERR_MESH, "vertex 5 is not finite");
-    ck_skg(skg_mesh_write_positions(mesh, positions, 0)); /* mended */
+    ck_skg(skg_mesh_positions_set(mesh, positions, 0)); /* mended */
     skg_mesh_bounds(mesh, lowest, highest, &bad);
     ck_assert_int_eq(bad, -1);
     ck_assert_double_eq(health_of(mesh).volume, 64);
     positions[3 * 4 + 2] = (double)NAN;
-    ck_skg_fails(skg_mesh_write_positions(mesh, positions, 0), SKG_ERR_MESH, "vertex 4");
-    ck_skg(skg_mesh_version(mesh, &version));
+    ck_skg_fails(skg_mesh_positions_set(mesh, positions, 0), SKG_ERR_MESH, "vertex 4");
+    ck_skg(skg_mesh_version_get(mesh, &version));
     ck_assert_int_eq(version, 4);
     ck_assert_double_eq(health_of(mesh).volume, 64);
     skg_mesh_release(&mesh);
@@ -366,8 +366,8 @@ START_TEST(bad_arrays_are_named) {
 #undef CREATE
     ck_assert_ptr_null(mesh);
     ck_skg_fails(skg_mesh_retain(NULL), SKG_ERR_ARGUMENT, "skg_mesh_retain");
-    ck_skg_fails(skg_mesh_read_positions(NULL, p, 0), SKG_ERR_ARGUMENT, "mesh is NULL");
-    ck_skg_fails(skg_mesh_moved(NULL), SKG_ERR_ARGUMENT, "mesh is NULL");
+    ck_skg_fails(skg_mesh_positions_get(NULL, p, 0), SKG_ERR_ARGUMENT, "mesh is NULL");
+    ck_skg_fails(skg_mesh_offsets_moved(NULL), SKG_ERR_ARGUMENT, "mesh is NULL");
     skg_mesh_release(&mesh);
     skg_mesh_release(NULL);
 }
@@ -376,11 +376,11 @@ END_TEST
 START_TEST(health_of_another_size) {
     skg_mesh *mesh;
     skg_mesh_health health;
-    ck_skg(skg_mesh_cube(1, &mesh));
+    ck_skg(skg_mesh_create_cube(1, &mesh));
     skg_mesh_health_init(&health);
     health.size = 3 * sizeof(int32_t); /* an older caller's */
     health.outward = 77;
-    ck_skg(skg_mesh_get_health(mesh, &health));
+    ck_skg(skg_mesh_health_get(mesh, &health));
     ck_assert_int_eq(health.closed, 1);
     ck_assert_int_eq(health.outward, 77);
     ck_assert_int_eq(health.size, 3 * (int)sizeof(int32_t));

@@ -36,8 +36,8 @@ START_TEST(png_shows_dense_white_or_dark) {
     uint16_t levels[PIXELS];
     char texts[2048];
     double expected[PIXELS];
-    skg_picture picture = picture_of(SKG_FLOAT64);
-    picture.open = 6000;
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
+    picture.flat_field = 6000;
     for (int i = 0; i < PIXELS; i++) doubles[i] = 6000 * exp(-0.1 * i);
     ck_skg(skg_picture_write(&picture, at("a.png")));
     read_png(path, levels, texts, sizeof texts);
@@ -66,19 +66,19 @@ START_TEST(png_knows_what_the_data_are) {
     uint16_t levels[PIXELS], again[PIXELS];
     char texts[2048];
     double low, high;
-    skg_picture picture = picture_of(SKG_FLOAT64);
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
     /* The same picture from transmissions and from attenuations. */
-    picture.quantity = SKG_ATTENUATION;
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
     for (int i = 0; i < PIXELS; i++) doubles[i] = 0.125 * i;
     ck_skg(skg_picture_write(&picture, at("a.png")));
     read_png(path, levels, texts, sizeof texts);
-    picture.quantity = SKG_TRANSMISSION;
+    picture.quantity = SKG_QUANTITY_TRANSMISSION;
     for (int i = 0; i < PIXELS; i++) doubles[i] = exp(-0.125 * i);
     ck_skg(skg_picture_write(&picture, path));
     read_png(path, again, texts, sizeof texts);
     for (int i = 0; i < PIXELS; i++) ck_assert_int_le(abs(levels[i] - again[i]), 1);
     /* Lengths, without an open beam, are shown as they are, and exactly: 0 to 34 of 35 pixels. */
-    picture.quantity = SKG_ENERGY, picture.name = "path length", picture.unit = "mm";
+    picture.quantity = SKG_QUANTITY_ENERGY, picture.name = "path length", picture.unit = "mm";
     for (int i = 0; i < PIXELS; i++) doubles[i] = i;
     ck_skg(skg_picture_write(&picture, path));
     read_png(path, levels, texts, sizeof texts);
@@ -93,8 +93,8 @@ START_TEST(ranges_leave_out_what_is_not_finite) {
     double low, high;
     uint16_t levels[PIXELS];
     char texts[2048];
-    skg_picture picture = picture_of(SKG_FLOAT32);
-    picture.quantity = SKG_TRANSMISSION;
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
+    picture.quantity = SKG_QUANTITY_TRANSMISSION;
     for (int i = 0; i < PIXELS; i++) floats[i] = 0.5f;
     floats[0] = 0, floats[1] = -0.25f, floats[2] = nanf(""), floats[3] = 1;
     ck_skg(skg_picture_range(&picture, &low, &high));

@@ -18,8 +18,8 @@ static skg_view view;
 
 static void open_context(void) {
     ck_skg(skg_context_create(NULL, &context));
-    ck_skg(skg_material_mu("water", 0.2, &water));
-    ck_skg(skg_spectrum_mono(60, 1, &beam));
+    ck_skg(skg_material_create_mu("water", 0.2, &water));
+    ck_skg(skg_spectrum_create_mono(60, 1, &beam));
     skg_view_init(&view);
     view.columns = view.rows = SIDE;
     view.source[2] = -1000;
@@ -42,12 +42,12 @@ typedef struct {
 
 static void fill_sphere(soup *s) {
     skg_mesh *sphere = NULL;
-    ck_skg(skg_mesh_sphere(RADIUS, 24, &sphere));
-    ck_skg(skg_mesh_size(sphere, &s->vertices, &s->triangles));
+    ck_skg(skg_mesh_create_sphere(RADIUS, 24, &sphere));
+    ck_skg(skg_mesh_count(sphere, &s->vertices, &s->triangles));
     ck_assert_int_lt(s->vertices, MOST - 8);
     ck_assert_int_lt(s->triangles, MOST - 8);
-    ck_skg(skg_mesh_read_positions(sphere, s->positions, 3));
-    ck_skg(skg_mesh_read_triangles(sphere, s->corners, 3));
+    ck_skg(skg_mesh_positions_get(sphere, s->positions, 3));
+    ck_skg(skg_mesh_triangles_get(sphere, s->corners, 3));
     skg_mesh_release(&sphere);
 }
 
@@ -119,18 +119,18 @@ static void take(const soup *a, const soup *b, const wish *w, picture *result) {
     skg_plan_options_init(&options);
     ck_assert_int_eq(options.repair, SKG_REPAIR_NEIGHBOURS);
     options.repair = w->repair, options.strategy = w->strategy, options.precision = w->precision;
-    options.quantity = SKG_ATTENUATION;
+    options.quantity = SKG_QUANTITY_ATTENUATION;
     ck_skg(skg_plan_create(context, scene, &view, beam, &options, &plan));
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = result->mm;
+    output.type = SKG_TYPE_FLOAT64, output.data = result->mm;
     if (b) {
         ck_skg(skg_plan_image(plan, &output));
     } else {
-        ck_skg(skg_plan_lengths(plan, 0, SKG_NET, 1, NULL, &output, &job));
+        ck_skg(skg_plan_lengths(plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
     }
     skg_plan_report_init(&result->report);
-    ck_skg(skg_plan_get_report(plan, &result->report));
+    ck_skg(skg_plan_report_get(plan, &result->report));
     skg_plan_release(&plan);
     skg_scene_release(&scene);
 }
@@ -156,9 +156,9 @@ static const double DOUBLE_TOLERANCE = 1e-9;
 /* The soup with and without repair against the closed one. change: mm by which neighbours may differ. */
 static void check_repairs(const soup *broken, const soup *closed, double change) {
     static picture truth, left_out, neighbours, exact;
-    wish w = {.precision = SKG_DOUBLE};
+    wish w = {.precision = SKG_PRECISION_DOUBLE};
     take(closed, NULL, &w, &truth);
-    ck_assert_int_eq(truth.report.open_parts, 0);
+    ck_assert_int_eq(truth.report.leaky_parts, 0);
     w.repair = SKG_REPAIR_NONE;
     take(broken, NULL, &w, &left_out);
     ck_assert_int_gt(left_out.report.bad_pixels, 10);
@@ -222,7 +222,7 @@ END_TEST
 START_TEST(a_cut) {
     static soup closed, broken;
     static picture truth, exact;
-    wish w = {.precision = SKG_DOUBLE, .repair = SKG_REPAIR_EXACT};
+    wish w = {.precision = SKG_PRECISION_DOUBLE, .repair = SKG_REPAIR_EXACT};
     fill_sphere(&broken);
     for (int64_t v = 0; v < broken.vertices;
          v++) { /* rings of the sphere are plane: flatten what is above one */
@@ -250,7 +250,7 @@ END_TEST
 START_TEST(holes_that_coincide) {
     static soup closed, near, far;
     static picture truth, one, two, exact, neighbours;
-    wish w = {.precision = SKG_DOUBLE, .repair = SKG_REPAIR_EXACT, .z = {-60, 60}};
+    wish w = {.precision = SKG_PRECISION_DOUBLE, .repair = SKG_REPAIR_EXACT, .z = {-60, 60}};
     double mu = 0;
     fill_sphere(&closed);
     near = far = closed;
@@ -266,7 +266,7 @@ START_TEST(holes_that_coincide) {
     ck_assert_double_le(worst(&exact, &truth), DOUBLE_TOLERANCE);
     w.repair = SKG_REPAIR_NEIGHBOURS;
     take(&near, &far, &w, &neighbours);
-    ck_skg(skg_material_attenuation(water, 60, &mu));
+    ck_skg(skg_material_attenuation_get(water, 60, &mu));
     ck_assert_double_le(worst(&neighbours, &truth), 2 * 0.1 * mu * NEIGHBOURS_CHANGE);
 }
 END_TEST
@@ -296,10 +296,10 @@ START_TEST(in_through_one_hole_and_out_through_another) {
     fill_windowed(&closed, 0);
     fill_windowed(&broken, 1);
     for (int32_t projection = 0; projection < 2; projection++) {
-        wish w = {.precision = SKG_DOUBLE};
-        view.projection = projection ? SKG_PARALLEL : SKG_POINT;
+        wish w = {.precision = SKG_PRECISION_DOUBLE};
+        view.projection = projection ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         take(&closed, NULL, &w, &truth);
-        ck_assert_int_eq(truth.report.open_parts, 0);
+        ck_assert_int_eq(truth.report.leaky_parts, 0);
         ck_assert_double_gt(truth.mm[SIDE / 2][SIDE / 2], 59.9);
         take(&broken, NULL, &w, &left_out);
         w.repair = SKG_REPAIR_NEIGHBOURS;
@@ -342,8 +342,9 @@ static double neighbours_of(const picture *truth, const picture *left_out, int r
 START_TEST(neighbours_are_the_means_of_squares) {
     static soup closed, broken;
     static picture truth, left_out, repaired;
-    wish w = {.precision = SKG_DOUBLE, .repair = SKG_REPAIR_NONE};
-    view.projection = SKG_PARALLEL; /* every ray as long: a mean of path parameters is one of lengths */
+    wish w = {.precision = SKG_PRECISION_DOUBLE, .repair = SKG_REPAIR_NONE};
+    view.projection =
+        SKG_PROJECTION_PARALLEL; /* every ray as long: a mean of path parameters is one of lengths */
     fill_sphere(&closed);
     broken = closed;
     for (int k = 0; k < 9; k++) remove_triangle(&broken, triangle_at(&broken, 20.0 - 5 * k, 3, -40));
@@ -382,7 +383,7 @@ START_TEST(no_valid_pixel) {
                                .positions = {-200, -200, 0, 200, -200, 0, 200, 200, 0, -200, 200, 0},
                                .corners = {0, 1, 2, 0, 2, 3}};
     static picture left;
-    const wish w = {.precision = SKG_DOUBLE, .repair = SKG_REPAIR_NEIGHBOURS};
+    const wish w = {.precision = SKG_PRECISION_DOUBLE, .repair = SKG_REPAIR_NEIGHBOURS};
     take(&sheet, NULL, &w, &left);
     ck_assert_int_eq(left.report.bad_pixels, SIDE * SIDE);
     ck_assert_int_eq(left.report.repaired_pixels, 0);
@@ -406,11 +407,11 @@ START_TEST(what_is_told) {
     char expected[100];
     int row = -1, column = -1;
     fill_sphere(&broken);
-    take(&broken, NULL, &(wish){.precision = SKG_DOUBLE}, &image);
+    take(&broken, NULL, &(wish){.precision = SKG_PRECISION_DOUBLE}, &image);
     remove_triangle(&broken, triangle_at(&broken, 5, 3, -40));
-    ck_skg(skg_context_set_log(context, keep_warning, NULL));
+    ck_skg(skg_context_log_set(context, keep_warning, NULL));
     for (int32_t repair = SKG_REPAIR_NONE; repair <= SKG_REPAIR_EXACT; repair++) {
-        take(&broken, NULL, &(wish){.precision = SKG_DOUBLE, .repair = repair}, &left_out);
+        take(&broken, NULL, &(wish){.precision = SKG_PRECISION_DOUBLE, .repair = repair}, &left_out);
         if (repair == SKG_REPAIR_NONE)
             for (int k = SIDE * SIDE; k-- > 0;)
                 if (fabs(left_out.mm[k / SIDE][k % SIDE] - image.mm[k / SIDE][k % SIDE]) > 1e-6)
@@ -452,19 +453,19 @@ START_TEST(what_is_told_once) {
     ck_skg(skg_scene_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     ck_skg(skg_plan_create(context, scene, &view, beam, NULL, &plan));
-    ck_skg(skg_context_set_log(context, count_warnings, NULL));
+    ck_skg(skg_context_log_set(context, count_warnings, NULL));
     skg_output_init(&output);
-    output.type = SKG_FLOAT64, output.data = image.mm;
+    output.type = SKG_TYPE_FLOAT64, output.data = image.mm;
     for (int k = 0; k < 5; k++) {
         skg_frame frame;
         skg_job *job = NULL;
         double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z[k], 0, 0, 0, 1};
         skg_frame_init(&frame);
-        frame.posed = 1, frame.posed_ids = &first, frame.posed_poses = pose;
+        frame.pose_count = 1, frame.pose_parts = &first, frame.poses = pose;
         ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
         ck_skg(skg_job_wait(&job));
         skg_plan_report_init(&image.report);
-        ck_skg(skg_plan_get_report(plan, &image.report));
+        ck_skg(skg_plan_report_get(plan, &image.report));
         if (k == 0) few = image.report.bad_pixels;
         ck_assert_int_gt(image.report.bad_pixels, z[k] < 0 ? 10 * few : 0); /* told of every frame */
         ck_assert_int_eq(warnings, told_by[k]);

@@ -12,8 +12,8 @@ static skg_material *water;
 
 static void set_up(void) {
     ck_skg(skg_scene_create(NULL, &scene));
-    ck_skg(skg_mesh_cube(10, &cube));
-    ck_skg(skg_material_mu("water", 0.2, &water));
+    ck_skg(skg_mesh_create_cube(10, &cube));
+    ck_skg(skg_material_create_mu("water", 0.2, &water));
 }
 
 static void tear_down(void) {
@@ -52,15 +52,15 @@ START_TEST(parts_come_back_as_they_went_in) {
     ck_skg(skg_scene_add(scene, &part, &id));
     ck_assert_int_eq(id, 1);
     skg_part_init(&read);
-    ck_skg(skg_scene_part(scene, 1, &read));
+    ck_skg(skg_scene_part_get(scene, 1, &read));
     ck_assert_int_eq(read.inside, 0);
     ck_assert_ptr_eq(read.mesh, cube);
     ck_assert_ptr_eq(read.material, water);
     ck_assert_str_eq(read.label, "liver");
     ck_assert_mem_eq(read.pose, part.pose, sizeof part.pose);
-    ck_skg(skg_scene_size(scene, &count));
+    ck_skg(skg_scene_part_count(scene, &count));
     ck_assert_int_eq(count, 2);
-    ck_skg(skg_scene_part(scene, 0, &read));
+    ck_skg(skg_scene_part_get(scene, 0, &read));
     ck_assert_str_eq(read.label, "skin");
 }
 END_TEST
@@ -72,8 +72,8 @@ START_TEST(a_part_keeps_mesh_and_material) {
     skg_part read;
     int64_t vertices = 0, triangles = 0;
     skg_part_init(&read);
-    ck_skg(skg_scene_part(scene, 0, &read));
-    ck_skg(skg_mesh_size(read.mesh, &vertices, &triangles));
+    ck_skg(skg_scene_part_get(scene, 0, &read));
+    ck_skg(skg_mesh_count(read.mesh, &vertices, &triangles));
     ck_assert_int_eq(triangles, 12);
 }
 END_TEST
@@ -81,10 +81,10 @@ END_TEST
 START_TEST(a_part_without_label_has_its_meshs_name) {
     skg_part part = good_part(NULL), read;
     const char *name = NULL;
-    ck_skg(skg_mesh_name(cube, &name));
+    ck_skg(skg_mesh_name_get(cube, &name));
     ck_skg(skg_scene_add(scene, &part, NULL));
     skg_part_init(&read);
-    ck_skg(skg_scene_part(scene, 0, &read));
+    ck_skg(skg_scene_part_get(scene, 0, &read));
     ck_assert_str_eq(read.label, name);
 }
 END_TEST
@@ -109,12 +109,12 @@ START_TEST(plans_can_see_what_changed) {
     add("a", -1);
     ck_assert_int_gt(scene->structure, structure);
     structure = scene->structure;
-    ck_skg(skg_scene_set_pose(scene, 0, pose));
+    ck_skg(skg_scene_pose_set(scene, 0, pose));
     ck_assert_int_eq(scene->structure, structure);
     ck_assert_int_gt(scene->poses, poses);
     poses = scene->poses;
     pose[0] = (double)NAN;
-    ck_skg_fails(skg_scene_set_pose(scene, 0, pose), SKG_ERR_SCENE, "not finite");
+    ck_skg_fails(skg_scene_pose_set(scene, 0, pose), SKG_ERR_SCENE, "not finite");
     ck_assert_int_eq(scene->poses, poses);
     ck_assert_double_eq(scene->parts[0].pose[3], 5);
 }
@@ -142,10 +142,10 @@ START_TEST(bad_parts_are_refused) {
     ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "empty label");
     part = (skg_part){0};
     ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "skg_part_init");
-    ck_skg(skg_scene_size(scene, &count));
+    ck_skg(skg_scene_part_count(scene, &count));
     ck_assert_int_eq(count, 1);
     skg_part_init(&part);
-    ck_skg_fails(skg_scene_part(scene, 1, &part), SKG_ERR_SCENE, "part 1 of 1");
+    ck_skg_fails(skg_scene_part_get(scene, 1, &part), SKG_ERR_SCENE, "part 1 of 1");
 }
 END_TEST
 
@@ -186,7 +186,7 @@ START_TEST(the_same_mesh_twice_in_a_place_is_told) {
     skg_context *context = NULL;
     int warnings = 0;
     ck_skg(skg_context_create(NULL, &context));
-    ck_skg(skg_context_set_log(context, count_warnings, &warnings));
+    ck_skg(skg_context_log_set(context, count_warnings, &warnings));
     skg_scene_release(&scene);
     ck_skg(skg_scene_create(context, &scene));
     skg_context_release(&context); /* the scene keeps it */

@@ -15,22 +15,22 @@ static double bone_mu(double kev) {
     skg_part part;
     double mu = 0;
     skg_part_init(&part);
-    ck_skg(skg_setup_scene(setup, &scene));
-    ck_skg(skg_scene_part(scene, 1, &part));
-    ck_skg(skg_material_attenuation(part.material, kev, &mu));
+    ck_skg(skg_setup_scene_get(setup, &scene));
+    ck_skg(skg_scene_part_get(scene, 1, &part));
+    ck_skg(skg_material_attenuation_get(part.material, kev, &mu));
     return mu;
 }
 
 static double mu_of(const char *name, double density, double kev) {
     skg_material *m = NULL, *dense = NULL;
     double mu = 0;
-    ck_skg(skg_material_named(name, &m));
+    ck_skg(skg_material_create_named(name, &m));
     if (density > 0) {
-        ck_skg(skg_material_at_density(m, density, &dense));
+        ck_skg(skg_material_create_at_density(m, density, &dense));
         skg_material_release(&m);
         m = dense;
     }
-    ck_skg(skg_material_attenuation(m, kev, &mu));
+    ck_skg(skg_material_attenuation_get(m, kev, &mu));
     skg_material_release(&m);
     return mu;
 }
@@ -73,8 +73,8 @@ END_TEST
 
 static skg_spectrum *spectrum(int64_t *count) {
     skg_spectrum *s = NULL;
-    ck_skg(skg_setup_spectrum(setup, &s));
-    ck_skg(skg_spectrum_size(s, count));
+    ck_skg(skg_setup_spectrum_get(setup, &s));
+    ck_skg(skg_spectrum_bin_count(s, count));
     return s;
 }
 
@@ -88,9 +88,9 @@ START_TEST(beams_of_many_energies) {
                   NULL));
     skg_spectrum *s = spectrum(&count);
     ck_assert_int_eq(count, 2);
-    ck_skg(skg_spectrum_bin(s, 0, &kev, &photons));
+    ck_skg(skg_spectrum_bin_get(s, 0, &kev, &photons));
     ck_assert(fabs(kev - 100) < 1e-12 && fabs(photons - 20) < 1e-12);
-    ck_skg(skg_spectrum_bin(s, 1, &kev, &photons));
+    ck_skg(skg_spectrum_bin_get(s, 1, &kev, &photons));
     ck_assert(fabs(kev - 300) < 1e-9 && fabs(photons - 15) < 1e-12);
     write_file("motion.csv", "0.06 5\n0.07 6\n");
     ck_skg(load_with("Source.Beam={\"TextFile\": \"motion.csv\", \"Unit\": \"MeV\"}", NULL));
@@ -106,7 +106,7 @@ END_TEST
 static skg_plan_options options(void) {
     skg_plan_options o;
     skg_plan_options_init(&o);
-    ck_skg(skg_setup_options(setup, &o));
+    ck_skg(skg_setup_options_get(setup, &o));
     return o;
 }
 
@@ -114,7 +114,7 @@ static skg_quality quality(int32_t *absolute) {
     int64_t count = 0;
     skg_quality q;
     skg_quality_init(&q);
-    ck_skg(skg_spectrum_quality(spectrum(&count), &q));
+    ck_skg(skg_spectrum_quality_get(spectrum(&count), &q));
     *absolute = options().falloff;
     return q;
 }
@@ -176,12 +176,12 @@ START_TEST(responses) {
     ck_skg(load_with("Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 600, \"Unit\": \"um\"}",
                      NULL));
     r = options().response;
-    ck_skg(skg_response_at(r, 60, 1, &kev, NULL));
+    ck_skg(skg_response_get(r, 60, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 52.97, 0.01);
     ck_skg(load_with(
         "Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 270.6, \"Unit\": \"mg/cm2\"}", NULL));
     r = options().response;
-    ck_skg(skg_response_at(r, 60, 1, &kev, NULL));
+    ck_skg(skg_response_get(r, 60, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 52.97, 0.01);
     ck_skg(load_with(
         "Detector.Scintillator={\"Material\": \"Gd2O2S DRZ-Plus\", \"Thickness\": 210, \"Unit\": \"um\"}",
@@ -189,11 +189,11 @@ START_TEST(responses) {
     write_file("motion.csv", "0.01 0.01\n0.1 0.04\n");
     ck_skg(load_with("Detector.Energy response={\"File\": \"motion.csv\", \"Energy\": \"MeV\"}", NULL));
     r = options().response;
-    ck_skg(skg_response_at(r, 100, 1, &kev, NULL));
+    ck_skg(skg_response_get(r, 100, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 40, 1e-9);
     ck_skg(load_with("Detector.EnergyResponse={\"LUT\": [[10, 10], [100, 40]]}", NULL));
     r = options().response;
-    ck_skg(skg_response_at(r, 55, 1, &kev, NULL));
+    ck_skg(skg_response_get(r, 55, 1, &kev, NULL));
     ck_assert_double_eq_tol(kev, 25, 1e-9);
 }
 END_TEST
@@ -221,7 +221,7 @@ START_TEST(worlds) {
     double mu = 0;
     ck_skg(load_with("World=Air", NULL));
     world = options().world;
-    ck_skg(skg_material_attenuation(world, 80, &mu));
+    ck_skg(skg_material_attenuation_get(world, 80, &mu));
     ck_assert_double_eq_tol(mu, 1.205e-3 * 0.1662, 1e-7);
     ck_skg(load_with("World=vacuum", NULL));
     world = options().world;
@@ -277,7 +277,7 @@ static skg_plan_options options_with(const char *one, const char *two) {
     skg_plan_options options;
     ck_skg(load_with(one, two));
     skg_plan_options_init(&options);
-    ck_skg(skg_setup_options(setup, &options));
+    ck_skg(skg_setup_options_get(setup, &options));
     return options;
 }
 

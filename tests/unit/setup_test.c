@@ -6,7 +6,7 @@
 static skg_part part_at(int64_t id) {
     skg_part part;
     skg_part_init(&part);
-    ck_skg(skg_scene_part(setup->scene, id, &part));
+    ck_skg(skg_scene_part_get(setup->scene, id, &part));
     return part;
 }
 
@@ -25,30 +25,30 @@ START_TEST(a_scene_file_is_read) {
     write_file("scene.json", good);
     ck_skg(load());
     skg_view_init(&view);
-    ck_skg(skg_setup_view(setup, &view));
-    ck_assert_int_eq(view.projection, SKG_POINT);
+    ck_skg(skg_setup_view_get(setup, &view));
+    ck_assert_int_eq(view.projection, SKG_PROJECTION_POINT);
     ck_assert_int_eq(view.columns, 64);
     ck_assert_int_eq(view.rows, 48);
     check_vector(view.source, 0, -400, 0);
     check_vector(view.centre, 0, 100, 0);
     check_vector(view.row_step, 0, 0, -2);
     check_vector(view.column_step, -1, 0, 0); /* up x (source - detector) */
-    ck_skg(skg_setup_spectrum(setup, &spectrum));
-    ck_skg(skg_spectrum_bin(spectrum, 0, &kev, &photons));
+    ck_skg(skg_setup_spectrum_get(setup, &spectrum));
+    ck_skg(skg_spectrum_bin_get(spectrum, 0, &kev, &photons));
     ck_assert_double_eq_tol(kev, 60, 1e-12);
     ck_assert_double_eq(photons, 1000);
-    ck_skg(skg_setup_scene(setup, &scene));
-    ck_skg(skg_scene_size(scene, &parts));
+    ck_skg(skg_setup_scene_get(setup, &scene));
+    ck_skg(skg_scene_part_count(scene, &parts));
     ck_assert_int_eq(parts, 2);
     skg_part skin = part_at(0), bone = part_at(1);
     ck_assert_str_eq(skin.label, "skin");
     ck_assert_int_eq(skin.inside, -1);
     ck_assert_int_eq(bone.inside, 0); /* the one outer sample is the parent */
-    ck_skg(skg_material_attenuation(bone.material, 60, &mu));
+    ck_skg(skg_material_attenuation_get(bone.material, 60, &mu));
     ck_assert_double_eq(mu, 0.5);
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    ck_skg(skg_mesh_get_health(bone.mesh, &health));
+    ck_skg(skg_mesh_health_get(bone.mesh, &health));
     ck_assert_double_eq_tol(health.volume, 6000, 1e-9);
     check_vector(health.bounds + 3, 5, 10, 15);
 }
@@ -59,11 +59,11 @@ START_TEST(set_up_outlives_nothing_it_gave_away) {
     int64_t parts = 0;
     write_file("scene.json", good);
     ck_skg(load());
-    ck_skg(skg_setup_scene(setup, &scene));
+    ck_skg(skg_setup_scene_get(setup, &scene));
     ck_skg(skg_scene_retain(scene));
     skg_setup_release(&setup);
     ck_assert_ptr_null(setup);
-    ck_skg(skg_scene_size(scene, &parts));
+    ck_skg(skg_scene_part_count(scene, &parts));
     ck_assert_int_eq(parts, 2);
     skg_scene_release(&scene);
 }
@@ -94,18 +94,18 @@ START_TEST(shapes_of_sources) {
         snprintf(text, sizeof text, "\"%s\"", point_shapes[i]);
         write_edited("\"PointSource\"", text);
         ck_skg(load());
-        ck_assert_int_eq(setup->view.projection, SKG_POINT);
+        ck_assert_int_eq(setup->view.projection, SKG_PROJECTION_POINT);
     }
     for (int i = 0; i < 3; i++) {
         snprintf(text, sizeof text, "\"%s\"", parallel_shapes[i]);
         write_edited("\"PointSource\"", text);
         ck_skg(load());
-        ck_assert_int_eq(setup->view.projection, SKG_PARALLEL);
+        ck_assert_int_eq(setup->view.projection, SKG_PROJECTION_PARALLEL);
     }
     write_edited("\"Position\": [0, -40, 0, \"cm\"],\n        \"Shape\": \"PointSource\"",
                  "\"Direction\": [0, 3, 0], \"Shape\": \"Parallel\"");
     ck_skg(load());
-    ck_assert_int_eq(setup->view.projection, SKG_PARALLEL_FROM_INFINITY);
+    ck_assert_int_eq(setup->view.projection, SKG_PROJECTION_PARALLEL_FROM_INFINITY);
     check_vector(setup->view.source, 0, 1, 0);
     check_vector(setup->view.column_step, -1, 0, 0);
 }
@@ -135,9 +135,9 @@ static void world_bounds(int64_t id, double *bounds) {
     skg_part part = part_at(id);
     int64_t vertices = 0, triangles = 0;
     double x[3 * 512];
-    ck_skg(skg_mesh_size(part.mesh, &vertices, &triangles));
+    ck_skg(skg_mesh_count(part.mesh, &vertices, &triangles));
     ck_assert_int_le(vertices, 512);
-    ck_skg(skg_mesh_read_positions(part.mesh, x, 3));
+    ck_skg(skg_mesh_positions_get(part.mesh, x, 3));
     for (int k = 0; k < 3; k++) bounds[k] = HUGE_VAL, bounds[3 + k] = -HUGE_VAL;
     for (int64_t i = 0; i < vertices; i++) {
         skg_pose_point(part.pose, x + 3 * i, x + 3 * i);
@@ -215,7 +215,7 @@ static void write_box(void) {
     skg_mesh *box = NULL;
     char full[128];
     snprintf(full, sizeof full, "%s/box.stl", folder);
-    ck_skg(skg_mesh_cuboid(1, 2, 3, &box));
+    ck_skg(skg_mesh_create_cuboid(1, 2, 3, &box));
     ck_skg(skg_mesh_save(box, full));
     skg_mesh_release(&box);
 }
@@ -235,13 +235,13 @@ START_TEST(mesh_files) {
     ck_assert_ptr_eq(first.mesh, again.mesh);
     ck_assert_ptr_ne(first.mesh, last.mesh);
     ck_assert_str_eq(last.label, "box.stl");
-    ck_skg(skg_material_attenuation(again.material, 60, &mu));
+    ck_skg(skg_material_attenuation_get(again.material, 60, &mu));
     ck_assert_double_eq(mu, 0.25);
     skg_mesh_health health;
     skg_mesh_health_init(&health);
-    ck_skg(skg_mesh_get_health(first.mesh, &health));
+    ck_skg(skg_mesh_health_get(first.mesh, &health));
     ck_assert_double_eq_tol(health.volume, 6000, 1e-2); /* float file: 1e-6 of it */
-    ck_skg(skg_mesh_get_health(last.mesh, &health));
+    ck_skg(skg_mesh_health_get(last.mesh, &health));
     ck_assert_double_gt(health.volume, 0); /* a closed mesh stays outward */
 }
 END_TEST
@@ -258,7 +258,7 @@ START_TEST(open_meshes_are_flipped) {
                  i % 2 ? "true" : "false");
         write_edited("\"Cuboid\": [1, 2, 3, \"cm\"]", text);
         ck_skg(load());
-        ck_skg(skg_mesh_read_triangles(part_at(1).mesh, corners, 3));
+        ck_skg(skg_mesh_triangles_get(part_at(1).mesh, corners, 3));
         ck_assert_int_eq(corners[1], i % 2 ? 2 : 1);
         ck_assert_int_eq(corners[2], i % 2 ? 1 : 2);
     }
@@ -299,7 +299,7 @@ START_TEST(a_scan_gives_its_first_projection) {
     check_vector(setup->view.row_step, 0, 0, -2);
     skg_plan_options options;
     skg_plan_options_init(&options);
-    ck_skg(skg_setup_options(setup, &options)); /* 270 degrees on, and a sixteenth of it */
+    ck_skg(skg_setup_options_get(setup, &options)); /* 270 degrees on, and a sixteenth of it */
     ck_assert_int_eq(options.view_count, 16);
     check_vector(options.views[15].source, 0, -400, 0);
     const double angle = (180 - 270 / 16.0) * acos(-1) / 180;
@@ -309,17 +309,18 @@ START_TEST(a_scan_gives_its_first_projection) {
 END_TEST
 
 START_TEST(options_are_given_on) {
-    skg_plan_options options = {.size = sizeof options, .precision = SKG_SINGLE, .tile = 32, .overlaps = 1};
+    skg_plan_options options = {
+        .size = sizeof options, .precision = SKG_PRECISION_SINGLE, .tile = 32, .overlaps = 1};
     write_edited("\"Samples\"", "\"Precision\": \"Double\", \"tolerance\": 1e-3, \"Samples\"");
     ck_skg(load());
-    ck_skg(skg_setup_options(setup, &options));
-    ck_assert_int_eq(options.precision, SKG_DOUBLE);
+    ck_skg(skg_setup_options_get(setup, &options));
+    ck_assert_int_eq(options.precision, SKG_PRECISION_DOUBLE);
     ck_assert_int_eq(options.tile, 32); /* what the file does not say stays */
     ck_assert_double_eq(setup->tolerance, 1e-3);
     write_file("scene.json", good);
     ck_skg(load());
-    ck_skg(skg_setup_options(setup, &options));
-    ck_assert_int_eq(options.precision, SKG_DOUBLE);
+    ck_skg(skg_setup_options_get(setup, &options));
+    ck_assert_int_eq(options.precision, SKG_PRECISION_DOUBLE);
     ck_assert_double_lt(setup->tolerance, 0);
 }
 END_TEST
@@ -331,17 +332,17 @@ START_TEST(mends_and_priorities) {
     ck_skg(load());
     ck_assert_int_eq(part_at(0).priority, -3);
     ck_assert_int_eq(part_at(1).priority, 0);
-    ck_skg(skg_setup_options(setup, &options));
+    ck_skg(skg_setup_options_get(setup, &options));
     ck_assert_int_eq(options.repair, SKG_REPAIR_NEIGHBOURS); /* what the file does not say stays */
     ck_assert_int_eq(options.clip, 0);
     write_edited("\"Samples\"", "\"Repair\": \"Exact\", \"Clip\": true, \"Samples\"");
     ck_skg(load());
-    ck_skg(skg_setup_options(setup, &options));
+    ck_skg(skg_setup_options_get(setup, &options));
     ck_assert_int_eq(options.repair, SKG_REPAIR_EXACT);
     ck_assert_int_eq(options.clip, 1);
     write_edited("\"Samples\"", "\"Repair\": \"none\", \"Samples\"");
     ck_skg(load());
-    ck_skg(skg_setup_options(setup, &options));
+    ck_skg(skg_setup_options_get(setup, &options));
     ck_assert_int_eq(options.repair, SKG_REPAIR_NONE);
 }
 END_TEST
@@ -353,7 +354,7 @@ START_TEST(settings_change_the_file) {
     write_file("scene.json", good);
     ck_skg(skg_setup_load(NULL, path, 5, settings, &setup));
     ck_assert_int_eq(setup->view.columns, 32);
-    ck_assert_int_eq(setup->precision, SKG_DOUBLE);
+    ck_assert_int_eq(setup->precision, SKG_PRECISION_DOUBLE);
     world_bounds(0, bounds);
     check_vector(bounds + 3, 10, 10, 10);
     ck_assert_double_eq(setup->scan.start, 180);
@@ -365,7 +366,7 @@ START_TEST(labels_with_dots_can_be_set) {
     double mu = 0;
     write_edited("\"bone\"", "\"rib.l05\"");
     ck_skg(skg_setup_load(NULL, path, 1, settings, &setup));
-    ck_skg(skg_material_attenuation(part_at(1).material, 60, &mu));
+    ck_skg(skg_material_attenuation_get(part_at(1).material, 60, &mu));
     ck_assert_double_eq(mu, 0.75);
 }
 END_TEST

@@ -1,5 +1,5 @@
-#include "geometry/camera.h"
 #include "core/vector.h"
+#include "geometry/camera.h"
 #include "suite.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ static skg_view good_view(int32_t projection) {
     skg_view_init(&view);
     view.projection = projection;
     view.columns = 64, view.rows = 48;
-    view.source[1] = projection == SKG_PARALLEL_FROM_INFINITY ? 2 : -300;
+    view.source[1] = projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? 2 : -300;
     view.centre[1] = 200;
     view.column_step[0] = 0.5;
     view.row_step[2] = -0.4;
@@ -22,7 +22,7 @@ static skg_view good_view(int32_t projection) {
 /* An oblique one, skewed, off the axis. */
 static skg_view oblique_view(int32_t projection) {
     skg_view view = good_view(projection);
-    view.source[0] = 12, view.source[2] = projection == SKG_PARALLEL_FROM_INFINITY ? 1 : -40;
+    view.source[0] = 12, view.source[2] = projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? 1 : -40;
     view.centre[0] = -30, view.centre[2] = 25;
     view.column_step[1] = 0.21, view.column_step[2] = 0.05;
     view.row_step[0] = 0.06, view.row_step[1] = 0.1;
@@ -58,7 +58,7 @@ static void check_projection(const skg_view *view) {
         pixel_centre(view, i, j, pixel);
         if (!camera.parallel) {
             memcpy(start, view->source, sizeof start);
-        } else if (view->projection == SKG_PARALLEL_FROM_INFINITY) {
+        } else if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY) {
             ck_assert_double_gt(start_of(&camera, i, j), 1e29);
             skg_add_scaled(pixel, -400 / skg_length(camera.first), camera.first, start);
         } else { /* the start lies in the plane through the source across the beam */
@@ -81,7 +81,8 @@ static void check_projection(const skg_view *view) {
 }
 
 START_TEST(points_project_to_their_pixel) {
-    for (int32_t projection = SKG_POINT; projection <= SKG_PARALLEL_FROM_INFINITY; projection++) {
+    for (int32_t projection = SKG_PROJECTION_POINT; projection <= SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+         projection++) {
         skg_view straight = good_view(projection), oblique = oblique_view(projection);
         check_projection(&straight);
         check_projection(&oblique);
@@ -91,7 +92,7 @@ END_TEST
 
 /* The direction of a parallel beam is detector's centre - source, not to any pixel. */
 START_TEST(parallel_direction_and_start) {
-    skg_view view = good_view(SKG_PARALLEL);
+    skg_view view = good_view(SKG_PROJECTION_PARALLEL);
     view.source[0] = -300; /* 45 degrees... */
     view.centre[0] = 200;
     const skg_camera camera = camera_of(&view);
@@ -165,26 +166,26 @@ static void bad_projection(skg_view *v) {
 }
 
 static const bad_view bad_views[] = {
-    {"columns", "0 columns", SKG_POINT, no_columns},
-    {"rows", "-5 rows", SKG_POINT, negative_rows},
-    {"too many", "1 to 32768", SKG_POINT, too_many},
-    {"far too many", "1 to 32768", SKG_PARALLEL, far_too_many},
-    {"zero step", "no size", SKG_POINT, zero_step},
-    {"parallel steps", "must not be parallel", SKG_POINT, parallel_steps},
-    {"nearly parallel", "must not be parallel", SKG_PARALLEL, nearly_parallel_steps},
-    {"source on detector", "lies on the detector", SKG_POINT, source_on_detector},
-    {"source in plane", "in its plane", SKG_POINT, source_in_plane},
-    {"source at centre", "no direction", SKG_PARALLEL, source_on_detector},
-    {"edge on", "edge-on", SKG_PARALLEL, edge_on},
-    {"edge on to a point", "in its plane", SKG_POINT, edge_on_source},
-    {"edge on from infinity", "edge-on", SKG_PARALLEL_FROM_INFINITY, edge_on},
-    {"nan", "source's position is not finite", SKG_POINT, nan_source},
-    {"infinite", "detector's position is not finite", SKG_POINT, infinite_centre},
-    {"nan step", "column step is not finite", SKG_POINT, nan_step},
-    {"huge", "too large", SKG_POINT, huge},
-    {"tiny", "no size", SKG_POINT, tiny},
-    {"no direction", "direction is (0, 0, 0)", SKG_PARALLEL_FROM_INFINITY, no_direction},
-    {"projection", "projection is 7", SKG_POINT, bad_projection},
+    {"columns", "0 columns", SKG_PROJECTION_POINT, no_columns},
+    {"rows", "-5 rows", SKG_PROJECTION_POINT, negative_rows},
+    {"too many", "1 to 32768", SKG_PROJECTION_POINT, too_many},
+    {"far too many", "1 to 32768", SKG_PROJECTION_PARALLEL, far_too_many},
+    {"zero step", "no size", SKG_PROJECTION_POINT, zero_step},
+    {"parallel steps", "must not be parallel", SKG_PROJECTION_POINT, parallel_steps},
+    {"nearly parallel", "must not be parallel", SKG_PROJECTION_PARALLEL, nearly_parallel_steps},
+    {"source on detector", "lies on the detector", SKG_PROJECTION_POINT, source_on_detector},
+    {"source in plane", "in its plane", SKG_PROJECTION_POINT, source_in_plane},
+    {"source at centre", "no direction", SKG_PROJECTION_PARALLEL, source_on_detector},
+    {"edge on", "edge-on", SKG_PROJECTION_PARALLEL, edge_on},
+    {"edge on to a point", "in its plane", SKG_PROJECTION_POINT, edge_on_source},
+    {"edge on from infinity", "edge-on", SKG_PROJECTION_PARALLEL_FROM_INFINITY, edge_on},
+    {"nan", "source's position is not finite", SKG_PROJECTION_POINT, nan_source},
+    {"infinite", "detector's position is not finite", SKG_PROJECTION_POINT, infinite_centre},
+    {"nan step", "column step is not finite", SKG_PROJECTION_POINT, nan_step},
+    {"huge", "too large", SKG_PROJECTION_POINT, huge},
+    {"tiny", "no size", SKG_PROJECTION_POINT, tiny},
+    {"no direction", "direction is (0, 0, 0)", SKG_PROJECTION_PARALLEL_FROM_INFINITY, no_direction},
+    {"projection", "projection is 7", SKG_PROJECTION_POINT, bad_projection},
 };
 
 START_TEST(bad_views_are_refused) {
@@ -199,7 +200,7 @@ END_TEST
 START_TEST(directions_of_any_length) {
     static const double lengths[] = {1e-300, 1e-3, 1e12, 1e300};
     for (int k = 0; k < 4; k++) {
-        skg_view view = good_view(SKG_PARALLEL_FROM_INFINITY);
+        skg_view view = good_view(SKG_PROJECTION_PARALLEL_FROM_INFINITY);
         view.source[0] = view.source[1] = lengths[k];
         const skg_camera camera = camera_of(&view);
         ck_assert_double_eq_tol(camera.first[0] / skg_length(camera.first), sqrt(0.5), 1e-15);

@@ -25,11 +25,11 @@ typedef struct {
 /* Waveforms over the phase p of 4D-CT, 0 <= p < 1 from end-inspiration. All give the amplitude f from 0
  * (end-expiration) to 1 (end-inspiration), and f(0) is their largest. */
 enum {
-    SKG_BREATH_SINE = 0,  /* (1 + cos 2 pi p)/2: the paper's Eq. 1, its sine begun at p = 3/4 */
-    SKG_BREATH_LUJAN = 1, /* cos^2n(pi p), n = exponent: dwells at expiration (Lujan et al., Med. Phys. 26
+    SKG_WAVEFORM_SINE = 0,  /* (1 + cos 2 pi p)/2: the paper's Eq. 1, its sine begun at p = 3/4 */
+    SKG_WAVEFORM_LUJAN = 1, /* cos^2n(pi p), n = exponent: dwells at expiration (Lujan et al., Med. Phys. 26
                              (1999) 715) */
-    SKG_BREATH_ASYMMETRIC = 2, /* half cosines; expiration lasts expiration_ratio times inspiration */
-    SKG_BREATH_SAMPLED = 3     /* samples evenly over the cycle, joined by a monotone cubic */
+    SKG_WAVEFORM_ASYMMETRIC = 2, /* half cosines; expiration lasts expiration_ratio times inspiration */
+    SKG_WAVEFORM_SAMPLED = 3     /* samples evenly over the cycle, joined by a monotone cubic */
 };
 
 /* A span of time in which the breath is held: it stays where it was at `from` and goes on from there. */
@@ -78,8 +78,8 @@ typedef struct {
 SKG_API void skg_breath_state_init(skg_breath_state *state);
 
 /* The state at a time (s, any finite) or at a phase (any finite; counted modulo 1). Stateless. */
-SKG_API skg_status skg_breath_at_time(const skg_breath *breath, double time_s, skg_breath_state *state);
-SKG_API skg_status skg_breath_at_phase(const skg_breath *breath, double phase, skg_breath_state *state);
+SKG_API skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg_breath_state *state);
+SKG_API skg_status skg_breath_state_at_phase(const skg_breath *breath, double phase, skg_breath_state *state);
 
 /* A thorax at end-expiration, generated. x to the patient's left, y to the back, z up; the origin is the top
  * of the right half of the diaphragm. Sizes from the literature and from aggregates of real bones. Every mesh
@@ -108,14 +108,14 @@ typedef struct {
     int64_t inside;       /* number of the part that it lies in, -1: none */
     skg_mesh *mesh;       /* not retained for the caller */
     const char *label;    /* unique */
-    const char *material; /* as skg_material_named takes it ("Liver", "Needle steel"); NULL of bones */
+    const char *material; /* as skg_material_create_named takes it ("Liver", "Needle steel"); NULL of bones */
     double hounsfield;    /* HU at about 120 kV: what it is of where material is NULL */
     double density_g_cm3; /* 0: that of the material's tables */
 } skg_thorax_part;
 
 SKG_API void skg_thorax_part_init(skg_thorax_part *part);
-SKG_API skg_status skg_thorax_size(const skg_thorax *thorax, int64_t *parts);
-SKG_API skg_status skg_thorax_get_part(const skg_thorax *thorax, int64_t number, skg_thorax_part *part);
+SKG_API skg_status skg_thorax_part_count(const skg_thorax *thorax, int64_t *parts);
+SKG_API skg_status skg_thorax_part_get(const skg_thorax *thorax, int64_t number, skg_thorax_part *part);
 
 /* Writes one PLY file per part and a scene file, thorax.json, into a folder that exists: a tube of 80 kV 1 m
  * in front of a detector behind the patient's back, head up, the patient's right on the viewer's left, and
@@ -216,12 +216,12 @@ SKG_API skg_status skg_body_breathe(skg_body *body, const skg_breath *breath);
 
 /* Poses all organs, and warns the first time that an organ's drivers contradict each other by more than 1 mm:
  * writes the meshes that move. The same state gives the same bits, whatever came before (with hysteresis:
- * after the same skg_body_breathe). state: as skg_breath_at_time gives it. */
+ * after the same skg_body_breathe). state: as skg_breath_state_at_time gives it. */
 SKG_API skg_status skg_body_pose(skg_body *body, const skg_breath_state *state);
 
 /* From the next pose on, the needle is drawn back along its axis by so many mm from where its file has it
  * (negative: farther in). */
-SKG_API skg_status skg_body_set_needle(skg_body *body, double withdrawn_mm);
+SKG_API skg_status skg_body_needle_set(skg_body *body, double withdrawn_mm);
 
 /* What a pose is like. Filled by the library; prepare with skg_body_measure_init. */
 typedef struct {
@@ -239,7 +239,7 @@ typedef struct {
 } skg_body_measure;
 
 SKG_API void skg_body_measure_init(skg_body_measure *measure);
-SKG_API skg_status skg_body_get_measure(const skg_body *body, skg_body_measure *measure);
+SKG_API skg_status skg_body_measure_get(const skg_body *body, skg_body_measure *measure);
 
 /* HU at a density of ratio times that at hounsfield: (HU + 1000) goes with the density. */
 SKG_API double skg_lung_hounsfield(double hounsfield, double density_ratio);

@@ -25,7 +25,8 @@ SKG_API void skg_motion_release(skg_motion **motion);
 
 /* Whether a set-up's file has the key Breathing (1 or 0), and its body's options, prepared with
  * skg_body_options_init: what skg_motion_create would use. */
-SKG_API skg_status skg_motion_options(const skg_setup *setup, int32_t *breathes, skg_body_options *options);
+SKG_API skg_status skg_setup_body_options_get(const skg_setup *setup, int32_t *breathes,
+                                              skg_body_options *options);
 
 /* Poses the scene at a time in s, with the events until then; or at a phase, counted modulo 1, without
  * events: needle and contrast as the meshes have them. */
@@ -48,17 +49,17 @@ typedef struct {
 } skg_motion_state;
 
 SKG_API void skg_motion_state_init(skg_motion_state *state);
-SKG_API skg_status skg_motion_get_state(const skg_motion *motion, skg_motion_state *state);
+SKG_API skg_status skg_motion_state_get(const skg_motion *motion, skg_motion_state *state);
 
-/* The period of the breath in s, and the body, for skg_body_get_measure; valid as long as the motion. */
-SKG_API skg_status skg_motion_period(const skg_motion *motion, double *period_s);
-SKG_API skg_status skg_motion_body(const skg_motion *motion, skg_body **body);
+/* The period of the breath in s, and the body, for skg_body_measure_get; valid as long as the motion. */
+SKG_API skg_status skg_motion_period_get(const skg_motion *motion, double *period_s);
+SKG_API skg_status skg_motion_body_get(const skg_motion *motion, skg_body **body);
 
 /* Whether a part of the scene moves with the breath: 1 or 0. */
-SKG_API skg_status skg_motion_moves(const skg_motion *motion, int64_t part, int32_t *moves);
+SKG_API skg_status skg_motion_part_moves(const skg_motion *motion, int64_t part, int32_t *moves);
 
 /* Positions of a part as its mesh had them when the motion was made: rows of x, y, z, mm. */
-SKG_API skg_status skg_motion_rest(const skg_motion *motion, int64_t part, double *positions);
+SKG_API skg_status skg_motion_rest_get(const skg_motion *motion, int64_t part, double *positions);
 
 #ifdef __cplusplus
 }

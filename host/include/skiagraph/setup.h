@@ -27,10 +27,10 @@ SKG_API void skg_setup_release(skg_setup **setup);
  * set-up (plans retain them). The view is that of a scan's first projection. options, prepared with
  * skg_plan_options_init, keep what the file does not say; falloff is on where photons come from mAs, or by
  * the key Falloff; views are a sample of a scan's, valid as long as the set-up. */
-SKG_API skg_status skg_setup_scene(const skg_setup *setup, skg_scene **scene);
-SKG_API skg_status skg_setup_spectrum(const skg_setup *setup, skg_spectrum **spectrum);
-SKG_API skg_status skg_setup_view(const skg_setup *setup, skg_view *view);
-SKG_API skg_status skg_setup_options(const skg_setup *setup, skg_plan_options *options);
+SKG_API skg_status skg_setup_scene_get(const skg_setup *setup, skg_scene **scene);
+SKG_API skg_status skg_setup_spectrum_get(const skg_setup *setup, skg_spectrum **spectrum);
+SKG_API skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view);
+SKG_API skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options);
 
 #ifdef __cplusplus
 }

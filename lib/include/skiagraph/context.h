@@ -14,7 +14,7 @@ extern "C" {
 typedef struct skg_context skg_context;
 
 /* Opens a device. config is words separated by spaces:
- *     device=cpu | gpu | PLATFORM:DEVICE (numbers, as skg_device_describe counts) | part of a device's name
+ *     device=cpu | gpu | PLATFORM:DEVICE (numbers, as skg_device_get counts) | part of a device's name
  *     threads=N       so many compute units, through a sub-device where the platform offers them
  *     kernels=DIR     reads the kernels from DIR instead of those built in (for development)
  * NULL or a string without device=: the environment variable SKG_DEVICE (the same grammar, or the bare value
@@ -34,7 +34,7 @@ enum { SKG_LOG_WARNING = 1, SKG_LOG_NOTE = 2, SKG_LOG_PROGRESS = 3 };
 typedef void (*skg_log_function)(int32_t level, const char *sentence, void *user);
 
 /* Sets where they go; NULL (the default) drops them. */
-SKG_API skg_status skg_context_set_log(skg_context *context, skg_log_function log, void *user);
+SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user);
 
 /* What OpenCL offers. Filled by the library; prepare with skg_device_info_init. */
 typedef struct {
@@ -56,10 +56,10 @@ SKG_API void skg_device_info_init(skg_device_info *info);
 SKG_API skg_status skg_device_count(int64_t *count);
 
 /* The device at index 0 <= index < count. */
-SKG_API skg_status skg_device_describe(int64_t index, skg_device_info *info);
+SKG_API skg_status skg_device_get(int64_t index, skg_device_info *info);
 
 /* The device of a context. */
-SKG_API skg_status skg_context_device(skg_context *context, skg_device_info *info);
+SKG_API skg_status skg_context_device_get(skg_context *context, skg_device_info *info);
 
 #ifdef __cplusplus
 }

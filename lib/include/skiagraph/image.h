@@ -16,15 +16,16 @@ enum {
 /* An image to write. Prepare with skg_picture_init. */
 typedef struct {
     int32_t size;
-    int32_t type; /* SKG_FLOAT32 or SKG_FLOAT64: of data, and of .mha and .tif files */
+    int32_t type; /* SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64: of data, and of .mha and .tif files */
     int64_t columns, rows, channels;
     const void *data;     /* [channel][row][column], dense */
     const char *name;     /* of the quantity, for the header: "energy"; NULL: "" */
     const char *unit;     /* "keV per pixel"; NULL: "" */
     const skg_view *view; /* geometry for the header; NULL: pixels of 1 mm, no place */
     int32_t display;      /* .png: SKG_DISPLAY_... */
-    int32_t quantity;     /* SKG_ENERGY, ... : what data holds, so that a display curve can be formed */
-    double open; /* value of the open beam in data's unit (I0), for display curves; unused for transmission
+    int32_t quantity; /* SKG_QUANTITY_ENERGY, ... : what data holds, so that a display curve can be formed */
+    double
+        flat_field; /* value of the open beam in data's unit (I0), for display curves; unused for transmission
                     and attenuation; 0 where data is shown as it is (path lengths) */
     double low, high; /* .png: shown from black to white; both 0: the image's own minimum and maximum */
     const char *const *channel_names; /* [channels]: in the place of name, for each channel; may be NULL */

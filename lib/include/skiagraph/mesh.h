@@ -51,39 +51,39 @@ SKG_API skg_status skg_mesh_save(const skg_mesh *mesh, const char *path);
  * sphere: segments >= 3 around and segments/2 (at least 2) from pole to pole, poles on z; vertices on the
  * sphere. cylinder: axis z, segments >= 3 around; vertices on the circle. step_wedge: `steps` >= 1 steps
  * along x, each length_x/steps long; step k is (k+1)/steps of height_z high, y across. */
-SKG_API skg_status skg_mesh_cube(double edge, skg_mesh **mesh);
-SKG_API skg_status skg_mesh_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh);
-SKG_API skg_status skg_mesh_sphere(double radius, int64_t segments, skg_mesh **mesh);
-SKG_API skg_status skg_mesh_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh);
-SKG_API skg_status skg_mesh_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
-                                       skg_mesh **mesh);
+SKG_API skg_status skg_mesh_create_cube(double edge, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_create_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh);
+SKG_API skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double height_z,
+                                              int64_t steps, skg_mesh **mesh);
 
 SKG_API skg_status skg_mesh_retain(skg_mesh *mesh);
 SKG_API void skg_mesh_release(skg_mesh **mesh);
 
 /* Numbers of vertices and triangles, as given. */
-SKG_API skg_status skg_mesh_size(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles);
+SKG_API skg_status skg_mesh_count(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles);
 
 /* Copies positions (mm) or corners out; strides as in skg_mesh_create. */
-SKG_API skg_status skg_mesh_read_positions(const skg_mesh *mesh, double *positions, int64_t position_stride);
-SKG_API skg_status skg_mesh_read_triangles(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride);
+SKG_API skg_status skg_mesh_positions_get(const skg_mesh *mesh, double *positions, int64_t position_stride);
+SKG_API skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride);
 
 /* Gives every vertex a new position (mm); same count and strides as in skg_mesh_create. The next frame
  * uploads them. The health keeps what topology says (closed, winding); volume, area, bounds and degenerate
  * triangles follow. SKG_ERR_MESH, and the mesh stays as it was: a position is not finite, or vertices of a
  * closed mesh that were welded by their equal positions would part, which would open it. */
-SKG_API skg_status skg_mesh_write_positions(skg_mesh *mesh, const double *positions, int64_t position_stride);
+SKG_API skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride);
 
 /* The way without a copy: the float offsets (rows of x, y, z, in mm, from *origin) that the upload reads.
- * Write there, then call skg_mesh_moved. The pointers are valid as long as the mesh; *origin may change with
- * skg_mesh_write_positions. skg_mesh_moved fails with SKG_ERR_MESH when welded vertices of a closed mesh have
+ * Write there, then call skg_mesh_offsets_moved. The pointers are valid as long as the mesh; *origin may change with
+ * skg_mesh_positions_set. skg_mesh_offsets_moved fails with SKG_ERR_MESH when welded vertices of a closed mesh have
  * parted (the version grows all the same); a vertex that is not finite is found by the frame that meets it.
  */
-SKG_API skg_status skg_mesh_positions(skg_mesh *mesh, float **offsets, const double **origin);
-SKG_API skg_status skg_mesh_moved(skg_mesh *mesh);
+SKG_API skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin);
+SKG_API skg_status skg_mesh_offsets_moved(skg_mesh *mesh);
 
-/* Grows by one with each write or skg_mesh_moved; starts at 1. */
-SKG_API skg_status skg_mesh_version(const skg_mesh *mesh, int64_t *version);
+/* Grows by one with each write or skg_mesh_offsets_moved; starts at 1. */
+SKG_API skg_status skg_mesh_version_get(const skg_mesh *mesh, int64_t *version);
 
 /* Health. Vertices whose positions are equal bit for bit are one vertex here (welded).
  * closed: for every pair of vertices as many edges (a,b) as (b,a); then every ray's signed hits cancel
@@ -110,10 +110,10 @@ typedef struct {
 } skg_mesh_health;
 
 SKG_API void skg_mesh_health_init(skg_mesh_health *health);
-SKG_API skg_status skg_mesh_get_health(const skg_mesh *mesh, skg_mesh_health *health);
+SKG_API skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health);
 
 /* The name given, or the file's name without its folder. Valid as long as the mesh. */
-SKG_API skg_status skg_mesh_name(const skg_mesh *mesh, const char **name);
+SKG_API skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name);
 
 #ifdef __cplusplus
 }

@@ -16,19 +16,19 @@ extern "C" {
 typedef struct skg_plan skg_plan;
 typedef struct skg_job skg_job;
 
-enum { SKG_SINGLE = 0, SKG_DOUBLE = 1, SKG_HALF = 2 };
+enum { SKG_PRECISION_SINGLE = 0, SKG_PRECISION_DOUBLE = 1, SKG_PRECISION_HALF = 2 };
 enum { SKG_STRATEGY_AUTO = 0, SKG_STRATEGY_COPIES = 1, SKG_STRATEGY_TILES = 2, SKG_STRATEGY_ATOMICS = 3 };
 
 /* What a pixel holds. I0 is the same chain without parts. */
 enum {
-    SKG_ENERGY = 0,       /* keV per pixel: the paper's "energy fluence" */
-    SKG_FLUENCE = 1,      /* energy fluence proper, keV/mm2 (ICRU 85) */
-    SKG_PHOTONS = 2,      /* photons per pixel */
-    SKG_TRANSMISSION = 3, /* I/I0 */
-    SKG_ATTENUATION = 4   /* -ln(I/I0) */
+    SKG_QUANTITY_ENERGY = 0,       /* keV per pixel: the paper's "energy fluence" */
+    SKG_QUANTITY_FLUENCE = 1,      /* energy fluence proper, keV/mm2 (ICRU 85) */
+    SKG_QUANTITY_PHOTONS = 2,      /* photons per pixel */
+    SKG_QUANTITY_TRANSMISSION = 3, /* I/I0 */
+    SKG_QUANTITY_ATTENUATION = 4   /* -ln(I/I0) */
 };
 
-enum { SKG_MOST_CHANNELS = 16 };
+enum { SKG_CHANNELS_MAX = 16 };
 
 /* What a line or a point becomes on the detector, sampled one pixel apart, the middle sample in place; scaled
  * to sum 1. Either two line spread functions, whose product is the point spread function, or the latter.
@@ -88,24 +88,24 @@ SKG_API void skg_spot_init(skg_spot *spot);
 
 typedef struct {
     int32_t size;
-    int32_t precision; /* SKG_SINGLE: float terms, exact integer sums; SKG_DOUBLE: fp64, refused where absent;
-                             SKG_HALF: distances and images in 16 bits as Vidal and Villard 2016, to compare
-                          with: a point source or samples of one, closed meshes */
-    int32_t strategy;  /* SKG_STRATEGY_...; every one gives the same bits */
-    int32_t quantity;  /* SKG_ENERGY, ... */
-    int32_t tile;      /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
-    int32_t overlaps;  /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
-                          looked for */
-    int32_t profile;   /* 1: stages are timed (a little slower); 0: not */
     int32_t
-        falloff; /* 1: intensities fall with the cube of the distance from the source (inverse square and
+        precision; /* SKG_PRECISION_SINGLE: float terms, exact integer sums; SKG_PRECISION_DOUBLE: fp64, refused where absent;
+                             SKG_PRECISION_HALF: distances and images in 16 bits as Vidal and Villard 2016, to compare
+                          with: a point source or samples of one, closed meshes */
+    int32_t strategy; /* SKG_STRATEGY_...; every one gives the same bits */
+    int32_t quantity; /* SKG_QUANTITY_ENERGY, ... */
+    int32_t tile;     /* rows of a band or side of a square tile, in pixels; 0: the plan chooses */
+    int32_t overlaps; /* 1 (default): parts that overlap or leave their parent are found and told; 0: not
+                          looked for */
+    int32_t profile;  /* 1: stages are timed (a little slower); 0: not */
+    int32_t falloff;  /* 1: intensities fall with the cube of the distance from the source (inverse square and
                     obliquity); photon counts are meant at the pixel nearest the foot of the perpendicular */
     skg_response *response; /* of the detector; NULL: ideal. Retained by the plan */
     skg_material *world;    /* around the parts; NULL: vacuum. Retained by the plan */
-    int64_t bands;         /* photon-counting bands, 0 to SKG_MOST_CHANNELS: a channel each; 0: one channel of
+    int64_t bands;          /* photon-counting bands, 0 to SKG_CHANNELS_MAX: a channel each; 0: one channel of
                               everything */
-    const skg_spot *spot;  /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
-    int32_t supersampling; /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
+    const skg_spot *spot;   /* the source's; NULL: a point. Copied; of no effect with a parallel beam */
+    int32_t supersampling;  /* n x n rays a pixel, at the middles of its pieces; 1 (default) to 16 */
     int32_t noise; /* 1: quantum noise of the photons detected in each pixel, exact where they are few */
     const double
         *band_kev;    /* [bands + 1] rising edges: band c has energies from edge c to below edge c + 1 */
@@ -147,29 +147,30 @@ typedef struct {
     int32_t size;
     int32_t reserved;          /* 0 */
     const skg_view *view;      /* NULL: the plan's */
-    int64_t posed;             /* how many parts have a pose of their own in this frame */
-    const int64_t *posed_ids;  /* [posed] numbers of parts */
-    const double *posed_poses; /* [posed][16] */
+    int64_t pose_count;        /* how many parts have a pose of their own in this frame */
+    const int64_t *pose_parts; /* [pose_count] numbers of parts */
+    const double *poses;       /* [pose_count][16] */
     int64_t noise_seed;        /* with index: the key of the noise, where there is noise: frames of another
                                   key are independent, those of the same have the same noise */
     int64_t index;
-    int64_t matters;              /* how many parts are of other matter than their material in this frame */
-    const int64_t *matter_ids;    /* [matters] numbers of parts */
-    const double *matter_density; /* [matters] of the part over its material's, 0 to 1000; NULL: 1 */
-    const double *matter_share;   /* [matters] of the part that is there, 0 to 1; the rest is of what it lies
+    int64_t override_count;        /* how many parts are of other matter than their material in this frame */
+    const int64_t *override_parts; /* [override_count] numbers of parts */
+    const double *density_ratios;  /* [override_count] of the part over its material's, 0 to 1000; NULL: 1 */
+    const double
+        *fill_fractions; /* [override_count] of the part that is there, 0 to 1; the rest is of what it lies
                                      in. NULL: 1. Below 1 for parts only that no other part lies in */
 } skg_frame;
 
 SKG_API void skg_frame_init(skg_frame *frame);
 
-enum { SKG_FLOAT32 = 0, SKG_FLOAT64 = 1 };
+enum { SKG_TYPE_FLOAT32 = 0, SKG_TYPE_FLOAT64 = 1 };
 
 /* Where images go, as [frame][channel][row][column]. Prepare with skg_output_init: float, dense strides.
  * Strides are in elements; 0 means dense. The memory is the caller's and must stay until the job is waited
  * for. */
 typedef struct {
     int32_t size;
-    int32_t type; /* SKG_FLOAT32 or SKG_FLOAT64 */
+    int32_t type; /* SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64 */
     void *data;
     int64_t row_stride, channel_stride, frame_stride;
 } skg_output;
@@ -192,10 +193,10 @@ SKG_API skg_status skg_job_wait(skg_job **job);
 /* Submit and wait of one frame as the scene stands. */
 SKG_API skg_status skg_plan_image(skg_plan *plan, const skg_output *output);
 
-enum { SKG_NET = 0, SKG_SURFACE = 1 };
+enum { SKG_LENGTHS_NET = 0, SKG_LENGTHS_SURFACE = 1 };
 
-/* The path lengths of one part in mm (the L-buffer), `count` frames as in skg_plan_submit. SKG_NET: minus its
- * children (the paper's Eq. 9); SKG_SURFACE: the mesh's own. */
+/* The path lengths of one part in mm (the L-buffer), `count` frames as in skg_plan_submit. SKG_LENGTHS_NET: minus its
+ * children (the paper's Eq. 9); SKG_LENGTHS_SURFACE: the mesh's own. */
 SKG_API skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
                                     const skg_frame *frames, const skg_output *output, skg_job **job);
 
@@ -205,20 +206,21 @@ typedef struct {
     int32_t reserved;
     const char *name; /* "energy", "photons from 20 to 40 keV" */
     const char *unit; /* "keV per pixel" */
-    double open; /* in this unit: what the beam gives without parts (and world), where it is not weakened by
+    double
+        flat_field; /* in this unit: what the beam gives without parts (and world), where it is not weakened by
                     falloff; 1 for transmission, 0 for attenuation */
 } skg_channel;
 
 SKG_API void skg_channel_init(skg_channel *channel);
-SKG_API skg_status skg_plan_channels(const skg_plan *plan, int64_t *channels);
-SKG_API skg_status skg_plan_channel(const skg_plan *plan, int64_t index, skg_channel *channel);
+SKG_API skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *channels);
+SKG_API skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel *channel);
 
 /* What was decided. */
 typedef struct {
     int32_t size;
     int32_t precision, strategy, quantity;
     int64_t parts, triangles, vertices; /* vertices: those of meshes, each mesh once */
-    int64_t open_parts;                 /* with planes of their own */
+    int64_t leaky_parts;                /* with planes of their own */
     int64_t planes, plane_bits;         /* that exponents are made of; width of an accumulator: 32 or 64 */
     int64_t tile_columns,
         tile_rows; /* shape of a tile in pixels; the whole detector for copies and atomics */
@@ -241,16 +243,16 @@ typedef struct {
 } skg_plan_report;
 
 SKG_API void skg_plan_report_init(skg_plan_report *report);
-SKG_API skg_status skg_plan_get_report(const skg_plan *plan, skg_plan_report *report);
+SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report);
 
 /* An energy that is used: keV; photons per pixel of an open beam that count for as much (those of the
  * spectrum where every bin is used; 0 where the detector records none of that energy); and weights[channels]:
  * photons or keV per pixel, shares of the open beam for ratios. Each may be NULL. With one channel and no
- * noise these energies and photons are a beam (skg_spectrum_bins) that a plan of tolerance 0 makes the same
+ * noise these energies and photons are a beam (skg_spectrum_create_bins) that a plan of tolerance 0 makes the same
  * image of, but for what fewer planes err: so a numerical code may keep its nodes whatever is planned later.
  */
-SKG_API skg_status skg_plan_node(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
-                                 double *weights);
+SKG_API skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                                     double *weights);
 
 /* Each effect that a plan knows: on or off, and why. Text valid as long as the plan. */
 typedef struct {
@@ -263,8 +265,8 @@ typedef struct {
 } skg_effect;
 
 SKG_API void skg_effect_init(skg_effect *effect);
-SKG_API skg_status skg_plan_effects(const skg_plan *plan, int64_t *count);
-SKG_API skg_status skg_plan_effect(const skg_plan *plan, int64_t index, skg_effect *effect);
+SKG_API skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_effect_get(const skg_plan *plan, int64_t index, skg_effect *effect);
 
 /* Parts that overlap, or leave their parent, as found when the plan was made; worst volume first. Method: a
  * grid of 256 x 256 columns along z over the scene; volumes carry its resolution. */
@@ -278,8 +280,8 @@ typedef struct {
 } skg_overlap;
 
 SKG_API void skg_overlap_init(skg_overlap *overlap);
-SKG_API skg_status skg_plan_overlaps(const skg_plan *plan, int64_t *count);
-SKG_API skg_status skg_plan_overlap(const skg_plan *plan, int64_t index, skg_overlap *overlap);
+SKG_API skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_overlap_get(const skg_plan *plan, int64_t index, skg_overlap *overlap);
 
 /* Time per stage of the last job that was waited for, where the plan was made with profile = 1. */
 typedef struct {
@@ -290,8 +292,8 @@ typedef struct {
 } skg_stage;
 
 SKG_API void skg_stage_init(skg_stage *stage);
-SKG_API skg_status skg_plan_stages(const skg_plan *plan, int64_t *count);
-SKG_API skg_status skg_plan_stage(const skg_plan *plan, int64_t index, skg_stage *stage);
+SKG_API skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count);
+SKG_API skg_status skg_plan_stage_get(const skg_plan *plan, int64_t index, skg_stage *stage);
 
 #ifdef __cplusplus
 }

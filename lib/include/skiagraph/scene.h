@@ -45,28 +45,29 @@ SKG_API void skg_scene_release(skg_scene **scene);
  * label, inside itself or a part that is not there, singular pose). */
 SKG_API skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id);
 
-SKG_API skg_status skg_scene_size(const skg_scene *scene, int64_t *parts);
+SKG_API skg_status skg_scene_part_count(const skg_scene *scene, int64_t *parts);
 
 /* Reads part 0 <= id < parts; its pointers are valid as long as the scene and are not retained for the
  * caller. */
-SKG_API skg_status skg_scene_part(const skg_scene *scene, int64_t id, skg_part *part);
+SKG_API skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part);
 
 /* The number of the part with this label, or else of the only one that is equal but for case. SKG_ERR_SCENE
  * with the nearest label where there is none. */
 SKG_API skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id);
 
 /* A new pose; plans use it from the next frame on. */
-SKG_API skg_status skg_scene_set_pose(skg_scene *scene, int64_t id, const double *pose);
+SKG_API skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose);
 
 /* Another material (retained), as a lung's of new density. Plans use it from the next frame on; a plan that
  * compresses several energies (tolerance above 0) is stale then. */
-SKG_API skg_status skg_scene_set_material(skg_scene *scene, int64_t id, skg_material *material);
+SKG_API skg_status skg_scene_material_set(skg_scene *scene, int64_t id, skg_material *material);
 
 /* Where rays start. */
 enum {
-    SKG_POINT = 0,    /* from the point `source` */
-    SKG_PARALLEL = 1, /* along detector centre - source, from the plane through `source` across it */
-    SKG_PARALLEL_FROM_INFINITY = 2 /* along `source`, which is a direction, from infinitely far */
+    SKG_PROJECTION_POINT = 0, /* from the point `source` */
+    SKG_PROJECTION_PARALLEL =
+        1, /* along detector centre - source, from the plane through `source` across it */
+    SKG_PROJECTION_PARALLEL_FROM_INFINITY = 2 /* along `source`, which is a direction, from infinitely far */
 };
 
 /* Source and detector. Pixel (row r, column c) has its centre at
@@ -75,9 +76,10 @@ enum {
  * No entry may exceed 1e9 mm. */
 typedef struct {
     int32_t size;
-    int32_t projection;    /* SKG_POINT, SKG_PARALLEL, SKG_PARALLEL_FROM_INFINITY */
+    int32_t
+        projection; /* SKG_PROJECTION_POINT, SKG_PROJECTION_PARALLEL, SKG_PROJECTION_PARALLEL_FROM_INFINITY */
     int64_t columns, rows; /* 1 to 32768 each */
-    double source[3];      /* mm; a direction of any length for SKG_PARALLEL_FROM_INFINITY */
+    double source[3];      /* mm; a direction of any length for SKG_PROJECTION_PARALLEL_FROM_INFINITY */
     double centre[3];      /* mm */
     double column_step[3]; /* mm per column */
     double row_step[3];    /* mm per row */
