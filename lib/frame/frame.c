@@ -118,6 +118,7 @@ static skg_status place_parts(skg_plan *plan, const skg_frame_work *work, skg_fr
         skg_extent_find(&frame->camera, mesh, pose, &frame->extents[p]);
         const skg_scale_part *reach = &frame->extents[p].scale;
         frame->parts[p].reference = 0.5 * (reach->low_depth + reach->high_depth);
+        frame->parts[p].depth = reach->high_depth - reach->low_depth;
         if (writes == 0) continue;
         frame->extents[p].scale.weight = largest_weight(frame, p);
         scales[adding++] = frame->extents[p].scale;

@@ -31,7 +31,7 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
 /* h of a world point. */
 void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]);
 
-/* Fills what a part's entry knows of the picture (not its place in the tables, not its writes). pose: 4x4,
+/* Fills what a part's entry knows of the picture (not its place in the tables, not its writes, not what is steep). pose: 4x4,
  * row by row; origin: of the mesh's offsets, mm; reference: as of skg_geometry_part; flipped: the mesh is
  * drawn with its triangles turned round. */
 void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double reference,

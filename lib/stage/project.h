@@ -20,6 +20,7 @@ typedef struct {
     int32_t flipped;      /* its mesh is drawn with triangles turned round */
     double reference;     /* path parameter that its depths are measured from: the middle of those that lie on
                         paths, so     that no term is larger than their extent. Above 0 with a point source */
+    double depth;         /* extent of its path parameters, from nearest to farthest */
     int32_t weights;      /* how many planes; 0: the part is not drawn, but keeps its place */
     const skg_contribution *weight;
 } skg_geometry_part;
