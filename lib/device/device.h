@@ -47,6 +47,10 @@ skg_status skg_cl_fail(cl_int code, const char *call, const char *file, int line
         }                                                                                                    \
     } while (0)
 
+/* The callback of clCreateContext. The driver calls it at any time and from any thread; user is the address of the
+ * context's mailbox. */
+void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t size, void *user);
+
 /* --- programs and kernels
  * ---------------------------------------------------------------------------------------- */
 
