@@ -159,7 +159,7 @@ skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectru
     skg_tube ours;
     skg_spectrum *open = NULL, *behind = NULL;
     skg_status status = SKG_OK;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_tube: no place for the spectrum");
+    SKG_NEEDS(spectrum);
     *spectrum = NULL;
     skg_tube_init(&ours);
     SKG_TRY(skg_struct_read(tube, "skg_tube", &ours, sizeof ours));

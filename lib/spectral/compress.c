@@ -77,8 +77,7 @@ static skg_status describe(compressing *c, const skg_model *model) {
     return find_floor(c, model);
 }
 
-/* --- planes
- * ------------------------------------------------------------------------------------------------------ */
+/* --- planes --- */
 
 /* What a mm of a part adds to the planes of a basis: weights [planes]. */
 static void mix_writes(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
@@ -133,8 +132,7 @@ cleanup:
     return status;
 }
 
-/* --- the model with fewer
- * ---------------------------------------------------------------------------------------- */
+/* --- the model with fewer --- */
 
 static skg_status rewrite_writes(const compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;

@@ -139,8 +139,7 @@ static skg_status measure(const skg_camera *camera, const skg_scene_part_data *p
     return SKG_OK;
 }
 
-/* --- ranges
- * ------------------------------------------------------------------------------------------------------ */
+/* --- ranges --- */
 
 static void widen(skg_ranges *ranges, int64_t plane, double length) {
     ranges->low[plane] = fmin(ranges->low[plane], MARGIN * length);
