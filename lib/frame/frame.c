@@ -66,8 +66,8 @@ static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, 
     if (work->lengths_of >= 0) return list_lengths(plan, work, frame);
     if (work->frame && work->frame->override_count != 0)
         return skg_frame_list_matter(plan, work->frame, frame);
-    frame->all_writes = plan->model.writes;
-    frame->firsts = plan->model.first_write;
+    frame->all_writes = plan->model.contributions;
+    frame->firsts = plan->model.first_contribution;
     frame->planes = plan->model.planes;
     return SKG_OK;
 }
@@ -78,8 +78,8 @@ static skg_status mix_planes(const skg_plan *plan, const skg_frame_work *work, s
     SKG_TRY(skg_mix_find(plan->scene->count, plan->model.planes, frame->all_writes, frame->firsts,
                          plan->mixed, &frame->mix));
     if (!frame->mix.sums) return SKG_OK; /* matter of many kinds in this frame */
-    frame->all_writes = frame->mix.writes;
-    frame->firsts = frame->mix.first_write;
+    frame->all_writes = frame->mix.contributions;
+    frame->firsts = frame->mix.first_contribution;
     frame->planes = plan->mixed;
     return SKG_OK;
 }
@@ -244,7 +244,7 @@ static skg_status find_fields(const skg_plan *plan, skg_job *job, const skg_fram
     SKG_TRY(skg_job_stage(job, 4 * frame->planes, sizeof **fields, "fields", fields));
     for (int64_t p = 0; p < plan->scene->count; p++) {
         cl_int own[4];
-        skg_extent_field(&frame->camera, &frame->extents[p], own);
+        skg_extent_pixels(&frame->camera, &frame->extents[p], own);
         for (int64_t w = frame->firsts[p]; w < frame->firsts[p + 1]; w++) {
             cl_int *field = *fields + 4 * frame->all_writes[w].plane;
             const int known = field[1] > 0;
