@@ -31,7 +31,7 @@ static skg_status table_value(const skg_material *material, double energy_kev, d
 }
 
 /* The order of the sum is that of the fields of skg_coefficients, so that a caller gets the same bits. */
-static double total(const double sections[SKG_PROCESSES]) {
+double skg_total_section(const double sections[SKG_PROCESSES]) {
     return sections[SKG_RAYLEIGH] + sections[SKG_COMPTON] + sections[SKG_PHOTO] + sections[SKG_PAIR];
 }
 
@@ -48,7 +48,7 @@ skg_status skg_material_attenuation_get(const skg_material *material, double ene
         return skg_fail(SKG_ERR_MATERIAL, "%s: its density is not known; give one in g/cm3", material->name);
     double sections[SKG_PROCESSES];
     skg_mixed_sections(material->count, material->parts, energy_kev, sections);
-    *per_cm = material->density * total(sections);
+    *per_cm = material->density * skg_total_section(sections);
     return SKG_OK;
 }
 
@@ -73,7 +73,7 @@ skg_status skg_material_coefficients_get(const skg_material *material, double en
     ours.compton = sections[SKG_COMPTON];
     ours.photo = sections[SKG_PHOTO];
     ours.pair = sections[SKG_PAIR];
-    ours.total = total(sections);
+    ours.total = skg_total_section(sections);
     return skg_struct_write(&ours, sizeof ours, "skg_coefficients", coefficients);
 }
 
@@ -82,7 +82,7 @@ skg_status skg_material_hounsfield_get(const skg_material *material, double ener
     SKG_NEEDS(hu);
     SKG_TRY(skg_material_attenuation_get(material, energy_kev, &mu));
     skg_mixed_sections(2, water, energy_kev, sections);
-    *hu = 1000 * (mu / total(sections) - 1);
+    *hu = 1000 * (mu / skg_total_section(sections) - 1);
     return SKG_OK;
 }
 

@@ -47,6 +47,9 @@ void skg_element_sections(int32_t z, double energy_kev, double sections[SKG_PROC
 void skg_mixed_sections(int64_t count, const skg_mass_fraction *parts, double energy_kev,
                         double sections[SKG_PROCESSES]);
 
+/* The sum over the processes. */
+double skg_total_section(const double sections[SKG_PROCESSES]);
+
 /* Reads a formula into fractions by mass, in which each element occurs once.
  *
  * by_mass   0: the numbers count atoms ("Ca5(PO4)3OH"); 1: they are parts by mass ("Ti90Al6V4")
