@@ -25,10 +25,10 @@ typedef struct {
 
 /* Makes the camera of a view.
  *
- * source                    another point to look from, such as a sample of an extended source; NULL: that of the view;
- *                           ignored by parallel beams
- * shift_column, shift_row   offset of the rays from the centres of the pixels, in pixels
- * errors                    SKG_ERR_SCENE if the view is degenerate */
+ * source         another point to look from, such as a sample of an extended source; NULL: that of the view; ignored
+ *                by parallel beams
+ * shift_column   offset of the rays from the centres of the pixels, in pixels; shift_row likewise
+ * errors         SKG_ERR_SCENE if the view is degenerate */
 skg_status skg_camera_make(const skg_view *view, const double *source, double shift_column, double shift_row,
                            skg_camera *camera);
 

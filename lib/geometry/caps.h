@@ -1,10 +1,10 @@
 /* Caps that close a leaky mesh: a fan over each loop of open edges, about the mean of the loop. Private.
  *
- * Mesh and caps together are closed as a sum of signed triangles, whatever is wrong with the mesh, so that the signed
- * hits of every ray cancel. A plane loop is capped by exactly the area that it bounds. A missing triangle and any plane
- * hole are therefore closed exactly, and the gap at a T-junction gets the sliver that is missing. A flipped triangle
- * bounds its loop twice, and the two triangles of its caps outweigh it. Over a loop that is not plane, the fan is one of
- * many possible surfaces. */
+ * Mesh and caps together are closed as a sum of signed triangles, whatever is wrong with the mesh, so that the
+ * signed hits of every ray cancel. A plane loop is capped by exactly the area that it bounds. A missing triangle
+ * and any plane hole are therefore closed exactly, and the gap at a T-junction gets the sliver that is missing.
+ * A flipped triangle bounds its loop twice, and the two triangles of its caps outweigh it. Over a loop that is
+ * not plane, the fan is one of many possible surfaces. */
 #ifndef SKG_CAPS_H
 #define SKG_CAPS_H
 

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* h (pixel times t, and t) of the corners of the mesh's box: that of the lowest corner, and from there along the edges.
- * A frame may have a million parts, so only one corner and three edges of each are transformed. */
+/* h (pixel times t, and t) of the corners of the mesh's box: that of the lowest corner, and from there along the
+ * edges. A frame may have a million parts, so only one corner and three edges of each are transformed. */
 static void see_corners(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double h[8][3]) {
     double lowest[3], world[3], edge[3][3];
     for (int k = 0; k < 3; k++) lowest[k] = mesh->origin[k] + (double)mesh->lowest[k];

@@ -16,8 +16,8 @@ typedef struct {
 /* The extent of a mesh at a pose, from the present bounds of the mesh. */
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent);
 
-/* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded outward
- * as skg_shared.h wants them. The last row may lie beyond the detector. */
+/* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
+ * outward as skg_shared.h wants them. The last row may lie beyond the detector. */
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);
 
 #endif

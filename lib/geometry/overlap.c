@@ -35,8 +35,8 @@ static double column_place(const columns *grid, int axis, int64_t index) {
            ((double)index + (axis ? 0.4142135623730951 : 0.7320508075688772)) * grid->step[axis];
 }
 
-/* The x at which the edge from a to b crosses y. The end with the lower y comes first, so that both triangles at an edge
- * get the same bits. */
+/* The x at which the edge from a to b crosses y. The end with the lower y comes first, so that both triangles at
+ * an edge get the same bits. */
 static double crossing(const double *a, const double *b, double y) {
     if (a[1] > b[1] || (a[1] == b[1] && a[0] > b[0])) {
         const double *swap = a;
@@ -183,8 +183,8 @@ static void pass(sweep_state *state, const column_hit *hit) {
             }
 }
 
-/* Compares every active part with its siblings and its parent over the stretch of a column between two hits. Cousins need
- * not be compared: where they overlap, their ancestors overlap or one of them has left its parent. */
+/* Compares every active part with its siblings and its parent over the stretch of a column between two hits.
+ * Cousins need not be compared: where they overlap, their ancestors overlap or one of them has left its parent. */
 static skg_status judge(const sweep_state *state, const skg_solid *solids, pair_table *pairs,
                         const double *place, double length, double area) {
     for (int64_t i = 0; i < state->count; i++) {

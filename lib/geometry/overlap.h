@@ -1,10 +1,10 @@
 /* Parts that overlap, and parts that leave their parent. Private.
  *
- * The lengths of overlapping siblings are added, and a child outside its parent subtracts the parent. Nothing is clamped,
- * so both cases are found and reported.
+ * The lengths of overlapping siblings are added, and a child outside its parent subtracts the parent. Nothing is
+ * clamped, so both cases are found and reported.
  *
- * Method: a grid of parallel columns covers the scene. Along each column, the signed hits of all closed parts are sorted
- * and swept. Volumes are sums over columns and therefore have the resolution of the grid. */
+ * Method: a grid of parallel columns covers the scene. Along each column, the signed hits of all closed parts
+ * are sorted and swept. Volumes are sums over columns and therefore have the resolution of the grid. */
 #ifndef SKG_OVERLAP_H
 #define SKG_OVERLAP_H
 

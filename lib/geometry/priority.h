@@ -1,10 +1,10 @@
-/* Priority resolution: which part an interval of a ray belongs to if parts overlap, and children that are clipped to
- * their parents. Private.
+/* Priority resolution: which part an interval of a ray belongs to if parts overlap, and children that are clipped
+ * to their parents. Private.
  *
- * Of the closed parts of one parent (or of the world) that contain a point, those of the highest priority count there;
- * parts of the same priority add. With clipping, a part counts only inside its closed parent. A part that does not count
- * ("falls") takes along every part inside it, at any depth. Leaky parts neither displace nor are displaced. The parts
- * that may compete follow from the bounds of each frame, so that parts may move. */
+ * Of the closed parts of one parent (or of the world) that contain a point, those of the highest priority count
+ * there; parts of the same priority add. With clipping, a part counts only inside its closed parent. A part that
+ * does not count ("falls") takes along every part inside it, at any depth. Leaky parts neither displace nor are
+ * displaced. The parts that may compete follow from the bounds of each frame, so that parts may move. */
 #ifndef SKG_PRIORITY_H
 #define SKG_PRIORITY_H
 
@@ -25,15 +25,16 @@ skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_ext
                              skg_priority *priority);
 void skg_priority_release(skg_priority *priority);
 
-/* The number of competitors that the kernels of hits.cl are compiled for, and the ints of one entry of their table. */
+/* The number of competitors that the kernels of hits.cl are compiled for, and the ints of one entry of their
+ * table. */
 int64_t skg_priority_slots(const skg_priority *priority);
 int64_t skg_priority_entry(const skg_priority *priority);
 
 /* Fills the tables of hits.cl.
  *
  * slots   [parts of the scene] the competitor that a part is, or -1
- * table   [competitors][entry] part, slot of the parent that it is clipped to or -1, the set of slots that displace it,
- *         the set of slots of its ancestors */
+ * table   [competitors][entry] part, slot of the parent that it is clipped to or -1, the set of slots that displace
+ *         it, the set of slots of its ancestors */
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
                          int32_t *table);
 

@@ -1,14 +1,15 @@
-/* The method is that of the kernel for the plane of the source (kernels/source_plane.cl). A row of pixels and the source
- * span a plane, which cuts two edges of a triangle; a ray hits the triangle if it passes the two cuts on different sides.
- * Each cut is computed from the ends of its edge in one order, so that neighbouring triangles agree and the signed hits
- * of a closed mesh cancel. */
+/* The method is that of the kernel for the plane of the source (kernels/source_plane.cl). A row of pixels and
+ * the source span a plane, which cuts two edges of a triangle; a ray hits the triangle if it passes the two cuts
+ * on different sides. Each cut is computed from the ends of its edge in one order, so that neighbouring
+ * triangles agree and the signed hits of a closed mesh cancel. */
 #include "geometry/recast.h"
 
 #include "core/vector.h"
 
 #include <math.h>
 
-/* A projected vertex: (x, y, w) is w times (column, row, 1), and t is the path parameter. A parallel beam has w = 1. */
+/* A projected vertex: (x, y, w) is w times (column, row, 1), and t is the path parameter. A parallel beam has w
+ * = 1. */
 typedef struct {
     double x, y, w, t;
 } seen;

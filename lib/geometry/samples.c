@@ -73,8 +73,9 @@ int64_t skg_samples_count(const skg_samples *samples) {
 
 /* --- Sobol's sequence in three dimensions --- */
 
-/* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86, with the polynomials 1, x + 1, x^2 + x + 1 and the initial
- * numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. DIGITS: 2^17 points exceed MOST_SAMPLES. */
+/* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86, with the polynomials 1, x + 1, x^2 + x + 1 and the
+ * initial numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. DIGITS: 2^17 points exceed
+ * MOST_SAMPLES. */
 enum { DIGITS = 17 };
 
 static void sobol(int64_t index, double x[3]) {
@@ -89,8 +90,9 @@ static void sobol(int64_t index, double x[3]) {
     for (int k = 0; k < DIGITS; k++)
         if (index >> k & 1)
             for (int d = 0; d < 3; d++) sum[d] ^= direction[d][k];
-    /* The digits are shifted by 0.1010... At every length of the sequence the samples of the pieces are then a third of a
-     * piece from its middle, to one side or the other, and not all in its corner. The half step 2^14 centres them. */
+    /* The digits are shifted by 0.1010... At every length of the sequence the samples of the pieces are then a
+     * third of a piece from its middle, to one side or the other, and not all in its corner. The half step 2^14
+     * centres them. */
     for (int d = 0; d < 3; d++) x[d] = ((sum[d] ^ UINT32_C(0xaaaa8000)) + 0x1p14) * 0x1p-32;
 }
 

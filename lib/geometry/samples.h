@@ -19,8 +19,8 @@ skg_status skg_samples_make(const skg_spot *spot, int32_t supersampling, skg_sam
 /* The passes of a frame. */
 int64_t skg_samples_count(const skg_samples *samples);
 
-/* Sample 0 <= index < count of a view: a point of the source, and the shift from the centre of the pixels in columns and
- * rows. The samples of the pixel run fastest. */
+/* Sample 0 <= index < count of a view: a point of the source, and the shift from the centre of the pixels in
+ * columns and rows. The samples of the pixel run fastest. */
 void skg_samples_at(const skg_samples *samples, const skg_view *view, int64_t index, double source[3],
                     double shift[2]);
 

@@ -23,8 +23,8 @@ static double most_of(const skg_scale_part *part) {
     return part->weight * (part->high_depth - part->low_depth) * part->multiplicity;
 }
 
-/* Adds a part to its rectangle of cells, as differences at the four corners that largest_sum sums up. Returns 0 if the
- * rectangle misses the detector. */
+/* Adds a part to its rectangle of cells, as differences at the four corners that largest_sum sums up. Returns 0
+ * if the rectangle misses the detector. */
 static int add_rectangle(const skg_scale_grid *grid, const skg_scale_part *part) {
     /* One pixel of margin, because the kernels decide with rounded coordinates what is covered. */
     int64_t c0 = cell_of(part->low_column - 1, grid->columns),

@@ -1,9 +1,9 @@
 /* The scale of an integer plane: the number of units for a weighted path parameter of 1. Private.
  *
- * Sums are exact integers and must not wrap. The scale is the largest power of two with bound * scale < 2^30, where
- * `bound` is the largest sum that any pixel may have: the maximum over coarse cells of the detector of the sums that all
- * parts whose projected rectangles meet the cell can add. It follows from the bounds of one frame alone, so that earlier
- * frames change no bit. */
+ * Sums are exact integers and must not wrap. The scale is the largest power of two with bound * scale < 2^30,
+ * where `bound` is the largest sum that any pixel may have: the maximum over coarse cells of the detector of the
+ * sums that all parts whose projected rectangles meet the cell can add. It follows from the bounds of one frame
+ * alone, so that earlier frames change no bit. */
 #ifndef SKG_SCALE_H
 #define SKG_SCALE_H
 
