@@ -22,6 +22,14 @@ void skg_one_line(char *sentence);
         if (skg_try_status != SKG_OK) return skg_try_status;                                                 \
     } while (0)
 
+/* At the start of a public call: returns SKG_ERR_ARGUMENT when the argument is NULL. The sentence names the call
+ * and the argument as the header has them: "skg_plan_move: the argument view is NULL". */
+#define SKG_NEEDS(argument)                                                                                  \
+    do {                                                                                                     \
+        if (!(argument))                                                                                     \
+            return skg_fail(SKG_ERR_ARGUMENT, "%s: the argument %s is NULL", __func__, #argument);           \
+    } while (0)
+
 /* Same, but leaves by the label `cleanup` with the local `status` set. */
 #define SKG_TRY_CLEANUP(call)                                                                                \
     do {                                                                                                     \

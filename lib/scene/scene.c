@@ -2,7 +2,6 @@
 
 #include "core/context.h"
 #include "core/names.h"
-#include "core/pose.h"
 #include "core/vector.h"
 
 #include <float.h>
