@@ -1,7 +1,10 @@
 /* Ribs, costal cartilage, sternum, spine, clavicles. */
-#include "phantom/thorax.h"
-
 #include "core/vector.h"
+#include "phantom/cage.h"
+#include "phantom/curve.h"
+#include "phantom/makers.h"
+#include "phantom/star.h"
+#include "phantom/tube.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,6 +18,8 @@ static skg_status add_tube(skg_thorax *thorax, const char *label, double hounsfi
     skg_mesh_arrays_free(&arrays);
     return status;
 }
+
+enum { CARTILAGES = 10 };
 
 static const char *const side_name[2] = {"left", "right"};
 static const double side_sign[2] = {1, -1};

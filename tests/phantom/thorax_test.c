@@ -1,7 +1,7 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "geometry/overlap.h"
 #include "body/inside.h"
-#include "phantom/thorax.h"
+#include "phantom/cage.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
