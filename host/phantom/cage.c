@@ -3,9 +3,7 @@
 #include "core/vector.h"
 #include "phantom/curve.h"
 
-/* Sizes here are aggregates of the surfaces of BodyParts3D (one man, lying), to about 5 mm. */
-
-/* Of the cage: rows of z and half width, z and y of the front, z and y of the back, in mm. */
+/* Rows of z and half width, z and y of the front, z and y of the back of the cage, in mm. */
 static const double half_width[][2] = {{-300, 122}, {-200, 126}, {-158, 128}, {-119, 131}, {-84, 133},
                                        {-43, 136},  {-6, 134},   {30, 128},   {59, 121},   {95, 109},
                                        {125, 94},   {141, 78},   {157, 66},   {175, 54},   {200, 44}};

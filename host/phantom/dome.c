@@ -13,7 +13,7 @@ static const double rim_inset = 9; /* mm from the ribs' middle lines: half a rib
 static double rim_region(const void *unused, const double p[3]) {
     (void)unused;
     double most = -HUGE_VAL;
-    for (int i = 0; i < 3; i++) { /* at three of the heights that the rim has */
+    for (int i = 0; i < 3; i++) { /* from the top to the bottom of the rim */
         const double q[3] = {p[0], p[1], -60 - 60 * i};
         most = fmax(most, fmax(skg_cage_inside(q, rim_inset), skg_spine_inside(q, 5)));
     }
@@ -38,7 +38,8 @@ double skg_dome_rim_radius(const skg_dome *dome, double azimuth) {
 }
 
 double skg_dome_rim_distance(const skg_dome *dome, double x, double y) {
-    double dx = x - skg_dome_centre[0], dy = y - skg_dome_centre[1], azimuth = atan2(dy, dx), h = 0.03;
+    double dx = x - skg_dome_centre[0], dy = y - skg_dome_centre[1], azimuth = atan2(dy, dx),
+           h = 0.03; /* rad; 2 points */
     double radius = skg_dome_rim_radius(dome, azimuth);
     double oblique =
         (skg_dome_rim_radius(dome, azimuth + h) - skg_dome_rim_radius(dome, azimuth - h)) / (2 * h * radius);
@@ -59,9 +60,10 @@ static double hump(double x, double y, double cx, double cy, double width, doubl
 double skg_dome_height(const skg_dome *dome, double x, double y) {
     double dx = x - skg_dome_centre[0], dy = y - skg_dome_centre[1], azimuth = atan2(dy, dx);
     double r = hypot(dx, dy) / skg_dome_rim_radius(dome, azimuth), square = fmin(r, 1.05) * fmin(r, 1.05);
-    /* A right dome, a left one that is 13 mm lower, and between them a saddle under the heart (mm, chosen). */
+    /* A right dome, a left one that is 13 mm lower, and between them the saddle under the heart. */
     double top = -26 + 31 * hump(x, y, -60, -56, 50, 75) + 17 * hump(x, y, 66, -54, 46, 75);
     double rim = skg_dome_rim_height(azimuth);
+    /* the eighth power keeps the dome flat and its wall steep; 1.05: the wall continues a little below the rim */
     return rim + (top - rim) * (1 - square * square * square * square);
 }
 

@@ -17,15 +17,16 @@ typedef struct {
 
 static const double apex = 160; /* mm */
 
-/* How low the recess between diaphragm and wall reaches: lowest at the back, beside the spine. */
+/* z down to which the lung fills the recess between diaphragm and wall: lowest at the back, beside the spine. At
+ * end-expiration most of the recess is empty (mm, a choice). */
 static double recess(double x, double y) {
     double azimuth = atan2(y - skg_dome_centre[1], x - skg_dome_centre[0]);
     double behind = (fabs(x) - 70) / 26, back = fmax(0, sin(azimuth));
     return skg_dome_rim_height(azimuth) + 70 - 26 * back * exp(-behind * behind);
 }
 
-/* Height of a ball's upper side that rolls under the diaphragm's middle: `radius` mm clear of it, also where
- * it is steep. */
+/* Height that is `radius` mm clear of the diaphragm's middle, also where it is steep: that of the top of a ball about
+ * (x, y) that rests on the surface. Tested on three circles of 12 points. */
 static double clear_of_dome(const skg_thorax_plan *plan, double x, double y, double radius) {
     enum { CIRCLES = 3, AROUND = 12 };
     double most = skg_dome_height(&plan->diaphragm, x, y) + radius;
@@ -39,10 +40,12 @@ static double clear_of_dome(const skg_thorax_plan *plan, double x, double y, dou
     return most;
 }
 
-/* z over a point of the base: above the diaphragm, and no lower than the recess reaches. */
+/* z of the base: above the diaphragm, and not below the recess. The ball is half the diaphragm's thickness and a gap
+ * that allows for the facets of both surfaces. */
 static double base_height(const lung *l, double x, double y) {
-    double over = clear_of_dome(l->plan, x, y, 1.5 + 3.4 * l->plan->gap), floor = recess(x, y);
-    double d = over - floor; /* the larger, rounded over 8 mm */
+    double over = clear_of_dome(l->plan, x, y, skg_dome_half_thickness + 3.4 * l->plan->gap),
+           floor = recess(x, y);
+    double d = over - floor; /* the larger of both, rounded over 8 mm */
     return floor + 0.5 * (d + sqrt(d * d + 64));
 }
 
@@ -52,11 +55,11 @@ static double height_of(const lung *l, double level, double x, double y) {
 }
 
 static void axis_at(const lung *l, double level, double axis[2]) {
-    /* left, where the heart is, farther out: it sees the lung in front of the heart */
+    /* Farther out on the left: from there the part of the lung in front of the heart is seen. */
     axis[0] = l->side * ((l->side > 0 ? 84 : 72) * (1 - level) + 40 * level), axis[1] = -48 + 10 * level;
 }
 
-/* Where the lung may be. Level rides in z: the region is asked along rays at one level. */
+/* Region of the lung at one level: 0 is the base, 1 the apex. z of the points is ignored. */
 typedef struct {
     const lung *l;
     double level;
@@ -67,19 +70,19 @@ static double lung_region(const void *shape, const double flat[3]) {
     const lung *l = at->l;
     const double p[3] = {flat[0], flat[1], height_of(l, at->level, flat[0], flat[1])};
     double most = skg_cage_inside(p, 9.5 + l->plan->gap);
-    /* apart from the other lung: vessels, thymus, oesophagus; and from the bronchus at its root */
+    /* the mediastinum: vessels, thymus and oesophagus between the lungs, widest at the root with its bronchus */
     double up = (p[2] - 78) / 28, across = (p[1] + 37) / 28;
     most = fmax(most, 11 + 32 * exp(-up * up - across * across) - l->side * p[0]);
-    /* beside the spine, the diaphragm's rim has a fold that the lung does not fill */
+    /* beside the spine the diaphragm's rim has a fold, which the lung does not fill */
     double fold = 15 / (1 + exp((p[2] - 15) / 12));
     most = fmax(most, skg_spine_inside(p, l->plan->gap + fold));
     most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->plan->gap + 0.5));
     most = fmax(most, l->plan->gap - skg_airway_distance(p));
-    if (p[2] > 95) { /* the apex is a dome of its own */
+    if (p[2] > 95) { /* the apex is a dome: the upper half of an ellipsoid */
         double u = (p[0] - l->side * 44) / 62, v = (p[1] + 36) / 66, w = (p[2] - 95) / (apex + 1 - 95);
         most = fmax(most, 30 * (u * u + v * v + w * w - 1));
     }
-    if (p[1] > -30 && fabs(p[0]) < 80 && most <= 0) /* necks of the ribs; elsewhere the inset is enough */
+    if (p[1] > -30 && fabs(p[0]) < 80 && most <= 0) /* only the necks of the ribs lie inside the cage */
         most = fmax(most, 7 + l->plan->gap - skg_rib_distance(l->plan->rib, p));
     return most;
 }
@@ -92,7 +95,7 @@ static double radius_at(const lung *l, int64_t side_ring, double azimuth) {
     return (1 - w) * row[i] + w * row[j];
 }
 
-/* Rings: pole of the base, `base` - 1 rings of it, `sides` rings, pole of the apex. */
+/* Rings are the pole of the base, `base` - 1 rings of it, `sides` rings, and the pole of the apex. */
 static void lung_place(const void *shape, int64_t ring, double azimuth, double p[3]) {
     const lung *l = shape;
     int64_t side = ring < l->base ? 0 : ring - l->base < l->sides ? ring - l->base : l->sides - 1;
@@ -118,7 +121,7 @@ static void find_radii(const lung *l, double *radius) {
         skg_shape_limit(radius + s * l->around, l->around, 2.5);
         skg_shape_smooth(radius + s * l->around, l->around, 3);
     }
-    /* and from level to level, by 2 mm a mm of height */
+    /* From level to level a radius may change by 2 mm for each mm of height; a lung is 250 mm high. */
     double rise = 2 * 250 / (double)l->sides;
     for (int64_t i = 0; i < l->around; i++) {
         double *column = radius + i;
