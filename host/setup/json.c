@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Appends the path of a node: "Samples[3].Material"; returns the length used. */
+/* Writes the path of a node, "Samples[3].Material"; returns its length. */
 static size_t write_path(const skg_json_node *node, char *text, size_t size) {
     if (!node->up) return 0;
     size_t used = write_path(node->up, text, size);
@@ -35,7 +35,7 @@ skg_status skg_json_fail(const skg_json_node *node, skg_status status, const cha
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
     write_path(node, path, sizeof path);
-    if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT; /* the file is wrong, not its reader's caller */
+    if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT;
     int64_t line = skg_json_line(node);
     if (line > 0)
         return skg_fail(status, "%s: line %" PRId64 ": %s: %s", node->file->path, line, path, sentence);
@@ -119,7 +119,7 @@ skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *k
             if (other != name && another && another->kind == SKG_KEY_READ &&
                 strcmp(canonical(another), canonical(key)) == 0)
                 return skg_json_fail(&member, SKG_ERR_FORMAT,
-                                     "is there twice (%s and %s are the same key); keep one", name, other);
+                                     "is given twice (%s and %s are the same key); keep one", name, other);
         }
     }
     return SKG_OK;
@@ -204,7 +204,7 @@ skg_status skg_json_choice(const skg_json_node *node, const char *what, const ch
     for (int64_t i = 0; i < count; i++)
         snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", names[i]);
     const char *near = skg_nearest_name(text, names, count);
-    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no %s%s%s; known: %s", text, what,
+    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no %s%s%s; known are: %s", text, what,
                          near ? "; did you mean " : "", near ? near : "", known);
 }
 

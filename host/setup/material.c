@@ -1,13 +1,13 @@
 /* The key Material of a sample, and of everything else that has one. */
 #include "core/context.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <string.h>
 
 static const char *const example = "[\"mu\", 0.2], [\"Compound\", \"H2O\"] or a name such as \"Water\"";
 
-/* A number, or a string that holds one: gVXR's exporter writes the latter. */
+/* A number, or a string with a number, as gVXR's exporter writes it. */
 static skg_status read_mu(const skg_json_node *node, double *per_cm) {
     if (!json_is_string(node->value)) return skg_json_number(node, per_cm);
     const char *text = json_string_value(node->value);
@@ -16,10 +16,10 @@ static skg_status read_mu(const skg_json_node *node, double *per_cm) {
     *per_cm = usable ? json_number_value(number) : 0;
     json_decref(number);
     if (usable) return SKG_OK;
-    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no number; give 1/cm", text);
+    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no number; give mu in 1/cm", text);
 }
 
-/* 26, "Fe", "Iron". */
+/* 26, "Fe" or "Iron". */
 static skg_status read_z(const skg_json_node *node, int32_t *z) {
     const char *text = NULL;
     if (json_is_integer(node->value)) {
@@ -81,7 +81,7 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
     return SKG_OK;
 }
 
-/* A formula by atoms; a name of the tables where it is none. */
+/* A chemical formula, or a name of the material tables. */
 static skg_status read_compound(const skg_json_node *node, skg_material **material) {
     const char *formula = NULL;
     SKG_TRY(skg_json_text(node, &formula));
@@ -109,7 +109,7 @@ static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path
     return status == SKG_OK ? SKG_OK : skg_json_fail(path_node, status, "%s", skg_last_error());
 }
 
-/* Its density is not set yet. */
+/* The material without the density that the sample gives. */
 static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node, const char *label,
                             skg_material **material) {
     enum { MU, ELEMENT, MIXTURE, COMPOUND, HU, TABLE, KINDS };
@@ -149,8 +149,8 @@ skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(read_kind(reader, node, label, &made));
     SKG_TRY_CLEANUP(skg_material_element_count(made, &elements));
     SKG_TRY_CLEANUP(skg_material_density_get(made, &known));
-    if (elements == 0 ||
-        (known > 0 && !density->value)) { /* given by its attenuation, or nothing to change */
+    /* A material without elements is given by its attenuation, which no density changes. */
+    if (elements == 0 || (known > 0 && !density->value)) {
         *material = made;
         return SKG_OK;
     }

@@ -1,7 +1,7 @@
 /* What the detector makes of a photon: Energy response and Scintillator. */
 #include "core/names.h"
 #include "core/units.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 
@@ -9,7 +9,7 @@ static const skg_json_key response_keys[] = {
     {"File", NULL, SKG_KEY_READ},
     {"LUT", NULL, SKG_KEY_READ},
     {"Unit", NULL, SKG_KEY_READ},
-    {"Energy", "Unit", SKG_KEY_READ}, /* so in files in use */
+    {"Energy", "Unit", SKG_KEY_READ}, /* files in use have this */
 };
 
 static const skg_json_key scintillator_keys[] = {

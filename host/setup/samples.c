@@ -1,5 +1,6 @@
+/* The section Samples. */
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <math.h>

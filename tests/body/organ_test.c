@@ -1,6 +1,8 @@
 /* What a caller may say of an organ: kinds, axes, links; boxes that turn; drivers that contradict each other.
  */
-#include "body/body.h"
+#include "body/follow.h"
+#include "body/ribs.h"
+#include "body/types.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

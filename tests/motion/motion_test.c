@@ -1,5 +1,5 @@
 /* A set-up that breathes: what its key Breathing says, and the sixty-one organs where the data is present. */
-#include "setup/setup.h"
+#include "setup/organs.h"
 #include "suite.h"
 
 #include <skiagraph/motion.h>
