@@ -113,7 +113,7 @@ skg_status skg_body_link(skg_body *body) {
     for (int64_t i = 0; i < body->organs; i++) moves |= body->organ[i].role != ROLE_STATIC;
     if (!moves)
         return skg_fail(SKG_ERR_BREATHING,
-                        "body: no organ moves; labels such as \"rib 5 left\" or \"liver\" have rules");
+                        "body: there is no organ that moves; labels such as \"rib 5 left\" or \"liver\" have rules");
     body->tried = 1;
     SKG_TRY(skg_body_find_links(body));
     int64_t deformable = 0;

@@ -204,7 +204,7 @@ skg_status skg_json_choice(const skg_json_node *node, const char *what, const ch
     for (int64_t i = 0; i < count; i++)
         snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", names[i]);
     const char *near = skg_nearest_name(text, names, count);
-    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no %s%s%s; known are: %s", text, what,
+    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no %s%s%s; known: %s", text, what,
                          near ? "; did you mean " : "", near ? near : "", known);
 }
 

@@ -71,7 +71,7 @@ static skg_status put(const char *setting, json_t *at, char *path, json_t *value
         } else {
             return skg_fail(
                 SKG_ERR_ARGUMENT,
-                "--set %s: the value before \"%s\" is neither an object nor an array, so nothing can be set inside it",
+                "--set %s: the value before \"%s\" is neither an object nor an array; there is nothing inside it to set",
                 setting, path);
         }
         path += length + 1;
