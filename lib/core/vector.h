@@ -41,7 +41,7 @@ static inline void skg_pose_identity(double *m) {
     for (int i = 0; i < 16; i++) m[i] = i % 5 == 0 ? 1 : 0;
 }
 
-/* product = a b; may be a or b itself. */
+/* product = a b. The product may be stored over a or b. */
 static inline void skg_pose_multiply(const double *a, const double *b, double *product) {
     double m[16];
     for (int r = 0; r < 4; r++)
@@ -51,13 +51,13 @@ static inline void skg_pose_multiply(const double *a, const double *b, double *p
     memcpy(product, m, sizeof m);
 }
 
-/* The point m (x, y, z, 1); may be written over p. */
+/* The point m (x, y, z, 1). The result may be stored over p. */
 static inline void skg_pose_point(const double *m, const double *p, double *result) {
     double x = p[0], y = p[1], z = p[2];
     for (int r = 0; r < 3; r++) result[r] = m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3];
 }
 
-/* Determinant of the linear part: the factor on volumes, negative when mirrored. */
+/* Determinant of the linear part: the factor on volumes; negative if the pose mirrors. */
 static inline double skg_pose_determinant(const double *m) {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
            m[2] * (m[4] * m[9] - m[5] * m[8]);
