@@ -41,7 +41,8 @@ static const double *process_tip(const skg_body_organ *bone, int side) {
     return bone->rest + 3 * best;
 }
 
-/* Adds up the rib's vertices that are at most 3 mm farther from a point than the nearest one: the surface of a joint. */
+/* Adds up the rib's vertices that are at most 3 mm farther from a point than the nearest one, as those of a joint
+ * are. */
 static void add_nearest(const skg_body_organ *rib, const double point[3], double sum[3], double *count) {
     double least = HUGE_VAL, d[3];
     for (int pass = 0; pass < 2; pass++)

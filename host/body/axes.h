@@ -4,8 +4,8 @@
 
 #include "body/types.h"
 
-/* Head of a rib, and direction (length 1) from there to its tubercle, by the vertebrae of the body; 0: its vertebra is
- * not in the body. */
+/* Head of a rib, and direction (length 1) from there to its tubercle, by the vertebrae of the body; 0: its vertebra
+ * is not in the body. */
 int skg_rib_bone_axis(const skg_body *body, const skg_body_organ *rib, double head[3], double along[3]);
 
 /* Principal axes of the surface's inertia (rows of length 1, the axis of most spread first), and the posterior end of

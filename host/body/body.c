@@ -9,8 +9,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Vertices of deformable organs from which threads are used. With fewer, a step takes about a millisecond, and threads
- * that wait for work between steps take more from a device on the same cores than they give. */
+/* Vertices of deformable organs from which threads are used. With fewer, a step takes about a millisecond, and
+ * threads that wait for work between steps take more from a device on the same cores than they give. */
 enum { THREADS_FROM = 40000 };
 
 void skg_body_options_init(skg_body_options *options) {
@@ -112,8 +112,9 @@ skg_status skg_body_link(skg_body *body) {
     int moves = 0;
     for (int64_t i = 0; i < body->organs; i++) moves |= body->organ[i].role != ROLE_STATIC;
     if (!moves)
-        return skg_fail(SKG_ERR_BREATHING,
-                        "body: there is no organ that moves; labels such as \"rib 5 left\" or \"liver\" have rules");
+        return skg_fail(
+            SKG_ERR_BREATHING,
+            "body: there is no organ that moves; labels such as \"rib 5 left\" or \"liver\" have rules");
     body->tried = 1;
     SKG_TRY(skg_body_find_links(body));
     int64_t deformable = 0;

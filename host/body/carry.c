@@ -7,8 +7,8 @@
 
 static const double anywhere = 1e4; /* mm; beyond any body */
 
-/* Finds the CARRIERS vertices of the carrier that are nearest to each vertex. Their weights are 1/(d^2 + 1 mm^2), made
- * to add up to 1. */
+/* Finds the CARRIERS vertices of the carrier that are nearest to each vertex. Their weights are 1/(d^2 + 1 mm^2),
+ * made to add up to 1. */
 static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
     const skg_body_organ *c = body->organ + carrier;
     o->carrier = carrier;
@@ -113,8 +113,8 @@ skg_status skg_carry_follow(skg_body *body, skg_body_organ *o) {
     return carrier >= 0 ? carry(body, o, carrier) : SKG_OK;
 }
 
-/* A cartilage lies between its rib (fraction 0) and the sternum (fraction 1). Below the seventh it ends at the cartilage
- * above, which moves there about as the rib above does. */
+/* A cartilage lies between its rib (fraction 0) and the sternum (fraction 1). Below the seventh it ends at the
+ * cartilage above, which moves there about as the rib above does. */
 skg_status skg_carry_cartilage(skg_body *body, skg_body_organ *o) {
     int32_t rib = -1, other = -1;
     for (int64_t i = 0; i < body->organs; i++) {

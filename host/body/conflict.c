@@ -9,9 +9,9 @@ static const char *driver_name(const skg_body *body, const skg_link *link) {
     return link->organ < 0 ? "spine" : body->organ[link->organ].label;
 }
 
-/* The driver that is overrun most, and the one that overruns it: the two are farther apart than the links between them
- * allow. A search from the first over the state at rest finds what the links allow; all targets are lifted by the same
- * amount, so that gains are above 0. */
+/* The driver that is overrun most, and the one that overruns it: the two are farther apart than the links between
+ * them allow. A search from the first over the state at rest finds what the links allow; all targets are lifted by
+ * the same amount, so that gains are above 0. */
 void skg_conflict_partners(const skg_body *body, const skg_body_organ *o, const char *between[2]) {
     skg_chain *chain = o->chain;
     const skg_chain_report *report = &o->report;

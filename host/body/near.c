@@ -2,8 +2,8 @@
 
 #include "core/vector.h"
 
-/* Weights of the point of triangle abc that is nearest to p. The signs of areas say which corner, edge or face it lies
- * on (Ericson, Real-Time Collision Detection (2005) 5.1.5). */
+/* Weights of the point of triangle abc that is nearest to p. The signs of areas say which corner, edge or face it
+ * lies on (Ericson, Real-Time Collision Detection (2005) 5.1.5). */
 static void nearest_weights(const double *a, const double *b, const double *c, const double *p, double w[3]) {
     double ab[3], ac[3], ap[3], bp[3], cp[3];
     skg_add_scaled(b, -1, a, ab);

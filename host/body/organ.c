@@ -8,8 +8,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* The rotation vector at weight 1. With x to the left and y to the back, the front is raised by a rotation about -x, and
- * the side by one about -y on the left and about y on the right. */
+/* The rotation vector at weight 1. With x to the left and y to the back, the front is raised by a rotation about -x,
+ * and the side by one about -y on the left and about y on the right. */
 static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {
     if (!skg_all_finite(given->turn_rad, 3) || !(skg_length(given->turn_rad) <= SKG_PI) ||
         !(fabs(given->gamma_rad) <= SKG_PI) || !(fabs(given->lambda_rad) <= SKG_PI))
@@ -57,8 +57,8 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
               from->rigid_mm <= from->distance_mm))
             return skg_fail(
                 SKG_ERR_BREATHING,
-                "%s: a link to %s within %g mm, rigid within %g mm; the first is above 0 to 1000 mm, the second 0 to "
-                "the first",
+                "%s: a link to %s within %g mm, rigid within %g mm; a link reaches above 0 to 1000 mm, and is rigid "
+                "no farther than that",
                 o->label, from->to, from->distance_mm, from->rigid_mm);
         SKG_TRY(skg_copy_text(from->to, &to));
         o->given[l] = (skg_organ_link){to, from->distance_mm, from->rigid_mm};

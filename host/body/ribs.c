@@ -8,23 +8,24 @@
 
 static const double degree = SKG_PI / 180;
 
-/* By how many degrees pump and bucket angle of ribs 1 to 12 fall from relaxed expiration to full inspiration. Ribs 3 to
- * 7 are linear between the end points of Wilson et al. (J. Appl. Physiol. 62 (1987) 1872). Ribs 2 and 8 to 10 are
+/* By how many degrees pump and bucket angle of ribs 1 to 12 fall from relaxed expiration to full inspiration. Ribs 3
+ * to 7 are linear between the end points of Wilson et al. (J. Appl. Physiol. 62 (1987) 1872). Ribs 2 and 8 to 10 are
  * extrapolated, and 1, 11 and 12 chosen: assumptions. */
 static const double full_range[12][2] = {{8, 6},  {12, 13.5}, {11, 13}, {10, 12.25}, {9, 11.5}, {8, 10.75},
                                          {7, 10}, {6, 9.25},  {5, 8.5}, {4, 7.75},   {3, 6},    {3, 6}};
 
-/* Weight 1 is a quiet breath, 17 % of the volume v from rest to full inspiration. Angles grow faster than the volume at
- * first and slower at the end (Beyer et al., Respir. Physiol. Neurobiol. 232 (2016) 57). The curve is a choice: straight
- * to half the volume, from there a parabola of the same slope, 1.25, to 1 at full inspiration, then its tangent. */
+/* Weight 1 is a quiet breath: 0.5 of about 3 l, 17 % of the volume v from rest to full inspiration. Angles grow
+ * faster than the volume at first and slower at the end (Beyer et al., Respir. Physiol. Neurobiol. 232 (2016) 57).
+ * The curve is a choice: straight to half the volume, from there a parabola of the same slope, 1.25, to 1 at full
+ * inspiration, then its tangent. */
 double skg_rib_fraction(double weight) {
     double v = 0.17 * weight, s = 2 * v - 1;
     if (v <= 0.5) return 1.25 * v;
     return s < 1 ? 0.625 + 0.625 * s - 0.25 * s * s : 1 + 0.125 * (s - 1);
 }
 
-/* Upward normal of the plane through a rib: the least eigenvector of the vertices' scatter. In own-side axes: x to the
- * rib's own side, y to the front, z up. */
+/* Upward normal of the plane through a rib: the least eigenvector of the vertices' scatter. In own-side axes: x to
+ * the rib's own side, y to the front, z up. */
 static void plane_normal(const skg_body_organ *rib, const double *displacements, double normal[3]) {
     double mean[3] = {0}, scatter[9] = {0}, values[3], vectors[9];
     for (int pass = 0; pass < 2; pass++)
@@ -53,8 +54,8 @@ void skg_rib_plane(const skg_body_organ *rib, const double *displacements, doubl
     angles(n, pump, bucket);
 }
 
-/* Fall of the angles when the normal turns by the rotation vector turn[0] basis[0..2] + turn[1] basis[3..5], in own-side
- * axes. */
+/* Fall of the angles when the normal turns by the rotation vector turn[0] basis[0..2] + turn[1] basis[3..5], in
+ * own-side axes. */
 static void fall_of(const double normal[3], const double basis[6], const double turn[2], double fall[2]) {
     double before[2], after[2], rotation[9], n[3], vector[3];
     skg_scale_vector(turn[0], basis, vector);
@@ -90,9 +91,9 @@ static void to_own_side(const skg_body_organ *rib, int axial, const double from[
     to[0] = sign * rib->side * from[0], to[1] = -sign * from[1], to[2] = sign * from[2];
 }
 
-/* Finds, in the span of a basis (own-side axes), the rotation vector that gives the falls of the table. Newton's method
- * starts from 0, near the smallest solution: the pump angle falls with the component across the midplane, the bucket
- * angle with the component along it. 20 steps are more than enough, as convergence is quadratic. */
+/* Finds, in the span of a basis (own-side axes), the rotation vector that gives the falls of the table. Newton's
+ * method starts from 0, near the smallest solution: the pump angle falls with the component across the midplane, the
+ * bucket angle with the component along it. 20 steps are more than enough, as convergence is quadratic. */
 static skg_status solve_turn(skg_body_organ *rib, const double basis[6]) {
     double normal[3], wanted[2], turn[2] = {0}, sum[3];
     plane_normal(rib, NULL, normal);
@@ -131,8 +132,8 @@ static void turn_about(skg_body_organ *rib, const double along[3]) {
     skg_scale_vector((motion[2] < 0 ? -1 : 1) * degree * hypot(range[0], range[1]), along, rib->axis);
 }
 
-/* By the bones: both angles about the axis from head to tubercle; without vertebrae about the two longer principal axes of
- * inertia. */
+/* By the bones: both angles about the axis from head to tubercle; without vertebrae about the two longer principal
+ * axes of inertia. */
 static skg_status prepare_by_bones(const skg_body *body, skg_body_organ *rib, double head[3]) {
     double along[3], axes[9], basis[6];
     if (skg_rib_bone_axis(body, rib, head, along)) {

@@ -45,8 +45,8 @@ static int diaphragm_rule(const skg_body *body, const skg_body_organ *organ, con
     return 0;
 }
 
-/* The base follows the diaphragm, the upper wall the ribs. Between them, where the wall is near the diaphragm too, the
- * lung slides. */
+/* The base follows the diaphragm, the upper wall the ribs. Between them, where the wall is near the diaphragm too,
+ * the lung slides. */
 static int lung_rule(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link) {
     const double reach = 16, slides_within = 45;
     (void)organ;

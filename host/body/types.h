@@ -11,8 +11,8 @@
 /* Values of skg_link.organ that are no organ: the point stays at rest, or moves with the diaphragm's tendon. */
 enum { LINK_STAYS = -1, LINK_TENDON = -2 };
 
-/* A point that follows another organ: a point of one of its triangles or, where fixed, a point that moves with a rigid
- * organ as a whole. */
+/* A point that follows another organ: a point of one of its triangles or, where fixed, a point that moves with a
+ * rigid organ as a whole. */
 typedef struct {
     int32_t organ, corner[3]; /* corner: vertices of that organ */
     double weight[3];

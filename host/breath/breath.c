@@ -108,8 +108,8 @@ static double wrap(double phase) {
     return p < 1 ? p : 0;
 }
 
-/* Slope at sample i of a monotone cubic through evenly spaced samples: the harmonic mean of the slopes on both sides, 0 at
- * a turn (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300). */
+/* Slope at sample i of a monotone cubic through evenly spaced samples: the harmonic mean of the slopes on both sides,
+ * 0 at a turn (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300). */
 static double sample_slope(const skg_breath *b, int64_t i) {
     int64_t n = b->sample_count;
     double before = b->samples[i] - b->samples[(i + n - 1) % n];

@@ -133,8 +133,8 @@ skg_status skg_chain_drive(skg_chain *chain, int64_t drivers, const int32_t *nod
     for (int64_t s = 0; s < drivers; s++) {
         if (chain->driver_of[nodes[s]] >= 0)
             return skg_fail(SKG_ERR_BREATHING,
-                            "%s: drivers %" PRId32 " and %" PRId64 " are one node, %" PRId32,
-                            chain->name, chain->driver_of[nodes[s]], s, nodes[s]);
+                            "%s: drivers %" PRId32 " and %" PRId64 " are one node, %" PRId32, chain->name,
+                            chain->driver_of[nodes[s]], s, nodes[s]);
         chain->driver_of[nodes[s]] = (int32_t)s;
         chain->driver[s] = nodes[s];
         for (int k = 0; k < 3; k++) chain->target[k][s] = 0;

@@ -22,8 +22,8 @@
 
 #include <skiagraph/breathing.h>
 
-/* Scratch of one axis: the gains of one search, and the nodes that wait in it, in buckets of descending gain. Any order
- * gives the same gains; this one saves most second visits. */
+/* Scratch of one axis: the gains of one search, and the nodes that wait in it, in buckets of descending gain. Any
+ * order gives the same gains; this one saves most second visits. */
 typedef struct {
     double *gain; /* mm, per node: how far it moves in the direction of the search; 0 where unseen */
     int32_t *
@@ -65,18 +65,18 @@ skg_status skg_chain_create(const char *name, int64_t nodes, const double *rest,
                             const int32_t *kind, skg_chain **chain);
 void skg_chain_free(skg_chain **chain);
 
-/* Sets which nodes are driven, instead of those before; there may be none. SKG_ERR_BREATHING: a node is out of range, or
- * listed twice. */
+/* Sets which nodes are driven, instead of those before; there may be none. SKG_ERR_BREATHING: a node is out of range,
+ * or listed twice. */
 skg_status skg_chain_drive(skg_chain *chain, int64_t drivers, const int32_t *nodes);
 
-/* Moves drivers to displacement targets (rows of x, y, z, mm), and every other node as little as the links allow. u: in and
- * out, displacements in mm, axis by axis (u[axis * nodes + node]); on input a state that keeps every link (zeros: at
- * rest). Drivers that contradict each other meet halfway; the report says by how much they do, and may be NULL.
- * SKG_ERR_BREATHING: a target is not finite; u is unchanged. */
+/* Moves drivers to displacement targets (rows of x, y, z, mm), and every other node as little as the links allow. u:
+ * in and out, displacements in mm, axis by axis (u[axis * nodes + node]); on input a state that keeps every link
+ * (zeros: at rest). Drivers that contradict each other meet halfway; the report says by how much they do, and may be
+ * NULL. SKG_ERR_BREATHING: a target is not finite; u is unchanged. */
 skg_status skg_chain_move(skg_chain *chain, const double *targets, double *u, skg_chain_report *report);
 
-/* Elastic relaxation. In each of the passes, every node goes a fraction (0 to 1) of the way to the mean of its neighbours,
- * then back as far as links and the drivers of the last move ask. Keeps every link. */
+/* Elastic relaxation. In each of the passes, every node goes a fraction (0 to 1) of the way to the mean of its
+ * neighbours, then back as far as links and the drivers of the last move ask. Keeps every link. */
 skg_status skg_chain_relax(skg_chain *chain, int32_t passes, double fraction, double *u);
 
 /* Number of links that u breaks by more than a tolerance (mm), and the worst excess (mm; <= 0: none is broken). */
@@ -86,8 +86,8 @@ void skg_chain_check(const skg_chain *chain, const double *u, double tolerance, 
 /* Number of nodes that no driver reaches through links; they never move. */
 skg_status skg_chain_unreached(const skg_chain *chain, int64_t *count);
 
-/* The edges of triangles as pairs of nodes, each once. node_of maps corners to nodes (NULL: identity); an edge of a node
- * with itself is left out. The caller frees *ends. */
+/* The edges of triangles as pairs of nodes, each once. node_of maps corners to nodes (NULL: identity); an edge of a
+ * node with itself is left out. The caller frees *ends. */
 skg_status skg_chain_links(int64_t triangles, const int32_t *corners, const int32_t *node_of, int64_t *links,
                            int32_t **ends);
 

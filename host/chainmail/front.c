@@ -38,8 +38,8 @@ static inline void leave(skg_chain_front *f, int32_t node) {
     f->next[last] = next, f->last[next] = last;
 }
 
-/* Puts a node at the end of the bucket of its gain. First in, first out, as in the algorithm of Bellman and Ford, bounds
- * the number of second visits. */
+/* Puts a node at the end of the bucket of its gain. First in, first out, as in the algorithm of Bellman and Ford,
+ * bounds the number of second visits. */
 static inline void join(skg_chain_front *f, int64_t nodes, int32_t node) {
     double place = (f->top - f->gain[node]) * f->per_mm;
     int32_t ring = (int32_t)nodes + (place < BUCKETS - 1 ? (int32_t)place : BUCKETS - 1);
@@ -57,8 +57,8 @@ static inline void lift(skg_chain_front *f, int64_t nodes, int32_t node, double 
     join(f, nodes, node);
 }
 
-/* Buckets are as wide as the mean slack, or wider where more than BUCKETS would be needed. Widths from a tenth to three
- * times that made no measurable difference on the thorax. */
+/* Buckets are as wide as the mean slack, or wider where more than BUCKETS would be needed. Widths from a tenth to
+ * three times that made no measurable difference on the thorax. */
 static void open_buckets(const skg_chain *chain, int axis, skg_chain_front *f) {
     double low = 0, high = 0;
     for (int64_t n = 0; n < f->found; n++) {

@@ -9,8 +9,8 @@
 /* Contradictions of drivers below this are rounding: paths of 1000 links over 1000 mm round to 1e-10 mm. */
 static const double rounding_mm = 1e-9;
 
-/* Pushes u in one direction as the drivers ask: to max(u, L) upwards, to min(u, U) downwards. Returns the number of nodes
- * that moved. */
+/* Pushes u in one direction as the drivers ask: to max(u, L) upwards, to min(u, U) downwards. Returns the number of
+ * nodes that moved. */
 static int64_t push(const skg_chain *chain, int axis, int direction, double *u, skg_chain_front *f) {
     const double *target = chain->target[axis];
     skg_chain_forget(f);
@@ -31,8 +31,8 @@ static void round_drivers(const skg_chain *chain, int axis, double *u) {
     }
 }
 
-/* Where L > U, u is U after both pushes. A search with what the drivers still lack leads to L; half of its gains leads
- * halfway. */
+/* Where L > U, u is U after both pushes. A search with what the drivers still lack leads to L; half of its gains
+ * leads halfway. */
 static void meet_halfway(skg_chain *chain, int axis, double *u, skg_chain_report *report) {
     skg_chain_front *f = chain->front + axis;
     double *target = chain->target[axis];
@@ -93,8 +93,8 @@ skg_status skg_chain_move(skg_chain *chain, const double *targets, double *u, sk
     return SKG_OK;
 }
 
-/* One axis of a pass: towards the neighbours' mean, then to the middle of the nearest states above and below that keep
- * every link. scratch: two numbers for each node. */
+/* One axis of a pass: towards the neighbours' mean, then to the middle of the nearest states above and below that
+ * keep every link. scratch: two numbers for each node. */
 static void relax_axis(skg_chain *chain, int axis, double fraction, double *u, double *scratch) {
     skg_chain_front *f = chain->front + axis;
     double *wish = scratch, *above = scratch + chain->nodes;

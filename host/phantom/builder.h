@@ -19,7 +19,8 @@ struct skg_thorax {
     } * part;
 };
 
-/* Adds a part with the surface in the arrays, which the mesh takes over. inside: number of the part around it; -1: none. */
+/* Adds a part with the surface in the arrays, which the mesh takes over. inside: number of the part around it; -1:
+ * none. */
 skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
                           skg_mesh_arrays *arrays);
 

@@ -28,8 +28,9 @@ double skg_spine_depth(double z) {
     return CURVE(knots, z);
 }
 
-/* The spine with rib heads and processes. It begins 17 mm in front of the middle of the bodies, is round over 16 mm of
- * depth, then 23 mm wide on each side, and widens to the back from 8 mm in front of the middle (mm, by its surface). */
+/* The spine with rib heads and processes. It begins 17 mm in front of the middle of the bodies, is round over 16 mm
+ * of depth, then 23 mm wide on each side, and widens to the back from 8 mm in front of the middle (mm, by its
+ * surface). */
 double skg_spine_inside(const double p[3], double gap) {
     double y = p[1] - skg_spine_depth(p[2]), start = -17 - gap;
     if (y < start) return -1;

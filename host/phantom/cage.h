@@ -1,7 +1,8 @@
 /* The cage, the surface on which the middle lines of the ribs lie, and the spine behind it. Private.
  *
  * Frame of the thorax: x to the patient's left, y to the back, z up, in mm; the origin is the top of the right half
- * of the diaphragm. Sizes are aggregates of the surfaces of BodyParts3D (one man, lying), to about 5 mm. Everything inside the cage keeps clear of it by an inset, everything outside by an offset. */
+ * of the diaphragm. Sizes are aggregates of the surfaces of BodyParts3D (one man, lying), to about 5 mm. Everything
+ * inside the cage keeps clear of it by an inset, everything outside by an offset. */
 #ifndef SKG_CAGE_H
 #define SKG_CAGE_H
 

@@ -31,8 +31,8 @@ skg_status skg_rib_fill(int k, skg_rib *rib) {
     memcpy(p[0], rib_table[k].point[0], sizeof p[0]);
     p[0][0] += 9; /* mm; clear of the vertebra's body, whose half width is up to 21 mm */
     for (int i = 1; i < 4; i++) memcpy(p[i + 1], rib_table[k].point[i], sizeof p[i]);
-    /* The angle, where a rib turns forward, is no measured point: it is placed on the cage at 0.45 of the way to the side
-     * and a fifth of the way down. */
+    /* The angle, where a rib turns forward, is no measured point: it is placed on the cage at 0.45 of the way to the
+     * side and a fifth of the way down. */
     p[1][0] = fmax(0.45 * p[2][0], p[0][0] + 8);
     p[1][2] = p[0][2] - 0.2 * (p[0][2] - p[2][2]);
     p[1][1] = skg_cage_back(p[1][0], p[1][2]);

@@ -36,8 +36,8 @@ static void write_sample(const skg_thorax *thorax, int64_t i, FILE *f) {
 
 /* The source is in front of the patient, the detector behind the back, and rows go from head to foot, so that the
  * patient's right is on the viewer's left. The events: the breath is held at end-expiration (2.4 s is phase 0.6 of
- * "quiet") while the needle is inserted 110 mm deep; then breathing is shallow, and the ducts fill while the needle is
- * drawn back. */
+ * "quiet") while the needle is inserted 110 mm deep; then breathing is shallow, and the ducts fill while the needle
+ * is drawn back. */
 static void write_scene(const skg_thorax *thorax, FILE *f) {
     fprintf(
         f,

@@ -8,8 +8,8 @@
 
 #include "setup/json_file.h"
 
-/* Fails with the sentence after "FILE: line N: PATH: ". SKG_ERR_ARGUMENT becomes SKG_ERR_FORMAT: the file is wrong, not
- * the caller of its reader. */
+/* Fails with the sentence after "FILE: line N: PATH: ". SKG_ERR_ARGUMENT becomes SKG_ERR_FORMAT: the file is wrong,
+ * not the caller of its reader. */
 skg_status skg_json_fail(const skg_json_node *node, skg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -36,8 +36,8 @@ typedef struct {
     int64_t count;
 } skg_json_object;
 
-/* The node has to be an object with these keys only, each once. An unknown key is SKG_ERR_FORMAT with the nearest known
- * name; one of SKG_KEY_NOT_YET is SKG_ERR_UNSUPPORTED. */
+/* The node has to be an object with these keys only, each once. An unknown key is SKG_ERR_FORMAT with the nearest
+ * known name; one of SKG_KEY_NOT_YET is SKG_ERR_UNSUPPORTED. */
 skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *keys, int64_t count,
                                 skg_json_object *object);
 

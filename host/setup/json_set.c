@@ -20,8 +20,8 @@ static int starts_with_label(const char *path, const char *label) {
     return length > 0 && strncmp(path, label, length) == 0 && (path[length] == '.' || path[length] == '\0');
 }
 
-/* The element of an array with which a path continues: by the longest Label that fits, or by number. -1: none. *length:
- * number of characters of the path that name it. */
+/* The element of an array with which a path continues: by the longest Label that fits, or by number. -1: none.
+ * *length: number of characters of the path that name it. */
 static int64_t find_element(json_t *array, const char *path, size_t *length) {
     int64_t count = (int64_t)json_array_size(array), found = -1;
     *length = 0;
@@ -71,7 +71,8 @@ static skg_status put(const char *setting, json_t *at, char *path, json_t *value
         } else {
             return skg_fail(
                 SKG_ERR_ARGUMENT,
-                "--set %s: the value before \"%s\" is neither an object nor an array; there is nothing inside it to set",
+                "--set %s: the value before \"%s\" is neither an object nor an array; there is nothing inside it "
+                "to set",
                 setting, path);
         }
         path += length + 1;

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Projections for which a plan is verified: one every 22.5 degrees of a full turn, so that flat parts along the axes are
- * seen edge-on. */
+/* Projections for which a plan is verified: one every 22.5 degrees of a full turn, so that flat parts along the axes
+ * are seen edge-on. */
 enum { SAMPLED_VIEWS = 16 };
 
 static const skg_json_key scan_keys[] = {

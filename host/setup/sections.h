@@ -14,8 +14,8 @@
 
 #include "setup/reader.h"
 
-/* Each reads one section into reader->setup. Source comes before Detector, which needs to know where the beam comes from,
- * and both before Scan. */
+/* Each reads one section into reader->setup. Source comes before Detector, which needs to know where the beam comes
+ * from, and both before Scan. */
 skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
@@ -33,8 +33,8 @@ void skg_setup_organs_free(skg_breathing_section *section);
 skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
                                        int32_t *parallel);
 
-/* The key Beam. With mAs, photons are counted per mm2 at 1 m until the detector is known and skg_setup_place_beam makes
- * them photons per pixel. node: of the beam or what it lies in, for messages. */
+/* The key Beam. With mAs, photons are counted per mm2 at 1 m until the detector is known and skg_setup_place_beam
+ * makes them photons per pixel. node: of the beam or what it lies in, for messages. */
 skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node);
 
@@ -45,8 +45,8 @@ skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_obje
 skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *detector);
 skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);
 
-/* A material: its name, or an array that begins with its kind. density: in g/cm3; value NULL: not given. label: the name
- * of a material that has none of its own; may be NULL. The caller releases the material. */
+/* A material: its name, or an array that begins with its kind. density: in g/cm3; value NULL: not given. label: the
+ * name of a material that has none of its own; may be NULL. The caller releases the material. */
 skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,
                                    const skg_json_node *density, const char *label, skg_material **material);
 
@@ -63,8 +63,8 @@ typedef struct {
 
 void skg_mesh_cache_clear(skg_mesh_cache *cache);
 
-/* The mesh of a sample: from its Path, or generated. flip: turn a leaky mesh inside out (the normals of a closed one point
- * outward anyway). The caller releases the mesh. own: pose of the generated mesh in the axes of the schema. */
+/* The mesh of a sample: from its Path, or generated. flip: turn a leaky mesh inside out (the normals of a closed one
+ * point outward anyway). The caller releases the mesh. own: pose of the generated mesh in the axes of the schema. */
 skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
                                 skg_mesh_cache *cache, skg_mesh **mesh, double *own);
 

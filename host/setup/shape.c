@@ -38,8 +38,8 @@ static skg_status remember(skg_mesh_cache *cache, char **path, double unit_mm, i
     return SKG_OK;
 }
 
-/* Replaces a leaky mesh by one with every triangle reversed. The normals of a closed mesh point outward whatever its file
- * says, so nothing changes. */
+/* Replaces a leaky mesh by one with every triangle reversed. The normals of a closed mesh point outward whatever its
+ * file says, so nothing changes. */
 static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json_node *node,
                                   skg_mesh **mesh) {
     skg_mesh_health health;
