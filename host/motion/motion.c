@@ -23,7 +23,7 @@ struct skg_motion {
     double lung_hu;          /* as the meshes have it */
 };
 
-/* Energy at which Hounsfield units are reported, keV: about the mean of a beam of 120 kV behind a patient. */
+/* Energy at which Hounsfield units are reported, keV: about the mean of a beam of 120 kV. */
 static const double hu_kev = 70;
 
 void skg_motion_state_init(skg_motion_state *state) {

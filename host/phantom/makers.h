@@ -2,9 +2,9 @@
  * that they lie in. Private.
  *
  * Places and sizes in them are in mm: aggregates of the surfaces of BodyParts3D (one man, lying), to about 5 mm,
- * moved apart where parts would touch; stomach, spleen and kidneys are of typical size. Hounsfield numbers are
- * typical of CT at about 120 kV. Numbers of points and rings are those of resolution 1, chosen so that all parts
- * together have about 42,000 triangles. */
+ * moved apart where parts would touch; stomach, spleen and kidneys are of typical size. Gaps, and widths over which
+ * shapes change, are choices. Hounsfield numbers are typical of CT at about 120 kV. Numbers of points and rings are
+ * those of resolution 1, chosen so that all parts together have about 42,000 triangles. */
 #ifndef SKG_MAKERS_H
 #define SKG_MAKERS_H
 

@@ -49,13 +49,13 @@ static skg_status read_channel(const skg_json_node *node, double *energy_kev, do
     SKG_TRY(skg_json_text(&unit_node, &unit));
     SKG_TRY(skg_json_number(&photons_node, photons));
     skg_status status = skg_unit_of_energy(unit, &kev);
-    if (status != SKG_OK) return skg_json_fail(&unit_node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(&unit_node, status));
     *energy_kev = energy * kev;
     /* A spectrum of this energy alone, so that an error names this channel. */
     skg_spectrum *check = NULL;
     status = skg_spectrum_create_mono(*energy_kev, *photons, &check);
     skg_spectrum_release(&check);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 static skg_status read_channels(skg_setup *setup, const skg_json_node *node) {
@@ -88,7 +88,7 @@ static skg_status read_file(skg_setup_reader *reader, const skg_json_object *bea
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
     skg_status status = skg_spectrum_load(resolved, unit, &reader->setup->spectrum);
     skg_free(&resolved);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 /* A number, or [number, unit] with one of the names given. */
@@ -154,7 +154,7 @@ static skg_status read_filter(const skg_json_node *node, filter_list *list) {
         SKG_TRY(skg_json_text(&material, &name));
         status = skg_material_create_named(name, place);
     }
-    if (status != SKG_OK) return skg_json_fail(&material, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(&material, status));
     list->filters[list->count] = (skg_filter){*place, thickness * mm};
     list->count++;
     return SKG_OK;
@@ -209,7 +209,7 @@ static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
     if (anode.value) {
         SKG_TRY(skg_json_text(&anode, &text));
         skg_status status = skg_element_number(text, &tube->anode);
-        if (status != SKG_OK) return skg_json_fail(&anode, status, "%s", skg_last_error());
+        SKG_TRY(skg_json_at(&anode, status));
     }
     if (model.value) SKG_TRY(skg_json_choice(&model, "model of a tube", models, 2, &choice));
     tube->model = choice == 0 ? SKG_TUBE_MODEL_EBEL : SKG_TUBE_MODEL_BIRCH;
@@ -233,7 +233,7 @@ static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *bea
     tube.filters = list.filters;
     tube.filter_count = list.count;
     status = skg_spectrum_create_tube(&tube, &reader->setup->spectrum);
-    if (status != SKG_OK) status = skg_json_fail(beam->node, status, "%s", skg_last_error());
+    status = skg_json_at(beam->node, status);
 cleanup:
     for (int64_t i = 0; i < MOST_FILTERS; i++) skg_material_release(&list.materials[i]);
     return status;

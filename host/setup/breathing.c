@@ -64,7 +64,7 @@ static skg_status read_waveform(skg_breathing_section *section, const skg_json_o
     if (pattern.value) {
         SKG_TRY(skg_json_text(&pattern, &name));
         skg_status status = skg_breath_pattern(name, breath);
-        if (status != SKG_OK) return skg_json_fail(&pattern, status, "%s", skg_last_error());
+        SKG_TRY(skg_json_at(&pattern, status));
     }
     if (waveform.value && json_is_array(waveform.value)) {
         SKG_TRY(read_samples(section, &waveform));
@@ -199,5 +199,5 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     if (organs.value) SKG_TRY(skg_setup_read_organs(reader, &organs));
     if (events.value) SKG_TRY(read_events(reader, &events));
     skg_status status = skg_breath_check(&section->breath);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }

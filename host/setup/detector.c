@@ -90,7 +90,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(read_pixels(&detector, view));
     if (view->columns < 1 || view->rows < 1) { /* before Size is divided by them */
         skg_status status = skg_view_check(view);
-        return skg_json_fail(node, status, "%s", skg_last_error());
+        return skg_json_at(node, status);
     }
     SKG_TRY(read_spacing(&detector, view, spacing));
     SKG_TRY(read_axes(&detector, view, right, up));
@@ -100,6 +100,6 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     skg_scale_vector(spacing[0], right, view->column_step);
     skg_scale_vector(spacing[1], up, view->row_step);
     skg_status status = skg_view_check(view);
-    if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(node, status));
     return SKG_OK;
 }

@@ -42,6 +42,10 @@ skg_status skg_json_fail(const skg_json_node *node, skg_status status, const cha
     return skg_fail(status, "%s: %s%s%s", node->file->path, path, *path ? ": " : "", sentence);
 }
 
+skg_status skg_json_at(const skg_json_node *node, skg_status status) {
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+}
+
 static const char *kind_of(const json_t *value) {
     switch (json_typeof(value)) {
     case JSON_OBJECT:
@@ -230,7 +234,7 @@ skg_status skg_json_unit_of_length(const skg_json_node *node, double *mm) {
     const char *name = NULL;
     SKG_TRY(skg_json_text(node, &name));
     skg_status status = skg_unit_of_length(name, mm);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 skg_status skg_json_lengths(const skg_json_node *node, const char *example, int64_t count, double *mm) {

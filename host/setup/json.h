@@ -13,6 +13,9 @@
 skg_status skg_json_fail(const skg_json_node *node, skg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* The status of a call that used a value of the file. On a failure the last error gets the value's place, as above. */
+skg_status skg_json_at(const skg_json_node *node, skg_status status);
+
 /* Writes "Samples[3].Material (line 12)", for warnings; truncated where it does not fit. */
 void skg_json_place(const skg_json_node *node, char *place, size_t size);
 

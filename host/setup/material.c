@@ -30,7 +30,7 @@ static skg_status read_z(const skg_json_node *node, int32_t *z) {
     }
     SKG_TRY(skg_json_text(node, &text));
     skg_status status = skg_element_number(text, z);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 static skg_status read_named(const skg_json_node *node, const char *before, skg_material **material) {
@@ -42,7 +42,7 @@ static skg_status read_named(const skg_json_node *node, const char *before, skg_
     strcpy(text, before);
     strcat(text, name);
     skg_status status = skg_material_create_named(text, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 static skg_status read_element(const skg_json_node *node, skg_material **material) {
@@ -71,7 +71,7 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
         SKG_TRY(skg_json_number(&fraction, &fractions[i / 2]));
     }
     skg_status status = skg_material_create_mixture(label, count / 2, z, fractions, 0, material);
-    if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(node, status));
     SKG_TRY(skg_material_note_get(*material, &note));
     if (*note) {
         char place[256];
@@ -93,7 +93,7 @@ static skg_status read_hounsfield(const skg_json_node *node, skg_material **mate
     double hu = 0;
     SKG_TRY(skg_json_number(node, &hu));
     skg_status status = skg_material_create_hounsfield(hu, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 /* ["Table", "mu.txt", "keV"] */
@@ -106,7 +106,7 @@ static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
     skg_status status = skg_material_load_table(resolved, unit, material);
     skg_free(&resolved);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(path_node, status, "%s", skg_last_error());
+    return skg_json_at(path_node, status);
 }
 
 /* The material without the density that the sample gives. */
@@ -134,7 +134,7 @@ static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node,
     if (kind == TABLE) return read_table(reader, &value, &unit, material);
     SKG_TRY(read_mu(&value, &per_cm));
     skg_status status = skg_material_create_mu(label, per_cm, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(&value, status, "%s", skg_last_error());
+    return skg_json_at(&value, status);
 }
 
 skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,

@@ -97,7 +97,7 @@ static skg_status read_energy(const skg_json_object *noise, const char *name, do
         return skg_json_fail(&number, SKG_ERR_FORMAT, "is %g; give an energy of 0 or more", *kev);
     SKG_TRY(skg_json_text(&unit_node, &unit));
     skg_status status = skg_unit_of_energy(unit, &per_unit);
-    if (status != SKG_OK) return skg_json_fail(&unit_node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(&unit_node, status));
     *kev *= per_unit;
     return SKG_OK;
 }

@@ -97,7 +97,7 @@ static skg_status load(const skg_setup_reader *reader, const skg_json_object *sa
     }
     status = skg_mesh_load(reader->context, path, unit_mm, mesh);
     if (status != SKG_OK) {
-        status = skg_json_fail(node, status, "%s", skg_last_error());
+        status = skg_json_at(node, status);
         goto cleanup;
     }
     if (flip) SKG_TRY_CLEANUP(turn_inside_out(reader, node, mesh));
@@ -135,7 +135,7 @@ static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
                              "FirstStepHeight and OtherStepHeight");
     skg_status status =
         skg_mesh_create_step_wedge(length[0], length[1], (double)steps * length[2], steps, mesh);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 /* The axis of the schema's cylinders is y, that of generated ones z. */
@@ -166,7 +166,7 @@ static skg_status make(const skg_json_node *node, int shape, skg_mesh **mesh, do
                         : shape == CUBOID ? skg_mesh_create_cuboid(length[0], length[1], length[2], mesh)
                         : shape == SPHERE ? skg_mesh_create_sphere(length[0], sectors, mesh)
                                           : skg_mesh_create_cylinder(length[1], length[0], sectors, mesh);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
