@@ -79,7 +79,7 @@ void skg_extent_field(const skg_camera *camera, const skg_extent *extent, int32_
     const skg_scale_part *at = &extent->scale;
     field[0] = (int32_t)fmin(fmax(at->low_row - 2, 0), rows) & -FIELD_ROWS;
     field[1] = (int32_t)fmin(fmax(at->high_row + 2 + FIELD_ROWS, 0), rows + FIELD_ROWS) & -FIELD_ROWS;
-    field[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS * SKG_FIELD_COLUMNS;
-    field[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS + 1) *
-               SKG_FIELD_COLUMNS;
+    field[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_EXTENT_COLUMNS * SKG_EXTENT_COLUMNS;
+    field[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_EXTENT_COLUMNS + 1) *
+               SKG_EXTENT_COLUMNS;
 }
