@@ -44,7 +44,7 @@ static skg_status copy(int64_t count, const double *from, double **to) {
 
 skg_status skg_response_create_table(int64_t count, const double *energies_kev, const double *recorded_kev,
                                      const double *efficiency, skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_table: no place for the response");
+    SKG_NEEDS(response);
     *response = NULL;
     SKG_TRY(check_table(count, energies_kev, recorded_kev, efficiency));
     skg_response *made = NULL;
@@ -63,8 +63,9 @@ cleanup:
 }
 
 skg_status skg_response_load(const char *path, const char *unit, skg_response **response) {
-    if (!path || !unit || !response)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_load: no path, unit or place for the response");
+    SKG_NEEDS(path);
+    SKG_NEEDS(unit);
+    SKG_NEEDS(response);
     double kev = 1, *energies = NULL, *recorded = NULL;
     int64_t count = 0;
     *response = NULL;
@@ -100,8 +101,7 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
 
 skg_status skg_response_create_scintillator(const skg_material *material, double mm, double packing,
                                             skg_response **response) {
-    if (!response)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_scintillator: no place for the response");
+    SKG_NEEDS(response);
     *response = NULL;
     if (!(isfinite(mm) && mm > 0))
         return skg_fail(SKG_ERR_BEAM, "a scintillator of %g mm is not usable; give a thickness above 0", mm);
@@ -112,7 +112,7 @@ skg_status skg_response_create_scintillator(const skg_material *material, double
 }
 
 skg_status skg_response_create_screen(const skg_material *material, double mg_cm2, skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_screen: no place for the response");
+    SKG_NEEDS(response);
     *response = NULL;
     double density = 0;
     if (!(isfinite(mg_cm2) && mg_cm2 > 0))
@@ -123,7 +123,7 @@ skg_status skg_response_create_screen(const skg_material *material, double mg_cm
 }
 
 skg_status skg_response_retain(skg_response *response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_retain: no response");
+    SKG_NEEDS(response);
     skg_ref(&response->refs);
     return SKG_OK;
 }

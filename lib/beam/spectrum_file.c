@@ -22,8 +22,9 @@ static skg_status find_word(const char *path, const char **word) {
 }
 
 skg_status skg_spectrum_load(const char *path, const char *unit, skg_spectrum **spectrum) {
-    if (!path || !unit || !spectrum)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_load: no path, unit or place for the spectrum");
+    SKG_NEEDS(path);
+    SKG_NEEDS(unit);
+    SKG_NEEDS(spectrum);
     const char *word = NULL;
     double kev = 1, *energies = NULL, *photons = NULL;
     int64_t count = 0;

@@ -131,15 +131,14 @@ cleanup:
 }
 
 static skg_status warn(const skg_tube *tube, const skg_spectrum *open, const skg_spectrum *behind) {
-    skg_context own = {.log = tube->log, .log_user = tube->log_user}, *told = tube->context;
-    if (!told) told = &own;
-    if (!told->log) return SKG_OK;
+    const skg_logger log = tube->context ? tube->context->log : (skg_logger){tube->log, tube->log_user};
+    if (!log.call) return SKG_OK;
     if (tube->kvp > 150 || tube->kvp < 20)
-        skg_log(told, SKG_LOG_WARNING, "%g kV: the tube model is validated from 20 to 150 kV only",
-                tube->kvp);
+        skg_logger_say(&log, SKG_LOG_WARNING, "%g kV: the tube model is validated from 20 to 150 kV only",
+                       tube->kvp);
     if (tube->anode != TUNGSTEN)
-        skg_log(told, SKG_LOG_WARNING, "an anode of %s: the tube model is validated for W only",
-                skg_elements[tube->anode].symbol);
+        skg_logger_say(&log, SKG_LOG_WARNING, "an anode of %s: the tube model is validated for W only",
+                       skg_elements[tube->anode].symbol);
     if (tube->kvp < 70) return SKG_OK;
     double kerma = 0, needed = 0, hvl = 0, second = 0;
     skg_material *aluminium = NULL;
@@ -148,8 +147,8 @@ static skg_status warn(const skg_tube *tube, const skg_spectrum *open, const skg
     skg_status status = skg_half_value_layers(behind, aluminium, &hvl, &second);
     skg_material_release(&aluminium);
     if (status == SKG_OK && hvl < needed * (1 - 1e-9))
-        skg_log(
-            told, SKG_LOG_WARNING,
+        skg_logger_say(
+            &log, SKG_LOG_WARNING,
             "the beam's half-value layer is %.2f mm Al; 2.5 mm Al of filters, which IEC 60601-1-3 asks for "
             "from 70 kV on, would give %.2f mm. No inherent filtration is assumed: name all filters",
             hvl, needed);
@@ -160,7 +159,7 @@ skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectru
     skg_tube ours;
     skg_spectrum *open = NULL, *behind = NULL;
     skg_status status = SKG_OK;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_tube: no place for the spectrum");
+    SKG_NEEDS(spectrum);
     *spectrum = NULL;
     skg_tube_init(&ours);
     SKG_TRY(skg_struct_read(tube, "skg_tube", &ours, sizeof ours));

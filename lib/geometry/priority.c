@@ -66,7 +66,7 @@ static int64_t level_of(const skg_scene *scene, const skg_extent *extents, int64
 }
 
 skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
-                            skg_priority *priority) {
+                             skg_priority *priority) {
     int32_t *marks = NULL;
     int64_t *levels = NULL, deepest = 0;
     skg_status status = SKG_OK;
@@ -109,7 +109,7 @@ static void add_to_set(int32_t *set, int64_t slot) {
 }
 
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
-                        int32_t *table) {
+                         int32_t *table) {
     const int64_t size = skg_priority_entry(priority), words = skg_priority_slots(priority) / 32;
     for (int64_t p = 0; p < scene->count; p++) slots[p] = -1;
     for (int64_t s = 0; s < priority->count; s++) slots[priority->parts[s]] = (int32_t)s;

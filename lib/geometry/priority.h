@@ -22,7 +22,7 @@ int skg_priority_possible(const skg_scene *scene, int32_t clip);
 
 /* Who competes where parts lie as the extents say. */
 skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
-                            skg_priority *priority);
+                             skg_priority *priority);
 void skg_priority_release(skg_priority *priority);
 
 /* Ints of an entry of the kernels' table (hits.cl) for this many competitors, and how many those kernels are
@@ -32,7 +32,7 @@ int64_t skg_priority_entry(const skg_priority *priority);
 
 /* slots: [parts of the scene]; table: [competitors][entry]. */
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
-                        int32_t *table);
+                         int32_t *table);
 
 /* Whether priority or clipping decides what an overlapping pair shows. */
 int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair);

@@ -120,7 +120,8 @@ skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
 skg_status skg_picture_range(const skg_picture *theirs, double *low, double *high) {
     skg_picture picture;
     SKG_TRY(prepare(theirs, &picture));
-    if (!low || !high) return skg_fail(SKG_ERR_ARGUMENT, "skg_picture_range: no result");
+    SKG_NEEDS(low);
+    SKG_NEEDS(high);
     double least = HUGE_VAL, most = -HUGE_VAL;
     int64_t pixels = picture.columns * picture.rows;
     for (int64_t i = 0; i < pixels; i++) {

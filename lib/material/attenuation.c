@@ -35,8 +35,8 @@ static double total(const double sections[SKG_PROCESSES]) {
 }
 
 skg_status skg_material_attenuation_get(const skg_material *material, double energy_kev, double *per_cm) {
-    if (!material || !per_cm)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_attenuation_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(per_cm);
     SKG_TRY(skg_check_energy(material->name, energy_kev));
     if (material->kind == SKG_MATTER_CONSTANT) {
         *per_cm = material->mu_per_cm;
@@ -57,8 +57,8 @@ void skg_coefficients_init(skg_coefficients *coefficients) {
 
 skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,
                                          skg_coefficients *coefficients) {
-    if (!material || !coefficients)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_coefficients_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(coefficients);
     if (material->kind != SKG_MATTER_COMPOSITION)
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: a material given by its linear attenuation coefficient has no mass coefficients",
@@ -78,7 +78,7 @@ skg_status skg_material_coefficients_get(const skg_material *material, double en
 
 skg_status skg_material_hounsfield_get(const skg_material *material, double energy_kev, double *hu) {
     double mu = 0, sections[SKG_PROCESSES];
-    if (!hu) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_hounsfield_get: no result");
+    SKG_NEEDS(hu);
     SKG_TRY(skg_material_attenuation_get(material, energy_kev, &mu));
     skg_mixed_sections(2, water, energy_kev, sections);
     *hu = 1000 * (mu / total(sections) - 1);

@@ -14,8 +14,7 @@ static skg_status check_density(const char *name, double density) {
 
 skg_status skg_material_create_element(int32_t z, skg_material **material) {
     const char *symbol;
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_element: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     SKG_TRY(skg_element_symbol(z, &symbol));
     skg_mass_fraction part = {z, 1};
@@ -26,9 +25,8 @@ skg_status skg_material_create_formula(const char *formula, double density, skg_
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     int64_t count = 0;
     double sum = 0;
-    if (!material || !formula)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "skg_material_create_formula: no formula or no place for the material");
+    SKG_NEEDS(material);
+    SKG_NEEDS(formula);
     *material = NULL;
     SKG_TRY(check_density(formula, density));
     SKG_TRY(skg_read_formula(formula, 0, &count, parts, &sum));
@@ -47,8 +45,7 @@ skg_status skg_material_create_mixture(const char *name, int64_t count, const in
     double of[SKG_LAST_ELEMENT + 1] = {0}, sum = 0;
     char note[LONGEST_NOTE] = "";
     const char *symbol;
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_mixture: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!name || !*name) name = "mixture";
     if (count < 1 || !z || !fractions)

@@ -21,8 +21,7 @@ static double density_of(double hu) {
 
 skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
     char name[64], note[160];
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_hounsfield: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!(hu >= LOWEST && hu <= HIGHEST))
         return skg_fail(SKG_ERR_MATERIAL, "HU %g lies outside %g to %g, where tissue is tabled", hu, LOWEST,

@@ -54,8 +54,7 @@ skg_status skg_material_create_naive_hounsfield(double hu, int32_t interpolation
     ladder l = {{NULL}, {0}};
     skg_material *made = NULL;
     skg_status status = SKG_OK;
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_naive_hounsfield: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (interpolation != SKG_INTERPOLATION_BILINEAR && interpolation != SKG_INTERPOLATION_BILOGARITHMIC)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_naive_hounsfield: no such interpolation");

@@ -190,7 +190,7 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
     char list[SUGGESTIONS * LONGEST];
     const char *rest;
     double value = 0;
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_named: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!text || !*text) return skg_fail(SKG_ERR_MATERIAL, "a material without a name; give H2O, Fe, HU:52");
     if ((rest = after(text, "weight"))) return from_mass(rest, material);
@@ -218,13 +218,14 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
 }
 
 skg_status skg_material_tabled_count(int64_t *count) {
-    if (!count) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled_count: no result");
+    SKG_NEEDS(count);
     *count = skg_mixture_count;
     return SKG_OK;
 }
 
 skg_status skg_material_tabled_get(int64_t index, const char **name, double *density) {
-    if (!name || !density) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled_get: no result");
+    SKG_NEEDS(name);
+    SKG_NEEDS(density);
     if (index < 0 || index >= skg_mixture_count)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_material_tabled_get: no entry %lld", (long long)index);
     *name = skg_mixtures[index].names;

@@ -150,7 +150,7 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
 
 skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
     skg_mesh_arrays arrays = {0};
-    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no place for the mesh");
+    SKG_NEEDS(mesh);
     *mesh = NULL;
     if (!path || !*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
     if (!isfinite(unit_mm) || unit_mm <= 0)

@@ -151,7 +151,7 @@ static skg_status create(skg_context *context, const char *name, int64_t vertice
                          const int32_t *corners, int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
     skg_mesh_arrays arrays = {0};
     skg_status status = SKG_OK;
-    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_create: no place for the mesh");
+    SKG_NEEDS(mesh);
     *mesh = NULL;
     if (!name || !*name) name = "mesh";
     if (!isfinite(unit_mm) || unit_mm <= 0)

@@ -2,7 +2,6 @@
 
 #include "core/context.h"
 #include "core/names.h"
-#include "core/pose.h"
 #include "core/vector.h"
 
 #include <float.h>
@@ -17,7 +16,7 @@ void skg_part_init(skg_part *part) {
 }
 
 skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_create: no place for the scene");
+    SKG_NEEDS(scene);
     *scene = NULL;
     skg_scene *made = NULL;
     SKG_TRY(skg_alloc(1, sizeof *made, "scene", &made));
@@ -36,7 +35,7 @@ skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
 }
 
 skg_status skg_scene_retain(skg_scene *scene) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_retain: no scene");
+    SKG_NEEDS(scene);
     skg_ref(&scene->refs);
     return SKG_OK;
 }
@@ -127,7 +126,7 @@ static skg_status check_part(const skg_scene *scene, const skg_part *part, const
 }
 
 skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_add: no scene");
+    SKG_NEEDS(scene);
     skg_part ours;
     skg_part_init(&ours);
     SKG_TRY(skg_struct_read(part, "skg_part", &ours, sizeof ours));
@@ -186,7 +185,8 @@ skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
 }
 
 skg_status skg_scene_part_count(const skg_scene *scene, int64_t *parts) {
-    if (!scene || !parts) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_part_count: no scene or no result");
+    SKG_NEEDS(scene);
+    SKG_NEEDS(parts);
     *parts = scene->count;
     return SKG_OK;
 }
@@ -205,8 +205,9 @@ skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part
 }
 
 skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id) {
-    if (!scene || !label || !id)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_find: no scene, no label or no result");
+    SKG_NEEDS(scene);
+    SKG_NEEDS(label);
+    SKG_NEEDS(id);
     int64_t found = label_index(scene, label), alike = 0;
     for (int64_t i = 0; found < 0 && i < scene->count; i++)
         if (skg_same_name(scene->parts[i].label, label)) alike++;
@@ -228,7 +229,7 @@ skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id
 
 skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) {
     SKG_TRY(check_id(scene, id, "skg_scene_pose_set"));
-    if (!pose) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_pose_set: no pose");
+    SKG_NEEDS(pose);
     SKG_TRY(skg_scene_check_pose(scene->parts[id].label, pose));
     memcpy(scene->parts[id].pose, pose, sizeof scene->parts[id].pose);
     scene->poses++;
