@@ -213,3 +213,7 @@ int64_t skg_raster_bytes(const skg_raster *raster) {
            raster->starts.bytes + raster->list.bytes + raster->for_all.bytes + raster->queue.bytes +
            raster->rows_bad.bytes;
 }
+
+int64_t skg_raster_plane_count(const skg_raster *raster) {
+    return raster->options.planes;
+}

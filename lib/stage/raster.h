@@ -51,6 +51,9 @@ skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed);
 /* The shape of the tiles (the whole detector if there are none) and their number. */
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);
 
+/* Accumulator planes. */
+int64_t skg_raster_plane_count(const skg_raster *raster);
+
 /* Bytes on the device. */
 int64_t skg_raster_bytes(const skg_raster *raster);
 

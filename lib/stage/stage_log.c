@@ -32,3 +32,12 @@ skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event eve
     log->events[log->count++] = event;
     return SKG_OK;
 }
+
+skg_status skg_stage_log_time(const skg_stage_log *log, int64_t index, double *ns) {
+    const cl_event event = log->events[index];
+    cl_ulong start = 0, end = 0;
+    SKG_CL_TRY(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, NULL));
+    SKG_CL_TRY(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL));
+    *ns = (double)(end - start);
+    return SKG_OK;
+}

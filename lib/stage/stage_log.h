@@ -16,6 +16,9 @@ typedef struct {
 skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event event);
 void skg_stage_log_clear(skg_stage_log *log);
 
+/* Time of an entry on the device, nanoseconds; its work must be done. */
+skg_status skg_stage_log_time(const skg_stage_log *log, int64_t index, double *ns);
+
 /* Where OpenCL is to put an event for the log; NULL if the log wants none. */
 cl_event *skg_stage_event(const skg_stage_log *log, cl_event *event);
 
