@@ -396,7 +396,7 @@ static char told[2000];
 
 static void keep_warning(int32_t level, const char *message, void *user) {
     (void)user;
-    if (level == SKG_LOG_WARNING && strstr(message, "is open")) snprintf(told, sizeof told, "%s", message);
+    if (level == SKG_LOG_WARNING && strstr(message, "is leaky")) snprintf(told, sizeof told, "%s", message);
 }
 
 /* The warning names the part, how many pixels, where, and what was done. */
@@ -430,7 +430,7 @@ static int warnings;
 
 static void count_warnings(int32_t level, const char *message, void *user) {
     (void)user;
-    warnings += level == SKG_LOG_WARNING && strstr(message, "is open") != NULL;
+    warnings += level == SKG_LOG_WARNING && strstr(message, "is leaky") != NULL;
 }
 
 /* Once for a part; again where it is ten times as bad as it was, not where it is better. */
