@@ -47,7 +47,7 @@ static int by_energy(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Sorts, adds equal energies, drops those without photons; the new count. */
+/* Sorts the bins, adds up those of equal energy and removes those without photons. Returns the new count. */
 static int64_t merge(int64_t count, bin *bins) {
     int64_t used = 0;
     qsort(bins, (size_t)count, sizeof *bins, by_energy);

@@ -1,4 +1,4 @@
-/* Materials of a user's table. */
+/* Materials by a table of the user: mu by energy. */
 #include "core/columns.h"
 #include "core/units.h"
 #include "material/material.h"
@@ -21,7 +21,7 @@ static skg_status check_rows(const char *name, int64_t count, const double *ener
                             i + 1);
     }
     if (!(energies[count - 1] > energies[count - 2]) || !(energies[1] > energies[0]))
-        return skg_fail(SKG_ERR_MATERIAL, "%s: an edge at the table's end has one side only", name);
+        return skg_fail(SKG_ERR_MATERIAL, "%s: an edge at the end of the table has one side only", name);
     return SKG_OK;
 }
 
