@@ -77,7 +77,7 @@ void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32
     const skg_scale_part *at = &extent->scale;
     pixels[0] = (int32_t)fmin(fmax(at->low_row - 2, 0), rows) & -EXTENT_ROWS;
     pixels[1] = (int32_t)fmin(fmax(at->high_row + 2 + EXTENT_ROWS, 0), rows + EXTENT_ROWS) & -EXTENT_ROWS;
-    pixels[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS * SKG_FIELD_COLUMNS;
-    pixels[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS + 1) *
-                SKG_FIELD_COLUMNS;
+    pixels[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_EXTENT_COLUMNS * SKG_EXTENT_COLUMNS;
+    pixels[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_EXTENT_COLUMNS + 1) *
+                SKG_EXTENT_COLUMNS;
 }
