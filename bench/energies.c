@@ -3,7 +3,7 @@
  * compressed. */
 #include "common/bench.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <skiagraph/opencl.h>
 

@@ -3,7 +3,7 @@
 #include "common/bench.h"
 #include "common/scenes.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "paper/paper.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <inttypes.h>
 

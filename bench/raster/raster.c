@@ -4,7 +4,7 @@
 #include "contenders.h"
 #include "table.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <math.h>
 #include <omp.h>
