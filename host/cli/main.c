@@ -25,7 +25,7 @@ static int find_verb(const char *name, const cli_verb **verb) {
     return cli_unknown(name[0] == '-' ? "flag" : "verb", name, names, count, "help");
 }
 
-/* -o names what is written, whatever the verb. */
+/* In every verb -o names an output. */
 static void guard_outputs(const cli_arguments *arguments) {
     const char *path;
     for (int f = 0; arguments->manual->flags[f]; f++)

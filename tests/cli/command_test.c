@@ -150,7 +150,7 @@ START_TEST(mesh_tells_health) {
     json_decref(object);
     ck_run(1, "mesh good.obj open.obj");
     ck_assert_ptr_nonnull(strstr(said, "good.obj: closed\n"));
-    ck_assert_ptr_nonnull(strstr(said, "open.obj: OPEN\n  3 open edges, first at vertex "));
+    ck_assert_ptr_nonnull(strstr(said, "open.obj: LEAKY\n  3 open edges, first at vertex "));
     ck_run(1, "mesh open.obj --json");
     object = said_json();
     json_t *file = json_array_get(member(object, "files"), 0);

@@ -115,7 +115,7 @@ START_TEST(lengths_are_net_or_of_the_surface) {
     read_mha("a.mha", 0, values);
     ck_assert_double_eq_tol(values[MIDDLE], 8, 1e-4);
     ck_run_fails(3, "no part has the label bon; did you mean bone", "lbuffer scene.json --part bon -o a.mha");
-    ck_run_fails(2, "of which part? add --part LABEL", "lbuffer scene.json -o a.mha");
+    ck_run_fails(2, "no part is named; add --part LABEL", "lbuffer scene.json -o a.mha");
 }
 END_TEST
 
@@ -196,7 +196,7 @@ END_TEST
 
 START_TEST(plan_says_what_and_why) {
     ck_run(0, "plan scene.json");
-    ck_assert_ptr_nonnull(strstr(said, "scene.json: 2 parts (0 open), 24 triangles"));
+    ck_assert_ptr_nonnull(strstr(said, "scene.json: 2 parts (0 leaky), 24 triangles"));
     ck_assert_ptr_null(strstr(said, "1 tiles"));
     ck_assert_ptr_nonnull(strstr(said, "60 keV, 1000 photons per pixel"));
     ck_assert_ptr_nonnull(strstr(said, "\n  on  nesting "));

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Processes of one job share the cores; each of them pinned from core 0 on would meet the others there. */
+/* The variable by which MPI or a batch system says that this process is one of several, or NULL. Such processes share the
+ * cores: if each pinned its threads from core 0 on, they would all use the same cores. */
 static const char *batch_variable(void) {
     static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE",     "PMI_RANK",   "PMIX_RANK",
                                         "MPI_LOCALNRANKS",      "SLURM_JOB_ID", "PBS_JOBID",  "LSB_JOBID",
@@ -18,11 +19,11 @@ static const char *batch_variable(void) {
 
 static int may_run_everywhere(void) {
     cpu_set_t mask;
-    if (sched_getaffinity(0, sizeof mask, &mask) != 0) return 0; /* more cores than the mask holds */
+    if (sched_getaffinity(0, sizeof mask, &mask) != 0) return 0; /* more cores than cpu_set_t holds */
     return CPU_COUNT(&mask) == sysconf(_SC_NPROCESSORS_ONLN);
 }
 
-/* Pinned threads are faster, but PoCL pins from core 0 on without regard to the mask of the process. */
+/* Pinned threads are faster, but PoCL pins from core 0 on, whatever the process's mask is. */
 const char *host_pin_threads(void) {
     static char sentence[128];
     const char *batch = batch_variable();
@@ -34,5 +35,5 @@ const char *host_pin_threads(void) {
     }
     if (!may_run_everywhere()) return "not pinned: this process may run on some of the cores only";
     setenv("POCL_AFFINITY", "1", 1);
-    return "pinned: this process may run on all cores, and alone";
+    return "pinned: this process may run on all cores, and it is the only one of its job";
 }

@@ -20,14 +20,14 @@
 enum { MOST_FRAMES = 1000000, RANGE_FRAMES = 16, RANGE_BINS = 4096 };
 static const double RANGE_HIGHEST = 32; /* -ln(I/I0) */
 
-/* What was asked for, and what came of it. */
+/* The sequence of the flags, and its times. */
 typedef struct {
     double seconds, fps;
-    double phase, at; /* of one picture; NaN: not asked for */
+    double phase, at; /* of one picture; NaN: not given */
     int64_t frames;
     const char *place, *meshes;
     double plan_ms, sequence_ms;
-    double pose_ms; /* of the sequence, all frames */
+    double pose_ms; /* of all frames of the sequence */
 } sequence;
 
 static int read_positive(const cli_arguments *arguments, const cli_flag *flag, double *number) {
@@ -60,7 +60,7 @@ static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *
     s->place = cli_value(arguments, &cli_flag_breathe_output);
     s->meshes = cli_value(arguments, &cli_flag_breathe_meshes);
     if (s->meshes) cli_guard_output(s->meshes);
-    if (!s->place) return cli_error(CLI_USAGE, "breathe: nowhere to write to; add -o DIR");
+    if (!s->place) return cli_error(CLI_USAGE, "breathe: no output is named; add -o DIR");
     int exit_status = read_positive(arguments, &cli_flag_breathe_seconds, &s->seconds);
     if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &cli_flag_breathe_fps, &s->fps);
     if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &f->low, &f->high);
@@ -68,7 +68,7 @@ static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *
     if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_at, &s->at);
     if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
     if (!isnan(s->phase) && !isnan(s->at))
-        return cli_error(CLI_USAGE, "--phase and --at are two ways to choose one picture; give one of them");
+        return cli_error(CLI_USAGE, "--phase and --at both choose one picture; give one of them");
     skg_status status = skg_picture_check_path(s->place);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -86,8 +86,8 @@ static int pose(fluoroscopy *f, const sequence *s, int64_t frame) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* One range for all frames: all but a fiftieth of the darkest and a thousandth of the densest pixels behind
- * something, of some frames over the whole time. */
+/* One range for all frames, from frames that are spread over the whole time. Of the pixels behind a part, the least dense
+ * 2 % and the densest 0.1 % lie outside the range. */
 static int find_range(fluoroscopy *f, const sequence *s) {
     int64_t *bin = calloc(RANGE_BINS, sizeof *bin), total = 0, sum = 0;
     const int64_t looks = s->frames < RANGE_FRAMES ? s->frames : RANGE_FRAMES;
@@ -97,7 +97,7 @@ static int find_range(fluoroscopy *f, const sequence *s) {
         if (exit_status == CLI_DONE) exit_status = make_image(f, 0);
         for (int64_t i = 0; i < f->pixels && exit_status == CLI_DONE; i++) {
             const double at = (double)f->image[0][i] / RANGE_HIGHEST * RANGE_BINS;
-            if (at < 1) continue; /* beside everything */
+            if (at < 1) continue; /* behind no part */
             bin[at < RANGE_BINS ? (int)at : RANGE_BINS - 1]++;
             total++;
         }
@@ -112,7 +112,7 @@ static int find_range(fluoroscopy *f, const sequence *s) {
     return exit_status;
 }
 
-/* As fast as it goes, nothing written: the next pose is found while the image is made. */
+/* Times the sequence without writing: the next pose is computed while the device makes the image. */
 static int run_sequence(fluoroscopy *f, sequence *s) {
     skg_job *job = NULL;
     const double start = cli_now_ms();
@@ -131,7 +131,7 @@ static int run_sequence(fluoroscopy *f, sequence *s) {
     return exit_status;
 }
 
-/* One frame and all that is written of it. */
+/* Computes one frame and writes its files. */
 static int write_frame(fluoroscopy *f, const sequence *s, int64_t i, motion_table *table,
                        contact_sheet *sheet) {
     skg_job *job = NULL;
@@ -192,8 +192,8 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
         return CLI_DONE;
     }
     printf("%" PRId64
-           " frames of %g s: %.1f frames/s (pose and image, nothing written), %.2f ms each of which "
-           "%.2f ms\nposing, overlapped; -ln(I/I0) shown from %.3g to %.3g\n",
+           " frames of %g s: %.1f frames/s without writing, %.2f ms a frame; a pose takes %.2f ms of it, "
+           "overlapped\nwith the image; -ln(I/I0) is shown from %.3g to %.3g\n",
            s->frames, (double)s->frames / s->fps, rate, s->sequence_ms / (double)s->frames,
            s->pose_ms / (double)s->frames, f->low, f->high);
     printf("wrote %s/frame-0000.png to frame-%04" PRId64 ".png, contact.png, motion.csv\n", s->place,
@@ -201,7 +201,6 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
     return CLI_DONE;
 }
 
-/* Set-up, motion, plan, memory. */
 static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) {
     const char *outline = cli_value(arguments, &cli_flag_breathe_outline);
     double period = 0;

@@ -30,7 +30,7 @@ static unsigned char *put_vertex(unsigned char *to, const double *now, const dou
     return put(to, narrow, 4);
 }
 
-/* Binary PLY, positions in double as they are. */
+/* Binary PLY with positions in double, so that they are exact. */
 static int write_ply(const char *path, int64_t vertices, const double *now, const double *rest,
                      int64_t triangles, const int32_t *corners) {
     unsigned char *bytes =

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether a label begins with a word of the list, "ribs" standing for every "rib ...". */
+/* Whether a label begins with a word of the list, or with its singular: "ribs" also stands for "rib 1". */
 static int is_wanted(const char *label, const char *words, size_t length) {
     for (size_t at = 0; at < length;) {
         size_t end = at;
@@ -26,7 +26,7 @@ static int is_wanted(const char *label, const char *words, size_t length) {
     return 0;
 }
 
-/* Pixels that the part covers beside ones that it does not. */
+/* Adds the pixels that the part covers and that have a neighbour that it does not cover. */
 static void add_border(const fluoroscopy *f, const float *lengths) {
     const int64_t columns = f->session.view.columns, rows = f->session.view.rows;
     for (int64_t r = 0; r < rows; r++)
@@ -44,7 +44,7 @@ int outline_find(fluoroscopy *f, const char *wanted) {
     char *end = NULL;
     const double phase = at ? strtod(at + 1, &end) : 0;
     if (at && (end == at + 1 || *end || !isfinite(phase)))
-        return cli_error(CLI_USAGE, "--outline %s: after @ comes a phase", wanted);
+        return cli_error(CLI_USAGE, "--outline %s: no phase follows the @", wanted);
     const size_t length = at ? (size_t)(at - wanted) : strlen(wanted);
     int64_t parts = 0, found = 0;
     skg_output output;
@@ -67,5 +67,7 @@ int outline_find(fluoroscopy *f, const char *wanted) {
         found++;
     }
     if (status != SKG_OK) return cli_fail(status);
-    return found ? CLI_DONE : cli_error(CLI_USAGE, "--outline %s: no part's label begins so", wanted);
+    return found
+               ? CLI_DONE
+               : cli_error(CLI_USAGE, "--outline %s: no part's label begins with one of these words", wanted);
 }

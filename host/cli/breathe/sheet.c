@@ -26,7 +26,7 @@ int sheet_create(const fluoroscopy *f, int64_t frames, contact_sheet *sheet) {
     return sheet->values ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for the contact sheet");
 }
 
-/* The mean over the pixels that become one, those inside the frame. */
+/* The mean of a block of pixels, as far as it lies inside the frame. */
 static float mean_of(const fluoroscopy *f, const float *image, int64_t step, int64_t column, int64_t row) {
     const skg_view *view = &f->session.view;
     double sum = 0;

@@ -26,7 +26,7 @@ int table_open(const char *path, motion_table *table) {
     return CLI_DONE;
 }
 
-/* "liver: tendon, rib 8 left" in quotes, those of labels doubled; empty where there is none. */
+/* "liver: tendon, rib 8 left" in quotes, with quotes in labels doubled; empty if there is no conflict. */
 static void write_conflict(const skg_body_measure *m, FILE *stream) {
     static const char *const before[3] = {"", ": ", ", "};
     if (m->conflict[0]) fputc('"', stream);

@@ -33,7 +33,7 @@ static int unknown_flag(const cli_manual *manual, const char *name) {
     return cli_unknown("flag", name, names, count, help);
 }
 
-/* The flag that a word names, up to its '=' if it has one. */
+/* The flag that a word names; "--name=value" names --name. */
 static const cli_flag *find_flag(const cli_manual *manual, const char *word) {
     size_t length = strcspn(word, "=");
     for (int i = 0; manual->flags[i]; i++)

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 static const char *affinity_reason = "not decided yet";
-static char temporary_cache[256]; /* made by us, removed at exit */
+static char temporary_cache[256]; /* made by this process and removed at exit */
 static char unwritable_cache[1024];
 static int unwritable_reason;
 
@@ -21,7 +21,7 @@ const char *cli_affinity_reason(void) {
     return affinity_reason;
 }
 
-/* Where PoCL keeps compiled kernels, by its own rule. 0: too long for us. */
+/* The folder where PoCL keeps compiled kernels, by PoCL's rule. Returns 0 if the path is too long. */
 static int find_cache(char *path, size_t size) {
     const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     int length = 0;
@@ -36,8 +36,8 @@ static int find_cache(char *path, size_t size) {
     return length > 0 && (size_t)length < size;
 }
 
-/* Makes the folder with those above it, as PoCL would; 0, or the errno value that says why it cannot be used.
- * (Asking is not enough: some file systems let root write and make nothing.) */
+/* Makes the folder and those above it, as PoCL would. Returns 0, or the errno value that says why it cannot be used.
+ * access() alone does not suffice: root passes it on file systems that allow no new folder, such as /proc. */
 static int folder_error(const char *path) {
     char above[1024];
     snprintf(above, sizeof above, "%s", path);
@@ -65,7 +65,7 @@ static void remove_cache(void) {
 static void decide_cache(void) {
     char path[1024];
     const char *folder = getenv("TMPDIR"), *own = getenv("POCL_CACHE_DIR");
-    if (own && !*own) unsetenv("POCL_CACHE_DIR"); /* an empty one stops PoCL by an assertion */
+    if (own && !*own) unsetenv("POCL_CACHE_DIR"); /* PoCL fails an assertion if it is empty */
     if (!find_cache(path, sizeof path)) return;
     int reason = folder_error(path);
     if (reason == 0) return;
@@ -86,6 +86,6 @@ void cli_prepare_environment(void) {
 void cli_warn_of_cache(const skg_device_info *device) {
     if (unwritable_reason && strstr(device->platform_name, "Portable Computing Language"))
         cli_warn("kernels cannot be kept in %s (%s), so they are compiled at every start; set POCL_CACHE_DIR "
-                 "to a folder that you may write to",
+                 "to a folder that can be written to",
                  unwritable_cache, strerror(unwritable_reason));
 }

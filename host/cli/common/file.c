@@ -22,11 +22,11 @@ int cli_write_file(const char *path, const void *bytes, size_t count) {
     struct stat there;
     int length = snprintf(temporary, sizeof temporary, "%s.part-%ld", path, (long)getpid());
     if (length < 0 || length >= (int)sizeof temporary) return fail(path, strerror(ENAMETOOLONG));
-    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) /* the rename would replace a device */
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) /* rename() would replace the device */
         return fail(path, "it is a folder or a device; name a file");
     FILE *stream = fopen(temporary, "wbx");
     if (!stream)
-        return fail(path, errno == ENOENT ? "its folder is not there; make it first" : strerror(errno));
+        return fail(path, errno == ENOENT ? "its folder does not exist; make it first" : strerror(errno));
     int reason = 0;
     errno = 0;
     if (fwrite(bytes, 1, count, stream) != count || fflush(stream) != 0 || fsync(fileno(stream)) != 0)

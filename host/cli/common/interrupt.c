@@ -1,5 +1,5 @@
-/* Unfinished outputs go when a signal ends the process. What runs in the handler is async-signal-safe: system
- * calls and memory of its own; so folders are read by getdents64, not by readdir. */
+/* Removes unfinished outputs when a signal ends the process. The handler makes async-signal-safe calls only: it reads
+ * folders by getdents64 into static memory, because readdir allocates. */
 #define _GNU_SOURCE /* getdents64 */
 #include "common/interrupt.h"
 
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_FOLDERS = 64, LONGEST_PATH = 4096, ROOM = 16384 };
+enum { MOST_FOLDERS = 64, LONGEST_PATH = 4096, ENTRY_BYTES = 16384 };
 
 static pthread_t writer;
 static char folders[MOST_FOLDERS][LONGEST_PATH];
@@ -25,7 +25,7 @@ static int is_unfinished(const char *name) {
 }
 
 static void clear_folder(const char *path) {
-    static _Alignas(struct dirent64) char entries[ROOM];
+    static _Alignas(struct dirent64) char entries[ENTRY_BYTES];
     const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     ssize_t size;
     if (folder < 0) return;
@@ -38,7 +38,7 @@ static void clear_folder(const char *path) {
     close(folder);
 }
 
-/* In the writing thread, so that it writes no more. */
+/* Cleans up in the thread that writes, which therefore writes no more. */
 static void end(int number) {
     if (!pthread_equal(pthread_self(), writer)) {
         pthread_kill(writer, number);
@@ -46,7 +46,7 @@ static void end(int number) {
     }
     for (int f = 0; f < folder_count; f++) clear_folder(folders[f]);
     signal(number, SIG_DFL);
-    raise(number); /* comes when the handler returns */
+    raise(number); /* is delivered when the handler returns */
 }
 
 void cli_catch_signals(void) {

@@ -1,13 +1,12 @@
-/* What a signal leaves behind: nothing unfinished. */
+/* A signal leaves no unfinished output behind. */
 #ifndef SKG_CLI_INTERRUPT_H
 #define SKG_CLI_INTERRUPT_H
 
-/* SIGINT, SIGTERM and SIGHUP, unless they were ignored before, remove what this process has not finished of
- * guarded outputs (NAME.part-PID), and then end it as they would have. Call once, in the thread that writes.
- */
+/* SIGINT, SIGTERM and SIGHUP, unless they were ignored before, remove the unfinished files (NAME.part-PID) of guarded
+ * outputs and then end the process. Call it once, in the thread that writes. */
 void cli_catch_signals(void);
 
-/* Guards the folder that `path` is in, and `path` where it is a folder itself. */
+/* Guards the folder that holds `path`, and `path` itself if it is a folder. */
 void cli_guard_output(const char *path);
 
 #endif

@@ -33,6 +33,6 @@ int cli_json_print(json_t *object) {
     int failed = json_dumpf(object, stdout, JSON_INDENT(2)) != 0;
     putchar('\n');
     json_decref(object);
-    /* A full disk under standard output is told by main. */
+    /* main reports an error of standard output, such as a full disk. */
     return failed && !ferror(stdout) ? cli_error(CLI_DEVICE, "out of host memory") : CLI_DONE;
 }

@@ -12,50 +12,50 @@
 static void find_frontier(cost_study *study) {
     for (int i = 0; i < study->count; i++) {
         cost_point *point = &study->points[i];
-        point->on_frontier = point->reference == COST_OF_RAYS && !isnan(point->max_open);
+        point->on_frontier = point->reference == COST_OF_RAYS && !isnan(point->max_flat);
         for (int k = 0; k < study->count && point->on_frontier; k++) {
             const cost_point *other = &study->points[k];
             int no_worse = other->reference == COST_OF_RAYS && other->min_ms <= point->min_ms &&
-                           other->max_open <= point->max_open;
-            int better = other->min_ms < point->min_ms || other->max_open < point->max_open;
+                           other->max_flat <= point->max_flat;
+            int better = other->min_ms < point->min_ms || other->max_flat < point->max_flat;
             if (no_worse && better) point->on_frontier = 0;
         }
     }
 }
 
-/* The fastest (minimum: the one that other load disturbs least) of the rays' settings within a bar, or else
- * the one with the least error. */
+/* The fastest of the rays' settings within a bar, otherwise the most accurate. The minimum time decides, which other load
+ * disturbs least. */
 static int choose_rays(const cost_study *study, double bar) {
     int fastest = -1, best = -1;
     for (int i = 0; i < study->count; i++) {
         const cost_point *point = &study->points[i];
-        if (point->reference != COST_OF_RAYS || isnan(point->max_open)) continue;
-        if (best < 0 || point->max_open < study->points[best].max_open) best = i;
-        if (!(point->max_open <= bar)) continue;
+        if (point->reference != COST_OF_RAYS || isnan(point->max_flat)) continue;
+        if (best < 0 || point->max_flat < study->points[best].max_flat) best = i;
+        if (!(point->max_flat <= bar)) continue;
         if (fastest < 0 || point->min_ms < study->points[fastest].min_ms) fastest = i;
     }
     return fastest >= 0 ? fastest : best;
 }
 
-/* The first repair within a bar, or else the exact one; -1: no mesh is open. */
+/* The first repair within a bar, otherwise the exact one; -1: no mesh is leaky. */
 static int choose_repair(const cost_study *study, double bar) {
     int best = -1;
-    for (int i = 0; i < study->count; i++) { /* rising in work */
+    for (int i = 0; i < study->count; i++) { /* points stand in the order of their work */
         if (study->points[i].reference != COST_OF_REPAIR) continue;
         best = i;
-        if (study->points[i].max_open <= bar) return i;
+        if (study->points[i].max_flat <= bar) return i;
     }
     return best;
 }
 
-/* The first of a dial, whose settings rise in work, within a bar, or else the one with the least error; -1:
- * the dial is not there. */
+/* The first setting of a dial within a bar, otherwise the most accurate; -1: the scene has no such dial. Settings stand in
+ * the order of their work. */
 static int choose_sampling(const cost_study *study, int reference, double bar) {
     int best = -1;
     for (int i = 0; i < study->count; i++) {
         if (study->points[i].reference != reference) continue;
-        if (study->points[i].rms_open <= bar) return i;
-        if (best < 0 || study->points[i].rms_open < study->points[best].rms_open) best = i;
+        if (study->points[i].rms_flat <= bar) return i;
+        if (best < 0 || study->points[i].rms_flat < study->points[best].rms_flat) best = i;
     }
     return best;
 }
@@ -71,7 +71,7 @@ static cost_setting whole_of(const cost_study *study, const cost_advice *advice)
     return setting;
 }
 
-/* Time of an image with the reference's rays and so many passes, ms. */
+/* The time in ms of an image with the reference's rays and the setting's passes. */
 static double reference_ms(const cost_study *study, const cost_setting *setting) {
     double slowest = 0;
     for (int i = 0; i < study->count; i++)
@@ -104,12 +104,13 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
     return exit_status;
 }
 
-/* Rays, samples and supersampling together; more careful rays where the whole misses the tolerance. */
+/* Combines the chosen rays, samples, supersampling, triangles and repair. If the combination misses the tolerance,
+ * chooses more accurate rays. */
 static int advise_whole(cost_study *study, cost_advice *advice) {
     double bar = advice->bar;
     for (int turn = 0; turn < 3; turn++, bar /= 4) {
         advice->rays = choose_rays(study, bar);
-        advice->rays_met = study->points[advice->rays].max_open <= advice->bar;
+        advice->rays_met = study->points[advice->rays].max_flat <= advice->bar;
         advice->whole = (cost_point){.dial = COST_SCENE, .setting = whole_of(study, advice)};
         const cost_setting *setting = &advice->whole.setting;
         advice->whole_state = COST_WHOLE_IS_RAYS;
@@ -120,7 +121,7 @@ static int advise_whole(cost_study *study, cost_advice *advice) {
         if (reference_ms(study, setting) > cost_patience_ms(study)) return CLI_DONE;
         advice->whole_state = COST_WHOLE_MEASURED;
         int exit_status = measure_whole(study, advice);
-        if (exit_status != CLI_DONE || !advice->rays_met || advice->whole.max_open <= advice->bar)
+        if (exit_status != CLI_DONE || !advice->rays_met || advice->whole.max_flat <= advice->bar)
             return exit_status;
     }
     advice->rays_met = 0;
@@ -128,13 +129,13 @@ static int advise_whole(cost_study *study, cost_advice *advice) {
 }
 
 static int is_met(const cost_study *study, int point, double bar) {
-    return point < 0 || study->points[point].rms_open <= bar;
+    return point < 0 || study->points[point].rms_flat <= bar;
 }
 
 int cost_advise(cost_study *study) {
     find_frontier(study);
     if (choose_rays(study, 0) < 0)
-        return cli_error(CLI_DEVICE, "no setting could be measured; the scene as it stands takes too long");
+        return cli_error(CLI_DEVICE, "no setting could be measured: one image of the scene takes too long");
     for (int i = 0; i < COST_TOLERANCES; i++) {
         cost_advice *advice = &study->advice[i];
         advice->tolerance = cost_tolerances[i];

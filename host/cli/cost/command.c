@@ -10,7 +10,7 @@ static int is_plain(const char *word) {
                strlen(word);
 }
 
-/* A word as a shell reads it back. */
+/* Writes a word such that a shell reads it back unchanged. */
 static void put_word(FILE *stream, const char *word) {
     fputc(' ', stream);
     if (is_plain(word)) {
@@ -34,7 +34,8 @@ static void put_flag(FILE *stream, const cost_study *study, const cli_flag *flag
     }
 }
 
-/* The scene file; of another thorax, after its meshes are made and the scene file is copied to them. */
+/* The command up to the scene file. For another number of the thorax's triangles, commands before it make the meshes and
+ * copy the scene file to them. */
 static void put_scene(FILE *stream, const cost_study *study, const cost_meshing *meshing) {
     const char *path = study->session.path, *slash = strrchr(path, '/');
     char copy[4096];

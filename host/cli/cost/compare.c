@@ -18,10 +18,10 @@ static int shrink(const cost_study *study, int64_t images, const double *image, 
     for (int64_t i = 0; enough && i < images * study->pixels; i++) {
         const int64_t pixel = i % study->pixels;
         const int64_t at = pixel / columns / block * study->thumb_columns + pixel % columns / block;
-        const float value = (float)((image[i] - reference[i]) / study->open);
+        const float value = (float)((image[i] - reference[i]) / study->flat_field);
         if (fabsf(value) > fabsf(point->difference[at])) point->difference[at] = value;
-        if (i >= study->pixels) continue; /* of the first image only */
-        point->small[at] += (float)(image[i] / study->open);
+        if (i >= study->pixels) continue; /* the small picture shows the first image */
+        point->small[at] += (float)(image[i] / study->flat_field);
         count[at]++;
     }
     for (size_t at = 0; enough && at < places; at++) point->small[at] /= (float)count[at];
@@ -31,21 +31,22 @@ static int shrink(const cost_study *study, int64_t images, const double *image, 
 
 int cost_compare(const cost_study *study, int64_t images, const double *image, const double *reference,
                  cost_point *point) {
-    double squares_open = 0, squares_ref = 0;
+    double squares_flat = 0, squares_ref = 0;
     int64_t seen = 0;
-    point->max_open = point->max_ref = 0;
+    point->max_flat = point->max_ref = 0;
     point->max_mm = point->rms_mm = (double)NAN;
     for (int64_t i = 0; i < images * study->pixels; i++) {
-        double error = fabs(image[i] - reference[i]), of_open = error / study->open;
-        if (!(of_open <= point->max_open)) point->max_open = of_open; /* NaN stays and is seen */
-        squares_open += of_open * of_open;
+        double error = fabs(image[i] - reference[i]), of_flat = error / study->flat_field;
+        if (!(of_flat <= point->max_flat))
+            point->max_flat = of_flat; /* also if it is NaN, which then stays */
+        squares_flat += of_flat * of_flat;
         if (!(reference[i] > 0)) continue;
         double of_ref = error / reference[i];
         if (!(of_ref <= point->max_ref)) point->max_ref = of_ref;
         squares_ref += of_ref * of_ref;
         seen++;
     }
-    point->rms_open = sqrt(squares_open / (double)(images * study->pixels));
+    point->rms_flat = sqrt(squares_flat / (double)(images * study->pixels));
     point->rms_ref = seen ? sqrt(squares_ref / (double)seen) : 0;
     return shrink(study, images, image, reference, point);
 }
@@ -63,7 +64,7 @@ static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t
 }
 
 typedef struct {
-    skg_plan *plan[2]; /* the reference's, and the point's */
+    skg_plan *plan[2]; /* of the reference and of the point */
     int32_t type[2];
     double *data[2], worst, squares;
     int64_t met, parts, seen;
@@ -78,12 +79,12 @@ static void add_part(const cost_study *study, length_errors *e) {
     }
 }
 
-/* Part by part, for as long as patience lasts. */
+/* Adds part after part until the time is used up. */
 static skg_status add_parts(const cost_study *study, length_errors *e) {
     double begun = 0;
     skg_status status = SKG_OK;
     for (; status >= SKG_OK && e->seen < e->parts; e->seen++) {
-        if (e->seen == 1) begun = cli_now_ms(); /* the first one compiles */
+        if (e->seen == 1) begun = cli_now_ms(); /* the first part compiles the kernels */
         if (e->seen > 1 && cli_now_ms() - begun > cost_patience_ms(study)) break;
         for (int k = 0; k < 2 && status >= SKG_OK; k++)
             status = lengths_of(e->plan[k], e->seen, e->type[k], study->pixels, e->data[k]);
@@ -92,7 +93,7 @@ static skg_status add_parts(const cost_study *study, length_errors *e) {
     return status;
 }
 
-/* One ray a pixel, from one place of the source. */
+/* One ray per pixel, from one point of the source. */
 static cost_setting plain_rays(const cost_study *study, const cost_setting *setting, int32_t precision) {
     cost_setting its = *setting;
     its.bins = study->finest;

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Before the long computation: whether what -o names could be written. */
+/* Checks before the long computation that every -o can be written. */
 static int check_outputs(const cli_arguments *arguments) {
     const char *path;
     for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_cost_output, i)); i++) {
@@ -40,7 +40,7 @@ static int write_csv(const cost_study *study, const char *path) {
     return exit_status;
 }
 
-/* The table that goes beside a page: "cost.csv" of "cost.html". The caller frees it; NULL: no memory. */
+/* The path of the table beside a page: "cost.csv" for "cost.html". The caller frees it; NULL if memory is exhausted. */
 static char *table_beside(const char *path) {
     const size_t stem = strlen(path) - strlen(".html");
     char *beside = malloc(stem + sizeof ".csv");

@@ -29,8 +29,8 @@ static json_t *setting_json(const cost_study *study, const cost_setting *setting
                         setting->samples > 0 ? json_integer(setting->samples) : json_null());
     json_object_set_new(object, "supersampling", json_integer(setting->supersampling));
     json_object_set_new(object, "repair",
-                        study->has_open ? cli_json_text(cost_repair_names[repair_of(study, setting)])
-                                        : json_null());
+                        study->has_leaky ? cli_json_text(cost_repair_names[repair_of(study, setting)])
+                                         : json_null());
     json_object_set_new(object, "triangles", json_integer(triangles_of(study, setting)));
     json_object_set_new(object, "relaxation", breathes ? json_integer(setting->relaxation) : json_null());
     json_object_set_new(object, "hysteresis", breathes ? json_real(setting->hysteresis) : json_null());
@@ -49,8 +49,8 @@ static json_t *point_json(const cost_study *study, const cost_point *point) {
     json_object_set_new(object, "plan_ms", cli_json_number(point->plan_ms));
     json_object_set_new(object, "min_ms", cli_json_number(point->min_ms));
     json_object_set_new(object, "median_ms", cli_json_number(point->median_ms));
-    json_object_set_new(object, "max_open", cli_json_number(point->max_open));
-    json_object_set_new(object, "rms_open", cli_json_number(point->rms_open));
+    json_object_set_new(object, "max_open", cli_json_number(point->max_flat));
+    json_object_set_new(object, "rms_open", cli_json_number(point->rms_flat));
     json_object_set_new(object, "max_ref", cli_json_number(point->max_ref));
     json_object_set_new(object, "rms_ref", cli_json_number(point->rms_ref));
     json_object_set_new(object, "max_mm", cli_json_number(point->max_mm));
@@ -106,7 +106,7 @@ json_t *cost_json(const cost_study *study) {
     json_object_set_new(object, "columns", json_integer(study->session.view.columns));
     json_object_set_new(object, "rows", json_integer(study->session.view.rows));
     json_object_set_new(object, "triangles", json_integer(study->triangles));
-    json_object_set_new(object, "open_keV", cli_json_number(study->open));
+    json_object_set_new(object, "open_keV", cli_json_number(study->flat_field));
     json_object_set_new(object, "noise", study->noise > 0 ? cli_json_number(study->noise) : json_null());
     json_object_set_new(object, "references", references);
     json_object_set_new(object, "points", points);
@@ -119,10 +119,10 @@ static void put_setting(FILE *stream, const cost_study *study, const cost_settin
     fprintf(stream, "%s,%.6g,", cost_precision_name(setting), setting->tolerance);
     fprintf(stream, "%" PRId64 ",%" PRId64 ",%d,", setting->bins, setting->samples,
             (int)setting->supersampling);
-    fprintf(stream, "%s,%" PRId64 ",", study->has_open ? cost_repair_names[repair_of(study, setting)] : "",
+    fprintf(stream, "%s,%" PRId64 ",", study->has_leaky ? cost_repair_names[repair_of(study, setting)] : "",
             triangles_of(study, setting));
     if (setting->relaxation < 0)
-        fputs(",,", stream); /* empty: does not breathe */
+        fputs(",,", stream); /* empty: the setting has no breath */
     else
         fprintf(stream, "%d,%g,", (int)setting->relaxation, setting->hysteresis);
 }
@@ -142,8 +142,8 @@ char *cost_csv(const cost_study *study) {
         put_setting(stream, study, &p->setting);
         fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64, p->nodes, p->planes, p->runs);
         fprintf(stream, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,", p->plan_ms, p->min_ms, p->median_ms,
-                p->max_open, p->rms_open, p->max_ref, p->rms_ref);
-        if (!isnan(p->max_mm)) fprintf(stream, "%.6g", p->max_mm); /* empty: not looked at */
+                p->max_flat, p->rms_flat, p->max_ref, p->rms_ref);
+        if (!isnan(p->max_mm)) fprintf(stream, "%.6g", p->max_mm); /* empty: not measured */
         fputc(',', stream);
         if (!isnan(p->rms_mm)) fprintf(stream, "%.6g", p->rms_mm);
         fprintf(stream, ",%d\n", p->on_frontier);

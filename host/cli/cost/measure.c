@@ -30,7 +30,7 @@ skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *
         options.noise = 0;
         options.electronic_kev = options.quantum_step_kev = 0;
     }
-    options.overlaps = 0; /* told once, by cost_open */
+    options.overlaps = 0; /* cost_open has reported them */
     if (setting->samples > 0) {
         spot = *options.spot;
         spot.samples = setting->samples;
@@ -45,7 +45,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Warm runs until there are enough of them and they took long enough for the clock. */
+/* Runs until there are enough runs and they took long enough for the clock. */
 skg_status cost_time(const cost_study *study, cost_run run, void *user, cost_point *point) {
     const int64_t least = study->quick ? 3 : 9;
     const double wish_ms = study->quick ? 20 : 300, limit_ms = study->quick ? 1000 : 3000;

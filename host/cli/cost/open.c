@@ -6,7 +6,7 @@
 
 enum { THUMB = 320 };
 
-/* What the scene's own plan finds: samples of the source, open meshes, the open beam. */
+/* What the plan of the scene finds: leaky meshes, samples of the source, the flat field. */
 static int look_at_scene(cost_study *study) {
     const skg_plan_options *options = &study->session.options;
     skg_plan *plan = NULL;
@@ -18,8 +18,8 @@ static int look_at_scene(cost_study *study) {
                                         study->session.spectrum, options, &plan);
     if (status == SKG_OK) status = skg_plan_report_get(plan, &report);
     if (status == SKG_OK) status = skg_plan_channel_get(plan, 0, &channel);
-    study->open = channel.flat_field;
-    study->has_open = report.leaky_parts > 0;
+    study->flat_field = channel.flat_field;
+    study->has_leaky = report.leaky_parts > 0;
     study->triangles = report.triangles;
     study->has_spot = options->spot && options->spot->shape != SKG_SPOT_POINT && options->spot->grid == 0 &&
                       study->session.view.projection == SKG_PROJECTION_POINT;
@@ -36,8 +36,7 @@ static int look_at_scene(cost_study *study) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* Whether the beam is a tube, whose bins can be set, and whether the scene asks for wider ones than it may.
- */
+/* Whether the beam is a tube, whose bins can be set, and whether the scene's bins are wider than they need be. */
 static int look_at_beam(cost_study *study) {
     int64_t own = 0, finest = 0;
     skg_spectrum *spectrum = NULL;
@@ -65,7 +64,7 @@ int cost_open(cost_study *study) {
     if (exit_status == CLI_DONE) exit_status = look_at_breath(study);
     const skg_view *view = &study->session.view;
     int64_t side = view->columns > view->rows ? view->columns : view->rows;
-    if (study->session.context) /* what there was to tell of the scene has been told */
+    if (study->session.context) /* the scene's warnings have been printed */
         skg_context_log_set(study->session.context, NULL, NULL);
     study->pixels = view->columns * view->rows;
     study->thumb_block = (side + THUMB - 1) / THUMB > 1 ? (side + THUMB - 1) / THUMB : 1;

@@ -11,11 +11,11 @@
 #include <string.h>
 #include <unistd.h>
 
-static const float LEAST_SHOWN = 1e-12f; /* of the open beam */
+static const float LEAST_SHOWN = 1e-12f; /* of the flat field */
 
 extern const char cost_page[]; /* page.html, as built in */
 
-/* Bytes as "data:image/png;base64,..." (RFC 4648). The caller frees the text; NULL: no memory. */
+/* Bytes as "data:image/png;base64,..." (RFC 4648), which the caller frees; NULL if memory is exhausted. */
 static char *data_uri(const unsigned char *bytes, size_t count) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     static const char head[] = "data:image/png;base64,";
@@ -36,7 +36,7 @@ static char *data_uri(const unsigned char *bytes, size_t count) {
     return text;
 }
 
-/* What a file holds; the caller frees it. NULL: it cannot be read. */
+/* The bytes of a file, which the caller frees; NULL if it cannot be read. */
 static unsigned char *read_all(const char *path, size_t *count) {
     FILE *stream = fopen(path, "rb");
     unsigned char *bytes = NULL;
@@ -52,10 +52,10 @@ static unsigned char *read_all(const char *path, size_t *count) {
     return bytes;
 }
 
-/* The library writes pictures to files: through one that is gone again. */
+/* A picture as a URI, by way of a temporary file: the library writes pictures to files only. */
 static int picture_json(const skg_picture *picture, json_t **uri) {
     char folder[] = "/tmp/skiagraph-XXXXXX", path[64];
-    if (!mkdtemp(folder)) return cli_error(CLI_OUTPUT, "/tmp: no folder can be made there");
+    if (!mkdtemp(folder)) return cli_error(CLI_OUTPUT, "/tmp: no temporary folder can be made");
     snprintf(path, sizeof path, "%s/picture.png", folder);
     size_t count = 0;
     skg_status status = skg_picture_write(picture, path);
@@ -84,7 +84,7 @@ static void begin_picture(const cost_study *study, const float *data, skg_pictur
     picture->data = data;
 }
 
-/* Values as 256 levels from low to high: what a screen shows, and half the bytes. */
+/* Values as 256 levels from low to high, which suffice for a screen and halve the size of the picture. */
 static int levels_json(const cost_study *study, float *values, double low, double high, json_t **uri) {
     skg_picture picture;
     begin_picture(study, values, &picture);
@@ -98,7 +98,7 @@ static int levels_json(const cost_study *study, float *values, double low, doubl
     return picture_json(&picture, uri);
 }
 
-/* -ln(I/I0) of a point's image. low, high: found of the first one, and used for all. */
+/* -ln(I/I0) of a point's image. low, high: set by the first picture and used for all. */
 static int small_json(const cost_study *study, const cost_point *point, double *low, double *high,
                       json_t **uri) {
     const int64_t places = study->thumb_columns * study->thumb_rows;
@@ -109,15 +109,14 @@ static int small_json(const cost_study *study, const cost_point *point, double *
     begin_picture(study, dense, &picture);
     picture.quantity = SKG_QUANTITY_ATTENUATION;
     skg_status status = *high > *low ? SKG_OK : skg_picture_range(&picture, low, high);
-    if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* one value everywhere */
+    if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* all pixels are equal */
     int exit_status = status == SKG_OK ? levels_json(study, dense, *low, *high, uri) : cli_fail(status);
     free(dense);
     return exit_status;
 }
 
-/* Middle grey: no difference; black and white: the largest finite one, either sign, which goes to *range.
- * Cube roots between, which the page undoes where it shows them straight: eight bits then tell small ones
- * too. */
+/* The differences: middle grey is none, black and white are the largest finite one of either sign, *range. Levels between
+ * are cube roots, so that eight bits also resolve small differences; the page can undo them. */
 static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
     const int64_t places = study->thumb_columns * study->thumb_rows;
     float largest = 0, *roots = calloc((size_t)places, sizeof *roots);
@@ -131,7 +130,7 @@ static int difference_json(const cost_study *study, const cost_point *point, jso
     return exit_status;
 }
 
-/* Pictures are chosen: the frontier, the advice, and every dial other than the rays'. */
+/* Pictures are kept of the frontier, of the advised settings and of every dial other than the rays'. */
 static int is_pictured(const cost_study *study, int index) {
     const cost_point *point = &study->points[index];
     if (point->on_frontier || point->dial == COST_SCENE || point->dial == COST_PRECISION) return 1;
@@ -166,7 +165,7 @@ static int add_pictures(const cost_study *study, json_t *object) {
     return exit_status;
 }
 
-/* The page with the data where its mark is. "/" is escaped, so that no text ends the script. */
+/* The page with the data instead of its mark. "/" is escaped so that no text can end the script. */
 static char *fill_page(json_t *object) {
     static const char mark[] = "\"STUDY\"";
     const char *place = strstr(cost_page, mark);

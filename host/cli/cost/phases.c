@@ -21,7 +21,7 @@ typedef struct {
 
 static skg_status begin(breath *b, const cost_setting *setting) {
     char hysteresis[64], relaxation[64];
-    /* The phases are without events, and one of them (Weight) does not go with hysteresis. */
+    /* Phases have no events, and an event with Weight excludes hysteresis. */
     const char *const settings[] = {"Breathing.Events=[]", hysteresis, relaxation};
     snprintf(hysteresis, sizeof hysteresis, "Breathing.Hysteresis=%.17g", setting->hysteresis);
     snprintf(relaxation, sizeof relaxation, "Breathing.Relaxation=%d", (int)setting->relaxation);
@@ -40,7 +40,7 @@ static void end(breath *b) {
     skg_setup_release(&b->setup);
 }
 
-/* The next phase: its pose and its image. */
+/* The pose and the image of the next phase. */
 static skg_status run(void *user) {
     breath *b = user;
     skg_frame frame;
@@ -54,7 +54,7 @@ static skg_status run(void *user) {
     return status;
 }
 
-/* Vertices of the parts that move, as they are: rows of x, y, z. positions NULL: they are counted only. */
+/* Positions of the vertices of the parts that move, [count][3]. positions NULL: only counts them. */
 static skg_status read_positions(const breath *b, double *positions, int64_t *count) {
     int64_t parts = 0, vertices, triangles;
     skg_status status = skg_scene_part_count(b->scene, &parts);
@@ -111,7 +111,7 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
     if (status >= SKG_OK) status = read_positions(&b, NULL, &vertices);
     if (status >= SKG_OK && point && vertices != reference->vertices) {
         *exit_status =
-            cli_error(CLI_INPUT, "%s: its meshes have changed while it was read again", study->session.path);
+            cli_error(CLI_INPUT, "%s: its mesh files changed during the measurement", study->session.path);
         status = SKG_ERR_MESH;
     } else if (status >= SKG_OK) {
         images = calloc((size_t)(COST_PHASES * study->pixels), sizeof *images);

@@ -25,13 +25,13 @@ static int has_same_positions(const skg_mesh *a, const skg_mesh *b) {
 enum { NOT_ROUND, SPHERE, CYLINDER };
 static const char *const keys[] = {NULL, "Sphere", "Cylinder"};
 
-/* Triangles of a sphere of so many sectors, as skg_mesh_create_sphere makes it. */
+/* The number of triangles of a sphere of skg_mesh_create_sphere. */
 static int64_t triangles_of_sphere(int64_t sectors) {
     const int64_t bands = sectors / 2 < 2 ? 2 : sectors / 2;
     return 2 * (bands - 1) * sectors;
 }
 
-/* SPHERE or CYLINDER, with the sectors around, if the mesh is what the maker gives, bit for bit. */
+/* SPHERE or CYLINDER and the number of sectors, if the mesh equals the one that the library makes bit for bit. */
 static int is_round(const skg_mesh *mesh, int64_t *sectors) {
     const char *name = NULL;
     skg_mesh_health health;
@@ -60,7 +60,7 @@ static int64_t scaled(int64_t sectors, double factor) {
     return (int64_t)fmin(fmax(round((double)sectors * factor), FEWEST_SECTORS), MOST_SECTORS);
 }
 
-/* "Samples.bone.Sphere.0=128"; a part without a label has its mesh's name, and is told by its number. */
+/* "Samples.bone.Sphere.0=128". A part without a label, which has its mesh's name instead, is named by its number. */
 static char *setting_of(const skg_part *part, int64_t number, int shape, int64_t sectors) {
     char *text = NULL;
     size_t size = 0;
@@ -77,7 +77,7 @@ static char *setting_of(const skg_part *part, int64_t number, int shape, int64_t
     return NULL;
 }
 
-/* The settings for a factor on all sectors; *triangles: of the whole scene, then. */
+/* The settings that multiply all sectors by a factor. *triangles: of the scene with these settings. */
 static skg_status scale_sectors(const cost_study *study, double factor, cost_meshing *meshing,
                                 int64_t *triangles) {
     int64_t parts = 0;
@@ -91,7 +91,7 @@ static skg_status scale_sectors(const cost_study *study, double factor, cost_mes
         skg_part_init(&part);
         status = skg_scene_part_get(study->session.scene, i, &part);
         const int shape = status == SKG_OK ? is_round(part.mesh, &sectors) : NOT_ROUND;
-        if (shape == NOT_ROUND || sectors < FEWEST_SECTORS) continue; /* a prism, for all that is known */
+        if (shape == NOT_ROUND || sectors < FEWEST_SECTORS) continue; /* may be meant as a prism */
         const int64_t wanted = scaled(sectors, factor);
         *triangles += shape == CYLINDER ? 4 * (wanted - sectors)
                                         : triangles_of_sphere(wanted) - triangles_of_sphere(sectors);
@@ -102,7 +102,7 @@ static skg_status scale_sectors(const cost_study *study, double factor, cost_mes
     return status;
 }
 
-/* Reads the scene with the meshing's settings. SKG_ERR_SCENE: it has not got the triangles that it should. */
+/* Reads the scene with the meshing's settings. SKG_ERR_SCENE: it has another number of triangles than expected. */
 static skg_status load_round(const cost_study *study, int64_t triangles, cost_meshing *meshing) {
     skg_setup *setup = NULL;
     skg_status status =
@@ -115,7 +115,7 @@ static skg_status load_round(const cost_study *study, int64_t triangles, cost_me
     return status == SKG_OK && meshing->triangles != triangles ? SKG_ERR_SCENE : status;
 }
 
-/* Keeps a meshing unless it has as many triangles as the one before. */
+/* Keeps a meshing if it has more triangles than the one before. */
 static skg_status add_round(cost_study *study, double factor) {
     cost_meshing meshing = {0};
     int64_t triangles = 0;

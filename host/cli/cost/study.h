@@ -19,7 +19,7 @@ enum {
     COST_DIALS
 };
 
-/* What settings are compared with: all others but one thing, or one kind of things, as the scene has them. */
+/* The references. Each varies one dial, or one kind of dials, and has all others as the scene has them. */
 enum {
     COST_OF_RAYS, /* precision, tolerance, bins */
     COST_OF_SAMPLES,
@@ -37,7 +37,7 @@ enum {
     COST_MOST_MESHINGS = 9,
     COST_TOLERANCES = 4
 };
-enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: bins of 1 keV up to the highest voltage */
+enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: gives bins of 1 keV at every voltage */
 
 typedef struct {
     int32_t precision, supersampling;
@@ -50,11 +50,11 @@ typedef struct {
     double hysteresis;
 } cost_setting;
 
-/* The scene with its round parts, or its parts of the generated thorax, of other numbers of triangles. */
+/* The scene in which the round parts, or the parts of the generated thorax, have another number of triangles. */
 typedef struct {
     skg_scene *scene;
     int64_t triangles; /* of all parts */
-    int64_t thorax;    /* of `skiagraph thorax --triangles`; 0: round parts */
+    int64_t thorax;    /* the N of `skiagraph thorax --triangles N`; 0: round parts */
     char **settings;   /* [setting_count] "Samples.bone.Sphere.0=128" */
     int64_t setting_count;
 } cost_meshing;
@@ -62,40 +62,42 @@ typedef struct {
 /* A reference image, keV per pixel in double. */
 typedef struct {
     cost_setting setting;
-    double *image;     /* of breath: one for each of COST_PHASES phases */
-    double *positions; /* of breath only: [COST_PHASES][vertices][3] of the parts that move, mm */
+    double *image;     /* [pixels]; for breathing dials [COST_PHASES][pixels] */
+    double *positions; /* for breathing dials: [COST_PHASES][vertices][3] of the parts that move, mm */
     int64_t vertices;
 } cost_reference;
 
-enum { COST_PHASES = 4 }; /* of the breath, evenly from end-inspiration */
+enum { COST_PHASES = 4 }; /* evenly over the breath, from end-inspiration */
 
-/* A setting that was timed and compared. Errors are shares: of the open beam, and of the reference's pixel.
- */
+/* A setting that was timed and compared. */
 typedef struct {
     int dial, reference, on_frontier;
     cost_setting setting;
     int64_t nodes, planes, bins, runs;
     double plan_ms, min_ms, median_ms;
-    double max_open, rms_open, max_ref, rms_ref;
-    double max_mm, rms_mm; /* errors of path lengths, rms of rays that meet a part; of breath: displacements
-                              of vertices; NaN: not looked at */
-    /* [rows][columns] of the study: (I - Iref) / open, the largest of each block of pixels; the mean of I /
-     * open */
+    /* Errors as fractions: of the flat field, and of the reference's pixel. */
+    double max_flat, rms_flat, max_ref, rms_ref;
+    /* Errors of path lengths, the root mean square over rays that meet a part. For breathing dials: errors of the vertices'
+     * positions. NaN: not measured. */
+    double max_mm, rms_mm;
+    /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels the difference
+     * that is largest in magnitude, and the mean intensity. */
     float *difference, *small;
 } cost_point;
 
 enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
 
-/* For one tolerance. Numbers are of points; -1: the scene has no such dial. */
+/* The advice for one tolerance. A dial's field is the index of a point; -1: the scene has no such dial. */
 typedef struct {
     double tolerance;
-    double bar; /* the tolerance, or a tenth of the noise where that is more */
-    int rays;   /* the fastest whose largest error is within it, or else the best */
-    int samples, supersampling, triangles; /* the cheapest whose root mean square is, or else the best */
-    int repair;                            /* the cheapest whose largest error is, or else the best */
-    int rays_met, sampling_met;            /* 1 or 0 */
-    int whole_state;                       /* COST_WHOLE_... */
-    cost_point whole; /* rays, samples and supersampling together, against the best rays of the same number */
+    double bar; /* the larger of the tolerance and a tenth of the noise */
+    int rays;   /* the fastest whose largest error is within the bar, otherwise the most accurate */
+    /* The cheapest whose root mean square error is within the bar, otherwise the most accurate. */
+    int samples, supersampling, triangles;
+    int repair; /* the cheapest whose largest error is within the bar, otherwise the exact one */
+    int rays_met, sampling_met; /* 1 or 0 */
+    int whole_state;            /* COST_WHOLE_... */
+    cost_point whole;           /* all of these together, against the best rays of the same number */
     char *rays_command, *whole_command;
 } cost_advice;
 
@@ -104,21 +106,21 @@ typedef struct {
     cli_session session;
     int quick;
     int64_t pixels, thumb_columns, thumb_rows, thumb_block;
-    int noisy;        /* 1: images have the noise that the scene asks for */
-    double noise;     /* root mean square of it, of the open beam; 0: none is asked for */
-    double open;      /* keV per pixel of the open beam */
-    cost_setting own; /* the scene's */
-    int64_t finest;   /* bins of the reference: 0 or COST_FINEST_BINS */
-    int has_tube, has_energies, has_spot, has_open, has_breath;
+    int noisy;         /* 1: images have the scene's noise */
+    double noise;      /* its root mean square, as a fraction of the flat field; 0: the scene has none */
+    double flat_field; /* keV per pixel */
+    cost_setting own;  /* the scene's own setting */
+    int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
+    int has_tube, has_energies, has_spot, has_leaky, has_breath;
     int64_t triangles;     /* of the scene */
-    skg_body_options body; /* of a scene that breathes */
+    skg_body_options body; /* if has_breath */
     struct {
         int64_t bins;
         skg_spectrum *spectrum;
-    } spectra[COST_MOST_SPECTRA]; /* of the tube, as they were asked for: the scene is read again for each */
+    } spectra[COST_MOST_SPECTRA]; /* of the tube, each made when it was first needed */
     int spectrum_count;
-    double pass_ms;                            /* of one ray a pixel at the scene's setting */
-    cost_meshing meshings[COST_MOST_MESHINGS]; /* rising; the last one is the reference */
+    double pass_ms;                            /* of one ray per pixel at the scene's setting */
+    cost_meshing meshings[COST_MOST_MESHINGS]; /* rising in triangles; the last one is the reference */
     int meshing_count;
     cost_reference references[COST_REFERENCES];
     cost_point points[COST_MOST_POINTS];
@@ -138,7 +140,7 @@ extern const char *const cost_reference_names[COST_REFERENCES];
 /* The name of a setting's precision. */
 const char *cost_precision_name(const cost_setting *setting);
 
-/* Keeps a sentence for the report, as long as there is capacity. */
+/* Keeps a sentence for the report, up to COST_MOST_NOTES of them. */
 void cost_note(cost_study *study, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Appends to text, as far as it fits. */

@@ -17,7 +17,7 @@ static int is_same(const cost_setting *a, const cost_setting *b) {
            a->hysteresis == b->hysteresis;
 }
 
-/* A point to be measured; one that is there already, or would take too long, is not added. */
+/* Adds a point to be measured, unless it exists already or would take too long. */
 static void add(cost_study *study, int dial, int reference, cost_setting setting) {
     for (int i = 0; i < study->count; i++)
         if (study->points[i].reference == reference && is_same(&study->points[i].setting, &setting)) return;
@@ -25,14 +25,14 @@ static void add(cost_study *study, int dial, int reference, cost_setting setting
     if (study->pass_ms * cost_passes(&setting) > cost_patience_ms(study)) {
         char text[160];
         cost_describe(study, &setting, text, sizeof text);
-        cost_note(study, "%s left out: about %.3g s an image", text,
+        cost_note(study, "%s left out: one image would take about %.3g s", text,
                   1e-3 * study->pass_ms * cost_passes(&setting));
         return;
     }
     study->points[study->count++] = (cost_point){.dial = dial, .reference = reference, .setting = setting};
 }
 
-/* Precision, tolerance and bins: what happens along a ray. */
+/* Precision, tolerance and bins: the dials of a single ray. */
 static void add_rays(cost_study *study) {
     static const double tolerances[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
     static const int64_t bins[] = {64, 32, 16, 8, 4};
@@ -67,7 +67,7 @@ static void add_rays(cost_study *study) {
     }
 }
 
-/* Powers of two of source samples, against four times the most of them that patience allows. */
+/* Powers of two of source samples, against four times the largest of them. */
 static void add_samples(cost_study *study) {
     cost_setting its = study->own;
     if (!study->has_spot) return;
@@ -83,7 +83,7 @@ static void add_samples(cost_study *study) {
     }
 }
 
-/* Rays a side of a pixel, against twice the most of them. At most 16 samples of the source, for the time. */
+/* Rays per side of a pixel, against at least twice as many. At most 16 source samples, to save time. */
 static void add_supersampling(cost_study *study) {
     static const int32_t sides[] = {1, 2, 3, 4, 6, 8};
     cost_setting its = study->own;
@@ -99,16 +99,16 @@ static void add_supersampling(cost_study *study) {
     }
 }
 
-/* What becomes of the rays that an open mesh lets in and not out, against the exact repair. */
+/* Repair of the pixels where the hits of a leaky mesh do not cancel, against the exact repair. */
 static void add_repair(cost_study *study) {
     cost_setting its = study->own;
-    for (its.repair = SKG_REPAIR_NONE; study->has_open && its.repair <= SKG_REPAIR_EXACT; its.repair++)
+    for (its.repair = SKG_REPAIR_NONE; study->has_leaky && its.repair <= SKG_REPAIR_EXACT; its.repair++)
         add(study, COST_REPAIR, COST_OF_REPAIR, its);
     its.repair = SKG_REPAIR_EXACT;
     study->references[COST_OF_REPAIR].setting = its;
 }
 
-/* Rising, with the scene's own in its place, against the finest. */
+/* Meshings in rising order, the scene's own among them, against the finest. */
 static void add_triangles(cost_study *study) {
     cost_setting its = study->own;
     int has_own = 0;
@@ -126,7 +126,7 @@ static void add_triangles(cost_study *study) {
     study->references[COST_OF_TRIANGLES].setting = its;
 }
 
-/* Against no relaxation and the scene's own hysteresis. */
+/* Relaxation and hysteresis, against no relaxation with the scene's hysteresis. */
 static void add_breath(cost_study *study) {
     static const int32_t relaxations[] = {0, 1, 2, 5, 10, 20};
     static const double hystereses[] = {0, 0.25, 0.5, 0.75, 1};
@@ -161,7 +161,7 @@ static int make_reference(cost_study *study, int number) {
     return status < SKG_OK ? cli_fail(status) : CLI_DONE;
 }
 
-/* Those that there are points for. */
+/* Makes the references that points are compared with. */
 static int make_references(cost_study *study) {
     int exit_status = CLI_DONE;
     for (int number = 0; number < COST_REFERENCES && exit_status == CLI_DONE; number++) {
@@ -172,7 +172,7 @@ static int make_references(cost_study *study) {
     return exit_status;
 }
 
-/* One image of the scene as it stands, to know what the others will take. */
+/* Times one image of the scene, to estimate the times of the others. */
 static int find_pass_time(cost_study *study, double *image) {
     cost_point point = {0};
     skg_status status = cost_image(study, &study->own, image, &point);
@@ -180,7 +180,7 @@ static int find_pass_time(cost_study *study, double *image) {
     return status < SKG_OK ? cli_fail(status) : CLI_DONE;
 }
 
-/* Root mean square of what the scene's noise adds to `image`, which is without. */
+/* The root mean square of the scene's noise. image: the scene without noise. */
 static int find_noise(cost_study *study, const double *image) {
     const skg_plan_options *options = &study->session.options;
     if (!options->noise && !(options->electronic_kev > 0)) return CLI_DONE;
@@ -190,18 +190,18 @@ static int find_noise(cost_study *study, const double *image) {
     skg_status status = cost_image(study, &study->own, noisy, NULL);
     study->noisy = 0;
     for (int64_t i = 0; i < study->pixels; i++) squares += (noisy[i] - image[i]) * (noisy[i] - image[i]);
-    study->noise = sqrt(squares / (double)study->pixels) / study->open;
+    study->noise = sqrt(squares / (double)study->pixels) / study->flat_field;
     free(noisy);
     return status < SKG_OK ? cli_fail(status) : CLI_DONE;
 }
 
-/* A setting that the scene does not allow (half of an open mesh), or has no memory, is noted, not fatal. */
+/* A setting that the scene does not allow (half with a leaky mesh), or that lacks memory, is noted and left out. */
 static int measure(cost_study *study, cost_point *point, double *image, int *keep) {
     const cost_reference *reference = &study->references[point->reference];
     const int breathes = point->reference == COST_OF_BREATH;
     int exit_status = CLI_DONE;
     *keep = 0;
-    if (!reference->image) return CLI_DONE; /* told by make_reference */
+    if (!reference->image) return CLI_DONE; /* make_reference has noted why */
     skg_status status = breathes ? cost_breathe(study, &point->setting, point, &exit_status)
                                  : cost_image(study, &point->setting, image, point);
     if (exit_status != CLI_DONE) return exit_status;

@@ -5,7 +5,7 @@
 
 enum { FINEST_TRIANGLES = 672000 };
 
-/* The thorax's mesh of this label, or NULL. */
+/* The thorax's mesh with this label, or NULL. */
 static skg_mesh *mesh_of(const skg_thorax *thorax, const char *label) {
     int64_t parts = 0;
     skg_thorax_part part;
@@ -17,9 +17,10 @@ static skg_mesh *mesh_of(const skg_thorax *thorax, const char *label) {
     return NULL;
 }
 
-/* Whether two closed meshes fill about the same box: that of a real organ of this name does not. */
+/* Whether two closed meshes have about the same bounds. A scanned organ with the same label has others. */
 static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
-    static const double most_mm = 10; /* what some per cent more triangles change where they are few */
+    static const double most_mm =
+        10; /* more than the number of triangles changes the bounds of a coarse part */
     skg_mesh_health healths[2];
     skg_mesh_health_init(&healths[0]);
     skg_mesh_health_init(&healths[1]);
@@ -38,7 +39,6 @@ static skg_status make_thorax(int64_t triangles, skg_thorax **thorax) {
     return skg_thorax_create(&options, thorax);
 }
 
-/* Whether every part of the thorax of as many triangles is in the scene, in its place. */
 int cost_is_thorax(const cost_study *study) {
     int64_t parts = 0, id = 0, same = 0;
     skg_thorax *thorax = NULL;
@@ -47,7 +47,7 @@ int cost_is_thorax(const cost_study *study) {
     skg_thorax_part_init(&generated);
     skg_part_init(&part);
     if (skg_scene_find(study->session.scene, "common bile duct", &id) != SKG_OK)
-        return 0; /* saves the time */
+        return 0; /* most scenes end here, without generating a thorax */
     if (make_thorax(study->triangles, &thorax) == SKG_OK) skg_thorax_part_count(thorax, &parts);
     for (int64_t i = 0; i < parts; i++)
         same += skg_thorax_part_get(thorax, i, &generated) == SKG_OK &&
@@ -58,7 +58,7 @@ int cost_is_thorax(const cost_study *study) {
     return parts > 0 && same == parts;
 }
 
-/* The scene with every part that the thorax has too from there. */
+/* Copies the scene, with the thorax's mesh for every part that the thorax has. */
 static skg_status take_thorax(const cost_study *study, const skg_thorax *thorax, skg_scene *scene) {
     int64_t parts = 0;
     skg_status status = skg_scene_part_count(study->session.scene, &parts);

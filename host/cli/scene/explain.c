@@ -19,20 +19,21 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
     return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
 }
 
-/* Of the open beam at a pixel across it, where photons per pixel are counted. */
-static skg_status open_beam(const cli_session *session, skg_quality *quality) {
+/* The quality of the flat field in a pixel that faces the beam, per pixel instead of per mm2. */
+static skg_status flat_field(const cli_session *session, skg_quality *quality) {
     const double *a = session->view.column_step, *b = session->view.row_step;
     const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
     skg_quality_init(quality);
     const skg_status status = skg_spectrum_quality_get(session->spectrum, quality);
-    quality->air_kerma_ugy /= hypot(hypot(across[0], across[1]), across[2]); /* it was of photons per mm2 */
+    quality->air_kerma_ugy /= hypot(hypot(across[0], across[1]),
+                                    across[2]); /* it counts the spectrum's photons as if they were per mm2 */
     return status;
 }
 
-static json_t *open_beam_json(const cli_session *session) {
+static json_t *flat_field_json(const cli_session *session) {
     skg_quality quality;
-    if (open_beam(session, &quality) != SKG_OK) return json_null();
+    if (flat_field(session, &quality) != SKG_OK) return json_null();
     return json_pack("{s:f, s:f, s:f}", "mean_energy_keV", quality.mean_kev, "photons_per_pixel",
                      quality.photons, "air_kerma_uGy", quality.air_kerma_ugy);
 }
@@ -55,7 +56,7 @@ static json_t *effects_json(const skg_plan *plan) {
     return list;
 }
 
-/* The energies at which attenuation is computed, with the photons per pixel that they stand for. */
+/* The energies at which attenuation is computed, each with the photons per pixel that it represents. */
 static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
     json_t *list = json_array();
     for (int64_t i = 0; i < nodes; i++) {
@@ -66,7 +67,7 @@ static json_t *nodes_json(const skg_plan *plan, int64_t nodes) {
     return list;
 }
 
-/* Device time of each stage of the last frame, where it was taken. */
+/* Device time of each stage of the last frame. */
 static json_t *stages_json(const skg_plan *plan) {
     json_t *object = json_object();
     int64_t count = 0;
@@ -141,7 +142,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "negative_pixels", json_integer(report.negative_pixels));
     json_object_set_new(object, "outside_pixels", json_integer(report.outside_pixels));
     json_object_set_new(object, "bins", json_integer(report.bins));
-    json_object_set_new(object, "open_beam", open_beam_json(session));
+    json_object_set_new(object, "open_beam", flat_field_json(session));
     json_object_set_new(object, "samples", json_integer(report.samples));
     json_object_set_new(object, "sample_error", cli_json_number(report.sample_error));
     json_object_set_new(object, "stages_ns", stages_json(plan));
@@ -159,7 +160,7 @@ static void print_cost(const skg_effect *effect) {
 static void print_effects(const skg_plan *plan) {
     int64_t count = 0;
     skg_plan_effect_count(plan, &count);
-    printf("\neffects, with what they cost: estimated, in frames of this scene without any\n");
+    printf("\neffects, with their estimated cost in frames of this scene without effects\n");
     for (int64_t i = 0; i < count; i++) {
         skg_effect effect;
         skg_effect_init(&effect);
@@ -182,10 +183,10 @@ static void print_stages(const skg_plan *plan) {
     }
 }
 
-/* Those chosen of many, with the photons that they stand for. */
+/* The nodes, if a spectrum was compressed. */
 static void print_nodes(const skg_plan *plan, const skg_plan_report *report) {
     if (report->verified == 0) return;
-    printf("\nenergies, keV: photons per pixel of the open beam; error at most %.2g, verified on %" PRId64
+    printf("\nenergies, keV: photons per pixel of the flat field; error at most %.2g, verified on %" PRId64
            " points\n",
            report->bound, report->verified);
     for (int64_t i = 0; i < report->nodes; i++) {
@@ -219,11 +220,11 @@ static void print_beam(const cli_session *session) {
     skg_spectrum_bin_count(session->spectrum, &bins);
     printf("beam       ");
     if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
-    if (open_beam(session, &quality) == SKG_OK)
-        printf("%g keV, %g photons per pixel of the open beam, air kerma %.4g uGy\n", quality.mean_kev,
+    if (flat_field(session, &quality) == SKG_OK)
+        printf("%g keV, %g photons per pixel of the flat field, air kerma %.4g uGy\n", quality.mean_kev,
                quality.photons, quality.air_kerma_ugy);
     else
-        printf("not to be judged: %s\n", skg_last_error());
+        printf("its quality is not known: %s\n", skg_last_error());
 }
 
 static void print_strategy(const skg_plan_report *report) {
@@ -240,7 +241,7 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     skg_plan_report_init(&report);
     skg_plan_report_get(plan, &report);
-    printf("scene      %s: %" PRId64 " %s (%" PRId64 " open), %" PRId64 " triangles, %" PRId64 " vertices\n",
+    printf("scene      %s: %" PRId64 " %s (%" PRId64 " leaky), %" PRId64 " triangles, %" PRId64 " vertices\n",
            session->path, report.parts, skg_plural(report.parts, "part", "parts"), report.leaky_parts,
            report.triangles, report.vertices);
     printf("detector   %" PRId64 " x %" PRId64 " pixels\n", session->view.columns, session->view.rows);
@@ -253,7 +254,7 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     printf("planes     %" PRId64 " for %" PRId64 " %s, from %" PRId64 " %s of %" PRId64 " bits\n",
            report.planes, closed, skg_plural(closed, "part", "parts"), report.accumulators,
            skg_plural(report.accumulators, "accumulator", "accumulators"), report.plane_bits);
-    printf("pixels     %" PRId64 " where hits of an open mesh do not cancel, %" PRId64
+    printf("pixels     %" PRId64 " where hits of a leaky mesh do not cancel, %" PRId64
            " of them repaired; %" PRId64 " with a negative exponent; %" PRId64
            " outside the verified range\n",
            report.bad_pixels, report.repaired_pixels, report.negative_pixels, report.outside_pixels);

@@ -34,9 +34,9 @@ static skg_status note_stages(const skg_plan *plan, cli_times *times) {
     return status;
 }
 
-int cli_end_image(skg_status status, int *told) {
-    if (status == SKG_RANGE && !(told && *told)) cli_warn("%s", skg_last_error());
-    if (status == SKG_RANGE && told) *told = 1;
+int cli_end_image(skg_status status, int *warned) {
+    if (status == SKG_RANGE && !(warned && *warned)) cli_warn("%s", skg_last_error());
+    if (status == SKG_RANGE && warned) *warned = 1;
     return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);
 }
 

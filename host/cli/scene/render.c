@@ -23,7 +23,7 @@ int cli_check_outputs(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &low, &high);
     if (exit_status != CLI_DONE) return exit_status;
     if (!cli_given(arguments, &cli_flag_output) && !repeats)
-        return cli_error(CLI_USAGE, "%s: nowhere to write to; add -o FILE (.png, .tif or .mha)",
+        return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif or .mha)",
                          arguments->manual->name);
     const char *path;
     for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++) {
@@ -33,7 +33,7 @@ int cli_check_outputs(const cli_arguments *arguments) {
     return CLI_DONE;
 }
 
-/* Every file that can be written is; the status is that of the first that cannot. */
+/* Writes every file that can be written. Returns the exit status of the first that cannot. */
 static int write_files(const cli_rendering *rendering) {
     int failure = CLI_DONE;
     const char *path;
@@ -46,7 +46,7 @@ static int write_files(const cli_rendering *rendering) {
     return failure;
 }
 
-/* Least and largest finite value of a channel, as they are; both 0 where there is none. */
+/* The least and the largest finite value of a channel; both are 0 if there is none. */
 static void find_range(const skg_picture *picture, int64_t channel, double *low, double *high) {
     const int64_t pixels = picture->columns * picture->rows;
     int found = 0;
@@ -88,7 +88,7 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
     return CLI_DONE;
 }
 
-/* What the plan says of its channels; the picture's name, unit and open beam are those of the first. */
+/* Takes the channels' names from the plan, and the picture's name, unit and flat field from the first channel. */
 static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
     skg_picture *picture = &rendering->picture;
     if (rendering->lengths) return CLI_DONE;
@@ -108,8 +108,8 @@ static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* Memory for one frame of the precision asked for. */
-static int make_room(cli_rendering *rendering, skg_output *output) {
+/* Memory for one frame in the plan's precision. */
+static int allocate_frame(cli_rendering *rendering, skg_output *output) {
     const int64_t channels = rendering->picture.channels;
     const skg_view *view = &rendering->session.view;
     int twice = rendering->session.options.precision == SKG_PRECISION_DOUBLE;
@@ -137,7 +137,7 @@ int cli_render(cli_rendering *rendering) {
     session->options.profile = times.repeats > 0;
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);
     if (exit_status == CLI_DONE) exit_status = name_channels(rendering, plan);
-    if (exit_status == CLI_DONE) exit_status = make_room(rendering, &output);
+    if (exit_status == CLI_DONE) exit_status = allocate_frame(rendering, &output);
     if (exit_status == CLI_DONE)
         exit_status = cli_run_frames(plan, rendering->frame, &output, rendering->frame_user, &times);
     if (exit_status == CLI_DONE) exit_status = write_files(rendering);

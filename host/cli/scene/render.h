@@ -1,5 +1,4 @@
-/* What `image` and `lbuffer` share: outputs that can be written, a plan, frames, files, and what is printed.
- */
+/* What `image` and `lbuffer` share: plan, frames, files, report. */
 #ifndef SKG_CLI_RENDER_H
 #define SKG_CLI_RENDER_H
 
@@ -13,14 +12,15 @@ typedef struct {
     cli_frame frame;
     const void *frame_user;
     const char *channel_names[SKG_CHANNELS_MAX];
-    int lengths;         /* 1: one channel, whatever the plan's images have */
-    skg_picture picture; /* quantity and display, of lengths also name and unit; the rest is filled in here */
+    int lengths; /* 1: path lengths, which have one channel whatever the plan's images have */
+    skg_picture
+        picture; /* quantity and display, for path lengths also name and unit; cli_render fills in the rest */
 } cli_rendering;
 
-/* Checks --repeat and --range, and that every -o can be written: before anything is computed. */
+/* Before anything is computed, checks --repeat, --range and the extension of every -o. */
 int cli_check_outputs(const cli_arguments *arguments);
 
-/* Plans, runs the frames, writes every -o, prints. The session stays open. */
+/* Plans, computes the frames, writes every -o and prints. The caller closes the session. */
 int cli_render(cli_rendering *rendering);
 
 #endif

@@ -19,15 +19,15 @@ typedef struct {
     skg_material *materials[MOST_FILTERS];
     int64_t filter_count;
     skg_tube tube;
-    skg_spectrum *spectrum; /* of the load and at the distance asked for, or of the file */
+    skg_spectrum *spectrum; /* of the given load and distance, or of the file */
     skg_quality quality;    /* of the spectrum */
-    double per_mas;         /* from the spectrum's photons to those of 1 mAs at 1 m; NaN for a file */
+    double per_mas;         /* factor from the spectrum's photons to those of 1 mAs at 1 m; NaN for a file */
     const char *file;
 } beam;
 
-/* --- what is asked for ---------------------------------------------------------------------------------- */
+/* --- flags ---------------------------------------------------------------------------------------------- */
 
-/* "Cu:0.1"; a name may have a ':' of its own. */
+/* Reads "Cu:0.1". The last ':' counts, because a material's name may contain one. */
 static int read_filter(const char *text, beam *b) {
     char name[256], *end = NULL;
     const char *colon = strrchr(text, ':');
@@ -47,7 +47,7 @@ static int read_filter(const char *text, beam *b) {
     return CLI_DONE;
 }
 
-/* "65uGy/mAs@100cm" */
+/* Reads "65uGy/mAs@100cm". */
 static int read_output(const char *text, skg_tube *tube) {
     static const struct {
         const char *name;
@@ -91,19 +91,19 @@ static int read_tube(const cli_arguments *arguments, beam *b) {
     return exit_status;
 }
 
-/* A tube has a voltage, a file has not; what belongs to the other is refused. */
+/* Refuses flags of a tube together with a file, and the file's flag without one. */
 static int check_source(const cli_arguments *arguments, beam *b) {
     static const cli_flag *const of_tube[] = {
         &cli_flag_beam_kvp, &cli_flag_beam_angle, &cli_flag_beam_anode,    &cli_flag_beam_model,
         &cli_flag_beam_bin, &cli_flag_beam_mas,   &cli_flag_beam_distance, &cli_flag_beam_output};
     b->file = cli_value(arguments, &cli_flag_beam_file);
     if (!b->file && !cli_given(arguments, &cli_flag_beam_kvp))
-        return cli_error(CLI_USAGE, "beam: of which tube? give --kvp KV, or --file FILE");
+        return cli_error(CLI_USAGE, "beam: no beam is named; add --kvp KV or --file FILE");
     if (!b->file && cli_given(arguments, &cli_flag_beam_unit))
         return cli_error(CLI_USAGE, "--unit goes with --file");
     for (size_t i = 0; b->file && i < sizeof of_tube / sizeof *of_tube; i++)
         if (cli_given(arguments, of_tube[i]))
-            return cli_error(CLI_USAGE, "%s is a tube's, and --file is a spectrum; give one of them",
+            return cli_error(CLI_USAGE, "%s describes a tube and --file a spectrum; give one of them",
                              of_tube[i]->name);
     return CLI_DONE;
 }
@@ -116,12 +116,12 @@ static skg_status make_spectrum(int32_t unit, beam *b) {
         b->per_mas = pow(b->tube.distance_mm / 1000, 2) / b->tube.mas;
         return skg_spectrum_create_tube(&b->tube, &b->spectrum);
     }
-    skg_spectrum *open = NULL;
+    skg_spectrum *unfiltered = NULL;
     b->per_mas = (double)NAN;
-    skg_status status = skg_spectrum_load(b->file, cli_flag_beam_unit.values[unit].name, &open);
+    skg_status status = skg_spectrum_load(b->file, cli_flag_beam_unit.values[unit].name, &unfiltered);
     if (status == SKG_OK)
-        status = skg_spectrum_create_filtered(open, b->filter_count, b->filters, &b->spectrum);
-    skg_spectrum_release(&open);
+        status = skg_spectrum_create_filtered(unfiltered, b->filter_count, b->filters, &b->spectrum);
+    skg_spectrum_release(&unfiltered);
     return status;
 }
 
@@ -140,7 +140,7 @@ static int make_beam(const cli_arguments *arguments, beam *b) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* --- what is said --------------------------------------------------------------------------------------- */
+/* --- report --------------------------------------------------------------------------------------------- */
 
 /* "90 kV, W, 12 degrees, Ebel; 0.1 mm Cu" */
 static void describe(const beam *b, char *text, size_t size) {
@@ -172,7 +172,7 @@ static void print_beam(const beam *b) {
     printf("  HVL2          %.4g mm Al   %.4g mm Cu\n", q->hvl2_mm_al, q->hvl2_mm_cu);
     printf("  homogeneity   %.3f (HVL1/HVL2 in Al)\n", q->homogeneity);
     if (b->file) {
-        printf("  photons       %.6g, as the file has them\n", q->photons);
+        printf("  photons       %.6g, in the file's unit\n", q->photons);
         return;
     }
     printf("  output        %.4g uGy/mAs air kerma, %.4g photons/mm2/mAs at 1 m\n",
@@ -204,7 +204,7 @@ static json_t *beam_json(const beam *b) {
     return object;
 }
 
-/* --- what is written ------------------------------------------------------------------------------------ */
+/* --- files ---------------------------------------------------------------------------------------------- */
 
 static char *beam_csv(const beam *b) {
     char *text = NULL;
@@ -224,7 +224,7 @@ static char *beam_csv(const beam *b) {
     return NULL;
 }
 
-/* Four corners for each bin: as wide as the closest two are apart. x and y: [4 count]. */
+/* Four corners of a bar for each bin, as wide as the smallest distance between bins. x and y: [4 count]. */
 static void make_steps(const skg_spectrum *spectrum, int64_t count, double *x, double *y) {
     double width = HUGE_VAL, before = 0, kev = 0, photons = 0;
     for (int64_t i = 0; i < count; i++, before = kev) {
@@ -239,7 +239,7 @@ static void make_steps(const skg_spectrum *spectrum, int64_t count, double *x, d
         y[4 * i] = y[4 * i + 3] = 0;
         y[4 * i + 1] = y[4 * i + 2] = photons;
         int joins = i > 0 && x[4 * i] - x[4 * i - 1] < 1e-6 * width;
-        if (joins) y[4 * i - 1] = y[4 * i - 2], y[4 * i] = photons; /* straight from step to step */
+        if (joins) y[4 * i - 1] = y[4 * i - 2], y[4 * i] = photons; /* adjoining bars share an edge */
     }
 }
 
@@ -283,7 +283,7 @@ int cli_beam(const cli_arguments *arguments) {
         exit_status = cli_json_print(beam_json(&b));
     else if (exit_status == CLI_DONE && !cli_is_quiet())
         print_beam(&b);
-    if (exit_status == CLI_DONE) cli_tell_plots(arguments);
+    if (exit_status == CLI_DONE) cli_report_plots(arguments);
     skg_spectrum_release(&b.spectrum);
     for (int64_t i = 0; i < b.filter_count; i++) skg_material_release(&b.materials[i]);
     return exit_status;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* "20,40,60" to edges. */
+/* Reads "20,40,60". */
 static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_MAX + 1], int64_t *bands) {
     const char *value = cli_value(arguments, &cli_flag_image_bands), *at = value;
     int64_t count = 0;
@@ -16,8 +16,9 @@ static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_
         double edge = strtod(at, &end);
         if (end == at || (*end && *end != ',') || !(edge >= 0 && edge < HUGE_VAL) ||
             (count > 0 && !(edge > edges[count - 1])))
-            return cli_error(CLI_USAGE, "--bands %s: \"%.*s\" is no energy in keV above the one before it",
-                             value, (int)strcspn(at, ","), at);
+            return cli_error(CLI_USAGE,
+                             "--bands %s: \"%.*s\" is not an energy in keV above the one before it", value,
+                             (int)strcspn(at, ","), at);
         if (count > SKG_CHANNELS_MAX)
             return cli_error(CLI_USAGE, "--bands %s: more than %d bands", value, SKG_CHANNELS_MAX);
         edges[count++] = edge;

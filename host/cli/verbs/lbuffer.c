@@ -23,7 +23,7 @@ int cli_lbuffer(const cli_arguments *arguments) {
     cli_rendering rendering = {
         .arguments = arguments, .frame = one_buffer, .frame_user = &wanted, .lengths = 1};
     const char *label = cli_value(arguments, &cli_flag_lbuffer_part);
-    if (!label) return cli_error(CLI_USAGE, "lbuffer: of which part? add --part LABEL");
+    if (!label) return cli_error(CLI_USAGE, "lbuffer: no part is named; add --part LABEL");
     int exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &rendering.session);
     if (exit_status == CLI_DONE) {

@@ -18,7 +18,7 @@ static const double usual_kev[] = {10, 15, 20, 30, 40, 50, 60, 80, 100, 150};
 
 /* --- energies ------------------------------------------------------------------------------------------ */
 
-/* low, high and step of --energy; step 0: one energy. */
+/* Reads the low end, the high end and the step of --energy. Step 0: one energy. */
 static int read_energies(const char *text, double numbers[3]) {
     const char *at = text;
     int count = 0;
@@ -117,7 +117,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Energies for the plot: evenly spaced logarithms, and every edge from both sides. */
+/* Energies for the plot: evenly spaced in their logarithms, and the two sides of every absorption edge. */
 static double *plot_energies(const cli_matter *m, int64_t *count) {
     int64_t edge_count = 0;
     double *edges = cli_matter_edges(m, &edge_count);
@@ -134,7 +134,7 @@ static double *plot_energies(const cli_matter *m, int64_t *count) {
     return kev;
 }
 
-/* Curves of mu/rho and cli_processes; of mu where that is all there is, or is compared. */
+/* Values of mu/rho and of each process; of mu alone if only mu is known, or if mu is compared with --naive. */
 static int fill_curves(const cli_matter *m, const double *kev, int64_t count, double *values) {
     int by_mass = m->has_parts && !m->naive;
     for (int64_t i = 0; i < count; i++) {
@@ -170,7 +170,8 @@ static int write_outputs(const cli_arguments *arguments, const cli_matter *m, in
             curves[c].x = kev, curves[c].y = values + c * count, curves[c].count = count;
         for (int p = 0; by_mass && p < CLI_PROCESSES; p++) curves[p + 1].name = cli_processes[p];
         if (m->naive) curves[0].name = "Schneider 2000", curves[1].name = "naive (Eq. 13)";
-        if (by_mass && m->high <= 1022) plot.count--; /* no pairs below twice an electron's rest energy */
+        if (by_mass && m->high <= 1022)
+            plot.count--; /* no pair production below twice an electron's rest energy */
         exit_status = cli_write_plots(arguments, &plot, csv);
     }
     free(csv);
@@ -222,7 +223,7 @@ static int look_up(const cli_arguments *arguments, cli_matter *m) {
     if (exit_status != CLI_DONE) return exit_status;
     if (cli_given(arguments, &cli_flag_json)) return cli_json_print(cli_matter_json(m));
     if (!cli_is_quiet()) cli_matter_print(m);
-    cli_tell_plots(arguments);
+    cli_report_plots(arguments);
     return CLI_DONE;
 }
 
@@ -231,7 +232,7 @@ int cli_material(const cli_arguments *arguments) {
     if (cli_given(arguments, &cli_flag_material_list))
         return list_names(cli_given(arguments, &cli_flag_json));
     if (arguments->operand_count == 0)
-        return cli_error(CLI_USAGE, "material: of which material? give a NAME, or --list");
+        return cli_error(CLI_USAGE, "material: no material is named; give a NAME, or --list");
     int exit_status = look_up(arguments, &m);
     skg_material_release(&m.material);
     skg_material_release(&m.naive);

@@ -42,7 +42,7 @@ static void print_edges(const cli_matter *m) {
     free(edges);
 }
 
-/* A column of numbers; a dash where it is not known. */
+/* One cell; a dash if the value is not known. */
 static void print_number(double value) {
     if (isfinite(value))
         printf(" %11.5g", value);

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double units_mm[] = {1e-3, 1, 10, 100, 1000}; /* of the values of --unit */
+static const double units_mm[] = {1e-3, 1, 10, 100, 1000}; /* by the values of --unit */
 
 static json_t *health_json(const char *path, const skg_mesh_health *health) {
     json_t *object = json_object();
@@ -35,8 +35,8 @@ static json_t *health_json(const char *path, const skg_mesh_health *health) {
 
 static void print_health(const char *path, const skg_mesh_health *health) {
     const double *b = health->bounds, *p = health->first_open_position;
-    printf("%s: %s%s\n", path, health->closed ? "closed" : "OPEN",
-           health->flipped ? ", inverted as a whole (turned outward)" : "");
+    printf("%s: %s%s\n", path, health->closed ? "closed" : "LEAKY",
+           health->flipped ? ", wound inward (turned outward)" : "");
     if (!health->closed)
         printf("  %" PRId64 " open edges, first at vertex %" PRId64 " (%.6g, %.6g, %.6g) mm\n",
                health->open_edges, health->first_open_vertex, p[0], p[1], p[2]);
@@ -62,7 +62,7 @@ static skg_status examine(const char *path, double unit_mm, skg_mesh_health *hea
     return status;
 }
 
-/* Every file is looked at; one that cannot be read is told, and the status is that of the first such. */
+/* Examines every file. Returns the exit status of the first that cannot be read. */
 int cli_mesh(const cli_arguments *arguments) {
     int32_t chosen = 1;
     int exit_status = cli_choice(arguments, &cli_flag_mesh_unit, &chosen);

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/* One frame: what a plan reports of triangles per tile, pixels and stages is of the last one. */
+/* Computes one frame: the plan reports triangles per tile, pixels and stages of its last frame. */
 static int measure(skg_plan *plan, const skg_view *view) {
     int64_t channels = 1;
     skg_output output;

@@ -12,14 +12,14 @@
 
 enum { WIDTH = 900, HEIGHT = 600, LEFT = 90, RIGHT = 30, TOP = 50, BOTTOM = 70 };
 
-/* Colours that remain apart for colour-blind eyes (Okabe and Ito), after black. */
+/* Black, then colours that colour-blind readers can distinguish (Okabe and Ito). */
 static const double colours[][3] = {
     {0.1, 0.1, 0.1}, {0, 0.45, 0.70}, {0, 0.62, 0.45}, {0.84, 0.37, 0}, {0.80, 0.47, 0.65}};
 enum { COLOURS = sizeof colours / sizeof *colours };
 
 typedef struct {
-    double low, high; /* values at the ends */
-    double from, to;  /* pixels there */
+    double low, high; /* values at the two ends */
+    double from, to;  /* pixels at the two ends */
     int is_log;
 } axis;
 
@@ -33,7 +33,7 @@ static int is_drawn(const cli_plot *plot, double x, double y) {
     return isfinite(x) && isfinite(y) && !(plot->is_log && (x <= 0 || y <= 0));
 }
 
-/* Ranges of the values that are drawn. On logarithmic axes no more than seven decades down. */
+/* The ranges of the values that are drawn. A logarithmic y axis shows seven decades at most. */
 static void find_axes(const cli_plot *plot, axis *x, axis *y) {
     *x = (axis){HUGE_VAL, -HUGE_VAL, LEFT, WIDTH - RIGHT, plot->is_log};
     *y = (axis){HUGE_VAL, -HUGE_VAL, HEIGHT - BOTTOM, TOP, plot->is_log};
@@ -53,7 +53,7 @@ static void find_axes(const cli_plot *plot, axis *x, axis *y) {
     }
 }
 
-/* 1, 2 or 5 times a power of ten: about `wanted` of them in a range. */
+/* 1, 2 or 5 times a power of ten, such that about `wanted` steps fill the range. */
 static double tick_step(double range, int wanted) {
     double rough = range / wanted, power = pow(10, floor(log10(rough))), part = rough / power;
     return power * (part <= 1 ? 1 : part <= 2 ? 2 : part <= 5 ? 5 : 10);
@@ -66,7 +66,7 @@ static void write_centred(cairo_t *cairo, double x, double y, const char *text) 
     cairo_show_text(cairo, text);
 }
 
-/* A line of the grid at a value, with the number where it is a labelled one. */
+/* A grid line at a value, with the number if it is labelled. */
 static void draw_tick(cairo_t *cairo, const axis *a, double value, int is_labelled) {
     int is_x = a->from < a->to;
     double at = floor(place(a, value)) + 0.5;
@@ -160,7 +160,7 @@ static void draw_curve(cairo_t *cairo, const cli_plot *plot, int number, const a
     cairo_stroke(cairo);
 }
 
-/* In the upper right corner, where attenuation curves leave room. */
+/* In the upper right corner, which attenuation curves leave free. */
 static void draw_legend(cairo_t *cairo, const cli_plot *plot) {
     enum { LINE = 22, SAMPLE = 30, PAD = 10 };
     double widest = 0;
@@ -242,7 +242,7 @@ int cli_check_plots(const cli_arguments *arguments, int *plots) {
         int is_plot = cli_has_extension(path, ".png") || cli_has_extension(path, ".svg");
         *plots += is_plot;
         if (!is_plot && !cli_has_extension(path, ".csv"))
-            return cli_error(CLI_USAGE, "-o %s: its extension is none of .csv, .png and .svg", path);
+            return cli_error(CLI_USAGE, "-o %s: the extension is none of .csv, .png and .svg", path);
     }
     return CLI_DONE;
 }
@@ -259,7 +259,7 @@ int cli_write_plots(const cli_arguments *arguments, const cli_plot *plot, const 
     return exit_status;
 }
 
-void cli_tell_plots(const cli_arguments *arguments) {
+void cli_report_plots(const cli_arguments *arguments) {
     const char *path;
     if (cli_is_quiet() || cli_given(arguments, &cli_flag_json)) return;
     for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_plot, i)); i++) printf("wrote %s\n", path);

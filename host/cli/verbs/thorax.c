@@ -41,7 +41,7 @@ int cli_thorax(const cli_arguments *arguments) {
     int64_t parts = 0, triangles = 0;
     const char *folder = cli_value(arguments, &cli_flag_thorax_output);
     skg_thorax_options_init(&options);
-    if (!folder) return cli_error(CLI_USAGE, "thorax: nowhere to write to; add -o DIR");
+    if (!folder) return cli_error(CLI_USAGE, "thorax: no folder is named; add -o DIR");
     int exit_status = cli_integer(arguments, &cli_flag_thorax_triangles, 10000, 20000000, &options.triangles);
     if (exit_status == CLI_DONE) exit_status = cli_make_folder(folder);
     if (exit_status != CLI_DONE) return exit_status;
