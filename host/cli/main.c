@@ -3,6 +3,7 @@
 #include "common/interrupt.h"
 #include "common/say.h"
 #include "manual/help.h"
+#include "manual/list.h"
 #include "verb_table.h"
 
 #include <errno.h>

@@ -221,7 +221,7 @@ START_TEST(spectra_come_from_files) {
     json_decref(object);
     ck_run(0, "beam --file a.txt --unit MeV -o a.png");
     ck_run_fails(3, "none.txt: cannot be read", "beam --file none.txt");
-    ck_run_fails(2, "--kvp is a tube's", "beam --file a.txt --kvp 80");
+    ck_run_fails(2, "--kvp describes a tube", "beam --file a.txt --kvp 80");
     ck_run_fails(2, "--unit GeV is not known", "beam --file a.txt --unit GeV");
 }
 END_TEST

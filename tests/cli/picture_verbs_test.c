@@ -94,8 +94,8 @@ START_TEST(bands_are_channels) {
     ck_run(0, "image scene.json -o a.mha --bands 1,2");
     ck_assert_ptr_nonnull(strstr(said, "energy from 1 to 2 keV 0 to 0 keV per pixel"));
     ck_run_fails(2, "--bands 30: one edge makes no band", "image scene.json -o b.mha --bands 30");
-    ck_run_fails(2, "\"20\" is no energy in keV above", "image scene.json -o b.mha --bands 30,20");
-    ck_run_fails(2, "\"\" is no energy in keV above", "image scene.json -o b.mha --bands 30,");
+    ck_run_fails(2, "\"20\" is not an energy in keV above", "image scene.json -o b.mha --bands 30,20");
+    ck_run_fails(2, "\"\" is not an energy in keV above", "image scene.json -o b.mha --bands 30,");
     ck_run_fails(2, "more than 16 bands",
                  "image scene.json -o b.mha --bands 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18");
     ck_run_fails(3, "channel 0", "image scene.json -o b.mha --bands 1,2 --quantity transmission");

@@ -1,5 +1,7 @@
 #include "manual/help.h"
 
+#include "manual/list.h"
+
 #include <string.h>
 
 enum { WIDTH = 80, COLUMN = 21, LONGEST_HEAD = 128 };

@@ -40,19 +40,11 @@ typedef struct {
 int cli_flag_has_value(const cli_flag *flag);
 void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 
-/* Every verb, in the order of `skiagraph help`; ends with NULL. */
-extern const cli_manual *const cli_manuals[];
-
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
     cli_manual_image, cli_manual_lbuffer, cli_manual_material, cli_manual_mesh, cli_manual_plan,
     cli_manual_thorax;
 
-extern const char cli_summary[];           /* of the command, one sentence */
-extern const char *const cli_text[];       /* of the command, paragraphs; ends with NULL */
-extern const cli_item cli_other_verbs[];   /* help and version, which are no rows of cli_manuals */
-extern const cli_item cli_exit_statuses[]; /* of every verb */
-extern const cli_item cli_environment[];   /* variables that the command or its platform reads */
-extern const cli_flag cli_flag_help;       /* of every verb */
+extern const cli_flag cli_flag_help; /* of every verb */
 
 /* Flags that several verbs take. */
 extern const cli_flag cli_flag_device, cli_flag_precision, cli_flag_tolerance, cli_flag_strategy,

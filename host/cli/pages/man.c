@@ -1,6 +1,8 @@
 /* Man pages in the macros of man(7). */
 #include "pages/pages.h"
 
+#include "manual/list.h"
+
 #include <ctype.h>
 #include <string.h>
 

@@ -1,6 +1,8 @@
 /* Completion for zsh, by _arguments. */
 #include "pages/pages.h"
 
+#include "manual/list.h"
+
 #include <string.h>
 
 /* Text inside of single quotes, with the characters that _arguments and _describe read escaped. */

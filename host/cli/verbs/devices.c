@@ -4,6 +4,7 @@
 #include "common/environment.h"
 #include "common/json.h"
 #include "common/say.h"
+#include "manual/list.h"
 
 #include <stdio.h>
 #include <stdlib.h>
