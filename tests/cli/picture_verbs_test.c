@@ -221,7 +221,7 @@ START_TEST(warnings_are_told_unless_quiet) {
     ck_run(0, "plan scene.json --json --quiet %s", open_part);
     ck_assert_str_eq(complained, "");
     json_t *object = said_json();
-    ck_assert_int_eq(json_integer_value(member(object, "leaky_parts")), 1);
+    ck_assert_int_eq(json_integer_value(member(object, "open_parts")), 1);
     ck_assert_int_gt(json_integer_value(member(object, "bad_pixels")), 0);
     json_decref(object);
     ck_run(0, "image scene.json -o a.mha --set 'Detector.Position=[1000,100,0,\"mm\"]' "

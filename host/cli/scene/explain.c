@@ -134,7 +134,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "device", cli_json_text(session->device.name));
     json_object_set_new(object, "device_bytes", json_integer(report.device_bytes));
     json_object_set_new(object, "parts", json_integer(report.parts));
-    json_object_set_new(object, "leaky_parts", json_integer(report.leaky_parts));
+    json_object_set_new(object, "open_parts", json_integer(report.leaky_parts));
     json_object_set_new(object, "triangles", json_integer(report.triangles));
     json_object_set_new(object, "vertices", json_integer(report.vertices));
     json_object_set_new(object, "bad_pixels", json_integer(report.bad_pixels));
