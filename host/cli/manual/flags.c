@@ -11,10 +11,11 @@ const cli_flag cli_flag_device = {
     NULL, CLI_NAMES_NOTHING};
 
 /* In the order of SKG_PRECISION_. */
-static const cli_item precisions[] = {{"single", "32-bit floating point, exact sums of 32-bit integers"},
-                                      {"double", "64-bit floating point, for devices that have it"},
-                                      {"half", "the 16-bit buffers of the paper, for comparison"},
-                                      {NULL, NULL}};
+static const cli_item precisions[] = {
+    {"single", "32-bit floating point, exact sums of 32-bit integers"},
+    {"double", "64-bit floating point, for devices that have it"},
+    {"half", "the 16-bit buffers of Vidal and Villard 2016, for comparison"},
+    {NULL, NULL}};
 const cli_flag cli_flag_precision = {
     "--precision", NULL,
     "The precision of path lengths and image. The default is the scene's Precision, otherwise single.",

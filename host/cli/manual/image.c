@@ -43,7 +43,7 @@ static const cli_item examples[] = {
     {"skiagraph image scene.json -o image.mha --quantity attenuation --precision double",
      "writes -ln(I/I0) as doubles"},
     {"skiagraph image scene.json -o bands.tif --bands 20,40,60", "writes two photon-counting channels"},
-    {"skiagraph image scene.json --repeat 100", "times 100 frames and writes nothing"},
+    {"skiagraph image scene.json --repeat 100", "measures the times of 100 frames and writes nothing"},
     {NULL, NULL}};
 
 const cli_manual cli_manual_image = {.name = "image",
