@@ -172,7 +172,7 @@ int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low,
     double a = strtod(value, &colon);
     double b = *colon == ':' ? strtod(colon + 1, &end) : 0;
     if (colon == value || *colon != ':' || end == colon + 1 || *end || !isfinite(a) || !isfinite(b) || a >= b)
-        return cli_error(CLI_USAGE, "%s %s is not two numbers LOW:HIGH, the lower one first", flag->name,
+        return cli_error(CLI_USAGE, "%s %s is not two numbers LOW:HIGH, the lower number first", flag->name,
                          value);
     *low = a;
     *high = b;

@@ -201,7 +201,7 @@ static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
     enum { SHOWN = 10 };
     int64_t count = 0;
     if (skg_plan_overlap_count(plan, &count) != SKG_OK || count == 0) return;
-    printf("\noverlaps (lengths add where parts overlap)\n");
+    printf("\noverlaps (path lengths add where parts overlap)\n");
     for (int64_t i = 0; i < count && i < SHOWN; i++) {
         skg_overlap overlap;
         skg_overlap_init(&overlap);

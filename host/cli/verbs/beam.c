@@ -36,7 +36,7 @@ static int read_filter(const char *text, beam *b) {
     if (length == 0 || length >= sizeof name || end == colon + 1 || *end || !(mm >= 0 && mm < HUGE_VAL))
         return cli_error(CLI_USAGE, "--filter %s is not MATERIAL:MM, such as Cu:0.1", text);
     if (b->filter_count == MOST_FILTERS)
-        return cli_error(CLI_USAGE, "--filter: %d filters are the most", MOST_FILTERS);
+        return cli_error(CLI_USAGE, "--filter: more than %d filters", MOST_FILTERS);
     memcpy(name, text, length);
     name[length] = '\0';
     skg_material **material = &b->materials[b->filter_count];
@@ -100,7 +100,7 @@ static int check_source(const cli_arguments *arguments, beam *b) {
     if (!b->file && !cli_given(arguments, &cli_flag_beam_kvp))
         return cli_error(CLI_USAGE, "beam: no beam is named; add --kvp KV or --file FILE");
     if (!b->file && cli_given(arguments, &cli_flag_beam_unit))
-        return cli_error(CLI_USAGE, "--unit goes with --file");
+        return cli_error(CLI_USAGE, "--unit needs --file");
     for (size_t i = 0; b->file && i < sizeof of_tube / sizeof *of_tube; i++)
         if (cli_given(arguments, of_tube[i]))
             return cli_error(CLI_USAGE, "%s describes a tube and --file a spectrum; give one of them",

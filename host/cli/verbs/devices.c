@@ -39,12 +39,12 @@ static void print_device(const skg_device_info *device, int chosen) {
     static const double gib = 1024.0 * 1024.0 * 1024.0;
     printf("%s %d:%d  %s (%s, %s)\n", chosen ? "*" : " ", device->platform, device->device, device->name,
            kind_of(device), device->platform_name);
-    printf("       %d compute units, floats by %d; %.1f GiB, %.1f GiB at once, %.0f KiB local\n",
+    printf("       %d compute units, float vectors of %d; %.1f GiB, %.1f GiB in one buffer, %.0f KiB local\n",
            device->compute_units, device->float_width, (double)device->memory / gib,
            (double)device->max_allocation / gib, (double)device->local_memory / 1024);
     printf("       precision double: %s; division correctly rounded: %s\n",
            device->has_double ? "yes" : "no (no fp64)",
-           device->correct_division ? "yes (same bits as other such devices)" : "no (bits of its own)");
+           device->correct_division ? "yes (same bits as other such devices)" : "no (bits differ from other devices)");
     printf("       %s, driver %s\n", device->version, device->driver);
 }
 

@@ -104,7 +104,7 @@ static int find_naive(const cli_arguments *arguments, const char *name, cli_matt
     int exit_status = cli_choice(arguments, &cli_flag_material_naive, &interpolation);
     if (exit_status != CLI_DONE || interpolation < 0) return exit_status;
     double hu = strncasecmp(name, "HU:", 3) == 0 ? strtod(name + 3, &end) : (double)NAN;
-    if (!end || *end) return cli_error(CLI_USAGE, "--naive goes with a Hounsfield number, HU:52");
+    if (!end || *end) return cli_error(CLI_USAGE, "--naive needs a Hounsfield number, such as HU:52");
     skg_status status = skg_material_create_naive_hounsfield(
         hu, interpolation == 0 ? SKG_INTERPOLATION_BILINEAR : SKG_INTERPOLATION_BILOGARITHMIC, &m->naive);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
