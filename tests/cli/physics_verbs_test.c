@@ -102,7 +102,7 @@ START_TEST(naive_interpolation_is_shown) {
         json_decref(object);
     }
     ck_run(0, "material HU:0 --naive bilinear -o a.png");
-    ck_run_fails(2, "--naive goes with a Hounsfield number", "material Fe --naive bilinear");
+    ck_run_fails(2, "--naive needs a Hounsfield number", "material Fe --naive bilinear");
     ck_run_fails(2, "--naive linear is not known", "material HU:0 --naive linear");
 }
 END_TEST
@@ -256,7 +256,7 @@ START_TEST(bad_words_are_named) {
     ck_run_fails(3, "the filters let no photon through", "beam --kvp 60 --filter Pb:1000");
     ck_run_fails(2, "--model tasmip is not known", "beam --kvp 60 --model tasmip");
     ck_run_fails(2, "--output 65 is not an output", "beam --kvp 60 --output 65");
-    ck_run_fails(2, "--unit goes with --file", "beam --kvp 60 --unit keV");
+    ck_run_fails(2, "--unit needs --file", "beam --kvp 60 --unit keV");
     ck_assert_int_eq(look_at_folder(0), 0);
 }
 END_TEST

@@ -1,0 +1,161 @@
+#include "core/core.h"
+#include "core/mailbox.h"
+#include "core/maths.h"
+#include "core/names.h"
+#include "core/output.h"
+#include "suite.h"
+
+#include <string.h>
+#include <unistd.h>
+
+START_TEST(every_status_has_name_and_text) {
+#define SKG_CHECK_STATUS(name, value, text)                                                                  \
+    ck_assert_str_eq(skg_status_name(value), #name);                                                         \
+    ck_assert_str_eq(skg_status_text(value), text);
+    SKG_STATUS_LIST(SKG_CHECK_STATUS)
+    ck_assert_str_eq(skg_status_name(-12345), "SKG_UNKNOWN");
+}
+END_TEST
+
+START_TEST(last_error_may_quote_itself) {
+    skg_fail(SKG_ERR_FILE, "%s: not there", "a.stl");
+    skg_fail(SKG_ERR_SCENE, "scene.json: %s", skg_last_error());
+    ck_assert_str_eq(skg_last_error(), "scene.json: a.stl: not there");
+}
+END_TEST
+
+/* Found by fuzzing: a scene file's text went into the sentence with its line breaks. */
+START_TEST(a_sentence_is_one_line) {
+    skg_fail(SKG_ERR_FORMAT, "near '%s'", "Num\nber\x1b[2J\x7f");
+    ck_assert_str_eq(skg_last_error(), "near 'Num?ber?[2J?'");
+    skg_fail(SKG_ERR_SCENE, "part %s", "L\xc3\xa4uchte"); /* UTF-8 stays */
+    ck_assert_str_eq(skg_last_error(), "part L\xc3\xa4uchte");
+    skg_fail(SKG_ERR_BUILD, "a.cl:1: error\na.cl:2: error");
+    ck_assert_ptr_nonnull(strchr(skg_last_error(), '\n'));
+}
+END_TEST
+
+START_TEST(allocation_checks_its_product) {
+    double *p = NULL;
+    ck_skg_fails(skg_alloc(INT64_MAX / 4, sizeof *p, "lengths", &p), SKG_ERR_MEMORY, "lengths");
+    ck_assert_ptr_null(p);
+    ck_skg(skg_alloc(0, sizeof *p, "nothing", &p));
+    ck_assert_ptr_nonnull(p);
+    skg_free(&p);
+    ck_assert_ptr_null(p);
+}
+END_TEST
+
+typedef struct {
+    int32_t size, a, b;
+} old_struct;
+typedef struct {
+    int32_t size, a, b, c;
+} new_struct;
+
+START_TEST(structs_grow) {
+    old_struct theirs = {sizeof theirs, 1, 2};
+    new_struct ours = {sizeof ours, 0, 0, 7};
+    ck_skg(skg_struct_read(&theirs, "skg_thing", &ours, sizeof ours));
+    ck_assert_int_eq(ours.b, 2);
+    ck_assert_int_eq(ours.c, 7);
+    ck_assert_int_eq(ours.size, (int)sizeof ours);
+
+    new_struct newer = {sizeof newer, 1, 2, 0};
+    old_struct older = {sizeof older, 0, 0};
+    ck_skg(skg_struct_read(&newer, "skg_thing", &older, sizeof older));
+    newer.c = 3;
+    ck_skg_fails(skg_struct_read(&newer, "skg_thing", &older, sizeof older), SKG_ERR_ARGUMENT,
+                 "newer library");
+    newer.size = 0;
+    ck_skg_fails(skg_struct_read(&newer, "skg_thing", &older, sizeof older), SKG_ERR_ARGUMENT,
+                 "skg_thing_init");
+}
+END_TEST
+
+START_TEST(nearest_name_is_a_slip_of_the_finger) {
+    const char *known[] = {"Source", "Detector", "Samples"};
+    ck_assert_str_eq(skg_nearest_name("detectro", known, 3), "Detector");
+    ck_assert_str_eq(skg_nearest_name("SAMPLE", known, 3), "Samples");
+    ck_assert_ptr_null(skg_nearest_name("Zebra", known, 3));
+}
+END_TEST
+
+START_TEST(output_appears_whole_or_not_at_all) {
+    char folder[] = "/tmp/skg-core-XXXXXX", path[64];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.txt", folder);
+    skg_output_file file;
+    ck_skg(skg_output_open(path, &file));
+    fputs("half", file.stream);
+    skg_output_discard(&file);
+    ck_assert_int_ne(access(path, F_OK), 0);
+    ck_skg(skg_output_open(path, &file));
+    fputs("whole", file.stream);
+    ck_skg(skg_output_commit(&file));
+    ck_assert_int_eq(access(path, F_OK), 0);
+    ck_assert_int_eq(unlink(path), 0);
+    ck_assert_int_eq(rmdir(folder), 0); /* nothing else was left there */
+    ck_skg_fails(skg_output_open(path, &file), SKG_ERR_OUTPUT, path);
+}
+END_TEST
+
+static skg_status needs_a_mesh(const void *mesh) {
+    SKG_NEEDS(mesh);
+    return SKG_OK;
+}
+
+START_TEST(a_missing_argument_is_named) {
+    ck_skg(needs_a_mesh(""));
+    ck_skg_fails(needs_a_mesh(NULL), SKG_ERR_ARGUMENT, "needs_a_mesh: the argument mesh is NULL");
+}
+END_TEST
+
+START_TEST(rounding_up_stays_where_it_is_exact) {
+    ck_assert_int_eq(skg_round_up(0, 16), 0);
+    ck_assert_int_eq(skg_round_up(1, 16), 16);
+    ck_assert_int_eq(skg_round_up(32, 16), 32);
+    ck_assert_int_eq(skg_divide_up(33, 16), 3);
+}
+END_TEST
+
+/* A mailbox that is full keeps its oldest sentences and counts the others. */
+START_TEST(a_mailbox_is_bounded) {
+    skg_mailbox *mailbox = NULL;
+    char sentence[SKG_MAILBOX_SENTENCE], longest[2 * SKG_MAILBOX_SENTENCE];
+    ck_skg(skg_mailbox_create(&mailbox));
+    void *address = skg_mailbox_address(mailbox);
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    memset(longest, 'a', sizeof longest - 1);
+    longest[sizeof longest - 1] = '\0';
+    skg_mailbox_put(address, longest);
+    for (int i = 1; i < SKG_MAILBOX_CAPACITY + 3; i++) skg_mailbox_put(address, "device lost");
+    ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_uint_eq(strlen(sentence), SKG_MAILBOX_SENTENCE - 1);
+    for (int i = 1; i < SKG_MAILBOX_CAPACITY; i++) ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_str_eq(sentence, "device lost");
+    ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_str_eq(sentence, "3 more sentences were dropped");
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    skg_mailbox_release(&mailbox);
+    skg_mailbox_put(address, "nobody reads this");
+    ck_skg(skg_mailbox_create(&mailbox)); /* an address is not used again */
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    skg_mailbox_release(&mailbox);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, every_status_has_name_and_text);
+    tcase_add_test(tests, last_error_may_quote_itself);
+    tcase_add_test(tests, a_sentence_is_one_line);
+    tcase_add_test(tests, allocation_checks_its_product);
+    tcase_add_test(tests, structs_grow);
+    tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
+    tcase_add_test(tests, output_appears_whole_or_not_at_all);
+    tcase_add_test(tests, a_missing_argument_is_named);
+    tcase_add_test(tests, rounding_up_stays_where_it_is_exact);
+    tcase_add_test(tests, a_mailbox_is_bounded);
+}
+
+SKG_SUITE_MAIN("core", add_tests)

@@ -1,0 +1,217 @@
+#include "device/device.h"
+#include "suite.h"
+
+#include <skiagraph/context.h>
+
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+START_TEST(a_device_is_found_and_described) {
+    int64_t count = 0;
+    skg_device_info info;
+    skg_device_info_init(&info);
+    ck_skg(skg_device_count(&count));
+    ck_assert_int_ge(count, 1);
+    ck_skg(skg_device_get(0, &info));
+    ck_assert_int_gt(info.compute_units, 0);
+    ck_assert_str_ne(info.name, "");
+    ck_skg_fails(skg_device_get(count, &info), SKG_ERR_ARGUMENT, "counted from 0");
+}
+END_TEST
+
+START_TEST(config_words_choose) {
+    skg_context *context = NULL;
+    skg_device_info info;
+    skg_device_info_init(&info);
+    ck_skg(skg_context_create("device=0:0 threads=1", &context));
+    ck_skg(skg_context_device_get(context, &info));
+    ck_assert_int_eq(info.compute_units, 1);
+    skg_context_release(&context);
+    ck_assert_ptr_null(context);
+    ck_skg_fails(skg_context_create("device=Babbage", &context), SKG_ERR_NO_DEVICE, "Babbage");
+    ck_skg_fails(skg_context_create("thread=2", &context), SKG_ERR_ARGUMENT, "did you mean threads");
+    ck_skg_fails(skg_context_create("threads=zero", &context), SKG_ERR_ARGUMENT, "threads=zero");
+    skg_context_release(&context);
+}
+END_TEST
+
+START_TEST(environment_variable_stands_for_config) {
+    skg_context *context = NULL;
+    setenv("SKG_DEVICE", "Babbage", 1);
+    ck_skg_fails(skg_context_create(NULL, &context), SKG_ERR_NO_DEVICE, "Babbage");
+    ck_skg(skg_context_create("device=0:0", &context)); /* config stands before the environment */
+    skg_context_release(&context);
+    setenv("SKG_DEVICE", "0:0 threads=1", 1);
+    ck_skg(skg_context_create(NULL, &context));
+    ck_assert_int_eq(context->device->info.compute_units, 1);
+    skg_context_release(&context);
+}
+END_TEST
+
+static int64_t environment_hash(void) {
+    int64_t hash = 0;
+    for (char **word = environ; *word; word++)
+        for (const char *at = *word; *at; at++) hash = hash * 31 % 1000000007 + *at;
+    return hash;
+}
+
+/* PoCL sets HWLOC_PLUGINS_PATH while it is loaded; that is the driver's doing, so the driver is loaded first.
+ */
+START_TEST(environment_is_left_alone) {
+    cl_platform_id platform = NULL;
+    cl_device_id any = NULL;
+    ck_assert_int_eq(clGetPlatformIDs(1, &platform, NULL), CL_SUCCESS);
+    ck_assert_int_eq(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &any, NULL), CL_SUCCESS);
+    int64_t before = environment_hash();
+    skg_context *context = NULL;
+    ck_skg(skg_context_create("device=0:0", &context));
+    skg_context_release(&context);
+    ck_assert_int_eq(environment_hash(), before);
+}
+END_TEST
+
+START_TEST(a_forked_child_is_told) {
+    skg_context *context = NULL;
+    ck_skg(skg_context_create("device=0:0", &context));
+    pid_t child = fork();
+    if (child == 0) {
+        skg_device_info info;
+        skg_device_info_init(&info);
+        int told = skg_context_device_get(context, &info) == SKG_ERR_FORK;
+        skg_context_release(&context); /* must not hang */
+        _exit(told ? 0 : 1);
+    }
+    int result = -1;
+    ck_assert_int_eq(waitpid(child, &result, 0), child);
+    ck_assert(WIFEXITED(result) && WEXITSTATUS(result) == 0);
+    skg_context_release(&context);
+}
+END_TEST
+
+/* A folder of kernel files for development, and what a compile error looks like. */
+START_TEST(build_errors_name_file_and_line) {
+    char folder[] = "/tmp/skg-device-XXXXXX", path[64], config[96];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/bad.cl", folder);
+    FILE *file = fopen(path, "w");
+    fputs("kernel void ok(void) {}\nkernel void bad(void) { nonsense; }\n", file);
+    fclose(file);
+    snprintf(config, sizeof config, "device=0:0 kernels=%s", folder);
+    skg_context *context = NULL;
+    cl_program program = NULL;
+    const char *names[] = {"bad.cl"};
+    ck_skg(skg_context_create(config, &context));
+    ck_skg_fails(skg_program_get(context, 1, names, "", &program), SKG_ERR_BUILD, "bad.cl:2");
+    ck_assert_int_eq(skg_last_cl_error(), CL_BUILD_PROGRAM_FAILURE);
+    names[0] = "none.cl";
+    ck_skg_fails(skg_program_get(context, 1, names, "", &program), SKG_ERR_FILE, "none.cl");
+    file = fopen(path, "w");
+    fputs("kernel void ok(void) {}\n", file);
+    fclose(file);
+    names[0] = "bad.cl";
+    cl_program again = NULL;
+    ck_skg(skg_program_get(context, 1, names, "-D A=1", &program));
+    ck_skg(skg_program_get(context, 1, names, "-D A=1", &again));
+    ck_assert_ptr_eq(program, again);
+    ck_assert_int_eq(context->device->builds, 1);
+    cl_kernel kernel = NULL;
+    ck_skg_fails(skg_kernel_create(program, "missing", &kernel), SKG_ERR_DEVICE, "missing");
+    skg_context_release(&context);
+    unlink(path);
+    rmdir(folder);
+}
+END_TEST
+
+START_TEST(buffers_that_cannot_be_are_refused) {
+    skg_context *context = NULL;
+    skg_buffer buffer = {0};
+    ck_skg(skg_context_create("device=0:0", &context));
+    ck_skg_fails(skg_buffer_reserve(context, &buffer, INT64_MAX / 2, CL_MEM_READ_WRITE, "lengths"),
+                 SKG_ERR_DEVICE_MEMORY, "lengths");
+    ck_skg(skg_buffer_reserve(context, &buffer, 0, CL_MEM_READ_WRITE, "nothing"));
+    skg_buffer_release(&buffer);
+    skg_context_release(&context);
+}
+END_TEST
+
+START_TEST(a_callers_queue_is_checked_and_retained) {
+    skg_context *ours = NULL, *theirs = NULL;
+    ck_skg(skg_context_create("device=0:0", &ours));
+    skg_device *device = ours->device;
+    ck_skg(skg_context_create_cl(device->cl, device->id, device->queue, &theirs));
+    cl_context other = clCreateContext(NULL, 1, &device->id, NULL, NULL, NULL);
+    skg_context *wrong = NULL;
+    ck_skg_fails(skg_context_create_cl(other, device->id, device->queue, &wrong), SKG_ERR_ARGUMENT, "queue");
+    clReleaseContext(other);
+    skg_context_release(&ours);
+    ck_assert_int_eq(clFinish(theirs->device->queue), CL_SUCCESS); /* still alive: retained */
+    skg_context_release(&theirs);
+}
+END_TEST
+
+/* What a driver says in a thread of its own, and a log that notes which thread called it. */
+static void *call_back(void *address) {
+    skg_driver_says("device lost", NULL, 0, address);
+    return NULL;
+}
+
+static void say_in_a_thread(void *address) {
+    pthread_t thread;
+    ck_assert_int_eq(pthread_create(&thread, NULL, call_back, address), 0);
+    ck_assert_int_eq(pthread_join(thread, NULL), 0);
+}
+
+typedef struct {
+    pthread_t thread;
+    int sentences;
+    char last[128];
+} heard;
+
+static void hear(int32_t level, const char *sentence, void *user) {
+    heard *h = user;
+    ck_assert_int_eq(level, SKG_LOG_WARNING);
+    h->thread = pthread_self();
+    h->sentences++;
+    snprintf(h->last, sizeof h->last, "%s", sentence);
+}
+
+/* The driver's thread once read the log of a context while it was set, and of one that was gone. */
+START_TEST(the_drivers_words_wait_for_the_contexts_thread) {
+    skg_context *context = NULL;
+    skg_device_info info;
+    heard h = {0};
+    skg_device_info_init(&info);
+    ck_skg(skg_context_create("device=0:0", &context));
+    void *address = skg_mailbox_address(context->driver);
+    say_in_a_thread(address); /* kept until there is a log */
+    ck_skg(skg_context_log_set(context, hear, &h));
+    say_in_a_thread(address);
+    ck_assert_int_eq(h.sentences, 0);
+    ck_skg(skg_context_device_get(context, &info));
+    ck_assert_int_eq(h.sentences, 2);
+    ck_assert(pthread_equal(h.thread, pthread_self()));
+    ck_assert_str_eq(h.last, "OpenCL driver: device lost");
+    skg_context_release(&context);
+    say_in_a_thread(address); /* too late: dropped */
+    ck_assert_int_eq(h.sentences, 2);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, a_device_is_found_and_described);
+    tcase_add_test(tests, config_words_choose);
+    tcase_add_test(tests, environment_variable_stands_for_config);
+    tcase_add_test(tests, environment_is_left_alone);
+    tcase_add_test(tests, a_forked_child_is_told);
+    tcase_add_test(tests, build_errors_name_file_and_line);
+    tcase_add_test(tests, buffers_that_cannot_be_are_refused);
+    tcase_add_test(tests, a_callers_queue_is_checked_and_retained);
+    tcase_add_test(tests, the_drivers_words_wait_for_the_contexts_thread);
+}
+
+SKG_SUITE_MAIN("device", add_tests)
