@@ -8,8 +8,8 @@
 
 static const char usage[] = "[--quick] [--size N] [--repeats N] [--device CONFIG] [--affinity] [--csv FILE]";
 
-/* One difference from the base, in which no part has a parent, all meshes are closed, the precision is single and the
- * strategy is the plan's choice. */
+/* One difference from the base, in which no part has a parent, all meshes are closed, the precision is single
+ * and the strategy is the plan's choice. */
 typedef struct {
     const char *name, *what;
     scene_changes changes;

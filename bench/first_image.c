@@ -1,5 +1,5 @@
-/* Time from the start of a process to its first image, and the largest memory that it used. Every sample is a new
- * process, as a user experiences it. */
+/* Time from the start of a process to its first image, and the largest memory that it used. Every sample is a
+ * new process, as a user experiences it. */
 #include "common/bench.h"
 #include "common/scenes.h"
 

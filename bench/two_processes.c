@@ -1,5 +1,6 @@
-/* Two processes at once against one of them alone, each with half of the cores and then each with all cores. PoCL's
- * threads are not pinned here, because the pinned threads of both processes would share the first cores. */
+/* Two processes at once against one of them alone, each with half of the cores and then each with all cores.
+ * PoCL's threads are not pinned here, because the pinned threads of both processes would share the first
+ * cores. */
 #include "common/bench.h"
 #include "common/scenes.h"
 
@@ -43,8 +44,8 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-/* Makes a plan and a first image and reports it; then, for each byte that comes through the pipe, times `frames` images.
- * Ends when the pipe is closed. */
+/* Makes a plan and a first image and reports it; then, for each byte that comes through the pipe, times
+ * `frames` images. Ends when the pipe is closed. */
 static _Noreturn void work(const settings *set, const char *config, int ask, int answer) {
     bench_scene scene;
     skg_plan *plan = NULL;

@@ -1,4 +1,5 @@
-/* Breathing: the exact solution of Chain Mail against the published queue; steps of a whole body; poses and images. */
+/* Breathing: the exact solution of Chain Mail against the published queue; steps of a whole body; poses and
+ * images. */
 #include "body/body.h"
 #include "breathing/queue.h"
 #include "common/bench.h"
@@ -150,9 +151,10 @@ static void one_after_the_other(void *what) {
     bench_try(skg_job_wait(&f->job), "image");
 }
 
-/* Computes the pose of frame n + 1 while the device makes the image of frame n. This saves time even if the device is the
- * same CPU. Measured on two AVX2 cores, the minimum of 7 to 15 breaths: 5.8 ms a frame instead of 6.8 with 42,000
- * triangles (the pose alone takes 0.6), and 12.6 ms instead of 15.2 with 200,000 (the pose alone takes 3.7). */
+/* Computes the pose of frame n + 1 while the device makes the image of frame n. This saves time even if the
+ * device is the same CPU. Measured on two AVX2 cores, the minimum of 7 to 15 breaths: 5.8 ms a frame instead
+ * of 6.8 with 42,000 triangles (the pose alone takes 0.6), and 12.6 ms instead of 15.2 with 200,000 (the pose
+ * alone takes 3.7). */
 static void overlapped(void *what) {
     fluoroscope *f = what;
     bench_try(skg_plan_submit(f->plan, 1, NULL, f->output, &f->job), "image");

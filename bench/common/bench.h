@@ -19,10 +19,12 @@ _Noreturn void bench_die(const char *format, ...) __attribute__((format(printf, 
 /* Ends the program with the library's message if a call failed. Statuses such as SKG_RANGE are no failures. */
 void bench_try(skg_status status, const char *what);
 
-/* A context that prints warnings on standard error, without immediate repetitions. config: see skg_context_create. */
+/* A context that prints warnings on standard error, without immediate repetitions. config: see
+ * skg_context_create. */
 skg_context *bench_context(const char *config);
 
-/* `count` zeroed elements, aligned to a cache line, to be freed by free(). Ends the program if memory is exhausted. */
+/* `count` zeroed elements, aligned to a cache line, to be freed by free(). Ends the program if memory is
+ * exhausted. */
 void *bench_alloc(size_t count, size_t size);
 
 /* The times of one contender. A contender is one of several programs or settings that are compared. */
@@ -39,9 +41,9 @@ double bench_median(const bench_times *times);
 /* Computes one frame of a contender. */
 typedef void (*bench_frame)(void *contender);
 
-/* One turn of a contender: a frame that is not timed, which wakes its threads and warms its caches, then `frames` timed
- * ones. The pause before it lets the threads of the previous contender go to sleep: OpenMP's spin for some ms after their
- * work. */
+/* One turn of a contender: a frame that is not timed, which wakes its threads and warms its caches, then
+ * `frames` timed ones. The pause before it lets the threads of the previous contender go to sleep: OpenMP's
+ * spin for some ms after their work. */
 void bench_turn(bench_frame frame, void *contender, int frames, bench_times *times);
 
 /* `turns` turns of each contender, alternately, so that other load disturbs all of them alike. */

@@ -46,7 +46,8 @@ static skg_mesh *make_mesh(skg_context *context, int kind, double radius, int64_
     return mesh;
 }
 
-/* The source stands 1200 mm before the middle; the detector stands 100 mm behind the box and covers its shadow. */
+/* The source stands 1200 mm before the middle; the detector stands 100 mm behind the box and covers its
+ * shadow. */
 static void view_box(const box *all, long size, skg_view *view) {
     double half[3], middle[3];
     for (int k = 0; k < 3; k++) {

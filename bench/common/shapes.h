@@ -14,8 +14,9 @@ typedef struct {
 
 const char *shape_name(int kind);
 
-/* Rings between two poles. Ring k from a pole has 4 k vertices, which makes the triangles nearly equal; there are 8 n^2 of
- * them, for the n that comes nearest to `triangles`. A blob has bumps of up to a sixth of its radius. */
+/* Rings between two poles. Ring k from a pole has 4 k vertices, which makes the triangles nearly equal; there
+ * are 8 n^2 of them, for the n that comes nearest to `triangles`. A blob has bumps of up to a sixth of its
+ * radius. */
 void shape_make(int kind, double radius, int64_t triangles, bench_shape *shape);
 /* Removes the four triangles at one pole, which makes the mesh leaky. */
 void shape_cut(bench_shape *shape);

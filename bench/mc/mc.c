@@ -1,4 +1,5 @@
-/* Images against a Monte Carlo reference: the primary, which the library computes, and what scatter adds to it. */
+/* Images against a Monte Carlo reference: the primary, which the library computes, and what scatter adds to
+ * it. */
 #include "common/bench.h"
 #include "mc/reference.h"
 
@@ -81,8 +82,8 @@ typedef struct {
     double ncc, mean, worst; /* mean and largest |ours / reference - 1| */
 } comparison;
 
-/* Prints a row and writes it to the CSV. least_ncc, most: the targets of the NCC and of the mean error; 0: none. Returns
- * 1 if a target is missed. */
+/* Prints a row and writes it to the CSV. least_ncc, most: the targets of the NCC and of the mean error; 0:
+ * none. Returns 1 if a target is missed. */
 static int compare(const char *what, const double *ours, const double *reference, int64_t count,
                    double least_ncc, double most, FILE *csv) {
     comparison c = {.ncc = reference_ncc(ours, reference, count)};

@@ -8,8 +8,9 @@
 
 enum { SOURCES = 3 };
 
-/* aside: distance from the scene's source, mm; edge: of a cube, mm, or 0 for a point. The paper states that its cubic
- * source is 0.5 cm wide; it does not state how far aside its uncentred source stands, which is our choice. */
+/* aside: distance from the scene's source, mm; edge: of a cube, mm, or 0 for a point. The paper states that
+ * its cubic source is 0.5 cm wide; it does not state how far aside its uncentred source stands, which is our
+ * choice. */
 typedef struct {
     const char *name, *file;
     double aside, edge;

@@ -1,5 +1,5 @@
-/* The contenders. All compute the same image: path lengths in mm, floats in host memory, of one closed mesh around the
- * origin. What does not depend on the view is computed beforehand. */
+/* The contenders. All compute the same image: path lengths in mm, floats in host memory, of one closed mesh
+ * around the origin. What does not depend on the view is computed beforehand. */
 #ifndef BENCH_CONTENDERS_H
 #define BENCH_CONTENDERS_H
 

@@ -1,6 +1,6 @@
-/* Every hit of every ray by Embree 3: packets of 16 coherent rays (4 x 4 pixels) with a filter function that adds the
- * signed distance and rejects the hit, so that the ray continues. The tree is built beforehand and is not timed. It has no
- * spatial splits (quality high), because a triangle in two leaves would be hit twice. */
+/* Every hit of every ray by Embree 3: packets of 16 coherent rays (4 x 4 pixels) with a filter function that
+ * adds the signed distance and rejects the hit, so that the ray continues. The tree is built beforehand and
+ * is not timed. It has no spatial splits (quality high), because a triangle in two leaves would be hit twice. */
 #include "contenders.h"
 #include "geometry.h"
 
@@ -25,8 +25,8 @@ typedef struct {
     float sum[RAYS];
 } collector;
 
-/* Rays and hits are structures of arrays of `count` elements, one field after the other. These are the numbers of the
- * fields: the accessors of Embree's header are for C++ only. */
+/* Rays and hits are structures of arrays of `count` elements, one field after the other. These are the
+ * numbers of the fields: the accessors of Embree's header are for C++ only. */
 enum { RAY_DIRECTION = 4, RAY_FAR = 8, RAY_NUMBER = 10, HIT_NORMAL = 0 };
 
 /* Each lane has one hit. */

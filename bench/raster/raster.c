@@ -58,7 +58,8 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-/* The source stands on the axis, 1000 mm before the mesh's centre; the detector of 400 mm stands 1200 mm from it. */
+/* The source stands on the axis, 1000 mm before the mesh's centre; the detector of 400 mm stands 1200 mm from
+ * it. */
 static void make_view(long size, skg_view *view) {
     skg_view_init(view);
     view->columns = view->rows = size;
@@ -67,9 +68,9 @@ static void make_view(long size, skg_view *view) {
     view->column_step[0] = view->row_step[1] = 400.0 / (double)size;
 }
 
-/* Ends the program if the images differ by more than rounding. The library and plain C each have an rms error of at most
- * 3e-7 of the longest path. Embree sums absolute distances in float (rms 1e-4 mm of 320 mm), and misses or doubles a hit
- * on an edge in at most one pixel of 10,000. */
+/* Ends the program if the images differ by more than rounding. The library and plain C each have an rms error
+ * of at most 3e-7 of the longest path. Embree sums absolute distances in float (rms 1e-4 mm of 320 mm), and
+ * misses or doubles a hit on an edge in at most one pixel of 10,000. */
 static void check(const char *what, const float *image, const float *reference, long size, double rms_bar,
                   double gross_share) {
     agreement found;

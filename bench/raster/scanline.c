@@ -1,5 +1,5 @@
-/* The library's method in C, written for a compiler that vectorises: coverage by crossings of scan lines, depth as one
- * affine function and a division, sums of integers in a private image of each thread. */
+/* The library's method in C, written for a compiler that vectorises: coverage by crossings of scan lines,
+ * depth as one affine function and a division, sums of integers in a private image of each thread. */
 #include "contenders.h"
 #include "geometry.h"
 

@@ -1,5 +1,5 @@
-/* The man pages and the completion of shells hold every verb and every flag of the help, and the command takes these
- * flags. */
+/* The man pages and the completion of shells hold every verb and every flag of the help, and the command
+ * takes these flags. */
 #include "cli/command.h"
 
 enum { MOST = 32 };
@@ -7,7 +7,8 @@ enum { MOST = 32 };
 static char verbs[MOST][32], flags[MOST][32];
 static int verb_count, flag_count;
 
-/* The first words of the lines of a help text that begin with two spaces, from a heading to the next empty line. */
+/* The first words of the lines of a help text that begin with two spaces, from a heading to the next empty
+ * line. */
 static int read_names(const char *heading, char names[MOST][32]) {
     char *at = strstr(said, heading);
     int count = 0;

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* The variable by which MPI or a batch system says that this process is one of several, or NULL. Such processes share the
- * cores: if each pinned its threads from core 0 on, they would all use the same cores. */
+/* The variable by which MPI or a batch system says that this process is one of several, or NULL. Such
+ * processes share the cores: if each pinned its threads from core 0 on, they would all use the same cores. */
 static const char *batch_variable(void) {
     static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE",     "PMI_RANK",   "PMIX_RANK",
                                         "MPI_LOCALNRANKS",      "SLURM_JOB_ID", "PBS_JOBID",  "LSB_JOBID",

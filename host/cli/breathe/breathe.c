@@ -10,7 +10,7 @@
 #include "common/json.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "scene/explain.h"
+#include "session/explain.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -86,8 +86,8 @@ static int pose(fluoroscopy *f, const sequence *s, int64_t frame) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* One range for all frames, from frames that are spread over the whole time. Of the pixels behind a part, the least dense
- * 2 % and the densest 0.1 % lie outside the range. */
+/* One range for all frames, from frames that are spread over the whole time. Of the pixels behind a part, the
+ * least dense 2 % and the densest 0.1 % lie outside the range. */
 static int find_range(fluoroscopy *f, const sequence *s) {
     int64_t *bin = calloc(RANGE_BINS, sizeof *bin), total = 0, sum = 0;
     const int64_t looks = s->frames < RANGE_FRAMES ? s->frames : RANGE_FRAMES;

@@ -1,7 +1,7 @@
 #include "breathe/fluoroscopy.h"
 
 #include "common/say.h"
-#include "scene/frames.h"
+#include "session/frames.h"
 
 int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job) {
     skg_output output;

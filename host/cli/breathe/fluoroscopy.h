@@ -2,7 +2,7 @@
 #ifndef SKG_CLI_FLUOROSCOPY_H
 #define SKG_CLI_FLUOROSCOPY_H
 
-#include "scene/session.h"
+#include "session/session.h"
 
 typedef struct {
     cli_session session;

@@ -1,5 +1,5 @@
-/* motion.csv: its heading, and a line of the motion for each frame. Functions that return int return an exit status and
- * print the error. */
+/* motion.csv: its heading, and a line of the motion for each frame. Functions that return int return an exit
+ * status and print the error. */
 #ifndef SKG_CLI_TABLE_H
 #define SKG_CLI_TABLE_H
 

@@ -1,5 +1,5 @@
-/* The command line: flags by table, values by kind. Functions that return int return an exit status: CLI_DONE, or
- * CLI_USAGE after printing the error. */
+/* The command line: flags by table, values by kind. Functions that return int return an exit status:
+ * CLI_DONE, or CLI_USAGE after printing the error. */
 #ifndef SKG_CLI_ARGS_H
 #define SKG_CLI_ARGS_H
 
@@ -32,7 +32,8 @@ const char *cli_value(const cli_arguments *arguments, const cli_flag *flag);
 /* The value of the flag's occurrence `index`, counted from 0, or NULL. */
 const char *cli_nth_value(const cli_arguments *arguments, const cli_flag *flag, int index);
 
-/* These four leave their results as they are if the flag was not given. cli_choice: the index in flag->values. */
+/* These four leave their results as they are if the flag was not given. cli_choice: the index in
+ * flag->values. */
 int cli_choice(const cli_arguments *arguments, const cli_flag *flag, int32_t *choice);
 int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t least, int64_t most,
                 int64_t *number);
@@ -40,8 +41,8 @@ int cli_number(const cli_arguments *arguments, const cli_flag *flag, double leas
                double *number);
 int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high);
 
-/* Reports an unknown name with the nearest known one. what: "verb", "flag"; help: the words after `skiagraph` that list
- * all. */
+/* Reports an unknown name with the nearest known one. what: "verb", "flag"; help: the words after `skiagraph`
+ * that list all. */
 int cli_unknown(const char *what, const char *name, const char *const *known, int count, const char *help);
 
 #endif

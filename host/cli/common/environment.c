@@ -36,8 +36,9 @@ static int find_cache(char *path, size_t size) {
     return length > 0 && (size_t)length < size;
 }
 
-/* Makes the folder and those above it, as PoCL would. Returns 0, or the errno value that says why it cannot be used.
- * access() alone does not suffice: root passes it on file systems that allow no new folder, such as /proc. */
+/* Makes the folder and those above it, as PoCL would. Returns 0, or the errno value that says why it cannot
+ * be used. access() alone does not suffice: root passes it on file systems that allow no new folder, such as
+ * /proc. */
 static int folder_error(const char *path) {
     char above[1024];
     snprintf(above, sizeof above, "%s", path);

@@ -1,5 +1,5 @@
-/* What PoCL reads from the environment. The library never changes the environment; the command is a process of its own
- * and may. */
+/* What PoCL reads from the environment. The library never changes the environment; the command is a process
+ * of its own and may. */
 #ifndef SKG_CLI_ENVIRONMENT_H
 #define SKG_CLI_ENVIRONMENT_H
 

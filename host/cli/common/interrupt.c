@@ -1,5 +1,5 @@
-/* Removes unfinished outputs when a signal ends the process. The handler makes async-signal-safe calls only: it reads
- * folders by getdents64 into static memory, because readdir allocates. */
+/* Removes unfinished outputs when a signal ends the process. The handler makes async-signal-safe calls only:
+ * it reads folders by getdents64 into static memory, because readdir allocates. */
 #define _GNU_SOURCE /* getdents64 */
 #include "common/interrupt.h"
 

@@ -23,8 +23,8 @@ static void find_frontier(cost_study *study) {
     }
 }
 
-/* The fastest of the rays' settings within a bar, otherwise the most accurate. The minimum time decides, which other load
- * disturbs least. */
+/* The fastest of the rays' settings within a bar, otherwise the most accurate. The minimum time decides,
+ * which other load disturbs least. */
 static int choose_rays(const cost_study *study, double bar) {
     int fastest = -1, best = -1;
     for (int i = 0; i < study->count; i++) {
@@ -48,8 +48,8 @@ static int choose_repair(const cost_study *study, double bar) {
     return best;
 }
 
-/* The first setting of a dial within a bar, otherwise the most accurate; -1: the scene has no such dial. Settings stand in
- * the order of their work. */
+/* The first setting of a dial within a bar, otherwise the most accurate; -1: the scene has no such dial.
+ * Settings stand in the order of their work. */
 static int choose_sampling(const cost_study *study, int reference, double bar) {
     int best = -1;
     for (int i = 0; i < study->count; i++) {
@@ -104,8 +104,8 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
     return exit_status;
 }
 
-/* Combines the chosen rays, samples, supersampling, triangles and repair. If the combination misses the tolerance,
- * chooses more accurate rays. */
+/* Combines the chosen rays, samples, supersampling, triangles and repair. If the combination misses the
+ * tolerance, chooses more accurate rays. */
 static int advise_whole(cost_study *study, cost_advice *advice) {
     double bar = advice->bar;
     for (int turn = 0; turn < 3; turn++, bar /= 4) {

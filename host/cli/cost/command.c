@@ -34,8 +34,8 @@ static void put_flag(FILE *stream, const cost_study *study, const cli_flag *flag
     }
 }
 
-/* The command up to the scene file. For another number of the thorax's triangles, commands before it make the meshes and
- * copy the scene file to them. */
+/* The command up to the scene file. For another number of the thorax's triangles, commands before it make the
+ * meshes and copy the scene file to them. */
 static void put_scene(FILE *stream, const cost_study *study, const cost_meshing *meshing) {
     const char *path = study->session.path, *slash = strrchr(path, '/');
     char copy[4096];

@@ -117,8 +117,8 @@ void cost_compare_lengths(cost_study *study, const cost_setting *reference, cost
     if (status >= SKG_OK && e.seen < e.parts) {
         char text[160];
         cost_describe(study, &point->setting, text, sizeof text);
-        cost_note(study, "path lengths of %s: the first %lld of %lld parts; the others would take too long", text,
-                  (long long)e.seen, (long long)e.parts);
+        cost_note(study, "path lengths of %s: the first %lld of %lld parts; the others would take too long",
+                  text, (long long)e.seen, (long long)e.parts);
     }
     point->max_mm = status >= SKG_OK ? e.worst : (double)NAN;
     point->rms_mm = status >= SKG_OK ? (e.met ? sqrt(e.squares / (double)e.met) : 0) : (double)NAN;

@@ -40,7 +40,8 @@ static int write_csv(const cost_study *study, const char *path) {
     return exit_status;
 }
 
-/* The path of the table beside a page: "cost.csv" for "cost.html". The caller frees it; NULL if memory is exhausted. */
+/* The path of the table beside a page: "cost.csv" for "cost.html". The caller frees it; NULL if memory is
+ * exhausted. */
 static char *table_beside(const char *path) {
     const size_t stem = strlen(path) - strlen(".html");
     char *beside = malloc(stem + sizeof ".csv");

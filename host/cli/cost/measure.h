@@ -7,7 +7,8 @@
 /* A plan of a setting. scene NULL: the one that the setting means. */
 skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *scene, skg_plan **plan);
 
-/* The image of a setting, [pixels]. point: receives the times of enough runs and what was planned; NULL: one run. */
+/* The image of a setting, [pixels]. point: receives the times of enough runs and what was planned; NULL: one
+ * run. */
 skg_status cost_image(cost_study *study, const cost_setting *setting, double *image, cost_point *point);
 
 /* Times of enough runs. */

@@ -4,8 +4,8 @@
 
 #include "cost/study.h"
 
-/* Makes spheres and cylinders of 8 sectors or more, or the generated thorax, finer and coarser: for other meshes it is not
- * known which surface the triangles approximate. */
+/* Makes spheres and cylinders of 8 sectors or more, or the generated thorax, finer and coarser: for other
+ * meshes it is not known which surface the triangles approximate. */
 int cost_find_meshings(cost_study *study);
 
 #endif

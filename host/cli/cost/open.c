@@ -36,7 +36,8 @@ static int look_at_scene(cost_study *study) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* Whether the beam is a tube, whose bins can be set, and whether the scene's bins are wider than they need be. */
+/* Whether the beam is a tube, whose bins can be set, and whether the scene's bins are wider than they need
+ * be. */
 static int look_at_beam(cost_study *study) {
     int64_t own = 0, finest = 0;
     skg_spectrum *spectrum = NULL;

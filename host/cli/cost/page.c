@@ -115,8 +115,8 @@ static int small_json(const cost_study *study, const cost_point *point, double *
     return exit_status;
 }
 
-/* The differences: middle grey is none, black and white are the largest finite one of either sign, *range. Levels between
- * are cube roots, so that eight bits also resolve small differences; the page can undo them. */
+/* The differences: middle grey is none, black and white are the largest finite one of either sign, *range.
+ * Levels between are cube roots, so that eight bits also resolve small differences; the page can undo them. */
 static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
     const int64_t places = study->thumb_columns * study->thumb_rows;
     float largest = 0, *roots = calloc((size_t)places, sizeof *roots);

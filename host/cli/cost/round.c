@@ -31,7 +31,8 @@ static int64_t triangles_of_sphere(int64_t sectors) {
     return 2 * (bands - 1) * sectors;
 }
 
-/* SPHERE or CYLINDER and the number of sectors, if the mesh equals the one that the library makes bit for bit. */
+/* SPHERE or CYLINDER and the number of sectors, if the mesh equals the one that the library makes bit for
+ * bit. */
 static int is_round(const skg_mesh *mesh, int64_t *sectors) {
     const char *name = NULL;
     skg_mesh_health health;
@@ -60,7 +61,8 @@ static int64_t scaled(int64_t sectors, double factor) {
     return (int64_t)fmin(fmax(round((double)sectors * factor), FEWEST_SECTORS), MOST_SECTORS);
 }
 
-/* "Samples.bone.Sphere.0=128". A part without a label, which has its mesh's name instead, is named by its number. */
+/* "Samples.bone.Sphere.0=128". A part without a label, which has its mesh's name instead, is named by its
+ * number. */
 static char *setting_of(const skg_part *part, int64_t number, int shape, int64_t sectors) {
     char *text = NULL;
     size_t size = 0;
@@ -102,7 +104,8 @@ static skg_status scale_sectors(const cost_study *study, double factor, cost_mes
     return status;
 }
 
-/* Reads the scene with the meshing's settings. SKG_ERR_SCENE: it has another number of triangles than expected. */
+/* Reads the scene with the meshing's settings. SKG_ERR_SCENE: it has another number of triangles than
+ * expected. */
 static skg_status load_round(const cost_study *study, int64_t triangles, cost_meshing *meshing) {
     skg_setup *setup = NULL;
     skg_status status =

@@ -1,9 +1,9 @@
-/* What accuracy costs: the dials of a scene, swept against the best reference that the device can give. In this folder
- * a function that returns int returns an exit status and prints the error. */
+/* What accuracy costs: the dials of a scene, swept against the best reference that the device can give. In
+ * this folder a function that returns int returns an exit status and prints the error. */
 #ifndef SKG_CLI_COST_STUDY_H
 #define SKG_CLI_COST_STUDY_H
 
-#include "scene/session.h"
+#include "session/session.h"
 
 enum {
     COST_SCENE,
@@ -77,11 +77,11 @@ typedef struct {
     double plan_ms, min_ms, median_ms;
     /* Errors as fractions: of the flat field, and of the reference's pixel. */
     double max_flat, rms_flat, max_ref, rms_ref;
-    /* Errors of path lengths, the root mean square over rays that meet a part. For breathing dials: errors of the vertices'
-     * positions. NaN: not measured. */
+    /* Errors of path lengths, the root mean square over rays that meet a part. For breathing dials: errors of
+     * the vertices' positions. NaN: not measured. */
     double max_mm, rms_mm;
-    /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels the difference
-     * that is largest in magnitude, and the mean intensity. */
+    /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels
+     * the difference that is largest in magnitude, and the mean intensity. */
     float *difference, *small;
 } cost_point;
 

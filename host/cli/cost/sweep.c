@@ -195,7 +195,8 @@ static int find_noise(cost_study *study, const double *image) {
     return status < SKG_OK ? cli_fail(status) : CLI_DONE;
 }
 
-/* A setting that the scene does not allow (half with a leaky mesh), or that lacks memory, is noted and left out. */
+/* A setting that the scene does not allow (half with a leaky mesh), or that lacks memory, is noted and left
+ * out. */
 static int measure(cost_study *study, cost_point *point, double *image, int *keep) {
     const cost_reference *reference = &study->references[point->reference];
     const int breathes = point->reference == COST_OF_BREATH;

@@ -1,5 +1,5 @@
-/* What is known of a verb's command line: one table for the parser, `help`, the man pages and the completion of
- * shells. A paragraph is one string without line breaks; who prints it breaks the lines. */
+/* What is known of a verb's command line: one table for the parser, `help`, the man pages and the completion
+ * of shells. A paragraph is one string without line breaks; who prints it breaks the lines. */
 #ifndef SKG_CLI_MANUAL_H
 #define SKG_CLI_MANUAL_H
 

@@ -6,7 +6,8 @@
 #include <ctype.h>
 #include <string.h>
 
-/* Text of ours with what roff would take for its own escaped: `word` becomes bold, a hyphen of a flag stays one. */
+/* Text of ours with what roff would take for its own escaped: `word` becomes bold, a hyphen of a flag stays
+ * one. */
 static void put_text(const char *text, FILE *stream) {
     int is_bold = 0;
     if (*text == '.' || *text == '\'') fputs("\\&", stream);

@@ -1,4 +1,5 @@
-/* pages FOLDER VERSION: writes the man pages and the completion of shells into an existing folder. Runs at build time. */
+/* pages FOLDER VERSION: writes the man pages and the completion of shells into an existing folder. Runs at
+ * build time. */
 #include "pages/pages.h"
 
 #include "manual/list.h"

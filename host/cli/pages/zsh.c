@@ -32,8 +32,8 @@ static const char *action_of(int names) {
     return actions[names];
 }
 
-/* A flag as _arguments takes it: *--name=[meaning]:ARGUMENT:action. The star: it may be repeated. The equals sign: the
- * value may follow one, or be a word of its own. */
+/* A flag as _arguments takes it: *--name=[meaning]:ARGUMENT:action. The star: it may be repeated. The equals
+ * sign: the value may follow one, or be a word of its own. */
 static void put_flag(const cli_flag *flag, FILE *stream) {
     char argument[128];
     fprintf(stream, "            '*%s%s[", flag->name,

@@ -44,7 +44,8 @@ static void print_device(const skg_device_info *device, int chosen) {
            (double)device->max_allocation / gib, (double)device->local_memory / 1024);
     printf("       precision double: %s; division correctly rounded: %s\n",
            device->has_double ? "yes" : "no (no fp64)",
-           device->correct_division ? "yes (same bits as other such devices)" : "no (bits differ from other devices)");
+           device->correct_division ? "yes (same bits as other such devices)"
+                                    : "no (bits differ from other devices)");
     printf("       %s, driver %s\n", device->version, device->driver);
 }
 

@@ -1,7 +1,7 @@
 #include "verbs/verbs.h"
 
 #include "common/say.h"
-#include "scene/render.h"
+#include "session/render.h"
 
 #include <math.h>
 #include <stdlib.h>

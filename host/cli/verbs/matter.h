@@ -25,7 +25,8 @@ typedef struct {
     int64_t count;
 } cli_matter;
 
-/* The energies of absorption edges from m->low to m->high, which the caller frees; NULL if memory is exhausted. */
+/* The energies of absorption edges from m->low to m->high, which the caller frees; NULL if memory is
+ * exhausted. */
 double *cli_matter_edges(const cli_matter *m, int64_t *count);
 
 void cli_matter_print(const cli_matter *m);

@@ -2,7 +2,7 @@
 
 #include "common/json.h"
 #include "common/say.h"
-#include "scene/explain.h"
+#include "session/explain.h"
 
 #include <stdlib.h>
 

@@ -2,6 +2,7 @@
 
 #include "common/file.h"
 #include "common/say.h"
+#include "core/maths.h"
 
 #include <cairo-svg.h>
 
@@ -120,7 +121,7 @@ static void draw_frame(cairo_t *cairo, const cli_plot *plot, const axis *x, cons
     write_centred(cairo, (LEFT + WIDTH - RIGHT) / 2.0, HEIGHT - 22, plot->x_label);
     cairo_save(cairo);
     cairo_translate(cairo, 24, (TOP + HEIGHT - BOTTOM) / 2.0);
-    cairo_rotate(cairo, -acos(-1.0) / 2);
+    cairo_rotate(cairo, -SKG_PI / 2);
     write_centred(cairo, 0, 0, plot->y_label);
     cairo_restore(cairo);
     cairo_set_font_size(cairo, 16);

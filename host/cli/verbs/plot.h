@@ -1,5 +1,5 @@
-/* The files that `material` and `beam` write: curves against energy as .png or .svg, tables as .csv. Functions that return
- * int return an exit status and print the error. */
+/* The files that `material` and `beam` write: curves against energy as .png or .svg, tables as .csv.
+ * Functions that return int return an exit status and print the error. */
 #ifndef SKG_CLI_PLOT_H
 #define SKG_CLI_PLOT_H
 

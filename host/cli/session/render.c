@@ -1,8 +1,8 @@
-#include "scene/render.h"
+#include "session/render.h"
 
 #include "common/json.h"
 #include "common/say.h"
-#include "scene/explain.h"
+#include "session/explain.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -88,7 +88,8 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
     return CLI_DONE;
 }
 
-/* Takes the channels' names from the plan, and the picture's name, unit and flat field from the first channel. */
+/* Takes the channels' names from the plan, and the picture's name, unit and flat field from the first
+ * channel. */
 static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
     skg_picture *picture = &rendering->picture;
     if (rendering->lengths) return CLI_DONE;

@@ -1,4 +1,4 @@
-#include "scene/session.h"
+#include "session/session.h"
 
 #include "common/device.h"
 #include "common/say.h"

@@ -1,4 +1,4 @@
-#include "scene/explain.h"
+#include "session/explain.h"
 
 #include "common/json.h"
 #include "common/progress.h"

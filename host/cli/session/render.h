@@ -2,8 +2,8 @@
 #ifndef SKG_CLI_RENDER_H
 #define SKG_CLI_RENDER_H
 
-#include "scene/frames.h"
-#include "scene/session.h"
+#include "session/frames.h"
+#include "session/session.h"
 
 /* What a verb fills in before cli_render. */
 typedef struct {

@@ -18,8 +18,8 @@ typedef struct {
 } cli_session;
 
 /* Opens the device and reads the scene, the first operand, with --set, --precision, --tolerance and
- * --strategy applied. The caller closes the session, also after a failure. Returns an exit status and prints the
- * error. */
+ * --strategy applied. The caller closes the session, also after a failure. Returns an exit status and prints
+ * the error. */
 int cli_open_session(const cli_arguments *arguments, cli_session *session);
 void cli_close_session(cli_session *session);
 

@@ -1,4 +1,4 @@
-#include "scene/frames.h"
+#include "session/frames.h"
 
 #include "common/json.h"
 #include "common/progress.h"
