@@ -47,7 +47,7 @@ int main(int count, char **words) {
     paper_study study;
     read_settings(count, words, &study, &device, &csv);
     study.context = bench_context(device);
-    /* A frame of open meshes warns of each. */
+    /* A frame with leaky meshes would warn of each of them. */
     bench_try(skg_context_log_set(study.context, NULL, NULL), "context");
     study.csv = csv ? bench_open(csv) : NULL;
     if (study.csv) fprintf(study.csv, "part,what,triangles,series,value,unit\n");
