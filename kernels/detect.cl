@@ -1,14 +1,14 @@
 /* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
  * shown. In place, in the type of skg_real. */
 /* electronic: standard deviation in keV; step in keV; factor of the channel times `all`: from keV or photons per pixel to
- * what is shown. field: [channels][rows][columns] that values are divided by. One work-item SKG_WIDE pixels of a row of a
+ * what is shown. flat_field: [channels][rows][columns] that values are divided by. One work-item SKG_WIDE pixels of a row of a
  * channel. */
 __kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
                          int rows, skg_noise_args key, skg_real electronic, skg_real step,
                          __constant const skg_real *factor, skg_real all
-#if SKG_OVER_FIELD
+#if SKG_FLAT_FIELD
                          ,
-                         __global const skg_real *field
+                         __global const skg_real *flat_field
 #endif
 ) {
     const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
@@ -32,11 +32,11 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     value = rint(value / step) * step;
 #endif
     value *= factor[channel] * all;
-#if SKG_OVER_FIELD
-    skg_real open[SKG_WIDE];
-    field += ((long)channel * rows + row) * columns + column;
-    for (int k = 0; k < SKG_WIDE; k++) open[k] = field[min(k, pixels - 1)];
-    value /= SKG_LOAD_V(0, open);
+#if SKG_FLAT_FIELD
+    skg_real flat[SKG_WIDE];
+    flat_field += ((long)channel * rows + row) * columns + column;
+    for (int k = 0; k < SKG_WIDE; k++) flat[k] = flat_field[min(k, pixels - 1)];
+    value /= SKG_LOAD_V(0, flat);
 #endif
     if (pixels >= SKG_WIDE) {
         SKG_STORE_V(value, 0, image);
