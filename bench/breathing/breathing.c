@@ -1,6 +1,6 @@
 /* Breathing: the exact solution of Chain Mail against the published queue; steps of a whole body; poses and
  * images. */
-#include "body/body.h"
+#include "body/types.h"
 #include "breathing/queue.h"
 #include "common/bench.h"
 #include "common/thorax.h"
