@@ -4,8 +4,8 @@
  * what is shown. flat_field: [channels][rows][columns] that values are divided by. One work-item SKG_WIDE pixels of a row of a
  * channel. */
 __kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
-                         int rows, skg_noise_args key, skg_real electronic, skg_real step,
-                         __constant const skg_real *factor, skg_real all
+                         int rows, skg_noise_args key, skg_real electronic, skg_real spacing,
+                         __constant const skg_real *factor, skg_real scale
 #if SKG_FLAT_FIELD
                          ,
                          __global const skg_real *flat_field
@@ -29,9 +29,9 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     value = fma((skg_realv)(electronic), SKG_TO_REAL_V(skg_normal_v(draw[0])), value);
 #endif
 #if SKG_QUANTISED
-    value = rint(value / step) * step;
+    value = rint(value / spacing) * spacing;
 #endif
-    value *= factor[channel] * all;
+    value *= factor[channel] * scale;
 #if SKG_FLAT_FIELD
     skg_real flat[SKG_WIDE];
     flat_field += ((long)channel * rows + row) * columns + column;

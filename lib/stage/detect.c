@@ -80,11 +80,11 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
     const int is_double = image->output_double != 0;
     const cl_int size[2] = {(cl_int)columns, (cl_int)rows};
     detector_type *type = NULL;
-    skg_real_argument electronic, step, all;
+    skg_real_argument electronic, spacing, scale;
     SKG_TRY(get_type(detector, is_double, &type));
     skg_real_argument_set(&electronic, is_double, detection->electronic);
-    skg_real_argument_set(&step, is_double, detection->step);
-    skg_real_argument_set(&all, is_double, factor);
+    skg_real_argument_set(&spacing, is_double, detection->step);
+    skg_real_argument_set(&scale, is_double, factor);
     const skg_argument arguments[SKG_DETECT_ARGUMENTS] = {
         SKG_ARGUMENT(DETECT, image, image->memory),
         SKG_ARGUMENT(DETECT, offset, image->offset),
@@ -94,9 +94,9 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
         SKG_ARGUMENT(DETECT, rows, size[1]),
         SKG_ARGUMENT(DETECT, key, *key),
         {SKG_DETECT_electronic, electronic.size, electronic.value},
-        {SKG_DETECT_step, step.size, step.value},
+        {SKG_DETECT_spacing, spacing.size, spacing.value},
         SKG_ARGUMENT(DETECT, factor, type->factor.memory),
-        {SKG_DETECT_all, all.size, all.value},
+        {SKG_DETECT_scale, scale.size, scale.value},
         SKG_ARGUMENT(DETECT, flat_field, flat_field),
     };
     /* The kernel has its last argument only if values are divided by a flat field. */
