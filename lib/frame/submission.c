@@ -5,6 +5,14 @@
 #include <limits.h>
 #include <string.h>
 
+void skg_frame_init(skg_frame *frame) {
+    if (frame) *frame = (skg_frame){.size = (int32_t)sizeof *frame};
+}
+
+void skg_output_init(skg_output *output) {
+    if (output) *output = (skg_output){.size = (int32_t)sizeof *output};
+}
+
 int64_t skg_submission_element(const skg_submission *submission) {
     return submission->output.type == SKG_TYPE_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
 }
