@@ -26,7 +26,8 @@ static skg_scene *make_scene(int64_t parents[PARENTS]) {
         snprintf(label, sizeof label, "parent %d", p);
         parents[p] = run_part(scene, label, outer, 0.2, NULL, -1);
         for (int c = 0; c < p; c++) {
-            const double pose[16] = {1, 0, 0, 2.0 * c - 20, 0, 1, 0, 1.5 * c - 15, 0, 0, 1, c - 10.0, 0, 0, 0, 1};
+            const double pose[16] = {1, 0, 0, 2.0 * c - 20, 0, 1, 0, 1.5 * c - 15,
+                                     0, 0, 1, c - 10.0,     0, 0, 0, 1};
             snprintf(label, sizeof label, "child %d of %d", c, p);
             run_part(scene, label, inner, 0.5, pose, parents[p]);
         }

@@ -47,7 +47,8 @@ static const struct {
     {{"counts.cl"}, "", 0},
     {{"leaky.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"},
-     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1", 0},
+     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1",
+     0},
     {{"blur.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1", 0},
 };
@@ -79,7 +80,8 @@ static void compare(cl_kernel kernel, int found[KERNELS]) {
 START_TEST(arguments_have_the_names_of_their_kernels) {
     int found[KERNELS] = {0};
     for (size_t p = 0; p < sizeof programs / sizeof *programs; p++) {
-        const skg_kernel_options options = {.bits = 32, .source_plane = 1, .listed = 1, .half = programs[p].half};
+        const skg_kernel_options options = {
+            .bits = 32, .source_plane = 1, .listed = 1, .half = programs[p].half};
         char more[200];
         int32_t files = 0;
         cl_uint count = 0;
@@ -102,7 +104,8 @@ END_TEST
 /* The kernels of leaky.cl begin alike, so that one function sets their first arguments. */
 START_TEST(kernels_of_leaky_parts_begin_alike) {
     static const char *const batch[] = {SKG_ARGUMENTS_LEAKY_BATCH(NAME)};
-    static const char *const kernels[] = {"skg_leaky_add", "skg_leaky_gaps", "skg_leaky_repair", "skg_leaky_put"};
+    static const char *const kernels[] = {"skg_leaky_add", "skg_leaky_gaps", "skg_leaky_repair",
+                                          "skg_leaky_put"};
     for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
         for (int a = 0; a < SKG_LEAKY_BATCH_ARGUMENTS; a++)
             ck_assert_str_eq(list_of(kernels[k])->names[a], batch[a]);
