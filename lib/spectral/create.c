@@ -8,20 +8,21 @@
 #include <math.h>
 #include <string.h>
 
-/* Attenuation over the nodes that differs by less than this is proportional: rounding of tables and sums. */
+/* Attenuations that differ from proportional ones by less than this share are proportional: tables and sums are
+ * rounded. */
 static const double PROPORTIONAL = 1e-13;
 
-/* What is known while a model is made. */
+/* The state of making a model. */
 typedef struct {
     const skg_scene *scene;
     const skg_spectrum *spectrum;
     const skg_plan_options *options;
-    int64_t bodies; /* parts, then the world */
-    int64_t *bins;  /* [nodes] of the spectrum that have photons */
+    int64_t bodies; /* the parts, then the world */
+    int64_t *bins;  /* [nodes] bins of the spectrum that have photons */
     double *mu;     /* [bodies][nodes] 1/mm */
-    double *bases;  /* [planes][nodes] 1/mm: what a mm of a plane attenuates */
-    int64_t *plane; /* [bodies] -1: attenuates nothing */
-    double *factor; /* [bodies] of its material, in its plane */
+    double *bases;  /* [planes][nodes] 1/mm, the attenuation of a mm of a plane */
+    int64_t *plane; /* [bodies] -1: the body attenuates nothing */
+    double *factor; /* [bodies] by which a mm of the body adds to its plane */
 } making;
 
 static skg_status choose_nodes(making *m, skg_model *model) {
@@ -38,8 +39,8 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
-static const skg_material *material_of(const making *m, int64_t matter) {
-    return matter < m->scene->count ? m->scene->parts[matter].material : m->options->world;
+static const skg_material *material_of(const making *m, int64_t body) {
+    return body < m->scene->count ? m->scene->parts[body].material : m->options->world;
 }
 
 static skg_status look_up(making *m, const skg_model *model) {
@@ -60,12 +61,13 @@ static skg_status look_up(making *m, const skg_model *model) {
     return SKG_OK;
 }
 
-/* Half precision sums distances as they are: a plane a material, of which parts add 1 or -1 times theirs. */
+/* Half precision sums distances without weights: each material has a plane, to which parts add 1 or -1 times
+ * theirs. */
 static int is_unweighted(const making *m) {
     return m->options->precision == SKG_PRECISION_HALF;
 }
 
-/* The factor by which mu is a basis, or 0 where it is not proportional to it. */
+/* The factor between mu and a basis; 0 if they are not proportional. */
 static double factor_of(const making *m, const double *mu, const double *basis, int32_t nodes) {
     const double factor = mu[0] / basis[0];
     if (is_unweighted(m) && memcmp(mu, basis, (size_t)nodes * sizeof *mu) != 0) return 0;
@@ -74,7 +76,7 @@ static double factor_of(const making *m, const double *mu, const double *basis, 
     return factor;
 }
 
-/* A new basis: with one energy 1/mm, so that plane and exponent are the same; else the material itself. */
+/* A new basis is the attenuation of the material. With one energy it is 1/mm, so that the plane is the exponent. */
 static void start_basis(const making *m, const double *mu, int32_t nodes, double *basis) {
     memcpy(basis, mu, (size_t)nodes * sizeof *basis);
     if (nodes == 1 && !is_unweighted(m)) basis[0] = 1;
@@ -82,21 +84,21 @@ static void start_basis(const making *m, const double *mu, int32_t nodes, double
 
 static skg_status choose_planes(making *m, skg_model *model) {
     const int32_t nodes = model->nodes;
-    int64_t room = 0;
+    int64_t capacity = 0;
     SKG_TRY(skg_alloc(m->bodies, sizeof *m->plane, "planes of the parts", &m->plane));
     SKG_TRY(skg_alloc(m->bodies, sizeof *m->factor, "planes of the parts", &m->factor));
     for (int64_t p = 0; p < m->bodies; p++) {
         const double *mu = m->mu + p * nodes;
         m->plane[p] = -1;
-        if (!(mu[0] > 0)) continue; /* no attenuation at one energy: none at any */
+        if (!(mu[0] > 0)) continue; /* no attenuation at one energy means none at any */
         for (int32_t k = 0; k < model->planes && m->plane[p] < 0; k++) {
             m->factor[p] = factor_of(m, mu, m->bases + (int64_t)k * nodes, nodes);
             if (m->factor[p] > 0) m->plane[p] = k;
         }
         if (m->plane[p] >= 0) continue;
-        if (model->planes == room) {
-            room = 2 * room + 8;
-            SKG_TRY(skg_realloc(room * nodes, sizeof *m->bases, "planes", &m->bases));
+        if (model->planes == capacity) {
+            capacity = 2 * capacity + 8;
+            SKG_TRY(skg_realloc(capacity * nodes, sizeof *m->bases, "planes", &m->bases));
         }
         start_basis(m, mu, nodes, m->bases + (int64_t)model->planes * nodes);
         m->factor[p] = mu[0] / m->bases[(int64_t)model->planes * nodes];
@@ -128,13 +130,13 @@ static skg_status list_contributions(const making *m, skg_model *model) {
         if (m->plane[parent] >= 0)
             add_contribution(model, first, &count, m->plane[parent], -m->factor[parent]);
         if (count > first && model->contributions[first].weight == 0)
-            count = first; /* as its parent: not seen */
+            count = first; /* the material of its parent: it is not seen */
     }
     model->first_contribution[parts] = count;
     return SKG_OK;
 }
 
-/* What a photon of an energy counts for: recorded energy, or 1 where photons are counted. */
+/* What a photon of an energy adds to the image: the recorded energy, or 1 if photons are counted. */
 static skg_status worth_of(const making *m, double energy, double *worth) {
     const int counts = m->options->quantity == SKG_QUANTITY_PHOTONS;
     *worth = counts ? 1 : energy;
@@ -142,9 +144,9 @@ static skg_status worth_of(const making *m, double energy, double *worth) {
     return skg_response_get(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
 }
 
-/* Variance of what a photon that arrives adds (contracts 4.6): it is recorded with the probability
- * `efficiency`, then adds worth / efficiency on average, and the scintillator's pulse heights widen that by
- * the Swank factor. */
+/* The variance that a photon which arrives adds (docs/physics.md, Noise). It is recorded with the probability
+ * `efficiency` and then adds worth / efficiency on average; the distribution of the scintillator's pulse heights
+ * divides by the Swank factor. */
 static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
     double efficiency = 1;
     if (m->options->response) SKG_TRY(skg_response_get(m->options->response, energy, 1, NULL, &efficiency));
@@ -199,14 +201,14 @@ static skg_status weigh(const making *m, skg_model *model) {
         if (!(model->flat_field[c] > 0))
             return skg_fail(
                 SKG_ERR_BEAM,
-                "channel %" PRId32 " records nothing of the open beam, so there is no ratio to it", c);
+                "channel %" PRId32 " records nothing of the flat field, so there is no ratio to it", c);
         for (int32_t n = 0; n < model->nodes; n++) model->weights[n * channels + c] /= model->flat_field[c];
     }
     return SKG_OK;
 }
 
 static skg_status list_coefficients(const making *m, skg_model *model) {
-    const int32_t planes = model->planes > 0 ? model->planes : 1; /* an empty one */
+    const int32_t planes = model->planes > 0 ? model->planes : 1; /* an empty plane if nothing attenuates */
     SKG_TRY(skg_alloc((int64_t)model->nodes * planes, sizeof *model->coefficients, "nodes",
                       &model->coefficients));
     for (int32_t n = 0; n < model->nodes; n++)
