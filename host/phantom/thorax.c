@@ -5,12 +5,14 @@
 #include <math.h>
 #include <string.h>
 
-void skg_thorax_options_init(skg_thorax_options *options) {
-    *options = (skg_thorax_options){.size = (int32_t)sizeof *options, .triangles = 42000};
+void skg_thorax_options_init_sized(void *options, int32_t size) {
+    const skg_thorax_options defaults = {.triangles = 42000};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
-void skg_thorax_part_init(skg_thorax_part *part) {
-    *part = (skg_thorax_part){.size = (int32_t)sizeof *part, .inside = -1};
+void skg_thorax_part_init_sized(void *part, int32_t size) {
+    const skg_thorax_part defaults = {.inside = -1};
+    skg_struct_init(part, size, &defaults, sizeof defaults);
 }
 
 /* What parts are of, by how their labels begin: a name of the material tables, and a density in g/cm3 where

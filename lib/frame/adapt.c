@@ -50,13 +50,13 @@ static skg_status double_samples(skg_plan *plan, float *images[2], float *change
     int small = 0;
     int64_t samples = 4;
     SKG_TRY(take(plan, samples, images[0]));
-    for (int turn = 1; small < 2 && 2 * samples <= spot->most; turn++) {
+    for (int turn = 1; small < 2 && 2 * samples <= spot->samples_max; turn++) {
         samples *= 2;
         SKG_TRY(take(plan, samples, images[turn % 2]));
         plan->report.sample_error = most_change(plan, images[1 - turn % 2], images[turn % 2], change);
         small = plan->report.sample_error < spot->tolerance ? small + 1 : 0;
     }
-    plan->samples.spot_count = samples < spot->most ? samples : spot->most;
+    plan->samples.spot_count = samples < spot->samples_max ? samples : spot->samples_max;
     if (small < 2)
         skg_log(
             plan->context, SKG_LOG_WARNING,

@@ -53,6 +53,16 @@ void skg_job_release(skg_job **job) {
     skg_free(job);
 }
 
+skg_status skg_job_test(const skg_job *job, int32_t *done) {
+    if (!job || !done) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_test: no job or no result");
+    SKG_TRY(skg_context_enter(job->plan->context));
+    cl_int stage = CL_COMPLETE;
+    SKG_CL_TRY(clGetEventInfo(job->last, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage, NULL));
+    /* A failed command has a negative status: it is over, and skg_job_wait reports it. */
+    *done = stage <= CL_COMPLETE;
+    return SKG_OK;
+}
+
 skg_status skg_job_wait(skg_job **job) {
     if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
     SKG_TRY(skg_context_enter((*job)->plan->context));

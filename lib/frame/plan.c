@@ -6,14 +6,13 @@
 #include <inttypes.h>
 #include <string.h>
 
-void skg_plan_options_init(skg_plan_options *options) {
-    if (options)
-        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
-                                      .precision = SKG_PRECISION_SINGLE,
-                                      .overlaps = 1,
-                                      .supersampling = 1,
-                                      .swank = 1,
-                                      .repair = SKG_REPAIR_NEIGHBOURS};
+void skg_plan_options_init_sized(void *options, int32_t size) {
+    const skg_plan_options defaults = {.precision = SKG_PRECISION_SINGLE,
+                                       .overlaps = 1,
+                                       .supersampling = 1,
+                                       .swank = 1,
+                                       .repair = SKG_REPAIR_NEIGHBOURS};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
 static skg_status check_options(const skg_context *context, const skg_plan_options *options) {
@@ -224,10 +223,9 @@ static skg_status keep_views(skg_plan *plan) {
                         options->view_count, MOST_VIEWS);
     SKG_TRY(skg_alloc(options->view_count, sizeof *plan->views, "views", &plan->views));
     for (int64_t v = 0; v < options->view_count; v++) {
-        const void *one = (const char *)given + v * given->size;
         skg_view_init(&plan->views[v]);
-        SKG_TRY(skg_view_check(one));
-        SKG_TRY(skg_struct_read(one, "skg_view", &plan->views[v], sizeof *plan->views));
+        SKG_TRY(skg_struct_read_at(given, v, "skg_view", &plan->views[v], sizeof *plan->views));
+        SKG_TRY(skg_view_check(&plan->views[v]));
     }
     options->views = plan->views;
     return SKG_OK;

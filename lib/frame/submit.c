@@ -20,12 +20,14 @@ typedef struct {
     int64_t first; /* element of the buffer */
 } submission;
 
-void skg_frame_init(skg_frame *frame) {
-    if (frame) *frame = (skg_frame){.size = (int32_t)sizeof *frame};
+void skg_frame_init_sized(void *frame, int32_t size) {
+    const skg_frame defaults = {0};
+    skg_struct_init(frame, size, &defaults, sizeof defaults);
 }
 
-void skg_output_init(skg_output *output) {
-    if (output) *output = (skg_output){.size = (int32_t)sizeof *output};
+void skg_output_init_sized(void *output, int32_t size) {
+    const skg_output defaults = {0};
+    skg_struct_init(output, size, &defaults, sizeof defaults);
 }
 
 static int64_t element_size(const skg_output *output) {
@@ -103,8 +105,7 @@ static skg_status read_frame(const submission *s, int64_t index, skg_frame *fram
     *noise = skg_noise_key(plan->options.noise_seed, index);
     memset(poses, 0, (size_t)plan->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
-    SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", frame,
-                            sizeof *frame));
+    SKG_TRY(skg_struct_read_at(s->frames, index, "skg_frame", frame, sizeof *frame));
     *noise = skg_noise_key((int64_t)((uint64_t)plan->options.noise_seed + (uint64_t)frame->noise_seed),
                            frame->index);
     if (frame->view) {

@@ -76,7 +76,7 @@ skg_status skg_png_write(const skg_picture *theirs, skg_output_file *file) {
     png_infop info = NULL;
     png_bytep bytes = NULL;
     if (picture.low == 0 && picture.high == 0)
-        SKG_TRY(skg_picture_range(theirs, &picture.low, &picture.high));
+        SKG_TRY(skg_picture_range_get(theirs, &picture.low, &picture.high));
     SKG_TRY(skg_alloc(2 * picture.columns, 1, "row of a PNG file", &bytes));
     png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, on_error, on_warning);
     info = png ? png_create_info_struct(png) : NULL;

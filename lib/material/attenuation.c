@@ -51,8 +51,9 @@ skg_status skg_material_attenuation_get(const skg_material *material, double ene
     return SKG_OK;
 }
 
-void skg_coefficients_init(skg_coefficients *coefficients) {
-    if (coefficients) *coefficients = (skg_coefficients){.size = (int32_t)sizeof *coefficients};
+void skg_coefficients_init_sized(void *coefficients, int32_t size) {
+    const skg_coefficients defaults = {0};
+    skg_struct_init(coefficients, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,

@@ -68,8 +68,8 @@ int32_t skg_find_element(const char *text) {
     return 0;
 }
 
-skg_status skg_element_symbol(int32_t z, const char **symbol) {
-    if (!symbol) return skg_fail(SKG_ERR_ARGUMENT, "skg_element_symbol: no place for the symbol");
+skg_status skg_element_symbol_get(int32_t z, const char **symbol) {
+    if (!symbol) return skg_fail(SKG_ERR_ARGUMENT, "skg_element_symbol_get: no place for the symbol");
     *symbol = NULL;
     if (z < 1 || z > SKG_LAST_ELEMENT)
         return skg_fail(SKG_ERR_MATERIAL, "atomic number %d: elements 1 (H) to %d (U) are known", (int)z,
@@ -78,8 +78,8 @@ skg_status skg_element_symbol(int32_t z, const char **symbol) {
     return SKG_OK;
 }
 
-skg_status skg_element_number(const char *text, int32_t *z) {
-    if (!text || !z) return skg_fail(SKG_ERR_ARGUMENT, "skg_element_number: no text or no result");
+skg_status skg_element_number_get(const char *text, int32_t *z) {
+    if (!text || !z) return skg_fail(SKG_ERR_ARGUMENT, "skg_element_number_get: no text or no result");
     *z = skg_find_element(text);
     if (*z) return SKG_OK;
     char *end = NULL;

@@ -38,8 +38,9 @@ static double open_beam(const skg_plan *plan, int64_t channel) {
     }
 }
 
-void skg_channel_init(skg_channel *channel) {
-    if (channel) *channel = (skg_channel){.size = (int32_t)sizeof *channel};
+void skg_channel_init_sized(void *channel, int32_t size) {
+    const skg_channel defaults = {0};
+    skg_struct_init(channel, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *channels) {

@@ -192,8 +192,9 @@ skg_status skg_report_effects(skg_plan *plan) {
     return report_places(plan);
 }
 
-void skg_effect_init(skg_effect *effect) {
-    if (effect) *effect = (skg_effect){.size = (int32_t)sizeof *effect};
+void skg_effect_init_sized(void *effect, int32_t size) {
+    const skg_effect defaults = {0};
+    skg_struct_init(effect, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count) {

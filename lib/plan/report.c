@@ -72,8 +72,9 @@ cleanup:
     return status;
 }
 
-void skg_overlap_init(skg_overlap *overlap) {
-    if (overlap) *overlap = (skg_overlap){.size = (int32_t)sizeof *overlap};
+void skg_overlap_init_sized(void *overlap, int32_t size) {
+    const skg_overlap defaults = {0};
+    skg_struct_init(overlap, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count) {
@@ -204,8 +205,9 @@ skg_status skg_report_job(skg_job *job) {
     return tell_outside(plan, job->negative[1]);
 }
 
-void skg_plan_report_init(skg_plan_report *report) {
-    if (report) *report = (skg_plan_report){.size = (int32_t)sizeof *report};
+void skg_plan_report_init_sized(void *report, int32_t size) {
+    const skg_plan_report defaults = {0};
+    skg_struct_init(report, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
@@ -223,6 +225,12 @@ skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 
+skg_status skg_plan_node_count(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node_count: no plan or no result");
+    *count = plan->model.nodes;
+    return SKG_OK;
+}
+
 skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
                              double *weights) {
     if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_node_get: no plan");
@@ -237,8 +245,9 @@ skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy
     return SKG_OK;
 }
 
-void skg_stage_init(skg_stage *stage) {
-    if (stage) *stage = (skg_stage){.size = (int32_t)sizeof *stage};
+void skg_stage_init_sized(void *stage, int32_t size) {
+    const skg_stage defaults = {0};
+    skg_struct_init(stage, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count) {

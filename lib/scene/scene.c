@@ -10,10 +10,10 @@
 #include <math.h>
 #include <string.h>
 
-void skg_part_init(skg_part *part) {
-    if (!part) return;
-    *part = (skg_part){.size = sizeof *part, .inside = -1};
-    skg_pose_identity(part->pose);
+void skg_part_init_sized(void *part, int32_t size) {
+    skg_part defaults = {.inside = -1};
+    skg_pose_identity(defaults.pose);
+    skg_struct_init(part, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
