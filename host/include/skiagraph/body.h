@@ -57,9 +57,11 @@ typedef struct {
     double tendon_mm[3];
     /** The tendon is where a x + b y + c z + d > 0; all 0, the default: the upper third of the diaphragm. */
     double tendon_plane[4];
-    /** Weights at which the meshes were made; there every vertex is where its file has it. 0 and 0, the
-     * default: end-expiration. */
-    double reference_thoracic, reference_diaphragmatic;
+    /** Weight of the ribs at which the meshes were made; 0, the default, is end-expiration. At both reference
+     * weights every vertex is where its file has it. */
+    double reference_thoracic;
+    /** Weight of the diaphragm at which the meshes were made; 0 by default. */
+    double reference_diaphragmatic;
     /** 0 (default): a pose depends on the weights at that phase only. 1: the paper's hysteresis. */
     double hysteresis;
     /** enum skg_rib_axes */
@@ -124,17 +126,25 @@ typedef struct {
     skg_mesh *mesh;
     /** Copied. */
     const char *label;
-    /** How far the organ's tissue gives, as a fraction of each link's rest offset, axis by axis: it may be
-     * squeezed to alpha_min (0 to 1), stretched to alpha_max (at least 1) and sheared by beta (at least 0).
-     * This is the bounding region of Li and Brodlie, Comput. Graph. Forum 22(4) (2003) 717-727. 1, 1, 0 is
-     * rigid; the paper's muscle is 0.7, 1.1, 0.1; a beta of 0 stiffens sheets that lie along an axis. All 0:
-     * by label. */
-    double alpha_min, alpha_max, beta;
+    /** How far the organ's tissue may be squeezed, as a fraction of each link's rest offset, axis by axis
+     * (the bounding region of Li and Brodlie, Comput. Graph. Forum 22(4) (2003) 717-727): 0 to 1. If
+     * alpha_min, alpha_max and beta are 0, the label decides; 1, 1, 0 is rigid; the paper's muscle is 0.7,
+     * 1.1, 0.1. */
+    double alpha_min;
+    /** How far it may be stretched, as such a fraction, at least 1. */
+    double alpha_max;
+    /** How far it may be sheared, as such a fraction, at least 0. 0 stiffens sheets that lie along an
+     * axis. */
+    double beta;
     /** Rotation of a rigid organ: it turns by the exponential of one vector times the thoracic weight. The
-     * vector is turn_rad, plus the paper's angles gamma_rad about the axis from back to front (raises the
-     * side) and lambda_rad about the axis from left to right (raises the front), both with the same sign on
-     * both sides of the body. Each at most pi. All 0, for ribs and sternum only: by label. */
-    double turn_rad[3], gamma_rad, lambda_rad;
+     * vector is turn_rad plus the rotations by gamma_rad and lambda_rad. Each at most pi. If all are 0, the
+     * label decides, which it can for ribs and sternum only. */
+    double turn_rad[3];
+    /** The paper's angle about the axis from back to front, which raises the side; with the same sign on both
+     * sides of the body. */
+    double gamma_rad;
+    /** The paper's angle about the axis from left to right, which raises the front. */
+    double lambda_rad;
     /** Fixed point of the rotation, mm. NaN, the default: the rib's head; for other organs the posterior end
      * of the longest principal axis of inertia. */
     double centre_mm[3];
@@ -194,8 +204,10 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Volume of the lungs, and its excess over the reference pose, ml. */
-    double lung_ml, tidal_ml;
+    /** Volume of the lungs, ml. */
+    double lung_ml;
+    /** By how much that exceeds the volume in the reference pose, ml. */
+    double tidal_ml;
     /** Density of the lungs over that of the reference pose, with constant mass: V0 / V. */
     double lung_density_ratio;
     /** Descent of the top of the left and of the right half of the diaphragm, mm. */

@@ -30,8 +30,10 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Begin and end, s; the end is not before the begin. */
-    double start_s, end_s;
+    /** From this time on, s. */
+    double start_s;
+    /** To this time, s, which is not before start_s. */
+    double end_s;
 } skg_breath_hold;
 
 /** Prepares a breath hold of `size` bytes (export.h). */

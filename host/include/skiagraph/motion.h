@@ -58,8 +58,14 @@ typedef struct {
     int32_t reserved;
     /** s; NaN after skg_motion_pose_at_phase. */
     double time_s;
-    /** The breath, as in skg_breath_state, with the weight of the events. */
-    double phase, amplitude, thoracic, diaphragmatic;
+    /** From end-inspiration, 0 to below 1. */
+    double phase;
+    /** Of the waveform at that phase, 0 to 1. */
+    double amplitude;
+    /** What moves the ribs: weight times lagged amplitude, with the weight of the events. */
+    double thoracic;
+    /** What moves the diaphragm: weight times amplitude, with the weight of the events. */
+    double diaphragmatic;
     /** Depth of the needle below the skin, mm; NaN: no needle. */
     double needle_mm;
     /** Density of the lungs over that of the meshes as in the file; 1 if it shall not change. */

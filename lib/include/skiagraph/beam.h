@@ -161,8 +161,14 @@ typedef struct {
     double energy_kev;
     /** Mean energy of a photon, keV. */
     double mean_kev;
-    /** First and second half-value layers, mm of aluminium and of copper. */
-    double hvl1_mm_al, hvl2_mm_al, hvl1_mm_cu, hvl2_mm_cu;
+    /** First half-value layer, mm of aluminium. */
+    double hvl1_mm_al;
+    /** Second half-value layer, mm of aluminium. */
+    double hvl2_mm_al;
+    /** First half-value layer, mm of copper. */
+    double hvl1_mm_cu;
+    /** Second half-value layer, mm of copper. */
+    double hvl2_mm_cu;
     /** First over second half-value layer in aluminium. */
     double homogeneity;
     /** Air kerma in uGy, if photons are per mm2. */

@@ -70,10 +70,14 @@ SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function lo
 typedef struct {
     /** Set by skg_device_info_init. */
     int32_t size;
-    /** Numbers for device=PLATFORM:DEVICE. */
-    int32_t platform, device;
-    /** 1 or 0. */
-    int32_t is_gpu, is_cpu;
+    /** Number of the platform for device=PLATFORM:DEVICE; -1: the caller's own device. */
+    int32_t platform;
+    /** Number of the device on its platform; -1: the caller's own device. */
+    int32_t device;
+    /** 1: a GPU. */
+    int32_t is_gpu;
+    /** 1: a CPU. */
+    int32_t is_cpu;
     /** Number of compute units. */
     int32_t compute_units;
     /** 1: has fp64, which SKG_PRECISION_DOUBLE and SKG_TYPE_FLOAT64 need. */
@@ -82,12 +86,20 @@ typedef struct {
     int32_t correct_division;
     /** Native vector width of float. */
     int32_t float_width;
-    /** Memory and the largest buffer, bytes, as the driver reports them now. */
-    int64_t memory, max_allocation;
+    /** Bytes, as the driver reports them now. */
+    int64_t memory;
+    /** Largest buffer in bytes, as the driver reports it now. */
+    int64_t max_allocation;
     /** Local memory of a work-group, bytes. */
     int64_t local_memory;
-    /** Names and versions as OpenCL gives them. */
-    char name[128], platform_name[128], version[128], driver[128];
+    /** Name of the device. */
+    char name[128];
+    /** Name of its platform. */
+    char platform_name[128];
+    /** Version of OpenCL that it has. */
+    char version[128];
+    /** Version of its driver. */
+    char driver[128];
 } skg_device_info;
 
 /** Prepares a skg_device_info of `size` bytes (export.h). */

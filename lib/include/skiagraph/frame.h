@@ -65,8 +65,12 @@ typedef struct {
     int32_t type;
     /** First element. The caller's memory; it must stay until the job was waited for. */
     void *data;
-    /** Elements from one row, channel, frame to the next; 0: dense. */
-    int64_t row_stride, channel_stride, frame_stride;
+    /** Elements from one row to the next; 0: dense. */
+    int64_t row_stride;
+    /** Elements from one channel to the next; 0: dense. */
+    int64_t channel_stride;
+    /** Elements from one frame to the next; 0: dense. */
+    int64_t frame_stride;
 } skg_output;
 
 /** Prepares an output of `size` bytes (export.h). */

@@ -23,8 +23,12 @@ typedef struct {
     int32_t size;
     /** enum skg_type, of data and of .mha and .tif files */
     int32_t type;
-    /** Numbers of columns, rows and channels. */
-    int64_t columns, rows, channels;
+    /** Number of columns. */
+    int64_t columns;
+    /** Number of rows. */
+    int64_t rows;
+    /** Number of channels; 1 by default. */
+    int64_t channels;
     /** [channel][row][column], dense */
     const void *data;
     /** Name of the quantity, for the file's header, such as "energy"; NULL: "". */
@@ -40,8 +44,10 @@ typedef struct {
     /** I0 in the unit of data, for display curves. Not used for transmission and attenuation; 0: data is
      * shown as it is (path lengths). */
     double flat_field;
-    /** Values that a .png shows as black and as white; both 0: the image's own least and greatest. */
-    double low, high;
+    /** Value that a .png shows as black. */
+    double low;
+    /** Value that a .png shows as white. Both 0: the image's own least and greatest value. */
+    double high;
     /** [channels] names instead of `name`; may be NULL. */
     const char *const *channel_names;
 } skg_picture;

@@ -132,8 +132,14 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Coherent scattering, incoherent scattering, photo absorption, pair and triplet production. */
-    double rayleigh, compton, photo, pair;
+    /** Coherent scattering. */
+    double rayleigh;
+    /** Incoherent scattering. */
+    double compton;
+    /** Photo absorption. */
+    double photo;
+    /** Production of pairs and triplets. */
+    double pair;
     /** Sum of the four: mu/rho with coherent scattering. */
     double total;
 } skg_coefficients;

@@ -149,8 +149,10 @@ typedef struct {
     int32_t flipped;
     /** 0 */
     int32_t reserved;
-    /** Numbers of vertices and triangles, as given. */
-    int64_t vertices, triangles;
+    /** Number of vertices, as given. */
+    int64_t vertices;
+    /** Number of triangles, as given. */
+    int64_t triangles;
     /** Number of vertices after welding. */
     int64_t welded_vertices;
     /** Number of directed edges without their opposite. */

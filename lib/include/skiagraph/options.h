@@ -58,8 +58,10 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Numbers of samples along a row and along a column. */
-    int64_t columns, rows;
+    /** Number of samples along a row. */
+    int64_t columns;
+    /** Number of samples along a column. */
+    int64_t rows;
     /** [columns] line spread function along a row */
     const double *along_row;
     /** [rows] line spread function along a column */

@@ -43,16 +43,28 @@ SKG_API skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg
 typedef struct {
     /** Set by skg_plan_report_init. */
     int32_t size;
-    /** As used: enum skg_precision, enum skg_strategy, enum skg_quantity. */
-    int32_t precision, strategy, quantity;
-    /** Numbers of parts, of their triangles, and of the vertices of their meshes, each mesh once. */
-    int64_t parts, triangles, vertices;
+    /** enum skg_precision */
+    int32_t precision;
+    /** enum skg_strategy, as chosen */
+    int32_t strategy;
+    /** enum skg_quantity */
+    int32_t quantity;
+    /** Number of parts. */
+    int64_t parts;
+    /** Number of their triangles. */
+    int64_t triangles;
+    /** Number of the vertices of their meshes, each mesh counted once. */
+    int64_t vertices;
     /** Number of leaky parts. Each has planes of its own. */
     int64_t leaky_parts;
-    /** Number of planes that exponents are made of, and the bits of an accumulator: 32 or 64. */
-    int64_t planes, plane_bits;
-    /** Shape of a tile in pixels; the whole detector for SKG_STRATEGY_COPIES and SKG_STRATEGY_ATOMICS. */
-    int64_t tile_columns, tile_rows;
+    /** Number of planes of which exponents are made. */
+    int64_t planes;
+    /** Bits of an accumulator: 32 or 64. */
+    int64_t plane_bits;
+    /** Columns of a tile in pixels; all of them for SKG_STRATEGY_COPIES and SKG_STRATEGY_ATOMICS. */
+    int64_t tile_columns;
+    /** Rows of a tile in pixels; likewise. */
+    int64_t tile_rows;
     /** Number of tiles. */
     int64_t tiles;
     /** Mean over the tiles of the last frame; 0 before the first. */
@@ -67,8 +79,10 @@ typedef struct {
     int64_t bad_pixels;
     /** Pixels of the last frame with a negative exponent. */
     int64_t negative_pixels;
-    /** Numbers of energies that are used, and of those at which the spectrum has photons. */
-    int64_t nodes, bins;
+    /** Number of energies that are used. */
+    int64_t nodes;
+    /** Number of energies at which the spectrum has photons. */
+    int64_t bins;
     /** Bound of the error that fewer nodes and planes make, in the sense of skg_plan_options.tolerance: twice
      * the largest that was found; 0 if every bin is used. */
     double bound;
@@ -118,8 +132,10 @@ typedef struct {
     int32_t size;
     /** 1: the scene calls for it; 0: absent, and it costs nothing. */
     int32_t on;
-    /** What it is called, and why it is on or off. */
-    const char *name, *reason;
+    /** What it is called. */
+    const char *name;
+    /** Why it is on or off. */
+    const char *reason;
     /** Estimate of what it adds to a frame, in frames of the same scene without any effect; below 0: what it
      * saves. From counts of operations, so rough. 0 also if its cost is not in the frame. */
     double cost;
@@ -147,8 +163,10 @@ typedef struct {
     int32_t size;
     /** 1: the part leaves its parent `other`; 0: they overlap. */
     int32_t protrudes;
-    /** Numbers in the scene. */
-    int64_t part, other;
+    /** Number in the scene. */
+    int64_t part;
+    /** Number in the scene. */
+    int64_t other;
     /** mm3 */
     double volume;
     /** Longest chord along z, mm. */

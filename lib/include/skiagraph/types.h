@@ -73,8 +73,10 @@ typedef struct {
     int32_t size;
     /** enum skg_projection */
     int32_t projection;
-    /** Number of columns and rows, 1 to 32768 each. */
-    int64_t columns, rows;
+    /** Number of columns, 1 to 32768. */
+    int64_t columns;
+    /** Number of rows, 1 to 32768. */
+    int64_t rows;
     /** Position in mm; with SKG_PROJECTION_PARALLEL_FROM_INFINITY a direction of any length. */
     double source[3];
     /** Centre of the detector, mm. */
