@@ -86,6 +86,8 @@ typedef struct {
     int32_t correct_division;
     /** Native vector width of float. */
     int32_t float_width;
+    /** 0 */
+    int32_t reserved;
     /** Bytes, as the driver reports them now. */
     int64_t memory;
     /** Largest buffer in bytes, as the driver reports it now. */
