@@ -39,12 +39,13 @@ skg_status skg_breath_pattern_get(const char *name, skg_breath *breath) {
     enum { COUNT = sizeof names / sizeof *names };
     for (int i = 0; i < COUNT; i++) {
         if (!skg_same_name(name ? name : "", names[i])) continue;
-        skg_breath_init(breath);
-        breath->waveform = SKG_WAVEFORM_ASYMMETRIC;
-        breath->period_s = value[i].period_s;
-        breath->thoracic = value[i].thoracic;
-        breath->diaphragmatic = value[i].diaphragmatic;
-        return SKG_OK;
+        skg_breath ours;
+        skg_breath_init(&ours);
+        ours.waveform = SKG_WAVEFORM_ASYMMETRIC;
+        ours.period_s = value[i].period_s;
+        ours.thoracic = value[i].thoracic;
+        ours.diaphragmatic = value[i].diaphragmatic;
+        return skg_struct_write(&ours, sizeof ours, "skg_breath", breath);
     }
     const char *near = skg_nearest_name(name ? name : "", names, COUNT);
     return skg_fail(SKG_ERR_BREATHING, "no breathing pattern \"%s\"; the nearest is \"%s\"", name ? name : "",

@@ -136,6 +136,38 @@ START_TEST(elements_are_alike) {
 }
 END_TEST
 
+START_TEST(breaths_are_held) {
+    skg_breath_hold holds[2];
+    struct {
+        skg_breath whole;
+        unsigned char guard[GUARD];
+    } breath;
+    skg_breath_state state;
+    memset(&breath, PATTERN, sizeof breath);
+    skg_breath_init(&breath.whole);
+    for (int i = 0; i < 2; i++) {
+        skg_breath_hold_init(&holds[i]);
+        holds[i].start_s = 10 * i, holds[i].end_s = 10 * i + 6;
+    }
+    ck_skg(skg_breath_pattern_get("quiet", &breath.whole));
+    check_guard("skg_breath", breath.guard);
+    breath.whole.holds = holds;
+    skg_breath_state_init(&state);
+#ifdef SKG_OLDER /* hold_count is the field that an older program does not have: nothing is held */
+    ck_skg(skg_breath_state_at_time(&breath.whole, 21, &state));
+    ck_assert_double_eq_tol(state.phase, 0.25, 1e-12);
+#else
+    breath.whole.hold_count = 2; /* 12 s of 21 are held, 9 s are two breaths and a quarter */
+    ck_skg(skg_breath_state_at_time(&breath.whole, 21, &state));
+    ck_assert_double_eq_tol(state.phase, 0.25, 1e-12);
+    ck_skg(skg_breath_state_at_time(&breath.whole, 5, &state));
+    ck_assert_double_eq(state.phase, 0);
+    holds[1].size = 0;
+    ck_skg_fails(skg_breath_check(&breath.whole), SKG_ERR_ARGUMENT, "skg_breath_hold: element 1 has size 0");
+#endif
+}
+END_TEST
+
 #ifdef SKG_NEWER
 /* What this library does not know may be there, as long as it is 0. */
 START_TEST(unknown_fields_are_refused) {
@@ -175,6 +207,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, results_are_not_overrun);
     tcase_add_test(tests, frames_are_imaged);
     tcase_add_test(tests, elements_are_alike);
+    tcase_add_test(tests, breaths_are_held);
 #ifdef SKG_NEWER
     tcase_add_test(tests, unknown_fields_are_refused);
 #endif

@@ -89,6 +89,7 @@ static inline void skg_breath_init(skg_breath *breath) {
  *
  *     name     "quiet" (asymmetric 1 : 1.5, 4 s), "diaphragmatic", "thoracic", "shallow" (weights 0.3, 3 s),
  *              "deep" (weights 2.5, 6 s), "hyperventilation" (weights 2, 1.5 s)
+ *     breath   result: prepared with skg_breath_init
  *     errors   SKG_ERR_BREATHING with the nearest name */
 SKG_API skg_status skg_breath_pattern_get(const char *name, skg_breath *breath);
 
