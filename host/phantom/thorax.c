@@ -117,24 +117,24 @@ void skg_thorax_release(skg_thorax **thorax) {
     skg_free(thorax);
 }
 
-skg_status skg_thorax_part_count(const skg_thorax *thorax, int64_t *parts) {
-    if (!thorax || !parts) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
-    *parts = thorax->parts;
+skg_status skg_thorax_part_count(const skg_thorax *thorax, int64_t *count) {
+    if (!thorax || !count) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
+    *count = thorax->parts;
     return SKG_OK;
 }
 
-skg_status skg_thorax_part_get(const skg_thorax *thorax, int64_t number, skg_thorax_part *part) {
+skg_status skg_thorax_part_get(const skg_thorax *thorax, int64_t index, skg_thorax_part *part) {
     if (!thorax) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
-    if (number < 0 || number >= thorax->parts)
-        return skg_fail(SKG_ERR_ARGUMENT, "thorax: no part %" PRId64 "; 0 to %" PRId64, number,
+    if (index < 0 || index >= thorax->parts)
+        return skg_fail(SKG_ERR_ARGUMENT, "thorax: no part %" PRId64 "; 0 to %" PRId64, index,
                         thorax->parts - 1);
     skg_thorax_part ours;
     skg_thorax_part_init(&ours);
-    ours.inside = thorax->part[number].inside;
-    ours.mesh = thorax->part[number].mesh;
-    ours.label = thorax->part[number].label;
-    ours.material = thorax->part[number].material;
-    ours.hounsfield = thorax->part[number].hounsfield;
-    ours.density_g_cm3 = thorax->part[number].density;
+    ours.inside = thorax->part[index].inside;
+    ours.mesh = thorax->part[index].mesh;
+    ours.label = thorax->part[index].label;
+    ours.material = thorax->part[index].material;
+    ours.hounsfield = thorax->part[index].hounsfield;
+    ours.density_g_cm3 = thorax->part[index].density;
     return skg_struct_write(&ours, sizeof ours, "skg_thorax_part", part);
 }

@@ -43,9 +43,9 @@ void skg_channel_init_sized(void *channel, int32_t size) {
     skg_struct_init(channel, size, &defaults, sizeof defaults);
 }
 
-skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *channels) {
-    if (!plan || !channels) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel_count: no plan or no result");
-    *channels = plan->model.channels;
+skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *count) {
+    if (!plan || !count) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_channel_count: no plan or no result");
+    *count = plan->model.channels;
     return SKG_OK;
 }
 

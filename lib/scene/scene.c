@@ -184,10 +184,10 @@ skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
     return SKG_OK;
 }
 
-skg_status skg_scene_part_count(const skg_scene *scene, int64_t *parts) {
+skg_status skg_scene_part_count(const skg_scene *scene, int64_t *count) {
     SKG_NEEDS(scene);
-    SKG_NEEDS(parts);
-    *parts = scene->count;
+    SKG_NEEDS(count);
+    *count = scene->count;
     return SKG_OK;
 }
 
