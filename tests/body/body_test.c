@@ -1,6 +1,8 @@
 /* Bodies: ribs against the literature, the generated thorax over a breath. */
-#include "body/body.h"
+#include "body/follow.h"
 #include "body/inside.h"
+#include "body/ribs.h"
+#include "body/types.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

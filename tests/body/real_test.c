@@ -1,5 +1,6 @@
 /* Sixty-one organs of a real man breathe, where the data is present. */
-#include "body/body.h"
+#include "body/axes.h"
+#include "body/types.h"
 #include "suite.h"
 
 #include <dirent.h>

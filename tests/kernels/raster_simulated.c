@@ -11,7 +11,7 @@ static uint64_t hash_of(skg_context *context, int32_t strategy, int32_t shape_of
     bodies[1].pose[3] = 33.3;
     skg_view view = view_make(40, 24, 4);
     if (source) view.source[0] = 3, view.source[2] = 5;
-    const skg_raster_options options = {.kernels = {.bits = 32, .source_plane = source, .listed_writes = 1},
+    const skg_raster_options options = {.kernels = {.bits = 32, .source_plane = source, .listed = 1},
                                         .strategy = strategy,
                                         .shape = shape_of_tile,
                                         .tile = shape_of_tile ? 16 : 0,
