@@ -29,7 +29,9 @@ static skg_spectrum *tube(int32_t model, double kvp, double angle, const layer *
     int count = 0;
     for (; layers && layers[count].material; count++) {
         materials[count] = named(layers[count].material);
-        filters[count] = (skg_filter){materials[count], layers[count].mm};
+        skg_filter_init(&filters[count]);
+        filters[count].material = materials[count];
+        filters[count].thickness_mm = layers[count].mm;
     }
     skg_tube_init(&t);
     t.model = model;
@@ -236,7 +238,7 @@ END_TEST
 
 START_TEST(output_scales) {
     skg_tube t;
-    skg_filter filter = {NULL, 2.5};
+    skg_filter filter = {.size = (int32_t)sizeof filter, .thickness_mm = 2.5};
     skg_material *al = named("Al");
     skg_spectrum *s = NULL;
     skg_quality one, other;
@@ -273,7 +275,7 @@ END_TEST
 START_TEST(tubes_that_cannot_be) {
     skg_tube t;
     skg_spectrum *s = NULL;
-    skg_filter none = {NULL, 1};
+    skg_filter none = {.size = (int32_t)sizeof none, .thickness_mm = 1};
     skg_tube_init(&t);
     ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "tube voltage of 0 kV");
     t.kvp = 90, t.angle_deg = 0;

@@ -1,8 +1,8 @@
 /* Bodies: ribs against the literature, the generated thorax over a breath. */
 #include "body/follow.h"
+#include "body/inside.h"
 #include "body/ribs.h"
 #include "body/types.h"
-#include "body/inside.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -339,7 +339,7 @@ START_TEST(bad_bodies_are_refused) {
     organ.inside = -1;
     ck_skg(skg_body_add(body, &organ, NULL));
     ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "no organ that moves");
-    organ.label = "liver", organ.tissue.alpha_min = 2;
+    organ.label = "liver", organ.alpha_min = 2;
     ck_skg(skg_body_add(body, &organ, NULL));
     ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "alpha_min <= 1");
     skg_mesh_release(&organ.mesh);

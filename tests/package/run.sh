@@ -28,8 +28,8 @@ cmake/first_image
 echo "every public header compiles alone, in C and as it stands:"
 for header in "$stage"/usr/include/skiagraph/*.h; do
     # shellcheck disable=SC2046
-    echo "#include <skiagraph/$(basename "$header")>" | cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
-        $(pkg-config --cflags skiagraph) -xc -
+    printf '#include <skiagraph/%s>\nextern int one;\n' "$(basename "$header")" |
+        cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only $(pkg-config --cflags skiagraph) -xc -
 done
 
 echo "only skg_ names are exported:"
@@ -38,7 +38,7 @@ if nm -D --defined-only "$lib/libskiagraph.so" | grep -v ' [A-Z] skg_'; then exi
 if command -v gfortran >/dev/null 2>&1; then
     echo "Fortran:"
     # shellcheck disable=SC2046
-    gfortran -std=f2003 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
+    gfortran -std=f2008 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
     ./first_image_f
 else
     echo "Fortran: skipped, no gfortran"

@@ -20,7 +20,8 @@ static void ck_same(const skg_mix *mix) {
         ck_assert_int_le(mix->first_contribution[p + 1] - mix->first_contribution[p], 1);
         for (int64_t w = mix->first_contribution[p]; w < mix->first_contribution[p + 1]; w++)
             for (int k = 0; k < PLANES; k++)
-                mixed[k] += mix->contributions[w].weight * mix->lists[mix->contributions[w].plane * PLANES + k];
+                mixed[k] +=
+                    mix->contributions[w].weight * mix->lists[mix->contributions[w].plane * PLANES + k];
         ck_assert(memcmp(given, mixed, sizeof given) == 0); /* halves and doubles: exact */
     }
 }
@@ -32,7 +33,8 @@ START_TEST(parts_that_add_alike_share) {
     ck_same(&mix);
     for (int p = 2; p < 4; p++) ck_assert_int_eq(mix.contributions[p].plane, mix.contributions[1].plane);
     ck_assert_double_eq(mix.contributions[3].weight, -2 * mix.contributions[1].weight);
-    ck_assert_int_eq(mix.first_contribution[PARTS - 1], mix.first_contribution[PARTS]); /* what adds nothing */
+    ck_assert_int_eq(mix.first_contribution[PARTS - 1],
+                     mix.first_contribution[PARTS]); /* what adds nothing */
     for (int k = 0; k < PLANES; k++)
         ck_assert_double_eq(mix.lists[3 * PLANES + k], 0); /* room for one more */
     skg_mix_release(&mix);
