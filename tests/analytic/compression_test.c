@@ -363,8 +363,10 @@ START_TEST(nodes_are_a_beam) {
     options.tolerance = 0;
     take(nodes, &options, &given);
     ck_assert_int_eq(given.report.nodes, fewer.report.nodes);
+    /* The tolerance asked for: the nodes' error is bounded by it. */
     for (int k = 0; k < SIDE * SIDE; k++) {
         ck_assert_double_le(error_of(&options, given.pixels[k], exact.pixels[k], exact.open[0]), 1e-3);
+        /* both bounds are that tolerance */
         ck_assert_double_le(error_of(&options, given.pixels[k], fewer.pixels[k], exact.open[0]), 1e-3);
     }
     skg_spectrum_release(&nodes);

@@ -94,6 +94,7 @@ START_TEST(the_liver_is_on_the_left) {
         row += i / SIDE * (double)lengths[i];
     }
     ck_assert_double_gt(sum, 0);
+    /* A twentieth of the side left of its middle. */
     ck_assert_double_lt(column / sum, 0.45 * SIDE);
     ck_assert_double_gt(row / sum, 0.5 * SIDE);
 }

@@ -229,6 +229,7 @@ START_TEST(nested_parts_and_quantities) {
             /* The net length is the surface's less the child's: floats of 60 mm. Exponents up to 2. */
             ck_assert_double_eq_tol((double)lengths[2][p], (double)lengths[0][p] + (double)lengths[1][p],
                                     60 * 0x1p-21);
+            /* 16 to 24 roundings of single precision, of the largest of what is summed. */
             ck_assert_double_eq_tol((double)image[p], expected, 3e-6 * fmax(expected, 1e-6 + open[quantity]));
         }
     }

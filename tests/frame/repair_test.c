@@ -144,7 +144,7 @@ static double worst(const picture *a, const picture *b) {
 
 static int64_t count_different(const picture *a, const picture *b) {
     int64_t count = 0;
-    for (int r = 0; r < SIDE; r++)
+    for (int r = 0; r < SIDE; r++) /* mm: more than rounding in double. */
         for (int c = 0; c < SIDE; c++) count += fabs(a->mm[r][c] - b->mm[r][c]) > 1e-6;
     return count;
 }
@@ -318,6 +318,7 @@ START_TEST(in_through_one_hole_and_out_through_another) {
         wish single = {.repair = SKG_REPAIR_EXACT};
         take(&closed, NULL, &single, &truth);
         take(&broken, NULL, &single, &exact);
+        /* mm, see above */
         ck_assert_double_le(worst(&exact, &truth), 1e-3);
     }
 }
@@ -331,6 +332,7 @@ static double neighbours_of(const picture *truth, const picture *left_out, int r
         for (int r = row - reach; r <= row + reach; r++)
             for (int c = column - reach; c <= column + reach; c++) {
                 if (r < 0 || c < 0 || r >= SIDE || c >= SIDE) continue;
+                /* mm: as in count_different. */
                 if (fabs(left_out->mm[r][c] - truth->mm[r][c]) > 1e-6) continue;
                 sum += left_out->mm[r][c];
                 valid++;
@@ -413,7 +415,7 @@ START_TEST(what_is_told) {
     for (int32_t repair = SKG_REPAIR_NONE; repair <= SKG_REPAIR_EXACT; repair++) {
         take(&broken, NULL, &(wish){.precision = SKG_PRECISION_DOUBLE, .repair = repair}, &left_out);
         if (repair == SKG_REPAIR_NONE)
-            for (int k = SIDE * SIDE; k-- > 0;)
+            for (int k = SIDE * SIDE; k-- > 0;) /* mm: as in count_different. */
                 if (fabs(left_out.mm[k / SIDE][k % SIDE] - image.mm[k / SIDE][k % SIDE]) > 1e-6)
                     row = k / SIDE, column = k % SIDE;
         snprintf(expected, sizeof expected, "part first is open: at %d pixels",

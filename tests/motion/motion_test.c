@@ -1,6 +1,7 @@
 /* A set-up that breathes: what its key Breathing says. */
 #include "motion/motion_files.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -99,9 +100,9 @@ START_TEST(organs_move_as_they_are_told) { /* a quarter turn about z through the
     ck_skg(skg_motion_at_phase(motion, 0));
     ck_skg(skg_mesh_positions_get(found.mesh, after, 0));
     for (int64_t i = 0; i < n; i++) { /* floats of some 100 mm */
-        ck_assert_double_eq_tol(after[3 * i], -before[3 * i + 1], 1e-4);
-        ck_assert_double_eq_tol(after[3 * i + 1], before[3 * i], 1e-4);
-        ck_assert_double_eq_tol(after[3 * i + 2], before[3 * i + 2], 1e-4);
+        ck_assert_double_eq_tol(after[3 * i], -before[3 * i + 1], 4 * 100 * (double)FLT_EPSILON);
+        ck_assert_double_eq_tol(after[3 * i + 1], before[3 * i], 4 * 100 * (double)FLT_EPSILON);
+        ck_assert_double_eq_tol(after[3 * i + 2], before[3 * i + 2], 4 * 100 * (double)FLT_EPSILON);
     }
     ck_skg(load("{\"Organs\": {\"flat\": {\"Kind\": \"Rigid\"}}}"));
     ck_skg_fails(skg_motion_create(NULL, setup, &motion), SKG_ERR_BREATHING, "flat: rigid");
