@@ -9,8 +9,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* --- convex bodies: half-spaces n . x <= d
- * ------------------------------------------------------------------------ */
+/* --- convex bodies: half-spaces n . x <= d --------------------------------------------------------------- */
 
 typedef struct {
     double normal[3], distance;
@@ -225,8 +224,7 @@ START_TEST(the_papers_cube) {
 }
 END_TEST
 
-/* --- round bodies
- * ------------------------------------------------------------------------------------------------- */
+/* --- round bodies ---------------------------------------------------------------------------------------- */
 
 /* Chord of a sphere by a ray at `off` from its centre. */
 static double chord(double radius, double off) {

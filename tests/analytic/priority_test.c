@@ -230,7 +230,7 @@ static int is_on(const skg_plan *plan, const char *name) {
 /* mm: lengths of some 100 mm, of depths of 1000 mm. */
 static const double DOUBLE_LENGTH = 1024 * DBL_EPSILON * 100;
 
-/* Double: sums are of units of 2^-50, and attenuations here below 30: 1e-9 leaves room for a thousand
+/* Double: sums are of units of 2^-50, and attenuations here below 30: 1e-9 leaves space for a thousand
  * roundings. Single: depths carry 2^-24 of some 0.3 of a ray of 950 mm, 2e-5 mm, some ten times at 0.5 / mm
  * of the strongest contrast: 1e-4; at silhouettes, where a length runs with the root of a coordinate of 2^-24
  * of 50 pixels, 1e-2 mm. */

@@ -90,7 +90,7 @@ START_TEST(grids_are_means_of_point_sources) {
         ck_assert_int_eq(report.samples, 1);
         for (int p = 0; p < SIDE * SIDE; p++) mean[p] += one[p] / total;
     }
-    /* A sample's place is rounded anew: rays near the edge of the shadow differ; elsewhere 64 roundings. */
+    /* Each sample's position is rounded by itself: rays near the edge of the shadow differ; elsewhere 64 roundings. */
     int differ = 0;
     for (int p = 0; p < SIDE * SIDE; p++) differ += fabs(image[p] - mean[p]) > 64 * 0x1p-24;
     ck_assert_int_le(differ, 0);

@@ -14,7 +14,7 @@
 static const double degree = 3.14159265358979323846 / 180;
 
 /* Takes the place of skg_log. */
-static char told[1000];
+static char warned[1000];
 static int times_told;
 void __wrap_skg_log(skg_context *context, int32_t level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -22,7 +22,7 @@ void __wrap_skg_log(skg_context *context, int32_t level, const char *format, ...
     (void)context, (void)level;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(told, sizeof told, format, arguments);
+    vsnprintf(warned, sizeof warned, format, arguments);
     va_end(arguments);
     times_told++;
 }
@@ -171,7 +171,7 @@ START_TEST(links_hold_and_give) {
 }
 END_TEST
 
-/* A rigid tissue between two blocks that part: the contradiction is all of their distance, and is told once.
+/* A rigid tissue between two blocks that part: the contradiction is all of their distance, and is reported once.
  */
 START_TEST(contradictions_are_named) {
     const double turn[3] = {0, 0.05, 0}, back[3] = {0, -0.05, 0}, centre[3] = {0, 0, -200};
@@ -201,8 +201,8 @@ START_TEST(contradictions_are_named) {
         ck_assert(strstr(m.conflict[1], "block") && strstr(m.conflict[2], "block"));
         ck_assert_str_ne(m.conflict[1], m.conflict[2]);
         ck_assert_int_eq(times_told, 1);
-        ck_assert(strstr(told, "ball: ") && strstr(told, "left block") && strstr(told, "right block") &&
-                  strstr(told, " mm"));
+        ck_assert(strstr(warned, "ball: ") && strstr(warned, "left block") && strstr(warned, "right block") &&
+                  strstr(warned, " mm"));
     }
     skg_body_release(&body);
 }
@@ -356,7 +356,7 @@ static void say_some(const char *label, skg_organ *organ) {
     }
 }
 
-START_TEST(an_organ_is_what_it_is_told_to_be) {
+START_TEST(an_organ_is_what_it_is_set_to_be) {
     skg_body_options options;
     skg_body_options_init(&options);
     options.relaxation = 3;
@@ -433,11 +433,11 @@ START_TEST(what_does_not_fit_is_refused) {
     ck_skg(skg_body_add(body, &organ, NULL));
     ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "follows another organ");
     skg_body_release(&body);
-    start(NULL); /* defined, and told: nothing is near */
+    start(NULL); /* defined, and reported: nothing is near */
     organ.link_count = 0;
     ck_skg(skg_body_add(body, &organ, NULL));
     ck_skg(skg_body_link(body));
-    ck_assert(times_told == 1 && strstr(told, "bag: deformable, but nothing"));
+    ck_assert(times_told == 1 && strstr(warned, "bag: deformable, but nothing"));
     ck_assert_int_eq(pose(1, 1).broken_links, 0);
     for (int k = 0; k < 24; k++) ck_assert(body->organ[0].moved[k] == 0);
     skg_body_release(&body);
@@ -452,7 +452,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, ties_are_posed_in_order);
     tcase_add_test(tests, the_papers_two_angles);
     tcase_add_test(tests, axes_by_inertia);
-    tcase_add_test(tests, an_organ_is_what_it_is_told_to_be);
+    tcase_add_test(tests, an_organ_is_what_it_is_set_to_be);
     tcase_add_test(tests, what_does_not_fit_is_refused);
 }
 

@@ -1,4 +1,4 @@
-/* What must not change the answer of Chain Mail, or must change it alike: P3, P7 to P13 of the design. */
+/* What must not change the answer of Chain Mail, or must change it alike: P3, P7 to P13 of docs/breathing.md#properties. */
 #include "chainmail/graph.h"
 #include "suite.h"
 
@@ -71,7 +71,7 @@ static skg_chain *sheet(int32_t side, uint64_t *s) {
     return chain;
 }
 
-START_TEST(same_bits_for_any_number_of_threads) { /* P1, P2, P3: so many nodes that threads are used */
+START_TEST(same_bits_for_any_number_of_threads) { /* P1, P2, P3: enough nodes for threads to be used */
     enum { SIDE = 110, NODES = SIDE * SIDE, DRIVERS = 40 };
     static double u[3 * NODES], v[3 * NODES];
     uint64_t s = 99;

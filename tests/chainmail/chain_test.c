@@ -1,4 +1,4 @@
-/* Chain Mail against closed forms and all shortest paths: P1, P2, P4 to P6, P14, P15 of the design. */
+/* Chain Mail against closed forms and all shortest paths: P1, P2, P4 to P6, P14, P15 of docs/breathing.md#properties. */
 #include "chainmail/graph.h"
 #include "suite.h"
 
@@ -125,7 +125,7 @@ START_TEST(loops_are_play_operators) { /* P14: loop width A + B, same states fro
 }
 END_TEST
 
-START_TEST(conflict_is_told_and_halved) { /* P15, drivers that never overrun each other's nodes */
+START_TEST(conflict_is_reported_and_halved) { /* P15, drivers that never overrun each other's nodes */
     double rest[3 * 11], u[3 * 11] = {0};
     skg_chain *chain = row(10, 1, (skg_tissue){0.9, 1.1, 0.1}, rest);
     ck_skg(skg_chain_drive(chain, 2, (int32_t[2]){0, 10}));
@@ -217,7 +217,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, chain_of_links);
     tcase_add_test(tests, reach_of_the_papers_tendon);
     tcase_add_test(tests, loops_are_play_operators);
-    tcase_add_test(tests, conflict_is_told_and_halved);
+    tcase_add_test(tests, conflict_is_reported_and_halved);
     tcase_add_loop_test(tests, relaxation_keeps_links_and_drivers, 0, 10);
     tcase_add_test(tests, hard_cases);
     tcase_add_test(tests, links_of_triangles);

@@ -306,7 +306,7 @@ START_TEST(advice_stops_at_a_tenth_of_the_noise) {
 }
 END_TEST
 
-START_TEST(what_cannot_be_done_is_told) {
+START_TEST(what_cannot_be_done_is_refused) {
     ck_run_fails(2, "its extension is neither .html nor .csv", "cost 'small scene.json' -o a.png");
     ck_run_fails(5, "nowhere/a.html: cannot be written", "cost 'small scene.json' -o nowhere/a.html");
     ck_run_fails(3, "none.json", "cost none.json --quick");
@@ -323,7 +323,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, thorax_and_breath_are_swept);
     tcase_add_test(tests, table_csv_and_page_are_written);
     tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);
-    tcase_add_test(tests, what_cannot_be_done_is_told);
+    tcase_add_test(tests, what_cannot_be_done_is_refused);
 }
 
 SKG_SUITE_MAIN("cost", add_tests)

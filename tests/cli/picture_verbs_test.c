@@ -212,7 +212,7 @@ START_TEST(plan_says_what_and_why) {
 END_TEST
 
 /* What the plan has to say reaches standard error, and the picture is made all the same. */
-START_TEST(warnings_are_told_unless_quiet) {
+START_TEST(warnings_are_printed_unless_quiet) {
     write_text("open.obj",
                "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 4 3\nf 2 3 4\n"); /* without y = 0 */
     static const char open_part[] =
@@ -232,7 +232,7 @@ START_TEST(warnings_are_told_unless_quiet) {
 }
 END_TEST
 
-/* A compressed scene says nothing of its bound at the view that it was planned for, and tells what leaves it.
+/* A compressed scene says nothing of its bound at the view that it was planned for, and reports what leaves it.
  */
 START_TEST(the_bound_holds_at_the_own_view) {
     ck_run(0, "thorax -o .");
@@ -265,7 +265,7 @@ START_TEST(the_bound_holds_at_the_own_view) {
 END_TEST
 
 /* Pixels of 1 mm x 2 mm, 500 mm from the tube: 65 uGy/mAs at 1 m are four times as much there. */
-START_TEST(the_open_beam_is_told) {
+START_TEST(the_open_beam_is_reported) {
     ck_run(0, "plan scene.json --json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
               "\"Filter\": [[\"Al\", 3]], \"mAs\": 2, \"Output\": [65, \"uGy/mAs\", 1, \"m\"]}'");
     json_t *object = said_json(), *open = member(object, "open_beam");
@@ -291,9 +291,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, strategies_give_the_same_bits);
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);
-    tcase_add_test(tests, warnings_are_told_unless_quiet);
+    tcase_add_test(tests, warnings_are_printed_unless_quiet);
     tcase_add_test(tests, the_bound_holds_at_the_own_view);
-    tcase_add_test(tests, the_open_beam_is_told);
+    tcase_add_test(tests, the_open_beam_is_reported);
     tcase_add_test(tests, times_are_printed);
 }
 

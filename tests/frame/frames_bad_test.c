@@ -151,7 +151,7 @@ START_TEST(a_vertex_that_is_not_finite) {
 }
 END_TEST
 
-/* A context is of no use to a child: it is told at once, and does not hang. */
+/* A child of fork cannot use the context: a call returns an error at once and does not hang. */
 START_TEST(a_fork) {
     const pid_t child = fork();
     if (child == 0) {
@@ -198,8 +198,7 @@ START_TEST(the_environment_stays) {
 }
 END_TEST
 
-/* --- what an image holds
- * ------------------------------------------------------------------------------------------ */
+/* --- what an image holds --------------------------------------------------------------------------------- */
 
 /* A ball in a box: lengths are net of children or the mesh's own, and the image is exp(-sum mu L) of the net
  * ones. */
@@ -237,7 +236,7 @@ START_TEST(nested_parts_and_quantities) {
 END_TEST
 
 /* A part that attenuates as its parent does is not seen; a child where its parent is not counts below zero,
- * and is told. */
+ * and is reported. */
 START_TEST(invisible_and_negative) {
     static float alone[PIXELS], with[PIXELS];
     skg_plan_report report;

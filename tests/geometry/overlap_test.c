@@ -45,7 +45,7 @@ START_TEST(overlapping_boxes_are_measured) {
 }
 END_TEST
 
-START_TEST(a_child_that_leaves_its_parent_is_told) {
+START_TEST(a_child_that_leaves_its_parent_is_reported) {
     box store[3];
     skg_solid solids[3];
     solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 100, -1);
@@ -88,7 +88,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, overlapping_boxes_are_measured);
-    tcase_add_test(tests, a_child_that_leaves_its_parent_is_told);
+    tcase_add_test(tests, a_child_that_leaves_its_parent_is_reported);
     tcase_add_test(tests, touching_boxes_do_not_overlap);
     tcase_add_test(tests, nothing_is_no_failure);
 }

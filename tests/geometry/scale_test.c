@@ -1,8 +1,10 @@
 #include "geometry/scale.h"
 #include "suite.h"
 
-#include <float.h>
 #include <math.h>
+
+/* The bound leaves 1e-12 of the sum of all parts for rounding, which here is at most four times the largest. */
+static const double MARGIN = 1e-11;
 
 /* 512 x 512 pixels; the parts' rectangles are given in pixels. */
 static skg_scale find(int64_t count, const skg_scale_part *parts, int32_t bits) {

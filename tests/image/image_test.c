@@ -157,7 +157,7 @@ START_TEST(skewed_steps_are_no_metaimage) {
 }
 END_TEST
 
-START_TEST(a_wrong_path_is_told) {
+START_TEST(a_wrong_path_is_refused) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     ck_skg_fails(skg_picture_write(&picture, at("a.jpg")), SKG_ERR_ARGUMENT,
                  "the extension .jpg is no image format; use .png, .tif or .mha");
@@ -211,7 +211,7 @@ START_TEST(a_full_disk_leaves_nothing) {
 }
 END_TEST
 
-START_TEST(an_unusable_picture_is_told) {
+START_TEST(an_unusable_picture_is_refused) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.rows = 4;
     ck_skg_fails(skg_picture_write(&picture, at("a.tif")), SKG_ERR_ARGUMENT, "its view has 7 x 5");
@@ -241,9 +241,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, channels_have_names_of_their_own);
     tcase_add_test(tests, metaimage_interleaves_channels);
     tcase_add_test(tests, skewed_steps_are_no_metaimage);
-    tcase_add_test(tests, a_wrong_path_is_told);
+    tcase_add_test(tests, a_wrong_path_is_refused);
     tcase_add_exit_test(tests, a_full_disk_leaves_nothing, 0);
-    tcase_add_test(tests, an_unusable_picture_is_told);
+    tcase_add_test(tests, an_unusable_picture_is_refused);
 }
 
 SKG_SUITE_MAIN("image", add_tests)

@@ -84,7 +84,7 @@ START_TEST(organs_are_read) {
 }
 END_TEST
 
-START_TEST(organs_move_as_they_are_told) { /* a quarter turn about z through the origin: x becomes y */
+START_TEST(organs_move_as_they_are_set) { /* a quarter turn about z through the origin: x becomes y */
     int64_t n, t;
     double before[600], after[600];
     skg_part found;
@@ -164,7 +164,7 @@ START_TEST(what_the_key_cannot_say) {
 }
 END_TEST
 
-START_TEST(parts_move_as_they_are_told) {
+START_TEST(parts_move_as_they_are_set) {
     int32_t moves = 0;
     skg_motion_state state;
     ck_skg(load(
@@ -202,10 +202,10 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, the_key_is_read);
     tcase_add_test(tests, organs_are_read);
-    tcase_add_test(tests, organs_move_as_they_are_told);
+    tcase_add_test(tests, organs_move_as_they_are_set);
     tcase_add_test(tests, its_options_can_be_asked_for);
     tcase_add_test(tests, what_the_key_cannot_say);
-    tcase_add_test(tests, parts_move_as_they_are_told);
+    tcase_add_test(tests, parts_move_as_they_are_set);
 }
 
 SKG_SUITE_MAIN("motion", add_tests)

@@ -116,7 +116,7 @@ START_TEST(signed_hits_always_cancel) {
 }
 END_TEST
 
-START_TEST(an_open_solid_is_told) {
+START_TEST(an_open_solid_is_reported) {
     const skg_view view = view_of(33, 1);
     solid cube = solid_box(10, 10, 10);
     cube.triangles = 11;
@@ -134,7 +134,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, cube_by_hand);
     tcase_add_test(tests, all_projections_and_the_pose);
     tcase_add_test(tests, signed_hits_always_cancel);
-    tcase_add_test(tests, an_open_solid_is_told);
+    tcase_add_test(tests, an_open_solid_is_reported);
 }
 
 SKG_SUITE_MAIN("caster", add_tests)

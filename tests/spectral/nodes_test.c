@@ -166,7 +166,7 @@ START_TEST(emptiness) {
 }
 END_TEST
 
-/* Below what double can tell apart there is nothing to find, and no bound is claimed. */
+/* Below what double can resolve there is nothing to find, and no bound is claimed. */
 START_TEST(nothing_beyond_rounding) {
     static subject s;
     skg_compression c;
