@@ -2,12 +2,11 @@
  * all is worked out here for each ray by hand; round bodies are held against their smooth forms within their
  * chords' error, and against their own triangles in long double. */
 #include "suite.h"
+#include "support/angles.h"
 #include "support/verdict.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* --- convex bodies: half-spaces n . x <= d --------------------------------------------------------------- */
 

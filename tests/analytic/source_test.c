@@ -1,6 +1,7 @@
 /* Extended sources and supersampled pixels: against explicit means over point sources, and the penumbra of an
  * edge. */
 #include "suite.h"
+#include "support/angles.h"
 
 #include <skiagraph/skiagraph.h>
 
@@ -127,7 +128,7 @@ START_TEST(shapes_have_their_penumbra) {
     take(&options, &view, image, &report);
     for (int c = 0; c < SIDE; c += 3) {
         const double x = (c - 0.5 * (SIDE - 1)) * 0.25, u = fmin(fmax(x / 2, -1), 1);
-        double share = 0.5 - (u * sqrt(1 - u * u) + asin(u)) / 3.141592653589793; /* of a disc beyond u */
+        double share = 0.5 - (u * sqrt(1 - u * u) + asin(u)) / pi; /* of a disc beyond u */
         if (_i == 1) share = 0.5 - 0.75 * u + 0.25 * u * u * u;
         if (_i == 2) share = 0.5 * erfc(x * 2.3548200450309493 / 4 / sqrt(2));
         /* 4,096 samples: some 4096^(-3/4) for lines that cut curved shapes */

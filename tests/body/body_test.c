@@ -1,7 +1,10 @@
 /* Bodies: ribs against the literature, the generated thorax over a breath. */
-#include "body/body.h"
+#include "body/follow.h"
 #include "body/inside.h"
+#include "body/ribs.h"
+#include "body/types.h"
 #include "suite.h"
+#include "support/angles.h"
 
 #include <skiagraph/skiagraph.h>
 
@@ -12,8 +15,6 @@
 #include <string.h>
 
 enum { MOST_PARTS = 100 };
-
-static const double degree = 3.14159265358979323846 / 180;
 
 static skg_thorax *thorax;
 static skg_thorax_part part[MOST_PARTS];

@@ -1,15 +1,15 @@
 /* Sixty-one organs of a real man breathe: needs the data. */
-#include "body/body.h"
+#include "body/axes.h"
+#include "body/types.h"
 #include "data.h"
 #include "suite.h"
+#include "support/angles.h"
 
 #include <dirent.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const double degree = 3.14159265358979323846 / 180;
 
 static int64_t warnings;
 

@@ -1,5 +1,6 @@
 /* Waveforms and phase. */
 #include "suite.h"
+#include "support/angles.h"
 
 #include <skiagraph/breathing.h>
 
@@ -66,7 +67,7 @@ START_TEST(closed_forms) {
     for (int i = 0; i < 8; i++) ck_assert_double_eq(at_phase(&list, i / 8.0).amplitude, samples[i]);
     sine.start_phase = 0.75; /* the paper's (1 + sin 2 pi t/T)/2 */
     for (int i = 0; i < 40; i++) {
-        double t = 0.17 * i, expected = 0.5 * (1 + sin(2 * 3.14159265358979323846 * t / 4));
+        double t = 0.17 * i, expected = 0.5 * (1 + sin(2 * pi * t / 4));
         ck_assert_double_eq_tol(at_time(&sine, t).amplitude, expected, 32 * DBL_EPSILON);
     }
 }

@@ -398,7 +398,7 @@ static char warned[2000];
 
 static void keep_warning(int32_t level, const char *message, void *user) {
     (void)user;
-    if (level == SKG_LOG_WARNING && strstr(message, "is open"))
+    if (level == SKG_LOG_WARNING && strstr(message, "is leaky"))
         snprintf(warned, sizeof warned, "%s", message);
 }
 
@@ -406,7 +406,7 @@ static void keep_warning(int32_t level, const char *message, void *user) {
 START_TEST(what_is_warned_of) {
     static soup broken;
     static picture image, left_out;
-    static const char *const done[] = {"left out", "mean of its nearest valid pixels", "cast anew"};
+    static const char *const done[] = {"left out", "mean of its nearest valid pixels", "traced again"};
     char expected[100];
     int row = -1, column = -1;
     fill_sphere(&broken);
@@ -419,7 +419,7 @@ START_TEST(what_is_warned_of) {
             for (int k = SIDE * SIDE; k-- > 0;) /* mm: as in count_different. */
                 if (fabs(left_out.mm[k / SIDE][k % SIDE] - image.mm[k / SIDE][k % SIDE]) > 1e-6)
                     row = k / SIDE, column = k % SIDE;
-        snprintf(expected, sizeof expected, "part first is open: at %d pixels",
+        snprintf(expected, sizeof expected, "part first is leaky: at %d pixels",
                  (int)left_out.report.bad_pixels);
         ck_assert_msg(strstr(warned, expected) != NULL, "%s", warned);
         snprintf(expected, sizeof expected, "first at (column, row) (%d, %d), (", column, row);
@@ -433,7 +433,7 @@ static int warnings;
 
 static void count_warnings(int32_t level, const char *message, void *user) {
     (void)user;
-    warnings += level == SKG_LOG_WARNING && strstr(message, "is open") != NULL;
+    warnings += level == SKG_LOG_WARNING && strstr(message, "is leaky") != NULL;
 }
 
 /* Once for a part; again where it is ten times as bad as it was, not where it is better. */

@@ -1,6 +1,7 @@
 /* What a frame of a hard case may cost: three times an ordinary scene of that size. */
 #include "hard/catalogue.h"
 #include "suite.h"
+#include "support/angles.h"
 #include "support/random.h"
 
 #include <math.h>
@@ -99,7 +100,7 @@ static size_of_scene measure(const skg_scene *scene, const skg_view *view) {
 /* Spheres about one centre, as many as give the wanted triangles and hits; 400 mm of detector. */
 static skg_scene *ordinary_scene(size_of_scene size, const skg_view *view) {
     const double largest = 120, pitch = 400.0 / (double)view->columns, magnified = 1.2;
-    const double shadow = 3.14159265 * largest * largest * magnified * magnified / (pitch * pitch);
+    const double shadow = pi * largest * largest * magnified * magnified / (pitch * pitch);
     const double layers = fmax(1, ceil(size.hits / (2 * shadow)));
     const double radius = fmax(1, largest * sqrt(size.hits / (2 * shadow * layers)));
     const int down = (int)fmax(3, sqrt((double)size.triangles / layers) / 2);

@@ -1,11 +1,10 @@
 /* Meshes that are made: cuboid, sphere, cylinder, step wedge. */
 #include "mesh/mesh.h"
 #include "mesh/mesh_health.h"
+#include "support/angles.h"
 
 #include <float.h>
 #include <math.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* One closed surface of the sphere's topology: V - E + F = 2 with E = 3 F / 2. */
 static void check_perfect(const skg_mesh *mesh, double volume, double area) {

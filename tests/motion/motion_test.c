@@ -1,5 +1,6 @@
 /* A set-up that breathes: what its key Breathing says. */
 #include "motion/motion_files.h"
+#include "support/angles.h"
 
 #include <float.h>
 #include <math.h>
@@ -57,7 +58,6 @@ START_TEST(organs_are_read) {
                 "[2, \"cm\"], \"RigidDistance\": [5, \"mm\"]}, {\"To\": \"rib\", \"Distance\": [7, "
                 "\"mm\"]}]}}}"));
     const skg_breathing_section *section = &setup->breathing;
-    const double degree = 3.14159265358979323846 / 180;
     ck_assert_int_eq(section->body.rib_axes, SKG_RIB_AXES_BONES);
     for (int64_t i = 0; i < 3; i++) {
         skg_organ organ;
@@ -151,7 +151,7 @@ START_TEST(what_the_key_cannot_say) {
         {"{\"Events\": [{\"Hold\": [2, 1]}]}", "hold 0"},
         {"{\"Events\": [{\"Hold\": [1, 2], \"Needle\": [[0, 0]]}]}", "is no event"},
         {"{\"Events\": [{\"Contrast\": \"inside\"}]}", "is no event"},
-        {"{\"Events\": [{\"Needle\": [[1, 0], [1, 2]]}]}", "times rise"},
+        {"{\"Events\": [{\"Needle\": [[1, 0], [1, 2]]}]}", "times have to rise"},
         {"{\"Events\": [{\"Contrast\": \"inside\", \"Share\": [[1, 2]]}]}", "0 to 1"},
         {"{\"Hysteresis\": 1, \"Events\": [{\"Weight\": [[1, 2]]}]}", "Hysteresis 0"},
     };

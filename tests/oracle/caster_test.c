@@ -1,5 +1,6 @@
 /* The judge is judged: the ray caster against closed forms, and its signed hits always cancel. */
 #include "suite.h"
+#include "support/angles.h"
 #include "support/caster.h"
 #include "support/random.h"
 
@@ -20,7 +21,7 @@ static skg_view view_of(int64_t n, double pitch) {
 }
 
 START_TEST(makers_are_outward_and_of_the_right_volume) {
-    const double box[3] = {50, 50, 50}, pi = acos(-1.0);
+    const double box[3] = {50, 50, 50};
     const skg_view view = view_of(64, 1);
     solid all[] = {solid_box(2, 3, 4),
                    solid_plates(5, 10, 10, 0.5, 1),

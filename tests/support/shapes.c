@@ -1,13 +1,12 @@
 #include "support/shapes.h"
 
+#include "support/angles.h"
 #include "support/random.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 static solid allocate(int64_t vertices, int64_t triangles) {
     return (solid){vertices, triangles, calloc((size_t)(3 * vertices), sizeof(double)),
