@@ -4,39 +4,40 @@
 
 #ifdef __OPENCL_C_VERSION__
 #define SKG_INT int
+#define SKG_UINT uint
 #else
 #include <stdint.h>
 #define SKG_INT int32_t
+#define SKG_UINT uint32_t
 #endif
 
 /* Items (triangles or projected vertices) per entry of a block table. */
 #define SKG_BLOCK 64
 
-/* Vertices whose path parameter is not above this take the path for triangles at the source's plane. */
+/* Triangles with a vertex whose path parameter is not above this are drawn by the kernel for the source's plane. */
 #define SKG_NEAR 0x1p-10f
 
-/* Accumulators have spare columns and rows where blocks of lanes may add zeros. */
+/* Accumulators have spare columns and rows, to which blocks of lanes may add zeros. */
 #define SKG_SPARE_COLUMNS 16
 #define SKG_SPARE_ROWS 4
 
-/* Most tiles that a triangle may meet and still be listed in each; wider ones are in one list for all tiles.
- */
+/* The most tiles that a triangle may meet and be listed in each. Triangles that meet more are in one list for all tiles. */
 #define SKG_MOST_TILES 8
 
-/* Bands of a CPU: most of them, and triangles that are sorted at once. */
+/* Bands of a CPU: the most of them, and how many triangles are sorted at once. */
 #define SKG_MOST_BANDS 512
 #define SKG_CHUNK 1024
 
-/* Rows that a work-item of the source plane's kernel draws. */
+/* How many rows a work-item of the source plane's kernel draws. */
 #define SKG_SOURCE_ROWS 32
 
-/* The table of what sums there are: for each copy whether it counts; the counter of claims; then of each
- * plane the field that has any: rows from, to, columns from, to, the latter multiples of SKG_FIELD_COLUMNS or
- * the row's end. Outside it sums are 0, and neither zeroed nor read. */
-#define SKG_FIELD(copies, plane) ((copies) + 1 + 4 * (plane))
-#define SKG_FIELD_COLUMNS 32
+/* The table `used` of a raster: for each copy whether it counts; the counter of claims; then for each plane the extent
+ * that has sums: first row, end row, first column, end column, the columns multiples of SKG_EXTENT_COLUMNS or the row's
+ * end. Outside its extent the sums of a plane are 0, and memory is neither zeroed nor read. */
+#define SKG_EXTENT(copies, plane) ((copies) + 1 + 4 * (plane))
+#define SKG_EXTENT_COLUMNS 32
 
-/* How many bad pixels of an open mesh are listed. */
+/* How many bad pixels of a leaky mesh are listed. */
 #define SKG_FIRST_BAD 8
 
 /* One part in one frame. Pixels are relative to the part's own pixel (pixel_i, pixel_j), depths to
@@ -44,7 +45,7 @@
  * row2.V is the path parameter (0 at the source, 1 at the pixel) less `reference`, t = reference + r, and the
  * vertex is seen at x = anchor_x + (offset_x + row0.V) / t, y alike; with a parallel beam without the
  * division. */
-#define SKG_PART_FIELDS(real)                                                                                \
+#define SKG_PART_MEMBERS(real)                                                                               \
     real row0[3], offset_x;                                                                                  \
     real row1[3], offset_y;                                                                                  \
     real row2[3], offset_r;                                                                                  \
@@ -60,17 +61,17 @@
     SKG_INT first_triangle; /* of the part, in the numbering over all parts */                               \
     SKG_INT triangles;                                                                                       \
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
-    SKG_INT first_write, writes;                                                                             \
+    SKG_INT first_contribution, contributions;                                                               \
     SKG_INT reserved;
 
-/* One plane that a part's hits add to: round(q * weight + bias), q = r / reference (parallel: r). A count
+/* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
  * plane has weight 0 and bias 1. */
-#define SKG_WRITE_FIELDS(real)                                                                               \
+#define SKG_CONTRIBUTION_MEMBERS(real)                                                                       \
     real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
 
-/* What one frame's launches need to know. Accumulator of pixel (row, column) of a plane of a copy:
- * [copy * planes * plane + number * plane + row * stride + column]. */
+/* What the launches of a frame need to know. The accumulator of pixel (row, column) of a plane of a copy is number
+ * copy * planes * plane + (number of the plane) * plane + row * stride + column. */
 typedef struct {
     SKG_INT parts, vertices, triangles;
     SKG_INT columns, rows;
@@ -82,53 +83,63 @@ typedef struct {
     SKG_INT reserved;
 } skg_frame_args;
 
-/* The key of a frame's noise (random.clh); sample: of the source, each with draws of its own. */
+/* The key of a frame's noise (random.clh). sample: of the source; each sample has draws of its own. */
 typedef struct {
     SKG_INT seed[2], frame[2]; /* low word first */
     SKG_INT sample;
     SKG_INT reserved;
 } skg_noise_args;
 
-/* Length of the ray to pixel (i, j): |centre + i column + j row|, mm; parallel: |centre|. */
-#define SKG_RAY_FIELDS(real)                                                                                 \
+/* How many hits a frame lists: low + 2^32 high. A struct, so that no 32-bit integer can take its place: on the host
+ * skg_hits_bytes (stage/hits.h) alone reads it. Starts of the pixels' lists are 32 bits: more hits are refused. */
+typedef struct {
+    SKG_UINT low, high;
+} skg_hit_count;
+#define SKG_MOST_HITS 0xffffffffu
+
+/* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
+ * the pixel of `centre`. */
+#define SKG_RAY_MEMBERS(real)                                                                                \
     real centre[3], column[3], row[3];                                                                       \
     real middle_i, middle_j; /* the pixel of `centre` */                                                     \
     real unit;               /* 1 / scale of the plane */
 
 #ifdef __OPENCL_C_VERSION__
 typedef struct {
-    SKG_PART_FIELDS(skg_real)
+    SKG_PART_MEMBERS(skg_real)
 } skg_part_entry;
 typedef struct {
-    SKG_WRITE_FIELDS(skg_real)
-} skg_write;
+    SKG_CONTRIBUTION_MEMBERS(skg_real)
+} skg_contribution;
 typedef struct {
-    SKG_RAY_FIELDS(skg_real)
+    SKG_RAY_MEMBERS(skg_real)
 } skg_ray_args;
 #else
 typedef struct {
-    SKG_PART_FIELDS(float)
+    SKG_PART_MEMBERS(float)
 } skg_part_float;
 typedef struct {
-    SKG_PART_FIELDS(double)
+    SKG_PART_MEMBERS(double)
 } skg_part_double;
 typedef struct {
-    SKG_WRITE_FIELDS(float)
-} skg_write_float;
+    SKG_CONTRIBUTION_MEMBERS(float)
+} skg_contribution_float;
 typedef struct {
-    SKG_WRITE_FIELDS(double)
-} skg_write_double;
+    SKG_CONTRIBUTION_MEMBERS(double)
+} skg_contribution_double;
 typedef struct {
-    SKG_RAY_FIELDS(float)
+    SKG_RAY_MEMBERS(float)
 } skg_ray_float;
 typedef struct {
-    SKG_RAY_FIELDS(double)
+    SKG_RAY_MEMBERS(double)
 } skg_ray_double;
 _Static_assert(sizeof(skg_part_float) == 20 * 4 + 12 * 4, "layout of a part, single");
 _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, double");
-_Static_assert(sizeof(skg_write_float) == 16 && sizeof(skg_write_double) == 24, "layout of a write");
+_Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
+               "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
+_Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
 #endif
 #endif

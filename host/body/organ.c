@@ -1,19 +1,19 @@
-/* What the caller says of an organ. */
-#include "body/body.h"
+#include "body/organ.h"
 
+#include "body/axes.h"
+#include "body/near.h"
+#include "core/maths.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
-/* The rotation vector at weight 1. x to the left, y to the back: what raises the front turns about -x; what
- * raises the side about -y on the left, y on the right. */
+/* The rotation vector at weight 1. With x to the left and y to the back, the front is raised by a rotation about -x,
+ * and the side by one about -y on the left and about y on the right. */
 static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {
-    if (!skg_all_finite(given->turn_rad, 3) || !(skg_length(given->turn_rad) <= pi) ||
-        !(fabs(given->gamma_rad) <= pi) || !(fabs(given->lambda_rad) <= pi))
-        return skg_fail(SKG_ERR_BREATHING, "%s: its rotation is not finite or more than half a turn",
+    if (!skg_all_finite(given->turn_rad, 3) || !(skg_length(given->turn_rad) <= SKG_PI) ||
+        !(fabs(given->gamma_rad) <= SKG_PI) || !(fabs(given->lambda_rad) <= SKG_PI))
+        return skg_fail(SKG_ERR_BREATHING, "%s: its rotation is not finite, or more than half a turn",
                         o->label);
     const double paper[3] = {-given->lambda_rad, (o->side < 0 ? 1 : -1) * given->gamma_rad, 0};
     skg_add_scaled(given->turn_rad, 1, paper, o->axis);
@@ -22,7 +22,7 @@ static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {
     if (!o->turned && !has_rule)
         return skg_fail(
             SKG_ERR_BREATHING,
-            "%s: rigid, but its label has no rule; say how it turns (an axis and an angle, or gamma "
+            "%s: rigid, but its label has no rule; give it a rotation (an axis and an angle, or gamma "
             "and lambda)",
             o->label);
     if (!has_rule) o->role = ROLE_RIGID;
@@ -50,31 +50,34 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
                         o->label);
     SKG_TRY(skg_alloc(given->link_count, sizeof *o->given, o->label, &o->given));
     for (int64_t l = 0; l < given->link_count; l++) {
-        const skg_organ_link *from = given->links + l;
+        skg_organ_link from;
+        skg_organ_link_init(&from);
+        SKG_TRY(skg_struct_read_at(given->links, l, "skg_organ_link", &from, sizeof from));
         char *to = NULL;
-        if (!from->to) return skg_fail(SKG_ERR_ARGUMENT, "%s: link %" PRId64 " to NULL", o->label, l);
-        if (!(from->distance_mm > 0 && from->distance_mm <= 1000 && from->rigid_mm >= 0 &&
-              from->rigid_mm <= from->distance_mm))
+        if (!from.to) return skg_fail(SKG_ERR_ARGUMENT, "%s: link %" PRId64 " to NULL", o->label, l);
+        if (!(from.distance_mm > 0 && from.distance_mm <= 1000 && from.rigid_mm >= 0 &&
+              from.rigid_mm <= from.distance_mm))
             return skg_fail(
                 SKG_ERR_BREATHING,
-                "%s: link to %s within %g mm, rigid within %g mm; above 0 to 1000 mm, and rigid no "
-                "farther than that",
-                o->label, from->to, from->distance_mm, from->rigid_mm);
-        SKG_TRY(skg_copy_text(from->to, &to));
-        o->given[l] = (skg_organ_link){to, from->distance_mm, from->rigid_mm};
+                "%s: a link to %s within %g mm, rigid within %g mm; a link reaches above 0 to 1000 mm, and is rigid "
+                "no farther than that",
+                o->label, from.to, from.distance_mm, from.rigid_mm);
+        SKG_TRY(skg_copy_text(from.to, &to));
+        o->given[l] = from;
+        o->given[l].to = to;
         o->given_count = l + 1;
     }
     return SKG_OK;
 }
 
-/* Of ribs without one: as their axes are found. */
+/* The centre of the rotation. That of a rib is found with its axis, unless the caller gives one. */
 static skg_status take_centre(const skg_organ *given, skg_body_organ *o) {
     double axes[9];
     int known = 0;
     for (int k = 0; k < 3; k++) known += !isnan(given->centre_mm[k]);
     if (known > 0 && (o->kind != SKG_ORGAN_RIGID || !skg_all_finite(given->centre_mm, 3)))
         return skg_fail(SKG_ERR_BREATHING,
-                        "%s: a centre has three finite numbers, and belongs to a rigid organ", o->label);
+                        "%s: a centre of rotation needs three finite numbers and a rigid organ", o->label);
     o->centred = known > 0;
     if (known > 0)
         memcpy(o->head, given->centre_mm, sizeof o->head);
@@ -91,8 +94,9 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
     o->role = skg_role_of(o->label, &o->number, &o->side);
     SKG_TRY(take_kind(given, o));
     SKG_TRY(take_links(given, o));
-    const skg_tissue *t = &given->tissue;
-    o->tissue = t->alpha_min == 0 && t->alpha_max == 0 && t->beta == 0 ? skg_tissue_of(o->label) : *t;
+    const int by_label = given->alpha_min == 0 && given->alpha_max == 0 && given->beta == 0;
+    o->tissue =
+        by_label ? skg_tissue_of(o->label) : (skg_tissue){given->alpha_min, given->alpha_max, given->beta};
     SKG_TRY(skg_mesh_count(o->mesh, &o->vertices, &o->triangles));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->rest));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->moved));

@@ -1,7 +1,8 @@
 #include "beam/spectrum.h"
 
-void skg_quality_init(skg_quality *quality) {
-    if (quality) *quality = (skg_quality){.size = (int32_t)sizeof *quality};
+void skg_quality_init_sized(void *quality, int32_t size) {
+    const skg_quality defaults = {0};
+    skg_struct_init(quality, size, &defaults, sizeof defaults);
 }
 
 static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first, double *second) {
@@ -14,8 +15,8 @@ static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first,
 
 skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality) {
     enum { ALUMINIUM = 13, COPPER = 29 };
-    if (!spectrum || !quality)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_quality_get: no spectrum or no result");
+    SKG_NEEDS(spectrum);
+    SKG_NEEDS(quality);
     skg_quality ours;
     skg_quality_init(&ours);
     for (int64_t i = 0; i < spectrum->count; i++) {

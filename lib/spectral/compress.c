@@ -8,11 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-/* How many nodes a plane is multiplied for, as long as that is not known. */
+/* The number of nodes that a plane is multiplied for, while it is not known: most beams need 8 to 24. */
 static const double LIKELY_NODES = 12;
-/* What of the tolerance planes may use, before the doubling of what is found. */
+/* The share of the tolerance that the error of the planes may have. An error that is found is doubled to a bound, so
+ * this leaves three quarters of the tolerance to the nodes. */
 static const double SHARE_OF_PLANES = 0.125;
-/* Points that planes are chosen by. */
+/* Points by which planes are chosen: corners of the range, random points, and lengths that rays meet. A few hundred
+ * points suffice for a choice; the verification uses thousands. */
 enum { CORNERS = 64, DRAWS = 160, GIVEN = 96 };
 
 typedef struct {
@@ -27,7 +29,8 @@ typedef struct {
     skg_compression found;
 } compressing;
 
-/* An image over the open beam shows what is left of little where the world lets little pass. */
+/* Errors are relative from this transmission on. A ratio to the flat field in a world that transmits little
+ * shows small transmissions, so it needs a lower limit. */
 static skg_status find_floor(compressing *c, const skg_model *model) {
     double *lengths = NULL, *exact = NULL;
     skg_status status = SKG_OK;
@@ -46,15 +49,17 @@ cleanup:
     return status;
 }
 
-/* Means of the channels, then their variances where there is noise. */
+/* The sets of weights: the means of the channels and, with noise, their variances. */
 static int32_t sets_of(const skg_model *model) {
     return model->variances ? 2 * model->channels : model->channels;
 }
 
-/* What set s takes of node n. */
+/* The table that holds the weights of set s. */
 static double *table_of(const skg_model *model, int32_t s) {
     return s < model->channels ? model->weights : model->variances;
 }
+
+/* The weight of node n in set s. */
 static double *weight_at(const skg_model *model, int32_t n, int32_t s) {
     return &table_of(model, s)[n * model->channels + s % model->channels];
 }
@@ -77,28 +82,28 @@ static skg_status describe(compressing *c, const skg_model *model) {
     return find_floor(c, model);
 }
 
-/* --- planes
- * ------------------------------------------------------------------------------------------------------ */
+/* --- planes --- */
 
-/* What a mm of a part adds to the planes of a basis: weights [planes]. */
-static void mix_writes(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
+/* Sets weights [planes] to what a mm of a part adds to the planes of a basis. */
+static void mix_contributions(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
     memset(weights, 0, (size_t)basis->planes * sizeof *weights);
-    for (int64_t w = model->first_write[part]; w < model->first_write[part + 1]; w++)
+    for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
         for (int32_t k = 0; k < basis->planes; k++)
-            weights[k] += model->writes[w].weight * basis->mix[model->writes[w].plane * basis->planes + k];
+            weights[k] += model->contributions[w].weight *
+                          basis->mix[model->contributions[w].plane * basis->planes + k];
 }
 
 static double cost_of(const compressing *c, const skg_model *model, const skg_basis *basis, double *weights) {
     double cost = basis->planes * (SKG_COST_OF_PLANE + LIKELY_NODES);
     for (int64_t p = 0; p < c->scene->count; p++) {
-        mix_writes(model, basis, p, weights);
+        mix_contributions(model, basis, p, weights);
         for (int32_t k = 0; k < basis->planes; k++)
-            if (weights[k] != 0) cost += SKG_COST_OF_WRITE * c->ranges.hits[p];
+            if (weights[k] != 0) cost += SKG_COST_OF_CONTRIBUTION * c->ranges.hits[p];
     }
     return cost;
 }
 
-/* The cheapest of the layouts that the tolerance allows, from a plane per material down. */
+/* Chooses the cheapest of the layouts that the tolerance allows, from one plane for each material downwards. */
 static skg_status choose_planes(compressing *c, const skg_model *model) {
     const int32_t materials = c->beam.materials;
     skg_lengths points = {0};
@@ -133,42 +138,43 @@ cleanup:
     return status;
 }
 
-/* --- the model with fewer
- * ---------------------------------------------------------------------------------------- */
+/* --- the model with fewer --- */
 
-static skg_status rewrite_writes(const compressing *c, skg_model *model) {
+static skg_status rewrite_contributions(const compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;
     const int64_t parts = c->scene->count;
     int64_t *first = NULL, count = 0;
-    skg_contribution *writes = NULL;
+    skg_contribution *contributions = NULL;
     double *weights = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first, "planes of the parts", &first));
-    SKG_TRY_CLEANUP(skg_alloc(parts * planes, sizeof *writes, "planes of the parts", &writes));
+    SKG_TRY_CLEANUP(skg_alloc(parts * planes, sizeof *contributions, "planes of the parts", &contributions));
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *weights, "planes of the parts", &weights));
     for (int64_t p = 0; p < parts; p++) {
         first[p] = count;
-        mix_writes(model, &c->basis, p, weights);
+        mix_contributions(model, &c->basis, p, weights);
         for (int32_t k = 0; k < planes; k++)
-            if (weights[k] != 0) writes[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
+            if (weights[k] != 0)
+                contributions[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
     }
     first[parts] = count;
-    skg_free(&model->first_write);
-    skg_free(&model->writes);
-    model->first_write = first, model->writes = writes;
-    first = NULL, writes = NULL;
+    skg_free(&model->first_contribution);
+    skg_free(&model->contributions);
+    model->first_contribution = first, model->contributions = contributions;
+    first = NULL, contributions = NULL;
     int32_t world = 0;
     while (world < planes && c->basis.material[world] != model->world_plane) world++;
-    if (model->world_plane >= 0) model->world_plane = world; /* the first that was taken */
+    if (model->world_plane >= 0) model->world_plane = world; /* the basis took its material first */
     model->planes = planes;
 cleanup:
     skg_free(&first);
-    skg_free(&writes);
+    skg_free(&contributions);
     skg_free(&weights);
     return status;
 }
 
-/* What planes hold over the range of lengths; and rounding of their sums more. */
+/* The values that planes take over the range of lengths, widened by the rounding of their sums in single
+ * precision. */
 static skg_status find_range(const compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;
     SKG_TRY(skg_alloc(2 * (int64_t)planes, sizeof *model->range, "planes", &model->range));
@@ -189,7 +195,7 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     const skg_nodes *nodes = &c->found.nodes;
     const int32_t sets = c->beam.sets, bins = c->beam.bins, planes = c->basis.planes;
     for (int32_t n = 0; n < nodes->count; n++) {
-        const int32_t bin = nodes->bin[n]; /* n or above: nothing is overwritten before it is read */
+        const int32_t bin = nodes->bin[n]; /* at least n, so that nothing is overwritten before it is read */
         double before = 0, after = 0;
         for (int32_t s = 0; s < sets; s++) {
             const double weight = nodes->shares[n * sets + s] * c->sums[s];
@@ -211,7 +217,7 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
 skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
                         const double *mu, skg_model *model) {
     const int is_ratio = skg_quantity_is_ratio(options);
-    /* A ratio to what the world lets pass has the errors of both. */
+    /* A ratio to the transmission of the world has the errors of both. */
     const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
     compressing c = {
         .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
@@ -224,7 +230,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_
     if (c.found.nodes.count == 0) goto cleanup;
     c.found.bound *= errors;
     SKG_TRY_CLEANUP(find_range(&c, model));
-    SKG_TRY_CLEANUP(rewrite_writes(&c, model));
+    SKG_TRY_CLEANUP(rewrite_contributions(&c, model));
     rewrite_nodes(&c, model);
 cleanup:
     skg_ranges_release(&c.ranges);

@@ -4,6 +4,7 @@
 
 #include <skiagraph/skiagraph.h>
 
+#include <float.h>
 #include <math.h>
 
 enum { SIDE = 33, PARTS = 3, MOST = 200 };
@@ -55,7 +56,7 @@ static skg_spectrum *tube(double kvp) {
     skg_spectrum *spectrum = NULL;
     skg_material *aluminium = NULL;
     ck_skg(skg_material_create_element(13, &aluminium));
-    const skg_filter filter = {aluminium, 2.5};
+    const skg_filter filter = {.size = (int32_t)sizeof filter, .material = aluminium, .thickness_mm = 2.5};
     skg_tube_init(&t);
     t.kvp = kvp, t.filter_count = 1, t.filters = &filter;
     ck_skg(skg_spectrum_create_tube(&t, &spectrum));
@@ -134,7 +135,7 @@ static void check(const skg_spectrum *spectrum, const skg_plan_options *options,
                                         : options->quantity == SKG_QUANTITY_ATTENUATION ? 0
                                         : options->quantity == SKG_QUANTITY_FLUENCE     ? before / 16
                                                                                         : before,
-                                        1e-12 * before);
+                                        64 * DBL_EPSILON * before);
         }
     }
     skg_plan_release(&plan);

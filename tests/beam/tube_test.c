@@ -1,142 +1,12 @@
-/* Tube spectra against measured half-value layers (PTB), published output, and each other. */
+/* Tube spectra against published tables, and each other. */
 #include <skiagraph/beam.h>
 
-#include "data.h"
+#include "beam/tube.h"
 #include "suite.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
-
-static skg_material *named(const char *text) {
-    skg_material *material = NULL;
-    ck_skg(skg_material_create_named(text, &material));
-    return material;
-}
-
-enum { MOST_LAYERS = 8 };
-
-/* A tube with layers given as material and mm pairs; NULL ends them. */
-typedef struct {
-    const char *material;
-    double mm;
-} layer;
-
-static skg_spectrum *tube(int32_t model, double kvp, double angle, const layer *layers) {
-    skg_tube t;
-    skg_filter filters[MOST_LAYERS];
-    skg_material *materials[MOST_LAYERS];
-    skg_spectrum *spectrum = NULL;
-    int count = 0;
-    for (; layers && layers[count].material; count++) {
-        materials[count] = named(layers[count].material);
-        filters[count] = (skg_filter){materials[count], layers[count].mm};
-    }
-    skg_tube_init(&t);
-    t.model = model;
-    t.kvp = kvp;
-    t.angle_deg = angle;
-    t.filters = filters;
-    t.filter_count = count;
-    ck_skg(skg_spectrum_create_tube(&t, &spectrum));
-    while (count > 0) skg_material_release(&materials[--count]);
-    return spectrum;
-}
-
-static skg_quality quality(int32_t model, double kvp, double angle, const layer *layers) {
-    skg_quality q;
-    skg_quality_init(&q);
-    skg_spectrum *spectrum = tube(model, kvp, angle, layers);
-    ck_skg(skg_spectrum_quality_get(spectrum, &q));
-    skg_spectrum_release(&spectrum);
-    return q;
-}
-
-typedef struct {
-    double first, second, ratio;
-    char first_at[32], second_at[32];
-} worst;
-
-static void note(double deviation, const char *name, double *most, char *at) {
-    if (fabs(deviation) <= fabs(*most)) return;
-    *most = deviation;
-    snprintf(at, 32, "%s", name);
-}
-
-/* IEC qualities: RQR and RQA, half-value layers in mm Al. */
-static void iec(int32_t model, const char *label, double first_bar, double second_bar, double ratio_bar) {
-    FILE *file = open_data("physics/beam_qualities.csv");
-    if (!file) return;
-    char line[512];
-    worst w = {0};
-    int rows = 0;
-    while (fgets(line, sizeof line, file)) {
-        char name[16];
-        double kv, be, al, hvl1, hvl2;
-        if (sscanf(line, "%15[^,],%lf,%lf,%lf,%lf,%lf", name, &kv, &be, &al, &hvl1, &hvl2) != 6) continue;
-        layer layers[] = {{"Kapton", 0.25}, {"Be", be}, {"Al", al}, {"Air", 950}, {NULL, 0}};
-        skg_quality q = quality(model, kv, 20, layers);
-        double d1 = q.hvl1_mm_al / hvl1 - 1, d2 = q.hvl2_mm_al / hvl2 - 1;
-        if (getenv("SKG_LIST"))
-            printf("%s %s: HVL1 %.3f (%+.1f %%), HVL2 %.3f (%+.1f %%), mean %.2f keV\n", label, name,
-                   q.hvl1_mm_al, 100 * d1, q.hvl2_mm_al, 100 * d2, q.mean_kev);
-        ck_assert_msg(fabs(d1) <= first_bar, "%s %s: HVL1 %+.1f %%", label, name, 100 * d1);
-        ck_assert_msg(fabs(d2) <= second_bar, "%s %s: HVL2 %+.1f %%", label, name, 100 * d2);
-        ck_assert_msg(fabs(q.homogeneity - hvl1 / hvl2) <= ratio_bar, "%s %s: homogeneity %.3f", label, name,
-                      q.homogeneity - hvl1 / hvl2);
-        note(100 * d1, name, &w.first, w.first_at);
-        note(100 * d2, name, &w.second, w.second_at);
-        rows++;
-    }
-    fclose(file);
-    printf("%s: worst HVL1 %+.1f %% (%s), HVL2 %+.1f %% (%s)\n", label, w.first, w.first_at, w.second,
-           w.second_at);
-    ck_assert_int_eq(rows, 18);
-}
-
-START_TEST(ebel_agrees_with_ptb) {
-    iec(SKG_TUBE_MODEL_EBEL, "Ebel", 0.06, 0.05, 0.025);
-}
-END_TEST
-
-START_TEST(birch_agrees_with_ptb) {
-    iec(SKG_TUBE_MODEL_BIRCH, "Birch", 0.07, 0.05, 0.025);
-}
-END_TEST
-
-/* ISO 4037 qualities: half-value layers in mm Cu; nominal mean energies of the N series. */
-START_TEST(iso_qualities) {
-    FILE *file = open_data("physics/beam_qualities_iso_cu.csv");
-    if (!file) return;
-    char line[512];
-    int rows = 0;
-    while (fgets(line, sizeof line, file)) {
-        static const struct {
-            const char *name;
-            double mean;
-        } nominal[] = {{"N40", 33}, {"N60", 48}, {"N80", 65}, {"N100", 83}, {"N120", 100}};
-        char name[16];
-        double kv, be, al, cu, sn, pb, hvl1, hvl2;
-        if (sscanf(line, "%15[^,],%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", name, &kv, &be, &al, &cu, &sn, &pb, &hvl1,
-                   &hvl2) != 9)
-            continue;
-        layer layers[] = {{"Kapton", 0.25}, {"Be", be}, {"Al", al},   {"Cu", cu},
-                          {"Sn", sn},       {"Pb", pb}, {"Air", 950}, {NULL, 0}};
-        skg_quality q = quality(SKG_TUBE_MODEL_EBEL, kv, 20, layers);
-        if (getenv("SKG_LIST"))
-            printf("%s: HVL1 %+.1f %%, HVL2 %+.1f %%, mean %.2f keV\n", name, 100 * (q.hvl1_mm_cu / hvl1 - 1),
-                   100 * (q.hvl2_mm_cu / hvl2 - 1), q.mean_kev);
-        ck_assert_msg(fabs(q.hvl1_mm_cu / hvl1 - 1) <= 0.06, "%s: HVL1 %.4f mm Cu", name, q.hvl1_mm_cu);
-        ck_assert_msg(fabs(q.hvl2_mm_cu / hvl2 - 1) <= 0.05, "%s: HVL2 %.4f mm Cu", name, q.hvl2_mm_cu);
-        for (size_t i = 0; i < sizeof nominal / sizeof *nominal; i++)
-            if (strcmp(nominal[i].name, name) == 0)
-                ck_assert_msg(fabs(q.mean_kev - nominal[i].mean) <= 0.5, "%s: mean %.2f keV", name,
-                              q.mean_kev);
-        rows++;
-    }
-    fclose(file);
-    ck_assert_int_eq(rows, 12);
-}
-END_TEST
 
 /* IEC 61267: RQR qualities are defined by their first half-value layer; the homogeneity follows. Aluminium is
  * added until the layer is right. */
@@ -159,6 +29,7 @@ START_TEST(homogeneity_of_rqr) {
         if (getenv("SKG_LIST"))
             printf("%g kV: %.2f mm Al, homogeneity %.3f (%.2f)\n", rqr[i].kv, low, q.homogeneity,
                    rqr[i].homogeneity);
+        /* The standard prints two digits, half a unit of which is 0.005; the rest is what the model reaches. */
         ck_assert_msg(fabs(q.homogeneity - rqr[i].homogeneity) <= 0.02, "%g kV: homogeneity %.3f", rqr[i].kv,
                       q.homogeneity);
     }
@@ -178,7 +49,9 @@ START_TEST(output_per_mas) {
                    a = quality(model, rows[i].kv, 12, air).air_kerma_ugy;
             if (getenv("SKG_LIST"))
                 printf("model %d, %g kV: %.1f and %.1f uGy/mAs\n", model, rows[i].kv, v, a);
+            /* Two programs with their own cross sections: they agree within 5 %. */
             ck_assert_msg(fabs(v / rows[i].vacuum - 1) <= 0.05, "%g kV: %.1f uGy/mAs", rows[i].kv, v);
+            /* As above. */
             ck_assert_msg(fabs(a / rows[i].air - 1) <= 0.05, "%g kV, air: %.1f uGy/mAs", rows[i].kv, a);
         }
 }
@@ -198,6 +71,7 @@ static double lines_share(const skg_spectrum *spectrum) {
     for (int w = 0; w < 2; w++) {
         int64_t a = -1, b = -1;
         for (int64_t i = 0; i < count; i++) {
+            /* Bins are whole and half keV. */
             if (fabs(energy[i] - windows[w][0]) < 0.01) a = i;
             if (fabs(energy[i] - windows[w][1]) < 0.01) b = i;
         }
@@ -216,6 +90,7 @@ START_TEST(k_lines_share) {
             double share = lines_share(s);
             if (getenv("SKG_LIST"))
                 printf("model %d, %g kV: lines %.2f %%\n", model, rows[i][0], 100 * share);
+            /* What a line under the peaks cuts off depends on the bins. */
             ck_assert_msg(fabs(share / rows[i][1] - 1) <= 0.15, "%g kV: lines %.2f %%", rows[i][0],
                           100 * share);
             skg_spectrum_release(&s);
@@ -236,7 +111,7 @@ END_TEST
 
 START_TEST(output_scales) {
     skg_tube t;
-    skg_filter filter = {NULL, 2.5};
+    skg_filter filter = {.size = (int32_t)sizeof filter, .thickness_mm = 2.5};
     skg_material *al = named("Al");
     skg_spectrum *s = NULL;
     skg_quality one, other;
@@ -254,17 +129,18 @@ START_TEST(output_scales) {
     ck_skg(skg_spectrum_create_tube(&t, &s));
     ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
-    ck_assert_double_eq_tol(other.photons / one.photons, 0.25, 1e-12);
+    ck_assert_double_eq_tol(other.photons / one.photons, 0.25, 64 * DBL_EPSILON);
     t.mas = 1, t.distance_mm = 1000, t.pixel_mm2 = 1;
     t.output_ugy_mas = 65; /* at 1 m */
     ck_skg(skg_spectrum_create_tube(&t, &s));
     ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
-    ck_assert_double_eq_tol(other.air_kerma_ugy, 65, 1e-10);
+    ck_assert_double_eq_tol(other.air_kerma_ugy, 65, 64 * DBL_EPSILON * 65);
     t.output_ugy_mas = 0, t.bin_kev = 0.5; /* bins of another width: the same beam */
     ck_skg(skg_spectrum_create_tube(&t, &s));
     ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
+    /* The same spectrum in bins half as wide: the sums differ by 1.3e-4. */
     ck_assert_double_eq_tol(other.air_kerma_ugy / one.air_kerma_ugy, 1, 5e-3);
     skg_material_release(&al);
 }
@@ -273,7 +149,7 @@ END_TEST
 START_TEST(tubes_that_cannot_be) {
     skg_tube t;
     skg_spectrum *s = NULL;
-    skg_filter none = {NULL, 1};
+    skg_filter none = {.size = (int32_t)sizeof none, .thickness_mm = 1};
     skg_tube_init(&t);
     ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "tube voltage of 0 kV");
     t.kvp = 90, t.angle_deg = 0;
@@ -291,9 +167,6 @@ START_TEST(tubes_that_cannot_be) {
 END_TEST
 
 static void add_tests(TCase *tests) {
-    tcase_add_test(tests, ebel_agrees_with_ptb);
-    tcase_add_test(tests, birch_agrees_with_ptb);
-    tcase_add_test(tests, iso_qualities);
     tcase_add_test(tests, homogeneity_of_rqr);
     tcase_add_test(tests, output_per_mas);
     tcase_add_test(tests, k_lines_share);

@@ -36,12 +36,12 @@ START_TEST(usage) {
     ck_run_fails(2, "--range 3:1 is not two numbers LOW:HIGH", "image scene.json -o a.png --range 3:1");
     ck_run_fails(2, "--range 3 ", "image scene.json -o a.png --range 3");
     ck_run_fails(2, "--tolerance 1 is not a relative error", "image scene.json -o a.mha --tolerance 1");
-    ck_run_fails(2, "nowhere to write to; add -o FILE", "image scene.json");
+    ck_run_fails(2, "no output is named; add -o FILE", "image scene.json");
     ck_run_fails(2, "--set", "image scene.json -o a.mha --set");
     ck_run_fails(2, "Detector", "image scene.json -o a.mha --set Detector");
     ck_run_fails(2, "the extension .jpg is no image format; use .png, .tif or .mha",
                  "image scene.json -o a.jpg");
-    ck_run_fails(2, "what is missing is SCENE", "image -o a.mha");
+    ck_run_fails(2, "SCENE is missing", "image -o a.mha");
 }
 END_TEST
 
@@ -49,7 +49,7 @@ START_TEST(outputs_that_cannot_be_written) {
     char path[512];
     ck_run_fails(5, "none/a.mha: cannot be written: No such file or directory; make its folder first",
                  "image scene.json -o a.png -o none/a.mha");
-    ck_assert_int_eq(look_at_folder(0), 1); /* not the other one either: told before any work */
+    ck_assert_int_eq(look_at_folder(0), 1); /* not the other one either: refused before any work */
     ck_run_fails(5, "scene.json/a.mha: cannot be written: Not a directory",
                  "image scene.json -o scene.json/a.mha");
     ck_run_fails(5, "/dev/null/a.png", "lbuffer scene.json --part skin -o /dev/null/a.png");

@@ -30,6 +30,7 @@ START_TEST(numbers) {
     ck_assert_double_eq(number("0x10", "x10"), 0);
     ck_assert_double_infinite(number("1e999999999999", ""));
     ck_assert_double_eq(number("1e-999999999999", ""), 0);
+    /* Thirty digits: the nearest double or its neighbour. */
     ck_assert_double_eq_tol(number("123456789012345678901234567890", ""), 123456789012345678901234567890.0,
                             1e15);
     uint64_t state = 1;
@@ -46,7 +47,7 @@ END_TEST
 static const struct {
     const char *text, *says;
 } bad[] = {
-    {"1 2\n3\n", "line 2: two numbers"},      {"1 2\n3 4 5\n", "line 2: there is more"},
+    {"1 2\n3\n", "line 2: two numbers"},      {"1 2\n3 4 5\n", "line 2: there are more"},
     {"# only\n", "no line with two numbers"}, {"1 2\nEnergy 3\n", "line 2: two numbers"},
     {"12\n", "line 1: two numbers"},          {"1 nan\n", "line 1: two numbers"},
 };

@@ -1,4 +1,6 @@
 #include "core/core.h"
+#include "core/mailbox.h"
+#include "core/maths.h"
 #include "core/names.h"
 #include "core/output.h"
 #include "suite.h"
@@ -98,14 +100,101 @@ START_TEST(output_appears_whole_or_not_at_all) {
 }
 END_TEST
 
+static skg_status needs_a_mesh(const void *mesh) {
+    SKG_NEEDS(mesh);
+    return SKG_OK;
+}
+
+START_TEST(a_missing_argument_is_named) {
+    ck_skg(needs_a_mesh(""));
+    ck_skg_fails(needs_a_mesh(NULL), SKG_ERR_ARGUMENT, "needs_a_mesh: the argument mesh is NULL");
+}
+END_TEST
+
+START_TEST(rounding_up_stays_where_it_is_exact) {
+    ck_assert_int_eq(skg_round_up(0, 16), 0);
+    ck_assert_int_eq(skg_round_up(1, 16), 16);
+    ck_assert_int_eq(skg_round_up(32, 16), 32);
+    ck_assert_int_eq(skg_divide_up(33, 16), 3);
+}
+END_TEST
+
+/* A mailbox that is full keeps its oldest sentences and counts the others. */
+START_TEST(a_mailbox_is_bounded) {
+    skg_mailbox *mailbox = NULL;
+    char sentence[SKG_MAILBOX_SENTENCE], longest[2 * SKG_MAILBOX_SENTENCE];
+    ck_skg(skg_mailbox_create(&mailbox));
+    void *address = skg_mailbox_address(mailbox);
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    memset(longest, 'a', sizeof longest - 1);
+    longest[sizeof longest - 1] = '\0';
+    skg_mailbox_put(address, longest);
+    for (int i = 1; i < SKG_MAILBOX_CAPACITY + 3; i++) skg_mailbox_put(address, "device lost");
+    ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_uint_eq(strlen(sentence), SKG_MAILBOX_SENTENCE - 1);
+    for (int i = 1; i < SKG_MAILBOX_CAPACITY; i++) ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_str_eq(sentence, "device lost");
+    ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_str_eq(sentence, "3 more sentences were dropped");
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    skg_mailbox_release(&mailbox);
+    skg_mailbox_put(address, "nobody reads this");
+    ck_skg(skg_mailbox_create(&mailbox)); /* an address is not used again */
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    skg_mailbox_release(&mailbox);
+}
+END_TEST
+
+START_TEST(structs_are_prepared_to_their_size) {
+    const new_struct defaults = {0, 4, 5, 6};
+    struct {
+        old_struct whole;
+        int32_t guard;
+    } older = {{9, 9, 9}, 9};
+    struct {
+        new_struct known;
+        int32_t later;
+    } newer = {{9, 9, 9, 9}, 9};
+    skg_struct_init(&older, sizeof older.whole, &defaults, sizeof defaults);
+    ck_assert(older.whole.size == (int)sizeof older.whole && older.whole.a == 4 && older.whole.b == 5);
+    ck_assert_int_eq(older.guard, 9);
+    skg_struct_init(&newer, sizeof newer, &defaults, sizeof defaults);
+    ck_assert(newer.known.size == (int)sizeof newer && newer.known.c == 6 && newer.later == 0);
+    skg_struct_init(&older, 3, &defaults, sizeof defaults); /* no room for the size itself */
+    ck_assert_int_eq(older.whole.size, (int)sizeof older.whole);
+    skg_struct_init(NULL, sizeof older, &defaults, sizeof defaults);
+}
+END_TEST
+
+START_TEST(arrays_step_by_their_first_element) {
+    const new_struct wide[2] = {{sizeof *wide, 1, 2, 0}, {sizeof *wide, 3, 4, 0}};
+    old_struct narrow[2] = {{sizeof *narrow, 1, 2}, {sizeof *narrow, 3, 4}};
+    new_struct ours = {sizeof ours, 0, 0, 7};
+    old_struct older = {sizeof older, 0, 0};
+    ck_skg(skg_struct_read_at(narrow, 1, "skg_thing", &ours, sizeof ours));
+    ck_assert(ours.a == 3 && ours.b == 4 && ours.c == 7);
+    ck_skg(skg_struct_read_at(wide, 1, "skg_thing", &older, sizeof older));
+    ck_assert(older.a == 3 && older.b == 4);
+    narrow[1].size = 0;
+    ck_skg_fails(skg_struct_read_at(narrow, 1, "skg_thing", &ours, sizeof ours), SKG_ERR_ARGUMENT,
+                 "element 1 has size 0");
+    ck_skg_fails(skg_struct_read_at(NULL, 1, "skg_thing", &ours, sizeof ours), SKG_ERR_ARGUMENT, "NULL");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_status_has_name_and_text);
     tcase_add_test(tests, last_error_may_quote_itself);
     tcase_add_test(tests, a_sentence_is_one_line);
     tcase_add_test(tests, allocation_checks_its_product);
     tcase_add_test(tests, structs_grow);
+    tcase_add_test(tests, structs_are_prepared_to_their_size);
+    tcase_add_test(tests, arrays_step_by_their_first_element);
     tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
     tcase_add_test(tests, output_appears_whole_or_not_at_all);
+    tcase_add_test(tests, a_missing_argument_is_named);
+    tcase_add_test(tests, rounding_up_stays_where_it_is_exact);
+    tcase_add_test(tests, a_mailbox_is_bounded);
 }
 
 SKG_SUITE_MAIN("core", add_tests)

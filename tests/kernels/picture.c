@@ -1,8 +1,9 @@
 #include "kernels/picture.h"
 
-#include "core/pose.h"
+#include "core/vector.h"
 #include "stage/attenuate.h"
 #include "stage/raster_private.h"
+#include "support/angles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +34,6 @@ static void set_corners(shape *s, int64_t triangle, int64_t a, int64_t b, int64_
 
 shape shape_sphere(double radius, int around, int down) {
     shape s = shape_make((int64_t)around * (down - 1) + 2, 2 * (int64_t)around * (down - 1));
-    const double pi = 3.14159265358979323846;
     for (int r = 1; r < down; r++)
         for (int k = 0; k < around; k++) {
             double *v = s.positions + 3 * ((r - 1) * around + k);
@@ -201,8 +201,8 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
                                        .origin = origin,
                                        .reference = middle_depth(camera, &of[b]),
                                        .depth = 0.1, /* of the path: what is steep is nearly the same for all */
-                                       .weights = 1,
-                                       .weight = &weights[b]};
+                                       .contributions = 1,
+                                       .contribution = &weights[b]};
     }
     skg_status status =
         skg_geometry_project(context, geometry, &options->kernels, camera, parts, scale, NULL);

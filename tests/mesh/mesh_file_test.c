@@ -19,7 +19,7 @@ void __wrap_skg_log(skg_context *context, int32_t level, const char *format, ...
     va_end(arguments);
 }
 
-/* The library's allocations: so many succeed, the next one fails; negative: all succeed. */
+/* How many more allocations of the library succeed before one fails; negative: all succeed. */
 static int64_t allocations_left = -1;
 void *__real_calloc(size_t count, size_t size);
 void *__wrap_calloc(size_t count, size_t size);
@@ -109,7 +109,7 @@ START_TEST(ascii_stl_of_two_solids_is_one_mesh) {
 }
 END_TEST
 
-START_TEST(damaged_stl_is_told) {
+START_TEST(damaged_stl_is_refused) {
     unsigned char stl[84 + 2 * 50] = "solid: a binary file of a careless program", *body = stl + 84;
     skg_mesh *mesh;
     stl[80] = 2;
@@ -133,7 +133,7 @@ START_TEST(damaged_stl_is_told) {
            "line 5: truncated: a facet ends");
     refuse(file_of("edge.stl", "solid a\nfacet\nvertex 1 2 3\nvertex 1 2 4\nendfacet\nendsolid"),
            SKG_ERR_FORMAT, "line 5: a facet of fewer");
-    refuse(file_of("word.stl", "solid a\nfacet\nvortex 1 2 3\n"), SKG_ERR_FORMAT, "line 3: no word");
+    refuse(file_of("word.stl", "solid a\nfacet\nvortex 1 2 3\n"), SKG_ERR_FORMAT, "line 3: not a word");
     refuse(file_of("out.stl", "solid a\nendsolid\nfacet\n"), SKG_ERR_FORMAT, "line 3: no \"solid\"");
     refuse(file_of("nothing.stl", "solid a\nendsolid a\n"), SKG_ERR_MESH, "no triangles");
     refuse(file_of("text.stl", "this is a letter to a friend"), SKG_ERR_FORMAT, "truncated");
@@ -153,8 +153,8 @@ START_TEST(files_that_are_none) {
     file_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     ck_skg_fails(skg_mesh_load(NULL, path, 0, &mesh), SKG_ERR_ARGUMENT, "unit 0 mm");
     ck_skg_fails(skg_mesh_load(NULL, path, (double)NAN, &mesh), SKG_ERR_ARGUMENT, "unit nan mm");
-    ck_skg_fails(skg_mesh_load(NULL, NULL, 1, &mesh), SKG_ERR_ARGUMENT, "no path");
-    ck_skg_fails(skg_mesh_load(NULL, path, 1, NULL), SKG_ERR_ARGUMENT, "no place");
+    ck_skg_fails(skg_mesh_load(NULL, NULL, 1, &mesh), SKG_ERR_ARGUMENT, "path is NULL");
+    ck_skg_fails(skg_mesh_load(NULL, path, 1, NULL), SKG_ERR_ARGUMENT, "mesh is NULL");
 }
 END_TEST
 
@@ -177,7 +177,7 @@ END_TEST
 
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
-START_TEST(damaged_obj_is_told) {
+START_TEST(damaged_obj_is_refused) {
     refuse(file_of("a.obj", SQUARE "f 1 2"), SKG_ERR_FORMAT, "line 5: a face of fewer than three corners");
     refuse(file_of("b.obj", SQUARE "v 1 2\nf 1 2 3"), SKG_ERR_FORMAT, "line 5: a vertex is");
     refuse(file_of("c.obj", "v 1 2 3x\n"), SKG_ERR_FORMAT, "line 1: a vertex is");
@@ -239,7 +239,7 @@ START_TEST(ply_of_every_kind) {
 }
 END_TEST
 
-START_TEST(damaged_ply_is_told) {
+START_TEST(damaged_ply_is_refused) {
     refuse(file_of("a.ply", "plx\n"), SKG_ERR_FORMAT, "\"plx\"");
     refuse(file_of("b.ply", "ply\nformat ascii 1.0\nelement vertex 3"), SKG_ERR_FORMAT, "end_header");
     refuse(file_of("c.ply", "ply\nformat ascii 1.0\nelement vertex 3\nend_header\n"), SKG_ERR_FORMAT,
@@ -263,8 +263,8 @@ START_TEST(nothing_is_left_where_nothing_can_be_written) {
     ck_skg(skg_mesh_create_cube(1, &mesh));
     ck_skg_fails(skg_mesh_save(mesh, in_folder("no/such/folder.ply")), SKG_ERR_OUTPUT, "folder.ply");
     ck_skg_fails(skg_mesh_save(mesh, folder), SKG_ERR_OUTPUT, folder); /* a folder is there */
-    ck_skg_fails(skg_mesh_save(mesh, NULL), SKG_ERR_ARGUMENT, "no path");
-    ck_skg_fails(skg_mesh_save(NULL, "a.ply"), SKG_ERR_ARGUMENT, "no mesh");
+    ck_skg_fails(skg_mesh_save(mesh, NULL), SKG_ERR_ARGUMENT, "path is NULL");
+    ck_skg_fails(skg_mesh_save(NULL, "a.ply"), SKG_ERR_ARGUMENT, "mesh is NULL");
     skg_mesh_release(&mesh);
 }
 END_TEST
@@ -302,12 +302,12 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, ply_comes_back_bit_for_bit);
     tcase_add_test(tests, stl_comes_back_corner_by_corner);
     tcase_add_test(tests, ascii_stl_of_two_solids_is_one_mesh);
-    tcase_add_test(tests, damaged_stl_is_told);
+    tcase_add_test(tests, damaged_stl_is_refused);
     tcase_add_test(tests, files_that_are_none);
     tcase_add_test(tests, obj_keeps_its_numbering);
-    tcase_add_test(tests, damaged_obj_is_told);
+    tcase_add_test(tests, damaged_obj_is_refused);
     tcase_add_test(tests, ply_of_every_kind);
-    tcase_add_test(tests, damaged_ply_is_told);
+    tcase_add_test(tests, damaged_ply_is_refused);
     tcase_add_test(tests, nothing_is_left_where_nothing_can_be_written);
     tcase_add_test(tests, memory_may_end_anywhere);
 }

@@ -1,0 +1,308 @@
+#include "mesh/mesh.h"
+
+#include "core/context.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static skg_status check_counts(const char *name, int64_t vertices, int64_t triangles) {
+    if (vertices < 0 || triangles < 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId64 " vertices and %" PRId64 " triangles: counts from 0",
+                        name, vertices, triangles);
+    if (triangles == 0) return skg_fail(SKG_ERR_MESH, "%s: no triangles", name);
+    if (vertices == 0) return skg_fail(SKG_ERR_MESH, "%s: no vertices", name);
+    if (vertices > SKG_MESH_LIMIT || triangles > SKG_MESH_LIMIT)
+        return skg_fail(SKG_ERR_MESH,
+                        "%s: %" PRId64 " vertices and %" PRId64 " triangles: a mesh holds at most %" PRId64
+                        " of each; cut it into several",
+                        name, vertices, triangles, SKG_MESH_LIMIT);
+    return SKG_OK;
+}
+
+static skg_status check_positions(const char *name, const double *positions, int64_t vertices,
+                                  int64_t stride) {
+    for (int64_t i = 0; i < vertices; i++) {
+        const double *p = positions + i * stride;
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+            return skg_fail(SKG_ERR_MESH, "%s: vertex %" PRId64 " is at (%g, %g, %g) mm: not finite", name, i,
+                            p[0], p[1], p[2]);
+    }
+    return SKG_OK;
+}
+
+static skg_status check_corners(const char *name, const int32_t *corners, int64_t triangles,
+                                int64_t vertices) {
+    for (int64_t i = 0; i < 3 * triangles; i++)
+        if (corners[i] < 0 || corners[i] >= vertices)
+            return skg_fail(SKG_ERR_MESH,
+                            "%s: triangle %" PRId64 " names vertex %" PRId32
+                            ", but vertices run from 0 to %" PRId64,
+                            name, i / 3, corners[i], vertices - 1);
+    return SKG_OK;
+}
+
+static void centre_and_reach(const double *positions, int64_t vertices, int64_t stride, double centre[3],
+                             double *reach) {
+    double lowest[3], highest[3];
+    for (int k = 0; k < 3; k++) lowest[k] = highest[k] = positions[k];
+    for (int64_t i = 1; i < vertices; i++)
+        for (int k = 0; k < 3; k++) {
+            double x = positions[i * stride + k];
+            lowest[k] = x < lowest[k] ? x : lowest[k];
+            highest[k] = x > highest[k] ? x : highest[k];
+        }
+    *reach = 0;
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * lowest[k] + 0.5 * highest[k];
+        *reach = fmax(*reach, 0.5 * highest[k] - 0.5 * lowest[k]);
+    }
+}
+
+static skg_status check_reach(const char *name, double reach) {
+    if (reach < (double)FLT_MAX) return SKG_OK;
+    return skg_fail(SKG_ERR_MESH, "%s: %g mm from its centre to its end: more than single precision holds",
+                    name, reach);
+}
+
+static void set_offsets(skg_mesh *mesh) {
+    for (int64_t i = 0; i < mesh->vertices; i++)
+        for (int k = 0; k < 3; k++)
+            mesh->offsets[3 * i + k] = (float)(mesh->positions[3 * i + k] - mesh->origin[k]);
+}
+
+/* Bounds of the offsets that are finite. A comparison with NaN is false, so NaN is a bad vertex, too. */
+static void set_bounds(skg_mesh *mesh) {
+    float lowest[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, highest[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    int64_t bad = -1;
+    for (int64_t i = 0; i < mesh->vertices; i++) {
+        const float *p = mesh->offsets + 3 * i;
+        if (!(fabsf(p[0]) <= FLT_MAX && fabsf(p[1]) <= FLT_MAX && fabsf(p[2]) <= FLT_MAX)) {
+            if (bad < 0) bad = i;
+            continue;
+        }
+        for (int k = 0; k < 3; k++) {
+            lowest[k] = p[k] < lowest[k] ? p[k] : lowest[k];
+            highest[k] = p[k] > highest[k] ? p[k] : highest[k];
+        }
+    }
+    memcpy(mesh->lowest, lowest, sizeof lowest);
+    memcpy(mesh->highest, highest, sizeof highest);
+    mesh->first_bad = bad;
+}
+
+static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays) {
+    double reach;
+    SKG_TRY(skg_copy_text(name, &mesh->name));
+    SKG_TRY(check_counts(name, arrays->vertices, arrays->triangles));
+    SKG_TRY(check_positions(name, arrays->positions, arrays->vertices, 3));
+    SKG_TRY(check_corners(name, arrays->corners, arrays->triangles, arrays->vertices));
+    centre_and_reach(arrays->positions, arrays->vertices, 3, mesh->origin, &reach);
+    SKG_TRY(check_reach(name, reach));
+    mesh->vertices = arrays->vertices;
+    mesh->triangles = arrays->triangles;
+    mesh->positions = arrays->positions;
+    mesh->corners = arrays->corners;
+    *arrays = (skg_mesh_arrays){0};
+    SKG_TRY(skg_alloc(3 * mesh->vertices, sizeof *mesh->offsets, name, &mesh->offsets));
+    set_offsets(mesh);
+    set_bounds(mesh);
+    mesh->version = 1;
+    return skg_mesh_examine(mesh);
+}
+
+skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_arrays *arrays, skg_mesh **mesh) {
+    skg_mesh *made = NULL;
+    if (!name || !*name) name = "mesh";
+    skg_status status = skg_alloc(1, sizeof *made, name, &made);
+    if (status == SKG_OK) {
+        skg_refs_init(&made->refs);
+        status = fill(made, name, arrays);
+    }
+    skg_mesh_arrays_free(arrays);
+    if (status != SKG_OK) {
+        skg_mesh_release(&made);
+        return status;
+    }
+    if (made->orientation < 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: inverted as a whole (its triangles face inward); turned outward", name);
+    *mesh = made;
+    return SKG_OK;
+}
+
+static skg_status check_stride(const char *name, const char *what, int64_t *stride) {
+    if (*stride == 0) *stride = 3;
+    if (*stride >= 3) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "%s: %s stride %" PRId64 ": at least 3 elements, or 0 for 3", name,
+                    what, *stride);
+}
+
+/* The positions are doubles or floats, whichever is not NULL. */
+static skg_status create(skg_context *context, const char *name, int64_t vertices, const double *doubles,
+                         const float *floats, int64_t position_stride, int64_t triangles,
+                         const int32_t *corners, int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+    skg_mesh_arrays arrays = {0};
+    skg_status status = SKG_OK;
+    *mesh = NULL;
+    if (!name || !*name) name = "mesh";
+    if (!isfinite(unit_mm) || unit_mm <= 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
+                        name, unit_mm);
+    SKG_TRY(check_stride(name, "position", &position_stride));
+    SKG_TRY(check_stride(name, "triangle", &triangle_stride));
+    SKG_TRY(check_counts(name, vertices, triangles));
+    if ((!doubles && !floats) || !corners)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: %s are NULL", name, corners ? "positions" : "triangles");
+    SKG_TRY_CLEANUP(skg_alloc(3 * vertices, sizeof(double), name, &arrays.positions));
+    SKG_TRY_CLEANUP(skg_alloc(3 * triangles, sizeof(int32_t), name, &arrays.corners));
+    arrays.vertices = vertices;
+    arrays.triangles = triangles;
+    for (int64_t i = 0; i < vertices; i++)
+        for (int64_t k = 0; k < 3; k++) {
+            int64_t at = i * position_stride + k;
+            arrays.positions[3 * i + k] = unit_mm * (doubles ? doubles[at] : (double)floats[at]);
+        }
+    for (int64_t i = 0; i < triangles; i++)
+        memcpy(arrays.corners + 3 * i, corners + i * triangle_stride, 3 * sizeof(int32_t));
+    return skg_mesh_adopt(context, name, &arrays, mesh);
+cleanup:
+    skg_mesh_arrays_free(&arrays);
+    return status;
+}
+
+skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices, const double *positions,
+                           int64_t position_stride, int64_t triangles, const int32_t *corners,
+                           int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+    SKG_NEEDS(mesh);
+    return create(context, name, vertices, positions, NULL, position_stride, triangles, corners,
+                  triangle_stride, unit_mm, mesh);
+}
+
+skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t vertices,
+                                 const float *positions, int64_t position_stride, int64_t triangles,
+                                 const int32_t *corners, int64_t triangle_stride, double unit_mm,
+                                 skg_mesh **mesh) {
+    SKG_NEEDS(mesh);
+    return create(context, name, vertices, NULL, positions, position_stride, triangles, corners,
+                  triangle_stride, unit_mm, mesh);
+}
+
+skg_status skg_mesh_retain(skg_mesh *mesh) {
+    SKG_NEEDS(mesh);
+    skg_ref(&mesh->refs);
+    return SKG_OK;
+}
+
+void skg_mesh_release(skg_mesh **mesh) {
+    if (!mesh || !*mesh) return;
+    skg_mesh *last = *mesh;
+    *mesh = NULL;
+    if (!skg_unref(&last->refs)) return;
+    skg_free(&last->name);
+    skg_free(&last->positions);
+    skg_free(&last->offsets);
+    skg_free(&last->corners);
+    skg_free(&last->weld);
+    skg_free(&last);
+}
+
+skg_status skg_mesh_count(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles) {
+    SKG_NEEDS(mesh);
+    if (vertices) *vertices = mesh->vertices;
+    if (triangles) *triangles = mesh->triangles;
+    return SKG_OK;
+}
+
+skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(name);
+    *name = mesh->name;
+    return SKG_OK;
+}
+
+skg_status skg_mesh_version_get(const skg_mesh *mesh, int64_t *version) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(version);
+    *version = mesh->version;
+    return SKG_OK;
+}
+
+void skg_mesh_bounds(const skg_mesh *mesh, float lowest[3], float highest[3], int64_t *first_bad) {
+    memcpy(lowest, mesh->lowest, sizeof mesh->lowest);
+    memcpy(highest, mesh->highest, sizeof mesh->highest);
+    *first_bad = mesh->first_bad;
+}
+
+skg_status skg_mesh_positions_get(const skg_mesh *mesh, double *positions, int64_t position_stride) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(positions);
+    SKG_TRY(check_stride(mesh->name, "position", &position_stride));
+    for (int64_t i = 0; i < mesh->vertices; i++) skg_mesh_vertex(mesh, i, positions + i * position_stride);
+    return SKG_OK;
+}
+
+skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(corners);
+    SKG_TRY(check_stride(mesh->name, "triangle", &triangle_stride));
+    for (int64_t i = 0; i < mesh->triangles; i++)
+        memcpy(corners + i * triangle_stride, mesh->corners + 3 * i, 3 * sizeof(int32_t));
+    return SKG_OK;
+}
+
+/* Vertices that are one only because they are at the same place have parted, and the closed mesh has become leaky. */
+static skg_status torn(const skg_mesh *mesh, int64_t vertex) {
+    return skg_fail(
+        SKG_ERR_MESH,
+        "%s: vertices %" PRId32 " and %" PRId64
+        " were at the same place and now are not, which makes the closed mesh leaky; move them together",
+        mesh->name, mesh->weld[vertex], vertex);
+}
+
+skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride) {
+    double centre[3], reach;
+    int far = 0;
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(positions);
+    SKG_TRY(check_stride(mesh->name, "position", &position_stride));
+    SKG_TRY(check_positions(mesh->name, positions, mesh->vertices, position_stride));
+    centre_and_reach(positions, mesh->vertices, position_stride, centre, &reach);
+    SKG_TRY(check_reach(mesh->name, reach));
+    for (int64_t i = 0; mesh->weld && mesh->closed && i < mesh->vertices; i++)
+        for (int k = 0; k < 3; k++)
+            if (positions[i * position_stride + k] != positions[mesh->weld[i] * position_stride + k])
+                return torn(mesh, i);
+    for (int64_t i = 0; i < mesh->vertices; i++)
+        memcpy(mesh->positions + 3 * i, positions + i * position_stride, 3 * sizeof(double));
+    /* The origin stays while it is near the middle of the mesh, so that vertices at rest keep the bits of their
+     * offsets. */
+    for (int k = 0; k < 3; k++) far |= fabs(centre[k] - mesh->origin[k]) > 0.5 * reach;
+    if (far) memcpy(mesh->origin, centre, sizeof centre);
+    mesh->positions_stale = 0;
+    set_offsets(mesh);
+    set_bounds(mesh);
+    mesh->version++;
+    return SKG_OK;
+}
+
+skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(offsets);
+    *offsets = mesh->offsets;
+    if (origin) *origin = mesh->origin;
+    return SKG_OK;
+}
+
+skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
+    SKG_NEEDS(mesh);
+    mesh->positions_stale = 1;
+    mesh->version++;
+    set_bounds(mesh);
+    for (int64_t i = 0; mesh->weld && mesh->closed && mesh->first_bad < 0 && i < mesh->vertices; i++)
+        for (int k = 0; k < 3; k++)
+            if (mesh->offsets[3 * i + k] != mesh->offsets[3 * (int64_t)mesh->weld[i] + k])
+                return torn(mesh, i);
+    return SKG_OK;
+}
