@@ -1,0 +1,139 @@
+/* Mesh files of other programs: by Assimp, against Assimp, and the real organs where they are. */
+#include "core/names.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_files.h"
+
+#include <assimp/cimport.h>
+#include <assimp/scene.h>
+#include <float.h>
+#include <math.h>
+
+/* An ascii STL or an OBJ file as other programs write them. */
+static void write_text(const skg_mesh *mesh, const char *file, int is_obj) {
+    FILE *stream = fopen(file, "w");
+    fputs(is_obj ? "o sphere\n" : "solid sphere\n", stream);
+    for (int64_t i = 0; is_obj && i < 3 * mesh->vertices; i += 3)
+        fprintf(stream, "v %.9g %.9g %.9g\n", mesh->positions[i], mesh->positions[i + 1],
+                mesh->positions[i + 2]);
+    for (int64_t i = 0; i < 3 * mesh->triangles; i++) {
+        const double *p = mesh->positions + 3 * (int64_t)mesh->corners[i];
+        if (is_obj)
+            fprintf(stream, i % 3 == 0 ? "f %d" : i % 3 == 1 ? " %d" : " %d\n", mesh->corners[i] + 1);
+        else
+            fprintf(stream, "%svertex %.9g %.9g %.9g\n%s", i % 3 ? "" : "facet normal 0 0 0\nouter loop\n",
+                    p[0], p[1], p[2], i % 3 == 2 ? "endloop\nendfacet\n" : "");
+    }
+    if (!is_obj) fputs("endsolid sphere\n", stream);
+    fclose(stream);
+}
+
+/* Other formats go through Assimp: OFF, and glTF whose one tetrahedron two nodes place and scale. */
+START_TEST(formats_of_assimp) {
+    skg_mesh *mesh =
+        load(file_of("a.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n"
+                              "3 0 3 2\n"));
+    ck_assert_double_eq_tol(health_of(mesh).volume, 1. / 6, 1e-15);
+    skg_mesh_release(&mesh);
+    mesh = load(file_of(
+        "b.gltf",
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
+        "{\"children\":[1,2],\"translation\":[10,0,0]},{\"mesh\":0},"
+        "{\"mesh\":0,\"scale\":[2,2,2],\"translation\":[0,5,0]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
+        "\"min\":[0,0,0],\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,"
+        "\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},"
+        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,\"uri\":"
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAQACAAMAAAADAAIA\"}]}"));
+    skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.components, 2);
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_double_eq_tol(health.volume, 9. / 6, 1e-14);
+    ck_assert_double_eq(health.bounds[0], 10);
+    ck_assert_double_eq(health.bounds[3], 12);
+    ck_assert_double_eq(health.bounds[4], 7);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* Assimp, which welds nothing, as the oracle of our own readers: the same triangles in the same order, to the
+ * last bit but one (its floats from text are not always the nearest). */
+START_TEST(own_readers_agree_with_assimp) {
+    static const char *const names[] = {"a.stl", "b.ply", "c.stl", "d.obj"};
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_create_sphere(100. / 3, 12, &mesh));
+    for (int i = 0; i < 4; i++) {
+        if (i < 2)
+            ck_skg(skg_mesh_save(mesh, in_folder(names[i])));
+        else
+            write_text(mesh, in_folder(names[i]), i == 3);
+        skg_mesh *ours = load(path);
+        const struct aiScene *scene = aiImportFile(path, 0);
+        ck_assert_ptr_nonnull(scene);
+        ck_assert_uint_eq(scene->mNumMeshes, 1);
+        const struct aiMesh *theirs = scene->mMeshes[0];
+        ck_assert_int_eq(theirs->mNumFaces, ours->triangles);
+        for (int64_t t = 0; t < ours->triangles; t++)
+            for (int c = 0; c < 3; c++) {
+                const struct aiVector3D *p = &theirs->mVertices[theirs->mFaces[t].mIndices[c]];
+                const double *q = ours->positions + 3 * (int64_t)ours->corners[3 * t + c];
+                ck_assert_double_eq_tol((double)p->x, q[0], 100. / 3 * (double)FLT_EPSILON);
+                ck_assert_double_eq_tol((double)p->y, q[1], 100. / 3 * (double)FLT_EPSILON);
+                ck_assert_double_eq_tol((double)p->z, q[2], 100. / 3 * (double)FLT_EPSILON);
+            }
+        aiReleaseImport(scene);
+        skg_mesh_release(&ours);
+    }
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* The organs of a real thorax: numbered as in their files, closed and outward after welding. */
+START_TEST(organs_are_closed_and_outward) {
+    char data[512], file[1024], line[512];
+    const char *root = getenv("SKG_DATA");
+    snprintf(data, sizeof data, "%s/bodyparts3d", root ? root : SKG_SOURCE "/../shared/data");
+    DIR *all = opendir(data);
+    if (!all) {
+        printf("organs_are_closed_and_outward: skipped, there is no %s\n", data);
+        return;
+    }
+    int organs = 0;
+    int64_t triangles = 0;
+    for (struct dirent *entry; (entry = readdir(all));) {
+        const char *dot = strrchr(entry->d_name, '.');
+        if (!dot || !skg_same_name(dot, ".obj")) continue;
+        snprintf(file, sizeof file, "%s/%s", data, entry->d_name);
+        skg_mesh *mesh = load(file);
+        skg_mesh_health health = health_of(mesh);
+        ck_assert_msg(health.closed && health.consistent && health.outward && !health.flipped, "%s", file);
+        ck_assert_int_eq(health.nonmanifold_edges, 0);
+        ck_assert_double_gt(health.volume, 100);
+        int64_t vertices = 0;
+        FILE *stream = fopen(file, "r");
+        while (fgets(line, sizeof line, stream)) {
+            double p[3];
+            if (sscanf(line, "v %lf %lf %lf", p, p + 1, p + 2) != 3) continue;
+            ck_assert_mem_eq(mesh->positions + 3 * vertices, p, sizeof p);
+            vertices++;
+        }
+        fclose(stream);
+        ck_assert_int_eq(vertices, mesh->vertices);
+        triangles += health.triangles;
+        organs++;
+        skg_mesh_release(&mesh);
+    }
+    closedir(all);
+    ck_assert_int_eq(organs, 61);
+    ck_assert_int_eq(triangles, 371034);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, make_folder, remove_folder);
+    tcase_add_test(tests, formats_of_assimp);
+    tcase_add_test(tests, own_readers_agree_with_assimp);
+    tcase_add_test(tests, organs_are_closed_and_outward);
+}
+
+SKG_SUITE_MAIN("mesh import", add_tests)
