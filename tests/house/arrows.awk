@@ -17,7 +17,7 @@ $1 == "symbol" {
     at[symbols] = node($2, $4); program[symbols] = $3; name[symbols] = $5; type[symbols] = $6
     if ($6 !~ /[Uw]/) {
         own[$3, $5] = at[symbols]
-        if ($3 ~ /^(skg_|bench_common)/ && $3 != "skg_tables") shared[$5] = at[symbols]
+        if ($3 !~ /^program:/) shared[$5] = at[symbols]
     }
 }
 END {
@@ -31,9 +31,10 @@ END {
             to = ("host/include/" path) in known ? "host/include/" path : "include/" path
         } else if (what[i] ~ /^"/) {
             if ((folder path) in known) to = folder path
+            else if (from[i] ~ /^bench\// && ("bench/" path) in known) to = "bench/" path
+            else if (from[i] ~ /^(cli|bench)\// && ("cli/" path) in known) to = "cli/" path
             else if (path in known) to = path
             else if (("kernels/" path) in known) to = "kernels/" path
-            else if (("bench/" path) in known) to = "bench/" path
         }
         if (to != "" && stem(to) != stem(from[i])) print stem(from[i]), stem(to), "includes", path
     }

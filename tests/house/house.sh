@@ -1,6 +1,6 @@
 #!/bin/sh
 # house.sh HOUSE: fails on an include or a call upward between rooms, and on a circle between files. A .c and its .h
-# are one file here. HOUSE has lines `room NAME FOLDER`, from the ground up, and `object ROOM PROGRAM FILE`
+# are one file here. HOUSE has lines `room NAME FOLDER`, from the ground up, and `object ROOM TARGET FILE`
 # (CMakeLists.txt writes it). Includes are read from the sources, calls from the objects' symbols.
 set -eu
 house=$1
@@ -9,7 +9,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 awk '$1 == "room" { print $2, ++rank }' "$house" >"$work/ranks"
-# Lines `file FILE`, `include FILE NAME` and `symbol ROOM PROGRAM OBJECT NAME TYPE`.
+# Lines `file FILE`, `include FILE NAME` and `symbol ROOM TARGET OBJECT NAME TYPE`.
 awk '$1 == "room" && $3 != "-" { print $2, $3 }' "$house" | while read -r room folder; do
     # shellcheck disable=SC2016
     (cd "$folder" && find . -name '*.[ch]' -o -name '*.cl' -o -name '*.clh' | sed 's|^\./||' | xargs awk -v room="$room" '
@@ -29,7 +29,7 @@ awk -f "$here/arrows.awk" "$work/facts" | sort -u >"$work/arrows"
 awk 'FNR == NR { rank[$1] = $2; next }
     function room(file) {
         if (file == "include/skiagraph") return "umbrella"
-        if (file ~ /^bench\//) return "bench"
+        if (file ~ /^(cli|bench)\//) return substr(file, 1, index(file, "/") - 1) # these have folders inside
         sub(/\/[^\/]*$/, "", file)
         return file
     }
