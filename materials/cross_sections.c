@@ -1,5 +1,5 @@
-/* xcom.txt: natural cubic splines of ln(cross section) by ln E for each process; photo absorption in pieces
- * from edge to edge. */
+/* The table xcom.txt: natural cubic splines of ln(cross section) over ln E for each process. Photo absorption has a
+ * spline of its own from each edge to the next. */
 #include "spline.h"
 #include "tables.h"
 
@@ -13,7 +13,7 @@ typedef struct {
     double energy[MOST_KNOTS], section[SKG_PROCESSES][MOST_KNOTS];
 } element_table;
 
-/* The spline of one process through the rows rows[0..count). */
+/* The spline of one process through the rows that rows[0..count) names. */
 static void fit(const skg_knot *knots, int process, int count, const int *rows, skg_knot *out) {
     double x[MOST_KNOTS] = {0}, y[MOST_KNOTS] = {0}, second[MOST_KNOTS], scratch[MOST_KNOTS];
     for (int i = 0; i < count; i++) {
@@ -24,7 +24,7 @@ static void fit(const skg_knot *knots, int process, int count, const int *rows, 
     for (int i = 0; i < count; i++) out[rows[i]].second[process] = second[i];
 }
 
-/* Rayleigh and Compton scattering do not see edges: the two rows of an edge are one point. */
+/* Rayleigh and Compton scattering have no edges: the two rows of an edge are one point. */
 static void fit_scattering(int process, int count, skg_knot *knots) {
     int rows[MOST_KNOTS] = {0}, points = 0;
     for (int i = 0; i < count; i++)
@@ -47,7 +47,7 @@ static void fit_photo(int count, skg_knot *knots) {
     }
 }
 
-/* Pairs begin at the threshold: the row before the first positive one continues its line. */
+/* Pair production begins at the threshold. The row below the first positive one continues the line of that one. */
 static void fit_pairs(const element_table *e, skg_knot *knots) {
     int rows[MOST_KNOTS] = {0}, points = 0;
     for (int i = 0; i < e->count; i++) {

@@ -1,4 +1,4 @@
-/* elements.txt, tissues.txt, compounds.txt, schneider.txt, k_lines.txt */
+/* The tables elements.txt, tissues.txt, compounds.txt, schneider.txt and k_lines.txt. */
 #include "tables.h"
 
 #include <math.h>
@@ -7,6 +7,7 @@
 
 static char symbols[SKG_LAST_ELEMENT + 1][4];
 
+/* The most rows of one file; compounds.txt has 170. */
 enum { MOST_ROWS = 400 };
 
 typedef struct {
@@ -36,13 +37,15 @@ void write_elements(const char *folder, FILE *out) {
     fprintf(out, "};\n\n");
 }
 
-int table_element(const table *t, const char *symbol) {
+/* The atomic number of a symbol. */
+static int table_element(const table *t, const char *symbol) {
     for (int z = 1; z <= SKG_LAST_ELEMENT; z++)
         if (strcmp(symbols[z], symbol) == 0) return z;
     table_stop(t, "a symbol is not known");
 }
 
-/* "H 0.1 O 0.9" whose sum is `whole`; written as fractions of 1. */
+/* Writes "H 0.1 O 0.9", whose numbers sum to `whole`, as fractions of 1. Returns their number. The sources round
+ * fractions to four decimals or more, so the sum has to be right to 1e-4. */
 static int write_fractions(const table *t, char *text, double whole, FILE *out) {
     int count = 0;
     double sum = 0;
@@ -63,7 +66,7 @@ static void copy(const table *t, const char *from, size_t size, char *to) {
     strcpy(to, from);
 }
 
-/* Reads the rows of one file; their fractions are written at once. */
+/* Reads the rows of one file, and writes their fractions. */
 static int read_mixtures(const char *folder, const char *name, int *fractions, FILE *out, mixture *rows) {
     table t;
     char *fields[4];

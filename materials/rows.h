@@ -1,4 +1,4 @@
-/* The tables that materials/ compiles in. Private. */
+/* The tables that this folder compiles in: the types of their rows. Private. */
 #ifndef SKG_MATERIAL_TABLES_H
 #define SKG_MATERIAL_TABLES_H
 
@@ -14,11 +14,12 @@ enum {
     SKG_K_LINES = 6
 };
 
-/* Twice the electron's rest energy in keV (CODATA 2018): no pairs below. */
+/* Twice the rest energy of the electron in keV (CODATA 2018): below it there is no pair production. */
 #define SKG_PAIR_THRESHOLD_KEV 1021.9978999
 
-/* One energy of an element: ln of the cross section in cm2/g (pairs: of cross section / (1 - threshold/E)^3)
- * and its second derivative by ln E. An edge is two rows with the same energy: below, above. */
+/* One energy of an element: the logarithm of the cross section in cm2/g (for pairs: of the cross section divided by
+ * (1 - threshold/E)^3) and its second derivative by ln E. An edge is two rows of the same energy, the first with the
+ * values below it and the second with those above. */
 typedef struct {
     double energy_kev, log_energy;
     double value[SKG_PROCESSES], second[SKG_PROCESSES];
@@ -44,7 +45,7 @@ typedef struct {
     const char *source;
 } skg_mixture_row;
 
-/* Tissue by Hounsfield number: the composition from `lowest` up to the next row's. */
+/* Tissue by Hounsfield number: the composition from `lowest` up to that of the next row. */
 typedef struct {
     double lowest;
     const char *name;

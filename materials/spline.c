@@ -1,6 +1,7 @@
 #include "spline.h"
 
-enum { FEWEST = 4 }; /* points; fewer say nothing on curvature */
+/* Fewer points do not determine a curvature. */
+enum { FEWEST = 4 };
 
 void skg_spline_natural(int count, const double *x, const double *y, double *second, double *scratch) {
     for (int i = 0; i < count; i++) second[i] = 0;
@@ -18,7 +19,7 @@ void skg_spline_natural(int count, const double *x, const double *y, double *sec
 }
 
 void skg_spline_piece(int count, const double *x, const double *y, double *second, double *scratch) {
-    enum { CLOSE = 10 };
+    enum { CLOSE = 10 }; /* as spline.h says */
     int first = 0, last = count - 1;
     if (count >= FEWEST) {
         if (CLOSE * (x[1] - x[0]) < x[2] - x[1]) first = 1;

@@ -1,4 +1,4 @@
-/* Natural cubic splines: made when the tables are compiled in, evaluated by the library. */
+/* Natural cubic splines. They are made when the tables are compiled in, and evaluated by the library. */
 #ifndef SKG_SPLINE_H
 #define SKG_SPLINE_H
 
@@ -6,9 +6,9 @@
  * they are 0 (a straight line between points) below 4 points. scratch: [count]. */
 void skg_spline_natural(int count, const double *x, const double *y, double *second, double *scratch);
 
-/* The same between two absorption edges. Where a point stands close to one (ten times closer than to its next
- * neighbour) the edge's own point is not part of the spline and the short interval is a straight line: the
- * tables agree there to 0.5 % only, and a slope taken from it would swing the whole piece by up to 20 %. */
+/* The same between two absorption edges. If a point is ten times closer to an edge than to its next neighbour, the
+ * point of the edge is not part of the spline, and the short interval is a straight line. The tables agree there to
+ * 0.5 % only, and a slope taken from the two points would bend the whole piece by up to 20 %. */
 void skg_spline_piece(int count, const double *x, const double *y, double *second, double *scratch);
 
 /* The value at t between x0 and x1, y and second derivatives at both ends given. */

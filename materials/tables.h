@@ -1,5 +1,5 @@
-/* The program that turns the tables of this folder into one C file (lib/material/tables.h). A table that is
- * not as it should be stops the build with file and line. */
+/* The program that turns the tables of this folder into one C file, whose types are in rows.h. A table with a mistake
+ * stops the build; the message names file and line. */
 #ifndef SKG_MATERIALS_TABLES_H
 #define SKG_MATERIALS_TABLES_H
 
@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 
+/* The most rows of one element (XCOM has up to 100), and the longest line with its end. */
 enum { MOST_KNOTS = 200, MOST_TEXT = 1024 };
 
 typedef struct {
@@ -14,26 +15,28 @@ typedef struct {
     const char *name; /* of the file being read */
     FILE *file;
     int line;
-    char text[MOST_TEXT]; /* the present line, without its end */
+    char text[MOST_TEXT]; /* the line last read, without its end */
 } table;
 
 void table_open(table *t, const char *folder, const char *name);
-int table_next(table *t); /* skips comments and empty lines; 0 at the end, and closes */
+
+/* Reads the next line that is neither a comment nor empty. At the end, closes the file and returns 0. */
+int table_next(table *t);
+
+/* Prints what is wrong with the present line and ends the program. */
 void table_stop(const table *t, const char *why) __attribute__((noreturn));
 
-/* Cuts the line at '|' into exactly `count` fields without spaces around them. */
+/* Cuts the line at '|' into exactly `count` fields and removes the spaces around them. */
 void table_fields(table *t, int count, char **fields);
 
-/* Z of a symbol; the elements have to be written first. */
-int table_element(const table *t, const char *symbol);
-
-/* Each writes its tables. */
+/* Each writes its tables. The order of the calls is this one: elements name their knots, mixtures their elements. */
 void write_cross_sections(const char *folder, FILE *out);
-void write_elements(const char *folder, FILE *out); /* after the cross sections */
-void write_mixtures(const char *folder, FILE *out); /* after the elements */
+void write_elements(const char *folder, FILE *out);
+void write_mixtures(const char *folder, FILE *out);
 void write_k_shells(const char *folder, FILE *out);
 
-/* Knots of each element: [first, last), filled by write_cross_sections. */
+/* The first knot of each element, filled by write_cross_sections. The last knot lies before the first one of the next
+ * element. */
 extern int first_knot[SKG_LAST_ELEMENT + 2];
 
 #endif

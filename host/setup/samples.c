@@ -1,4 +1,4 @@
-#include "core/pose.h"
+#include "core/vector.h"
 #include "setup/setup.h"
 
 #include <inttypes.h>

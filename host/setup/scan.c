@@ -1,4 +1,3 @@
-#include "core/pose.h"
 #include "core/vector.h"
 #include "setup/setup.h"
 

@@ -1,5 +1,5 @@
 #include "core/context.h"
-#include "core/pose.h"
+#include "core/vector.h"
 #include "setup/setup.h"
 
 #include <inttypes.h>

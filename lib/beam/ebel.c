@@ -1,16 +1,20 @@
 /* Ebel's model of a reflection target: H. Ebel, X-ray tube spectra, X-Ray Spectrom. 28 (1999) 255-266.
  *
- * Absolute as he gives them; tube.c calibrates both. */
+ * All constants are those of the publication, for a continuum and lines per mAs and steradian; tube.c calibrates
+ * both. */
 #include "beam/spectrum.h"
+#include "core/maths.h"
 #include "material/material.h"
 
 #include <math.h>
 
-static const double MM2_AT_1M = 1e-6; /* steradian */
+/* The solid angle of one mm2 at 1 m, steradian. */
+static const double MM2_AT_1M = 1e-6;
 
-/* Mean depth of generation in g/cm2: overvoltage u, kV. */
+/* The mean depth in g/cm2 at which photons are made. u: overvoltage, the tube voltage over the energy of the photon or
+ * the edge. */
 static double mean_depth(const skg_anode *anode, double u) {
-    double z = anode->z, kv = anode->kvp, j = 0.0135 * z; /* keV */
+    double z = anode->z, kv = anode->kvp, j = 0.0135 * z; /* mean ionisation energy, keV */
     double lz = log(z), lu = log(u);
     double m = 0.1382 - 0.9211 / sqrt(z);
     double eta = pow(kv, m) * (0.1904 - 0.2236 * lz + 0.1292 * lz * lz - 0.0149 * lz * lz * lz);
@@ -20,12 +24,13 @@ static double mean_depth(const skg_anode *anode, double u) {
            (0.70256 - 1.09865 * eta + 1.0046 * eta * eta + lu);
 }
 
-/* What leaves the target of what is made in it: (1 - exp(-chi)) / chi. The electrons hit it at 90 degrees
- * less the anode's angle, photons leave under that angle. */
+/* The share of the photons made in the target that leave it: (1 - exp(-chi)) / chi. The electrons arrive at 90 degrees
+ * less the angle of the anode, and the photons leave at that angle. */
 static double escape(const skg_anode *anode, double energy_kev, double u) {
-    double sections[SKG_PROCESSES], angle = anode->angle_deg * (acos(-1.0) / 180);
+    double sections[SKG_PROCESSES], angle = anode->angle_deg * (SKG_PI / 180);
     skg_element_sections(anode->z, energy_kev, sections);
     double chi = 2 * sections[SKG_PHOTO] * mean_depth(anode, u) * cos(angle) / sin(angle);
+    /* Below 1e-8 the share is 1 in double precision, and 0/0 is avoided. */
     return chi < 1e-8 ? 1 : -expm1(-chi) / chi;
 }
 
@@ -48,7 +53,7 @@ double skg_ebel_line(const skg_anode *anode, int k, double *energy_kev, double *
     *overvoltage = shell ? anode->kvp / shell->edge_kev : 0;
     if (!shell || !(shell->line_kev[k] > 0) || !(anode->kvp > shell->edge_kev)) return 0;
     double z = anode->z, kv = anode->kvp, u = *overvoltage, j = 0.0135 * z;
-    double stopping = u * log(u) + 1 - u; /* inverse stopping power, shell factor 0.35 */
+    double stopping = u * log(u) + 1 - u; /* of the inverse stopping power, with a shell factor of 0.35 */
     double inverse =
         2 * 0.35 / z * stopping *
         (1 + 16.05 * sqrt(j / shell->edge_kev) * (sqrt(u) * log(u) + 2 * (1 - sqrt(u))) / stopping);

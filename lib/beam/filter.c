@@ -24,9 +24,9 @@ skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double ene
 
 skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, int64_t count,
                                         const skg_filter *filters, skg_spectrum **behind) {
-    if (!behind) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_filtered: no place for the spectrum");
+    SKG_NEEDS(behind);
     *behind = NULL;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_filtered: no spectrum");
+    SKG_NEEDS(spectrum);
     skg_spectrum *made = NULL;
     skg_status status = SKG_OK;
     double strongest = 0;

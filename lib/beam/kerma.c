@@ -1,5 +1,6 @@
 /* Air kerma and half-value layers. */
 #include "beam/spectrum.h"
+#include "core/maths.h"
 #include "material/material.h"
 
 #include <math.h>
@@ -7,20 +8,21 @@
 /* Dry air near sea level by mass (NIST). */
 static const skg_mass_fraction air[4] = {{6, 0.000124}, {7, 0.755268}, {8, 0.231781}, {18, 0.012827}};
 
-/* Energy that a free electron takes from a photon, cross section in cm2 (Klein and Nishina): all but what the
- * scattered photon keeps. */
+/* The cross section in cm2 for the energy that a photon transfers to a free electron (Klein and Nishina): the whole
+ * cross section less the share of the energy that the scattered photon keeps. */
 static double klein_nishina_transfer(double energy_kev) {
-    const double radius = 2.8179403262e-13; /* cm, classical, of the electron */
-    double a = energy_kev / 510.99895, b = 1 + 2 * a, l = log1p(2 * a), pi = acos(-1.0);
+    const double radius = 2.8179403262e-13; /* classical radius of the electron, cm (CODATA 2018) */
+    const double rest_kev = 510.99895;      /* rest energy of the electron (CODATA 2018) */
+    double a = energy_kev / rest_kev, b = 1 + 2 * a, l = log1p(2 * a);
     double all = 2 * ((1 + a) / (a * a) * (2 * (1 + a) / b - l / a) + l / (2 * a) - (1 + 3 * a) / (b * b));
     double kept = l / (a * a * a) + 2 * (1 + a) * (2 * a * a - 2 * a - 1) / (a * a * b * b) +
                   8 * a * a / (3 * b * b * b);
-    return pi * radius * radius * (all - kept);
+    return SKG_PI * radius * radius * (all - kept);
 }
 
 double skg_air_kerma(double energy_kev) {
-    const double avogadro = 6.02214076e23, joule_per_kev = 1.602176634e-16;
-    double sections[SKG_PROCESSES], electrons = 0; /* per g */
+    const double avogadro = 6.02214076e23, joule_per_kev = 1.602176634e-16; /* exact by the SI of 2019 */
+    double sections[SKG_PROCESSES], electrons = 0;                          /* electrons per g */
     skg_mixed_sections(4, air, energy_kev, sections);
     for (int i = 0; i < 4; i++)
         electrons += air[i].fraction * air[i].z / skg_elements[air[i].z].weight * avogadro;
@@ -29,7 +31,7 @@ double skg_air_kerma(double energy_kev) {
                        : 0;
     double transfer =
         sections[SKG_PHOTO] + electrons * klein_nishina_transfer(energy_kev) + pairs; /* cm2/g */
-    /* 100 per cm2, 1000 g per kg, 1e6 uGy per Gy */
+    /* 100 mm2 in a cm2, 1000 g in a kg, 1e6 uGy in a Gy. */
     return 100 * energy_kev * joule_per_kev * transfer * 1000 * 1e6;
 }
 
@@ -42,7 +44,8 @@ double skg_spectrum_kerma(const skg_spectrum *spectrum) {
 
 typedef struct {
     int64_t count;
-    double *kerma, *per_mm; /* of each energy; mu of the layer */
+    double *kerma;  /* [count] uGy of the photons of each energy */
+    double *per_mm; /* [count] mu of the layer */
 } layer;
 
 static double behind(const layer *l, double mm) {
@@ -51,8 +54,9 @@ static double behind(const layer *l, double mm) {
     return sum;
 }
 
-/* Thickness that lets `fraction` of the kerma through: the curve falls and is convex, so Newton's steps from
- * 0 never pass it. */
+/* The thickness in mm that transmits `fraction` of the kerma. The curve falls and is convex, so Newton's steps from 0
+ * approach it from one side; ten suffice, and 200 are a limit that is not reached. They end when a step changes only
+ * the last digits. */
 static double thickness(const layer *l, double fraction) {
     double wanted = fraction * behind(l, 0), mm = 0;
     for (int step = 0; step < 200; step++) {

@@ -14,8 +14,8 @@ static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first,
 
 skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality) {
     enum { ALUMINIUM = 13, COPPER = 29 };
-    if (!spectrum || !quality)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_quality_get: no spectrum or no result");
+    SKG_NEEDS(spectrum);
+    SKG_NEEDS(quality);
     skg_quality ours;
     skg_quality_init(&ours);
     for (int64_t i = 0; i < spectrum->count; i++) {

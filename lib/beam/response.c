@@ -1,4 +1,4 @@
-/* What a detector records of a photon. */
+/* The energy that a detector records of a photon. */
 #include "beam/spectrum.h"
 #include "core/columns.h"
 #include "core/units.h"
@@ -9,13 +9,14 @@
 
 struct skg_response {
     skg_refs refs;
-    int64_t count; /* rows of a table; 0: a layer */
+    int64_t count; /* rows of a table; 0: the response is a layer that absorbs */
     double *energy_kev, *recorded_kev, *efficiency;
     skg_material *material; /* retained */
-    double mm;              /* of the material at full density */
+    double mm;              /* thickness at the full density of the material */
 };
 
-static const double ROUNDING = 0.01; /* tables in use have three digits */
+/* A recorded energy may exceed that of the photon by this share, because published tables are rounded to three digits. */
+static const double ROUNDING = 0.01;
 
 static skg_status check_table(int64_t count, const double *energies, const double *recorded,
                               const double *efficiency) {
@@ -27,7 +28,7 @@ static skg_status check_table(int64_t count, const double *energies, const doubl
         if (!(recorded[i] >= 0 && recorded[i] <= energies[i] * (1 + ROUNDING)))
             return skg_fail(SKG_ERR_BEAM,
                             "energy response, row %" PRId64 ": %g keV recorded of a photon of %g keV; give 0 "
-                            "to the photon's own",
+                            "to the energy of the photon",
                             i + 1, recorded[i], energies[i]);
         if (efficiency && !(efficiency[i] >= 0 && efficiency[i] <= 1))
             return skg_fail(SKG_ERR_BEAM, "energy response, row %" PRId64 ": efficiency %g; give 0 to 1",
@@ -44,7 +45,7 @@ static skg_status copy(int64_t count, const double *from, double **to) {
 
 skg_status skg_response_create_table(int64_t count, const double *energies_kev, const double *recorded_kev,
                                      const double *efficiency, skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_table: no place for the response");
+    SKG_NEEDS(response);
     *response = NULL;
     SKG_TRY(check_table(count, energies_kev, recorded_kev, efficiency));
     skg_response *made = NULL;
@@ -63,8 +64,9 @@ cleanup:
 }
 
 skg_status skg_response_load(const char *path, const char *unit, skg_response **response) {
-    if (!path || !unit || !response)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_load: no path, unit or place for the response");
+    SKG_NEEDS(path);
+    SKG_NEEDS(unit);
+    SKG_NEEDS(response);
     double kev = 1, *energies = NULL, *recorded = NULL;
     int64_t count = 0;
     *response = NULL;
@@ -83,8 +85,8 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
     skg_material *own = NULL;
     double unused = 0, density = 0;
     SKG_TRY(skg_material_density_get(material, &density));
-    SKG_TRY(skg_material_attenuation_get(material, 60, &unused)); /* a density is known */
-    /* A material of its own, since the caller's is not ours to retain. */
+    SKG_TRY(skg_material_attenuation_get(material, 60, &unused)); /* fails unless the density is known */
+    /* The caller's material is const and cannot be retained, so the layer gets its own. */
     SKG_TRY(skg_material_create_at_density(material, density, &own));
     skg_status status = skg_alloc(1, sizeof *made, "energy response", &made);
     if (status != SKG_OK) {
@@ -100,8 +102,7 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
 
 skg_status skg_response_create_scintillator(const skg_material *material, double mm, double packing,
                                             skg_response **response) {
-    if (!response)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_scintillator: no place for the response");
+    SKG_NEEDS(response);
     *response = NULL;
     if (!(isfinite(mm) && mm > 0))
         return skg_fail(SKG_ERR_BEAM, "a scintillator of %g mm is not usable; give a thickness above 0", mm);
@@ -112,18 +113,18 @@ skg_status skg_response_create_scintillator(const skg_material *material, double
 }
 
 skg_status skg_response_create_screen(const skg_material *material, double mg_cm2, skg_response **response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_create_screen: no place for the response");
+    SKG_NEEDS(response);
     *response = NULL;
     double density = 0;
     if (!(isfinite(mg_cm2) && mg_cm2 > 0))
         return skg_fail(SKG_ERR_BEAM, "a screen of %g mg/cm2 is not usable; give a mass above 0", mg_cm2);
     SKG_TRY(skg_material_density_get(material, &density));
-    if (!(density > 0)) return make_layer(material, 1, response); /* fails, and says why */
+    if (!(density > 0)) return make_layer(material, 1, response); /* fails with the sentence on the density */
     return make_layer(material, mg_cm2 / 1000 / density * 10, response);
 }
 
 skg_status skg_response_retain(skg_response *response) {
-    if (!response) return skg_fail(SKG_ERR_ARGUMENT, "skg_response_retain: no response");
+    SKG_NEEDS(response);
     skg_ref(&response->refs);
     return SKG_OK;
 }

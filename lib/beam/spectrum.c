@@ -27,7 +27,7 @@ static skg_status check_energy(double energy_kev) {
 }
 
 skg_status skg_spectrum_create_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_mono: no place for the spectrum");
+    SKG_NEEDS(spectrum);
     *spectrum = NULL;
     SKG_TRY(check_energy(energy_kev));
     if (!(isfinite(photons) && photons > 0))
@@ -47,7 +47,7 @@ static int by_energy(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Sorts, adds equal energies, drops those without photons; the new count. */
+/* Sorts the bins, adds up those of equal energy and removes those without photons. Returns the new count. */
 static int64_t merge(int64_t count, bin *bins) {
     int64_t used = 0;
     qsort(bins, (size_t)count, sizeof *bins, by_energy);
@@ -63,7 +63,7 @@ static int64_t merge(int64_t count, bin *bins) {
 
 skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, const double *photons,
                                     skg_spectrum **spectrum) {
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_bins: no place for the spectrum");
+    SKG_NEEDS(spectrum);
     *spectrum = NULL;
     if (count < 1 || !energies_kev || !photons)
         return skg_fail(SKG_ERR_BEAM, "a spectrum has at least one energy");
@@ -88,9 +88,9 @@ skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, c
 }
 
 skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor, skg_spectrum **scaled) {
-    if (!scaled) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_scaled: no place for the spectrum");
+    SKG_NEEDS(scaled);
     *scaled = NULL;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_scaled: no spectrum");
+    SKG_NEEDS(spectrum);
     if (!(isfinite(factor) && factor > 0))
         return skg_fail(SKG_ERR_BEAM, "a spectrum times %g makes no beam; give a factor above 0", factor);
     SKG_TRY(skg_spectrum_make(spectrum->count, scaled));
@@ -102,7 +102,7 @@ skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double facto
 }
 
 skg_status skg_spectrum_retain(skg_spectrum *spectrum) {
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_retain: no spectrum");
+    SKG_NEEDS(spectrum);
     skg_ref(&spectrum->refs);
     return SKG_OK;
 }
@@ -118,16 +118,17 @@ void skg_spectrum_release(skg_spectrum **spectrum) {
 }
 
 skg_status skg_spectrum_bin_count(const skg_spectrum *spectrum, int64_t *count) {
-    if (!spectrum || !count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin_count: no spectrum or no result");
+    SKG_NEEDS(spectrum);
+    SKG_NEEDS(count);
     *count = spectrum->count;
     return SKG_OK;
 }
 
 skg_status skg_spectrum_bin_get(const skg_spectrum *spectrum, int64_t index, double *energy_kev,
                                 double *photons) {
-    if (!spectrum || !energy_kev || !photons)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin_get: no spectrum or no result");
+    SKG_NEEDS(spectrum);
+    SKG_NEEDS(energy_kev);
+    SKG_NEEDS(photons);
     if (index < 0 || index >= spectrum->count)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_bin_get: energy %" PRId64 " of %" PRId64, index,
                         spectrum->count);

@@ -6,14 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The word after which a GATE macro has the numbers; NULL for a file of two columns. */
+/* The word that precedes the numbers in a GATE macro; NULL for a file of two columns. */
 static skg_status find_word(const char *path, const char **word) {
     char text[512];
     *word = NULL;
     FILE *file = fopen(path, "r");
     if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
     while (!*word && fgets(text, sizeof text, file)) {
-        if (text[strspn(text, " \t")] != '/') continue; /* a macro's commands start so */
+        if (text[strspn(text, " \t")] != '/') continue; /* commands of a macro begin with a slash */
         if (strstr(text, "histpoint")) *word = "histpoint";
         if (strstr(text, "hist/point")) *word = "hist/point";
     }
@@ -22,8 +22,9 @@ static skg_status find_word(const char *path, const char **word) {
 }
 
 skg_status skg_spectrum_load(const char *path, const char *unit, skg_spectrum **spectrum) {
-    if (!path || !unit || !spectrum)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_load: no path, unit or place for the spectrum");
+    SKG_NEEDS(path);
+    SKG_NEEDS(unit);
+    SKG_NEEDS(spectrum);
     const char *word = NULL;
     double kev = 1, *energies = NULL, *photons = NULL;
     int64_t count = 0;

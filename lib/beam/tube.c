@@ -1,4 +1,4 @@
-/* A tube's spectrum: model, calibration, filters, output. */
+/* The spectrum of an X-ray tube: model, calibration, filters, output. */
 #include "beam/spectrum.h"
 #include "core/context.h"
 #include "material/material.h"
@@ -48,10 +48,11 @@ static skg_status check_tube(const skg_tube *tube) {
     return check_value("an output's distance", tube->output_at_mm, 1e-3, 1e9, "mm");
 }
 
-/* Factors on Ebel's continuum and lines (u: tube voltage / K edge), fitted to the air kerma and to the K
- * lines' share of the photons behind 2.5 mm Al (1.6, 5.7, 8.7, 11.2 % at 80, 100, 120, 150 kV) that
- * SpekPy 2.5 gives for tungsten, 12 degrees; as published, the model is 45 to 60 % too high and its lines are
- * 4 to 5 times too weak. */
+/* Factors on Ebel's continuum and lines. u: tube voltage over K edge.
+ *
+ * They are fitted to the air kerma that SpekPy 2.5 gives for tungsten at 12 degrees behind 2.5 mm of aluminium, and to
+ * the share of the K lines in the photons there: 1.6, 5.7, 8.7 and 11.2 % at 80, 100, 120 and 150 kV. As published,
+ * the model is 45 to 60 % too high, and its lines are 4 to 5 times too weak. */
 static double continuum_factor(double kvp) {
     return 0.688 * exp(-0.00133 * (kvp - 60));
 }
@@ -60,7 +61,7 @@ static double line_factor(double kvp, double u) {
     return continuum_factor(kvp) * 3.82 * pow(u - 1, -0.165);
 }
 
-/* The unfiltered spectrum in bins, not yet on Birch's own scale. */
+/* The unfiltered continuum in bins. Birch's is still a shape without scale. */
 static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spectrum) {
     skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
     double w = tube->bin_kev, first = SKG_LOWEST_KEV;
@@ -80,7 +81,7 @@ static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spec
     return SKG_OK;
 }
 
-/* Lines go into the bins that hold them. */
+/* Adds each line to the bin that holds its energy. */
 static void add_lines(const skg_tube *tube, skg_spectrum *spectrum) {
     skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
     for (int k = 0; k < SKG_K_LINES; k++) {
@@ -91,7 +92,7 @@ static void add_lines(const skg_tube *tube, skg_spectrum *spectrum) {
     }
 }
 
-/* Air kerma behind 2.5 mm of aluminium. */
+/* The air kerma behind 2.5 mm of aluminium and, if hvl is given, the half-value layer there. */
 static skg_status hardened(const skg_spectrum *spectrum, double *kerma, double *hvl) {
     skg_filter filter = {NULL, 2.5};
     skg_material *aluminium = NULL;
@@ -130,26 +131,25 @@ cleanup:
     return status;
 }
 
-static skg_status warn(const skg_tube *tube, const skg_spectrum *open, const skg_spectrum *behind) {
-    skg_context own = {.log = tube->log, .log_user = tube->log_user}, *told = tube->context;
-    if (!told) told = &own;
-    if (!told->log) return SKG_OK;
+static skg_status warn(const skg_tube *tube, const skg_spectrum *bare, const skg_spectrum *behind) {
+    const skg_logger log = tube->context ? tube->context->log : (skg_logger){tube->log, tube->log_user};
+    if (!log.call) return SKG_OK;
     if (tube->kvp > 150 || tube->kvp < 20)
-        skg_log(told, SKG_LOG_WARNING, "%g kV: the tube model is validated from 20 to 150 kV only",
-                tube->kvp);
+        skg_logger_say(&log, SKG_LOG_WARNING, "%g kV: the tube model is validated from 20 to 150 kV only",
+                       tube->kvp);
     if (tube->anode != TUNGSTEN)
-        skg_log(told, SKG_LOG_WARNING, "an anode of %s: the tube model is validated for W only",
-                skg_elements[tube->anode].symbol);
+        skg_logger_say(&log, SKG_LOG_WARNING, "an anode of %s: the tube model is validated for W only",
+                       skg_elements[tube->anode].symbol);
     if (tube->kvp < 70) return SKG_OK;
     double kerma = 0, needed = 0, hvl = 0, second = 0;
     skg_material *aluminium = NULL;
-    SKG_TRY(hardened(open, &kerma, &needed));
+    SKG_TRY(hardened(bare, &kerma, &needed));
     SKG_TRY(skg_material_create_element(13, &aluminium));
     skg_status status = skg_half_value_layers(behind, aluminium, &hvl, &second);
     skg_material_release(&aluminium);
     if (status == SKG_OK && hvl < needed * (1 - 1e-9))
-        skg_log(
-            told, SKG_LOG_WARNING,
+        skg_logger_say(
+            &log, SKG_LOG_WARNING,
             "the beam's half-value layer is %.2f mm Al; 2.5 mm Al of filters, which IEC 60601-1-3 asks for "
             "from 70 kV on, would give %.2f mm. No inherent filtration is assumed: name all filters",
             hvl, needed);
@@ -158,22 +158,22 @@ static skg_status warn(const skg_tube *tube, const skg_spectrum *open, const skg
 
 skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectrum) {
     skg_tube ours;
-    skg_spectrum *open = NULL, *behind = NULL;
+    skg_spectrum *bare = NULL, *behind = NULL; /* without and with its filters */
     skg_status status = SKG_OK;
-    if (!spectrum) return skg_fail(SKG_ERR_ARGUMENT, "skg_spectrum_create_tube: no place for the spectrum");
+    SKG_NEEDS(spectrum);
     *spectrum = NULL;
     skg_tube_init(&ours);
     SKG_TRY(skg_struct_read(tube, "skg_tube", &ours, sizeof ours));
     SKG_TRY(check_tube(&ours));
-    SKG_TRY(unfiltered(&ours, &open));
-    SKG_TRY_CLEANUP(skg_spectrum_create_filtered(open, ours.filter_count, ours.filters, &behind));
-    SKG_TRY_CLEANUP(warn(&ours, open, behind));
+    SKG_TRY(unfiltered(&ours, &bare));
+    SKG_TRY_CLEANUP(skg_spectrum_create_filtered(bare, ours.filter_count, ours.filters, &behind));
+    SKG_TRY_CLEANUP(warn(&ours, bare, behind));
     double scale = ours.mas * ours.pixel_mm2 * pow(1000 / ours.distance_mm, 2);
     if (ours.output_ugy_mas > 0)
         scale *= ours.output_ugy_mas * pow(ours.output_at_mm / 1000, 2) / skg_spectrum_kerma(behind);
     status = skg_spectrum_create_scaled(behind, scale, spectrum);
 cleanup:
-    skg_spectrum_release(&open);
+    skg_spectrum_release(&bare);
     skg_spectrum_release(&behind);
     return status;
 }

@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Digits into mantissa and exponent of ten; more than 19 digits do not change a double. */
+/* Adds digits to the mantissa and moves the exponent of ten. Digits beyond the 19 that 64 bits hold only move the
+ * exponent: they do not change the double that results. places: 1 behind the decimal point. */
 static const char *read_digits(const char *c, uint64_t *mantissa, int *exponent, int *digits, int places) {
     for (; isdigit((unsigned char)*c); c++, ++*digits) {
         if (*mantissa < UINT64_MAX / 10 - 1) {
@@ -42,7 +43,8 @@ double skg_read_number(const char *text, const char **end) {
         }
     }
     *end = c;
-    /* Exact where mantissa and power are exact doubles; else within one unit in the last place. */
+    /* The result is exact where mantissa and power of ten are exact doubles (below 2^53, up to 1e22); elsewhere it is
+     * within one unit in the last place. */
     double value =
         mantissa < (UINT64_C(1) << 53) && exponent >= -22 && exponent <= 22
             ? exponent < 0 ? (double)mantissa / pow(10, -exponent) : (double)mantissa * pow(10, exponent)
@@ -52,16 +54,16 @@ double skg_read_number(const char *text, const char **end) {
 
 typedef struct {
     const char *path, *word;
-    int64_t count, room, line;
+    int64_t count, capacity, line;
     double *first, *second;
 } columns;
 
 static skg_status add_row(columns *c, double a, double b) {
-    if (c->count == c->room) {
-        int64_t room = c->room ? 2 * c->room : 256;
-        SKG_TRY(skg_realloc(room, sizeof(double), c->path, &c->first));
-        SKG_TRY(skg_realloc(room, sizeof(double), c->path, &c->second));
-        c->room = room;
+    if (c->count == c->capacity) {
+        int64_t capacity = c->capacity ? 2 * c->capacity : 256;
+        SKG_TRY(skg_realloc(capacity, sizeof(double), c->path, &c->first));
+        SKG_TRY(skg_realloc(capacity, sizeof(double), c->path, &c->second));
+        c->capacity = capacity;
     }
     c->first[c->count] = a;
     c->second[c->count++] = b;
@@ -88,7 +90,7 @@ static skg_status read_line(columns *c, const char *text) {
         return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": two numbers were expected", c->path, c->line);
     while (isspace((unsigned char)*end)) end++;
     if (*end && *end != '#')
-        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there is more than two numbers", c->path,
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are more than two numbers", c->path,
                         c->line);
     return add_row(c, a, b);
 }

@@ -4,14 +4,16 @@
 
 #include "core/core.h"
 
-/* Reads the lines of `path`: each holds two numbers with blanks, a comma or a semicolon between them. Empty
- * lines, and those that start with #, % or a letter before the first row (a heading), are read past.
- * word: NULL, or a word such as "histpoint": then only lines that hold it count, and the numbers follow it.
- * The arrays are allocated; the caller frees them. SKG_ERR_FILE, SKG_ERR_FORMAT with the line. */
+/* Reads the lines of `path`: each holds two numbers with blanks, a comma or a semicolon between them. Empty lines,
+ * lines that start with # or %, and headings (lines before the first row that start with a letter) are skipped.
+ *
+ * word     NULL, or a word such as "histpoint": then only lines that hold it are read, and the numbers follow it
+ * first    both arrays are allocated; the caller frees them
+ * errors   SKG_ERR_FILE, or SKG_ERR_FORMAT with the line */
 skg_status skg_read_columns(const char *path, const char *word, int64_t *count, double **first,
                             double **second);
 
-/* A number as files write it: with a point, whatever the locale. *end: behind it, or text where none is. */
+/* Reads a number with a decimal point, whatever the locale. *end points behind it, or to text if there is none. */
 double skg_read_number(const char *text, const char **end);
 
 #endif

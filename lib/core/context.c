@@ -4,20 +4,31 @@
 #include <stdio.h>
 #include <unistd.h>
 
-void skg_log(skg_context *context, int32_t level, const char *format, ...) {
-    if (!context || !context->log) return;
+static void say(const skg_logger *logger, int32_t level, const char *format, va_list arguments) {
     char sentence[4096];
+    if (!logger->call) return;
+    vsnprintf(sentence, sizeof sentence, format, arguments);
+    logger->call(level, sentence, logger->user);
+}
+
+void skg_logger_say(const skg_logger *logger, int32_t level, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(sentence, sizeof sentence, format, arguments);
+    say(logger, level, format, arguments);
     va_end(arguments);
-    context->log(level, sentence, context->log_user);
+}
+
+void skg_log(const skg_context *context, int32_t level, const char *format, ...) {
+    if (!context) return;
+    va_list arguments;
+    va_start(arguments, format);
+    say(&context->log, level, format, arguments);
+    va_end(arguments);
 }
 
 skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user) {
     SKG_TRY(skg_context_enter(context));
-    context->log = log;
-    context->log_user = user;
+    context->log = (skg_logger){log, user};
     return SKG_OK;
 }
 
@@ -28,6 +39,9 @@ skg_status skg_context_enter(const skg_context *context) {
             SKG_ERR_FORK,
             "the context was made before a fork, and OpenCL does not survive one; make a new context in "
             "the child process");
+    char sentence[SKG_MAILBOX_SENTENCE];
+    while (context->log.call && skg_mailbox_take(context->driver, sentence))
+        skg_log(context, SKG_LOG_WARNING, "OpenCL driver: %s", sentence);
     return SKG_OK;
 }
 

@@ -22,28 +22,36 @@ void skg_one_line(char *sentence);
         if (skg_try_status != SKG_OK) return skg_try_status;                                                 \
     } while (0)
 
-/* Same, but leaves by the label `cleanup` with the local `status` set. */
+/* At the start of a public call: returns SKG_ERR_ARGUMENT when the argument is NULL. The sentence names the call
+ * and the argument as the header has them: "skg_plan_move: the argument view is NULL". */
+#define SKG_NEEDS(argument)                                                                                  \
+    do {                                                                                                     \
+        if (!(argument))                                                                                     \
+            return skg_fail(SKG_ERR_ARGUMENT, "%s: the argument %s is NULL", __func__, #argument);           \
+    } while (0)
+
+/* Like SKG_TRY, but leaves by the label `cleanup` with the local `status` set. */
 #define SKG_TRY_CLEANUP(call)                                                                                \
     do {                                                                                                     \
         status = (call);                                                                                     \
         if (status != SKG_OK) goto cleanup;                                                                  \
     } while (0)
 
-/* count * size bytes, zeroed; the product is checked. A zero count gives a valid pointer. what: for the
- * message. */
+/* Stores the address of count * size zeroed bytes in the pointer at pointer_address, which may be of any object type.
+ * The product is checked. A count of 0 gives a pointer that can be freed. what: for the message. */
 skg_status skg_alloc(int64_t count, size_t size, const char *what, void *pointer_address);
 
-/* Grows or shrinks *pointer_address to count * size bytes; on failure the old block stays. New bytes are not
- * zeroed. */
+/* Grows or shrinks the block at *pointer_address to count * size bytes. On failure the old block stays. New bytes are
+ * not zeroed. */
 skg_status skg_realloc(int64_t count, size_t size, const char *what, void *pointer_address);
 
-/* Frees *pointer_address and sets it to NULL; NULL is fine. */
+/* Frees the block and sets the pointer at pointer_address to NULL; it may be NULL already. */
 void skg_free(void *pointer_address);
 
-/* A copy of text in memory of its own (NULL stays NULL). */
+/* Copies a text into memory of its own, which the caller frees. NULL gives NULL. */
 skg_status skg_copy_text(const char *text, char **copy);
 
-/* Reference counts of handles: starts at 1; skg_unref returns 1 when the last owner is gone. */
+/* The number of owners of a handle. It starts at 1; skg_unref returns 1 when the last owner is gone. */
 typedef struct {
     atomic_int owners;
 } skg_refs;

@@ -1,4 +1,4 @@
-#include "core.h"
+#include "core/core.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -40,7 +40,7 @@ void skg_one_line(char *sentence) {
 }
 
 skg_status skg_fail(skg_status status, const char *format, ...) {
-    /* The arguments may quote the last error itself: format beside it first. */
+    /* The arguments may quote the last error, so the sentence is formatted in a buffer of its own. */
     static _Thread_local char sentence[sizeof last_error];
     va_list arguments;
     va_start(arguments, format);

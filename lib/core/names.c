@@ -9,9 +9,10 @@ int skg_same_name(const char *a, const char *b) {
     return *a == '\0' && *b == '\0';
 }
 
+/* Longer names are not compared; every name that the library knows is shorter. */
 enum { LONGEST = 64 };
 
-/* Damerau-Levenshtein distance (optimal string alignment), cut off at LONGEST characters. */
+/* Damerau-Levenshtein distance (optimal string alignment). */
 static int distance(const char *a, const char *b) {
     int rows[3][LONGEST + 1];
     size_t na = strlen(a), nb = strlen(b);

@@ -20,14 +20,15 @@ skg_status skg_output_open(const char *path, skg_output_file *file) {
     skg_status status = SKG_OK;
     size_t length = strlen(path) + 32;
     struct stat there;
-    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) /* the rename would replace a device */
+    /* The rename would replace a device such as /dev/null by a file. */
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
         return skg_output_fail(path, 0,
                                S_ISDIR(there.st_mode) ? "it is a folder; add a file name"
                                                       : "it is a device, not a file; name a file");
     SKG_TRY_CLEANUP(skg_copy_text(path, &file->path));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)length, 1, "file name", &file->temporary));
     snprintf(file->temporary, length, "%s.part-%ld", path, (long)getpid());
-    file->stream = fopen(file->temporary, "w+bx"); /* libtiff reads back what it links to */
+    file->stream = fopen(file->temporary, "w+bx"); /* read too: libtiff goes back to earlier directories */
     if (!file->stream) {
         status = skg_output_fail(path, errno, "");
         skg_free(&file->temporary); /* not ours to remove */

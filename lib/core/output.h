@@ -1,5 +1,5 @@
-/* Files that appear whole or not at all: written under a temporary name in the same folder, synced, renamed.
- * Private. */
+/* Files that appear whole or not at all: they are written under a temporary name in the same folder, synced and
+ * renamed. Private. */
 #ifndef SKG_OUTPUT_H
 #define SKG_OUTPUT_H
 
@@ -12,17 +12,19 @@ typedef struct {
     char *path, *temporary;
 } skg_output_file;
 
-/* Opens the temporary file. A folder or device of that name is refused. */
+/* Opens the temporary file. A path that is a folder or a device is refused. */
 skg_status skg_output_open(const char *path, skg_output_file *file);
 
-/* SKG_ERR_OUTPUT with path, reason (of an errno value; otherwise as the writer's library gave it) and mend.
- */
+/* Fails with SKG_ERR_OUTPUT; the sentence names the path, the reason and what to do about it.
+ *
+ * reason      a value of errno, or 0 if there is none
+ * otherwise   the reason in words if `reason` is 0 */
 skg_status skg_output_fail(const char *path, int reason, const char *otherwise);
 
-/* Syncs, closes and renames; on failure nothing is left. */
+/* Syncs, closes and renames the file. On failure no file is left. */
 skg_status skg_output_commit(skg_output_file *file);
 
-/* Closes and removes the temporary file; fine after commit or a failed open. */
+/* Closes and removes the temporary file. Does nothing after a commit or a failed open. */
 void skg_output_discard(skg_output_file *file);
 
 #endif

@@ -4,11 +4,11 @@
 
 #include "core/core.h"
 
-/* mm in one unit of length ("um", "mm", "cm", "dm", "m", "dam", "hm", "km" and their names). SKG_ERR_FORMAT
- * with the nearest name. */
+/* The millimetres in one unit of length ("um", "mm", "cm", "dm", "m", "dam", "hm", "km" and their full names).
+ * SKG_ERR_FORMAT for another word; the sentence offers the nearest name. */
 skg_status skg_unit_of_length(const char *name, double *mm);
 
-/* keV in one unit of energy ("eV", "keV", "MeV" and their names). */
+/* The keV in one unit of energy ("eV", "keV", "MeV" and their full names). */
 skg_status skg_unit_of_energy(const char *name, double *kev);
 
 #endif

@@ -81,7 +81,7 @@ void skg_device_info_init(skg_device_info *info) {
 }
 
 skg_status skg_device_count(int64_t *count) {
-    if (!count) return skg_fail(SKG_ERR_ARGUMENT, "skg_device_count: no result");
+    SKG_NEEDS(count);
     found_device found[MOST_DEVICES];
     int32_t all = 0;
     SKG_TRY(find_devices(found, &all));

@@ -8,11 +8,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What the driver has to say outside any call goes to the log as a warning. */
-static void CL_CALLBACK driver_says(const char *sentence, const void *data, size_t size, void *user) {
+void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t size, void *user) {
     (void)data;
     (void)size;
-    skg_log(user, SKG_LOG_WARNING, "OpenCL driver: %s", sentence);
+    skg_mailbox_put(user, sentence);
 }
 
 typedef struct {
@@ -98,13 +97,17 @@ static skg_status new_context(skg_context **context) {
     skg_refs_init(&made->refs);
     made->process = (int64_t)getpid();
     skg_status status = skg_alloc(1, sizeof *made->device, "device", &made->device);
-    if (status != SKG_OK) skg_free(&made);
+    if (status == SKG_OK) status = skg_mailbox_create(&made->driver);
+    if (status != SKG_OK) {
+        skg_free(&made->device);
+        skg_free(&made);
+    }
     *context = made;
     return status;
 }
 
 skg_status skg_context_create(const char *config, skg_context **context) {
-    if (!context) return skg_fail(SKG_ERR_ARGUMENT, "skg_context_create: no place for the context");
+    SKG_NEEDS(context);
     *context = NULL;
     skg_context *made = NULL;
     skg_status status = SKG_OK;
@@ -118,7 +121,8 @@ skg_status skg_context_create(const char *config, skg_context **context) {
     SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
     if (wanted.kernels[0]) SKG_TRY_CLEANUP(skg_copy_text(wanted.kernels, &device->kernel_dir));
     cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
-    device->cl = clCreateContext(properties, 1, &device->id, driver_says, made, &code);
+    device->cl = clCreateContext(properties, 1, &device->id, skg_driver_says,
+                                 skg_mailbox_address(made->driver), &code);
     SKG_CL_CLEANUP(code);
     device->profiling = 1;
     device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &code);
@@ -132,9 +136,10 @@ cleanup:
 
 skg_status skg_context_create_cl(cl_context cl, cl_device_id id, cl_command_queue queue,
                                  skg_context **context) {
-    if (!context || !cl || !id || !queue)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "skg_context_create_cl: context, device, queue or result is missing");
+    SKG_NEEDS(context);
+    SKG_NEEDS(cl);
+    SKG_NEEDS(id);
+    SKG_NEEDS(queue);
     *context = NULL;
     cl_context queue_context = NULL;
     cl_device_id queue_device = NULL;
@@ -177,6 +182,7 @@ void skg_context_release(skg_context **context) {
     if (ours && device->cl) clReleaseContext(device->cl);
     if (ours && device->id) clReleaseDevice(device->id); /* no-op for a root device */
     skg_free(&device->kernel_dir);
+    skg_mailbox_release(&last->driver);
     skg_free(&last->device);
     skg_free(&last);
 }

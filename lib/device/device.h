@@ -22,8 +22,7 @@ typedef struct skg_device {
     int64_t builds; /* programs compiled so far: a second scene with the same effects adds none */
 } skg_device;
 
-/* --- errors
- * ------------------------------------------------------------------------------------------------------ */
+/* --- errors --- */
 
 /* "CL_OUT_OF_RESOURCES"; static storage. */
 const char *skg_cl_name(cl_int code);
@@ -47,8 +46,11 @@ skg_status skg_cl_fail(cl_int code, const char *call, const char *file, int line
         }                                                                                                    \
     } while (0)
 
-/* --- programs and kernels
- * ---------------------------------------------------------------------------------------- */
+/* The callback of clCreateContext. The driver calls it at any time and from any thread; user is the address of the
+ * context's mailbox. */
+void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t size, void *user);
+
+/* --- programs and kernels --- */
 
 /* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1
  * ..."): from the context's cache, or built. The cache keeps it; do not release. Failure shows the build log.
@@ -63,8 +65,7 @@ skg_status skg_kernel_create(cl_program program, const char *name, cl_kernel *ke
  * failure. */
 skg_status skg_kernel_set(cl_kernel kernel, cl_uint index, size_t size, const void *value);
 
-/* --- buffers
- * ----------------------------------------------------------------------------------------------------- */
+/* --- buffers --- */
 
 /* Device memory that grows as needed. All zero: none yet. */
 typedef struct {
@@ -82,8 +83,7 @@ void skg_buffer_release(skg_buffer *buffer);
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what);
 
-/* --- choosing (choose.c)
- * ----------------------------------------------------------------------------------------- */
+/* --- choosing (choose.c) --- */
 
 /* The device that config asks for. info is filled. */
 skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_device_id *device,

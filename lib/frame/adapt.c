@@ -15,7 +15,7 @@ static double most_change(const skg_plan *plan, const float *before, const float
     const int64_t size = plan->view.rows * plan->view.columns, count = size * plan->model.channels;
     const int is_ratio = skg_quantity_is_ratio(&plan->options) && !skg_quantity_is_absolute(&plan->options);
     for (int64_t i = 0; i < count; i++) {
-        const double open = is_ratio ? 1 : plan->model.open[i / size];
+        const double open = is_ratio ? 1 : plan->model.flat_field[i / size];
         change[i] = open > 0 ? (float)(fabs((double)after[i] - (double)before[i]) / open) : 0;
     }
     qsort(change, (size_t)count, sizeof *change, by_size);

@@ -36,11 +36,11 @@ static skg_status make_last_stage(skg_plan *plan) {
     if (!skg_quantity_is_absolute(options)) return SKG_OK;
     if (!ratio && !areas && !(detection.electronic > 0) && !(detection.step > 0)) return SKG_OK;
     for (int32_t c = 0; c < plan->model.channels; c++) {
-        if (ratio && !(plan->model.open[c] > 0))
+        if (ratio && !(plan->model.flat_field[c] > 0))
             return skg_fail(SKG_ERR_BEAM,
                             "channel %d records nothing of the open beam, so there is no ratio to it",
                             (int)c);
-        factors[c] = ratio && !detection.over_field ? 1 / plan->model.open[c] : 1;
+        factors[c] = ratio && !detection.over_field ? 1 / plan->model.flat_field[c] : 1;
     }
     plan->field.wanted = detection.over_field;
     return skg_detector_create(plan->context, &detection, factors, &plan->detector);

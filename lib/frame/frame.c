@@ -39,7 +39,7 @@ static void release_parts(skg_frame_parts *frame) {
     skg_free(&frame->writes);
     skg_free(&frame->first_write);
     skg_mix_release(&frame->mix);
-    skg_contest_release(&frame->contest);
+    skg_priority_release(&frame->priority);
 }
 
 /* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
@@ -66,8 +66,8 @@ static skg_status list_writes(const skg_plan *plan, const skg_frame_work *work, 
     if (work->lengths_of >= 0) return list_lengths(plan, work, frame);
     if (work->frame && work->frame->override_count != 0)
         return skg_frame_list_matter(plan, work->frame, frame);
-    frame->all_writes = plan->model.writes;
-    frame->firsts = plan->model.first_write;
+    frame->all_writes = plan->model.contributions;
+    frame->firsts = plan->model.first_contribution;
     frame->planes = plan->model.planes;
     return SKG_OK;
 }
@@ -78,8 +78,8 @@ static skg_status mix_planes(const skg_plan *plan, const skg_frame_work *work, s
     SKG_TRY(skg_mix_find(plan->scene->count, plan->model.planes, frame->all_writes, frame->firsts,
                          plan->mixed, &frame->mix));
     if (!frame->mix.sums) return SKG_OK; /* matter of many kinds in this frame */
-    frame->all_writes = frame->mix.writes;
-    frame->firsts = frame->mix.first_write;
+    frame->all_writes = frame->mix.contributions;
+    frame->firsts = frame->mix.first_contribution;
     frame->planes = plan->mixed;
     return SKG_OK;
 }
@@ -196,12 +196,12 @@ static skg_status resolve(skg_plan *plan, skg_job *job, const skg_frame_work *wo
 }
 
 /* Who competes for intervals in this frame; a mesh's own lengths know nothing of others. */
-static skg_status find_contest(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
-    if (!plan->contest_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
+static skg_status find_priorities(const skg_plan *plan, const skg_frame_work *work, skg_frame_parts *frame) {
+    if (!plan->priority_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
         return SKG_OK;
-    SKG_TRY(skg_contest_find(plan->scene, plan->options.clip, frame->extents, &frame->contest));
-    for (int64_t s = 0; s < frame->contest.count; s++)
-        frame->kernels.source_plane |= frame->extents[frame->contest.parts[s]].near_source;
+    SKG_TRY(skg_priority_find(plan->scene, plan->options.clip, frame->extents, &frame->priority));
+    for (int64_t s = 0; s < frame->priority.count; s++)
+        frame->kernels.source_plane |= frame->extents[frame->priority.parts[s]].near_source;
     return SKG_OK;
 }
 
@@ -215,7 +215,7 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     SKG_TRY(list_writes(plan, work, frame));
     SKG_TRY(mix_planes(plan, work, frame));
     SKG_TRY(place_parts(plan, work, frame));
-    SKG_TRY(find_contest(plan, work, frame));
+    SKG_TRY(find_priorities(plan, work, frame));
     frame->kernels.precision =
         plan->options.precision == SKG_PRECISION_DOUBLE ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
     frame->kernels.half = plan->options.precision == SKG_PRECISION_HALF;
@@ -224,7 +224,7 @@ static skg_status prepare(skg_plan *plan, const skg_frame_work *work, int64_t sa
     frame->kernels.parallel = frame->camera.parallel;
     frame->kernels.listed_writes = frame->kernels.half || has_lists(frame, plan->scene->count);
     SKG_TRY(skg_plan_raster(plan, &frame->kernels, plan->strategy, frame->planes,
-                            plan->open_count > 0 || plan->contest_possible, &plan->main));
+                            plan->open_count > 0 || plan->priority_possible, &plan->main));
     plan->report.plane_bits = frame->scale.bits;
     skg_raster_tiles(plan->main, &plan->report.tile_columns, &plan->report.tile_rows, &plan->report.tiles);
     return SKG_OK;
@@ -244,7 +244,7 @@ static skg_status find_fields(const skg_plan *plan, skg_job *job, const skg_fram
     SKG_TRY(skg_job_stage(job, 4 * frame->planes, sizeof **fields, "fields", fields));
     for (int64_t p = 0; p < plan->scene->count; p++) {
         cl_int own[4];
-        skg_extent_field(&frame->camera, &frame->extents[p], own);
+        skg_extent_pixels(&frame->camera, &frame->extents[p], own);
         for (int64_t w = frame->firsts[p]; w < frame->firsts[p + 1]; w++) {
             cl_int *field = *fields + 4 * frame->all_writes[w].plane;
             const int known = field[1] > 0;
@@ -270,7 +270,7 @@ static skg_status enqueue_pass(skg_plan *plan, skg_job *job, const skg_frame_wor
     if (frame.kernels.half) skg_raster_set_rays(plan->main, &frame.camera);
     SKG_TRY_CLEANUP(find_fields(plan, job, &frame, &fields));
     SKG_TRY_CLEANUP(skg_raster_run(plan->main, &plan->geometry, fields, &job->log));
-    if (frame.contest.count) SKG_TRY_CLEANUP(skg_contest_run(plan, job, &frame, plan->main));
+    if (frame.priority.count) SKG_TRY_CLEANUP(skg_priority_run(plan, job, &frame, plan->main));
     if (plan->open_count) SKG_TRY_CLEANUP(skg_open_parts_add(plan, job, &frame, plan->main));
     SKG_TRY_CLEANUP(resolve(plan, job, work, sample, &frame));
 cleanup:

@@ -30,7 +30,7 @@ typedef struct {
     const int64_t *firsts;              /* [parts + 1] all_writes[firsts[p]] ... */
     skg_extent *extents;                /* [parts], in the plan's room */
     skg_scale scale;
-    skg_contest contest; /* closed parts that compete for intervals */
+    skg_priority priority; /* closed parts that compete for intervals */
 } skg_frame_parts;
 
 /* Compiles and allocates for images of the plan's view. */
@@ -63,8 +63,8 @@ skg_status skg_open_kernel(skg_plan *plan, const skg_open_batch *batch, const ch
 
 /* Enqueues what priorities and clipping take off the sums of the closed parts, whose tables the device has;
  * waits for the number of hits (priority_hits.c). */
-skg_status skg_contest_run(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
-                           const skg_raster *raster);
+skg_status skg_priority_run(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
+                            const skg_raster *raster);
 
 /* Warns once that nothing falls on the detector: which way, how far (unseen.c). */
 void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame);

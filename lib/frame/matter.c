@@ -53,17 +53,18 @@ static void find_own(matter *m, int64_t part) {
     find_own(m, parent);
     double *own = m->own + part * model->planes;
     memcpy(own, m->own + parent * model->planes, (size_t)model->planes * sizeof *own);
-    for (int64_t w = model->first_write[part]; w < model->first_write[part + 1]; w++)
-        own[model->writes[w].plane] += model->writes[w].weight;
+    for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
+        own[model->contributions[w].plane] += model->contributions[w].weight;
     m->known[part] = 1;
 }
 
 static int64_t list_part(const matter *m, int64_t part, skg_contribution *writes) {
     const skg_model *model = &m->plan->model;
     const int64_t parts = m->plan->scene->count, parent = parent_of(m, part);
-    int64_t count = model->first_write[part + 1] - model->first_write[part];
+    int64_t count = model->first_contribution[part + 1] - model->first_contribution[part];
     if (!m->listed[part] && (parent == parts || !m->listed[parent])) {
-        memcpy(writes, model->writes + model->first_write[part], (size_t)count * sizeof *writes);
+        memcpy(writes, model->contributions + model->first_contribution[part],
+               (size_t)count * sizeof *writes);
         return count;
     }
     const double around = parent == parts ? 1 : m->density[parent];

@@ -183,7 +183,7 @@ skg_status skg_plan_renew_model(skg_plan *plan) {
 static skg_status check_half(const skg_plan *plan) {
     if (plan->options.precision != SKG_PRECISION_HALF) return SKG_OK;
     if (plan->view.projection != SKG_PROJECTION_POINT || plan->open_count > 0 || plan->options.world ||
-        plan->contest_possible || plan->options.blur || skg_quantity_is_absolute(&plan->options))
+        plan->priority_possible || plan->options.blur || skg_quantity_is_absolute(&plan->options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
             "precision half is for comparison: a point source or samples of one, closed meshes without "
@@ -198,7 +198,7 @@ static skg_status make(skg_plan *plan) {
     SKG_TRY(skg_plan_name_channels(plan));
     SKG_TRY(make_samples(plan));
     SKG_TRY(find_open(plan));
-    plan->contest_possible = skg_contest_possible(plan->scene, plan->options.clip);
+    plan->priority_possible = skg_priority_possible(plan->scene, plan->options.clip);
     SKG_TRY(check_half(plan));
     SKG_TRY(make_geometry(plan));
     SKG_TRY(skg_plan_make_detector(plan));
@@ -304,7 +304,7 @@ static void release_device_memory(skg_plan *plan) {
     skg_buffer_release(&plan->gaps);
     skg_buffer_release(&plan->field.image);
     skg_buffer_release(&plan->mix_lists);
-    skg_contest_memory_release(&plan->contest_memory);
+    skg_priority_memory_release(&plan->priority_memory);
 }
 
 void skg_plan_release(skg_plan **plan) {

@@ -119,8 +119,8 @@ struct skg_plan {
     skg_buffer open_table; /* of the batch of open parts at hand, as skg_open_add takes it */
     skg_buffer gaps;       /* and as skg_open_gaps leaves them */
 
-    int32_t contest_possible; /* priorities differ, or children are clipped */
-    skg_contest_memory contest_memory;
+    int32_t priority_possible; /* priorities differ, or children are clipped */
+    skg_priority_memory priority_memory;
 
     int64_t overlap_count;
     skg_overlap_pair *overlaps;

@@ -71,15 +71,15 @@ void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const doubl
                           part->low_row <= (double)camera->rows - 0.5 && part->high_depth > part->low_depth;
 }
 
-/* Rows by which fields grow, so that what moves a little does not change them. */
-enum { FIELD_ROWS = 16 };
+/* Rows by which extents grow, so that what moves a little does not change them. */
+enum { EXTENT_ROWS = 16 };
 
-void skg_extent_field(const skg_camera *camera, const skg_extent *extent, int32_t field[4]) {
+void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]) {
     const double rows = (double)camera->rows, columns = (double)camera->columns;
     const skg_scale_part *at = &extent->scale;
-    field[0] = (int32_t)fmin(fmax(at->low_row - 2, 0), rows) & -FIELD_ROWS;
-    field[1] = (int32_t)fmin(fmax(at->high_row + 2 + FIELD_ROWS, 0), rows + FIELD_ROWS) & -FIELD_ROWS;
-    field[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS * SKG_FIELD_COLUMNS;
-    field[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS + 1) *
-               SKG_FIELD_COLUMNS;
+    pixels[0] = (int32_t)fmin(fmax(at->low_row - 2, 0), rows) & -EXTENT_ROWS;
+    pixels[1] = (int32_t)fmin(fmax(at->high_row + 2 + EXTENT_ROWS, 0), rows + EXTENT_ROWS) & -EXTENT_ROWS;
+    pixels[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS * SKG_FIELD_COLUMNS;
+    pixels[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS + 1) *
+                SKG_FIELD_COLUMNS;
 }

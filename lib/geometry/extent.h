@@ -18,6 +18,6 @@ void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const doubl
 
 /* The field (skg_shared.h) that its rectangle and 2 pixels for rounding cover; rows may lie beyond the last
  * one. */
-void skg_extent_field(const skg_camera *camera, const skg_extent *extent, int32_t field[4]);
+void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);
 
 #endif

@@ -23,8 +23,7 @@ typedef struct {
     skg_overlap_pair *table; /* open addressing; part < 0: empty */
 } pair_table;
 
-/* --- columns
- * ----------------------------------------------------------------------------------------------------- */
+/* --- columns --- */
 
 /* Columns stand off the cell centres by an irrational part of a cell, so that axis-aligned faces and shared
  * vertices are not met exactly as a rule; where they are, the half-open rule below still balances. */
@@ -111,8 +110,7 @@ static skg_status gather(columns *grid, int64_t count, const skg_solid *solids) 
     return SKG_OK;
 }
 
-/* --- pairs
- * ------------------------------------------------------------------------------------------------------- */
+/* --- pairs --- */
 
 static skg_overlap_pair *find_slot(const pair_table *pairs, int32_t kind, int64_t part, int64_t other) {
     uint64_t hash =
@@ -152,8 +150,7 @@ static skg_status add_chord(pair_table *pairs, int32_t kind, int64_t part, int64
     return SKG_OK;
 }
 
-/* --- sweep
- * ------------------------------------------------------------------------------------------------------- */
+/* --- sweep --- */
 
 static int by_depth(const void *a, const void *b) {
     const column_hit *left = a, *right = b;

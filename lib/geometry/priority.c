@@ -13,7 +13,7 @@ static int64_t clipped_to(const skg_scene *scene, int32_t clip, int64_t part) {
                : -1;
 }
 
-int skg_contest_possible(const skg_scene *scene, int32_t clip) {
+int skg_priority_possible(const skg_scene *scene, int32_t clip) {
     for (int64_t p = 0; p < scene->count; p++) {
         if (clipped_to(scene, clip, p) >= 0) return 1;
         if (scene->parts[p].priority == 0) continue; /* where priorities differ, one is not 0 */
@@ -24,7 +24,7 @@ int skg_contest_possible(const skg_scene *scene, int32_t clip) {
     return 0;
 }
 
-int skg_contest_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair) {
+int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair) {
     if (pair->kind == SKG_OVERLAP_PROTRUDES) return clipped_to(scene, clip, pair->part) >= 0;
     return scene->parts[pair->part].priority != scene->parts[pair->other].priority;
 }
@@ -65,15 +65,15 @@ static int64_t level_of(const skg_scene *scene, const skg_extent *extents, int64
     return level;
 }
 
-skg_status skg_contest_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
-                            skg_contest *contest) {
+skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
+                             skg_priority *priority) {
     int32_t *marks = NULL;
     int64_t *levels = NULL, deepest = 0;
     skg_status status = SKG_OK;
-    *contest = (skg_contest){0};
+    *priority = (skg_priority){0};
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *marks, "priorities", &marks));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *levels, "priorities", &levels));
-    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *contest->parts, "priorities", &contest->parts));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *priority->parts, "priorities", &priority->parts));
     mark_rivals(scene, clip, extents, marks);
     for (int64_t p = 0; p < scene->count; p++) {
         levels[p] = level_of(scene, extents, p, marks);
@@ -81,46 +81,46 @@ skg_status skg_contest_find(const skg_scene *scene, int32_t clip, const skg_exte
     }
     for (int64_t level = 0; level <= deepest; level++)
         for (int64_t p = 0; p < scene->count; p++)
-            if (levels[p] == level && marks[p] & LISTED) contest->parts[contest->count++] = p;
+            if (levels[p] == level && marks[p] & LISTED) priority->parts[priority->count++] = p;
 cleanup:
     skg_free(&marks);
     skg_free(&levels);
-    if (status != SKG_OK) skg_contest_release(contest);
+    if (status != SKG_OK) skg_priority_release(priority);
     return status;
 }
 
-void skg_contest_release(skg_contest *contest) {
-    skg_free(&contest->parts);
-    contest->count = 0;
+void skg_priority_release(skg_priority *priority) {
+    skg_free(&priority->parts);
+    priority->count = 0;
 }
 
-int64_t skg_contest_slots(const skg_contest *contest) {
+int64_t skg_priority_slots(const skg_priority *priority) {
     int64_t slots = 32;
-    while (slots < contest->count) slots *= 2; /* few sizes: few programs */
+    while (slots < priority->count) slots *= 2; /* few sizes: few programs */
     return slots;
 }
 
-int64_t skg_contest_entry(const skg_contest *contest) {
-    return 2 + 2 * skg_contest_slots(contest) / 32;
+int64_t skg_priority_entry(const skg_priority *priority) {
+    return 2 + 2 * skg_priority_slots(priority) / 32;
 }
 
 static void add_to_set(int32_t *set, int64_t slot) {
     set[slot / 32] = (int32_t)((uint32_t)set[slot / 32] | (uint32_t)1 << slot % 32);
 }
 
-void skg_contest_tables(const skg_scene *scene, int32_t clip, const skg_contest *contest, int32_t *slots,
-                        int32_t *table) {
-    const int64_t size = skg_contest_entry(contest), words = skg_contest_slots(contest) / 32;
+void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
+                         int32_t *table) {
+    const int64_t size = skg_priority_entry(priority), words = skg_priority_slots(priority) / 32;
     for (int64_t p = 0; p < scene->count; p++) slots[p] = -1;
-    for (int64_t s = 0; s < contest->count; s++) slots[contest->parts[s]] = (int32_t)s;
-    for (int64_t s = 0; s < contest->count; s++) {
-        const int64_t part = contest->parts[s], parent = clipped_to(scene, clip, part);
+    for (int64_t s = 0; s < priority->count; s++) slots[priority->parts[s]] = (int32_t)s;
+    for (int64_t s = 0; s < priority->count; s++) {
+        const int64_t part = priority->parts[s], parent = clipped_to(scene, clip, part);
         int32_t *entry = table + s * size;
         for (int64_t k = 2; k < size; k++) entry[k] = 0;
         entry[0] = (int32_t)part;
         entry[1] = parent >= 0 ? slots[parent] : -1;
-        for (int64_t other = 0; other < contest->count; other++)
-            if (may_win(&scene->parts[contest->parts[other]], &scene->parts[part]))
+        for (int64_t other = 0; other < priority->count; other++)
+            if (may_win(&scene->parts[priority->parts[other]], &scene->parts[part]))
                 add_to_set(entry + 2, other);
         for (int64_t up = scene->parts[part].inside; up >= 0; up = scene->parts[up].inside)
             if (slots[up] >= 0) add_to_set(entry + 2 + words, slots[up]);

@@ -15,26 +15,26 @@
 typedef struct {
     int64_t count;  /* of parts that compete, or fall with one that does */
     int64_t *parts; /* [count] their numbers, parents before children */
-} skg_contest;
+} skg_priority;
 
 /* Whether anything of a scene can ever compete. */
-int skg_contest_possible(const skg_scene *scene, int32_t clip);
+int skg_priority_possible(const skg_scene *scene, int32_t clip);
 
 /* Who competes where parts lie as the extents say. */
-skg_status skg_contest_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
-                            skg_contest *contest);
-void skg_contest_release(skg_contest *contest);
+skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
+                             skg_priority *priority);
+void skg_priority_release(skg_priority *priority);
 
 /* Ints of an entry of the kernels' table (hits.cl) for this many competitors, and how many those kernels are
  * made for. */
-int64_t skg_contest_slots(const skg_contest *contest);
-int64_t skg_contest_entry(const skg_contest *contest);
+int64_t skg_priority_slots(const skg_priority *priority);
+int64_t skg_priority_entry(const skg_priority *priority);
 
 /* slots: [parts of the scene]; table: [competitors][entry]. */
-void skg_contest_tables(const skg_scene *scene, int32_t clip, const skg_contest *contest, int32_t *slots,
-                        int32_t *table);
+void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
+                         int32_t *table);
 
 /* Whether priority or clipping decides what an overlapping pair shows. */
-int skg_contest_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair);
+int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair);
 
 #endif

@@ -177,8 +177,7 @@ skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_
     return SKG_OK;
 }
 
-/* --- where caps are
- * ---------------------------------------------------------------------------------------------- */
+/* --- where caps are --- */
 
 /* Pixels by which caps grow: more than a device errs by, so that rays past a rim count as through the hole.
  */

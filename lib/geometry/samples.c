@@ -69,8 +69,7 @@ int64_t skg_samples_count(const skg_samples *samples) {
     return samples->spot_count * samples->shifts * samples->shifts;
 }
 
-/* --- Sobol's sequence in three dimensions
- * ------------------------------------------------------------------------- */
+/* --- Sobol's sequence in three dimensions --- */
 
 /* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86: polynomials 1, x + 1, x^2 + x + 1 with starting
  * numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. */
@@ -98,8 +97,7 @@ static void grid_point(const skg_spot *spot, int64_t index, double x[3]) {
     }
 }
 
-/* --- shapes
- * ---------------------------------------------------------------------------------------------------- */
+/* --- shapes --- */
 
 static const double TURN = 6.283185307179586;
 

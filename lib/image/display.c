@@ -1,4 +1,4 @@
-/* Display curves, and what a file says about its picture in words. */
+/* Display curves, and the texts that a file holds on its picture. */
 #include "image/image.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@ double skg_picture_value(const skg_picture *picture, int64_t index) {
                                              : (double)((const float *)picture->data)[index];
 }
 
-/* Whether I/I0 can be formed. */
+/* Whether the picture is I/I0 or can be divided by its flat field I0. */
 static int is_relative(const skg_picture *picture) {
     return picture->quantity == SKG_QUANTITY_TRANSMISSION || picture->quantity == SKG_QUANTITY_ATTENUATION ||
            picture->flat_field > 0;
@@ -23,8 +23,27 @@ double skg_picture_shown(const skg_picture *picture, double value) {
     double transmission =
         picture->quantity == SKG_QUANTITY_TRANSMISSION ? value : value / picture->flat_field;
     if (!radiograph) return transmission;
-    /* Nothing comes through (or noise says less than nothing): infinitely dense. 0 - keeps -0 away. */
+    /* Without transmission, or with a negative one by noise, the object is infinitely dense. 0 - x gives 0, not -0. */
     return transmission <= 0 ? HUGE_VAL : 0 - log(transmission);
+}
+
+void skg_picture_shown_range(const skg_picture *picture, double *low, double *high) {
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    int64_t pixels = picture->columns * picture->rows;
+    for (int64_t i = 0; i < pixels; i++) {
+        double shown = skg_picture_shown(picture, skg_picture_value(picture, i));
+        if (!isfinite(shown)) continue;
+        if (shown < least) least = shown;
+        if (shown > most) most = shown;
+    }
+    if (least > most) least = 0, most = 1; /* there is no finite value */
+    /* A picture of one value is shown between 0 and 1, or between 0 and that value. */
+    if (least == most) {
+        if (least > 0) least = 0;
+        if (most < 1) most = most < 0 ? 0 : 1;
+    }
+    *low = least;
+    *high = most;
 }
 
 void skg_picture_curve(const skg_picture *picture, char *text, size_t length) {
@@ -46,7 +65,7 @@ void skg_picture_numbers(const double *numbers, int count, char *text, size_t le
     for (int i = 0; i < count && used < length; i++) {
         char number[32];
         for (int digits = 15; digits <= 17; digits++) {
-            snprintf(number, sizeof number, "%.*g", digits, numbers[i] + 0.0); /* + 0: no minus zero */
+            snprintf(number, sizeof number, "%.*g", digits, numbers[i] + 0.0); /* + 0 makes 0 of -0 */
             if (strtod(number, NULL) == numbers[i]) break;
         }
         used += (size_t)snprintf(text + used, length - used, "%s%s", i ? " " : "", number);

@@ -1,4 +1,4 @@
-/* What the writers of image files share. Private. */
+/* The writers of image files and what they share. Private. */
 #ifndef SKG_IMAGE_PRIVATE_H
 #define SKG_IMAGE_PRIVATE_H
 
@@ -7,33 +7,36 @@
 
 #include <skiagraph/image.h>
 
+/* Bytes of the description with its closing zero. */
 enum { SKG_DESCRIPTION_LENGTH = 1024 };
 
-/* The value at `index` of the first channel on, as double. */
+/* The value at `index`, counted from the first value of the first channel. */
 double skg_picture_value(const skg_picture *picture, int64_t index);
 
-/* What is shown for a value: -ln(I/I0), I/I0, or the value itself where there is no open beam to compare
- * with. */
+/* The number that is shown for a value: -ln(I/I0) or I/I0, or the value itself if the picture has no flat field I0. */
 double skg_picture_shown(const skg_picture *picture, double value);
 
-/* In words, for the text of a PNG: "-ln(I/I0)", "I/I0", or the quantity with its unit. */
+/* The smallest and the largest number that is shown in the first channel; 0 and 1 if none is finite. */
+void skg_picture_shown_range(const skg_picture *picture, double *low, double *high);
+
+/* The display curve in words, for the text of a PNG: "-ln(I/I0)", "I/I0", or the quantity with its unit. */
 void skg_picture_curve(const skg_picture *picture, char *text, size_t length);
 
-/* "energy (keV per pixel)", without brackets where there is no unit. */
+/* "energy (keV per pixel)"; without brackets if there is no unit. */
 void skg_picture_title(const skg_picture *picture, char *text, size_t length);
 
-/* Up to `count` numbers with spaces between, each with as few digits as bring the double back. */
+/* Numbers separated by spaces, each with the fewest digits from which the same double is read. */
 void skg_picture_numbers(const double *numbers, int count, char *text, size_t length);
 
-/* The title with source, detector centre and steps, on one line. */
+/* The title, source, detector centre and steps on one line. */
 void skg_picture_describe(const skg_picture *picture, char *text, size_t length);
 
-/* Each writes a checked picture to an open output file, and neither commits nor discards it. */
+/* Each writes a checked picture to an output file, and neither commits nor discards it. */
 skg_status skg_png_write(const skg_picture *picture, skg_output_file *file);
 skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file);
 skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file);
 
-/* SKG_ERR_UNSUPPORTED when the detector's steps are skewed. */
+/* SKG_ERR_UNSUPPORTED if the steps of the detector are not at right angles. */
 skg_status skg_metaimage_check(const skg_picture *picture, const char *path);
 
 #endif

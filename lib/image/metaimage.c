@@ -1,36 +1,34 @@
 /* MetaImage (.mha): a text header and the values, in one file. Format as ITK's MetaIO documents it. */
+#include "core/maths.h"
+#include "core/vector.h"
 #include "image/image.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Cosine between the steps that still counts as square: the far corner of a detector of 32768 pixels is off
- * by a thirtieth of a pixel. */
+/* The largest cosine between the steps that counts as a right angle: the far corner of a detector of 32768 pixels is
+ * then off by a thirtieth of a pixel. */
 static const double most_skew = 1e-6;
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 skg_status skg_metaimage_check(const skg_picture *picture, const char *path) {
     const skg_view *view = picture->view;
     if (!view) return SKG_OK;
     const double *u = view->column_step, *v = view->row_step;
-    double cosine = dot(u, v) / sqrt(dot(u, u) * dot(v, v));
+    double cosine = skg_dot(u, v) / sqrt(skg_dot(u, u) * skg_dot(v, v));
     if (fabs(cosine) <= most_skew) return SKG_OK;
     return skg_fail(SKG_ERR_UNSUPPORTED,
                     "%s: the detector's columns and rows meet at %.4g degrees, and a MetaImage can only say "
                     "90; write .tif instead",
-                    path, acos(cosine) * 180 / acos(-1.0));
+                    path, acos(cosine) * 180 / SKG_PI);
 }
 
-/* The detector as a slice of a volume, one layer thick: spacing, direction of each axis in a row of its own,
- * and the centre of pixel (0, 0). */
+/* The detector is a slice of a volume, one layer thick. The header has the spacing, the direction of each axis in a
+ * row of its own, and the centre of pixel (0, 0). */
 static void write_place(const skg_view *view, FILE *stream) {
     double axes[9], spacing[3], first[3];
     char text[320];
-    spacing[0] = sqrt(dot(view->column_step, view->column_step));
-    spacing[1] = sqrt(dot(view->row_step, view->row_step));
+    spacing[0] = skg_length(view->column_step);
+    spacing[1] = skg_length(view->row_step);
     spacing[2] = 1;
     for (int k = 0; k < 3; k++) {
         axes[k] = view->column_step[k] / spacing[0];
@@ -38,10 +36,7 @@ static void write_place(const skg_view *view, FILE *stream) {
         first[k] = view->centre[k] - (double)(view->columns - 1) / 2 * view->column_step[k] -
                    (double)(view->rows - 1) / 2 * view->row_step[k];
     }
-    for (int k = 0; k < 3; k++) { /* the third is square to both */
-        int a = (k + 1) % 3, b = (k + 2) % 3;
-        axes[6 + k] = axes[a] * axes[3 + b] - axes[b] * axes[3 + a];
-    }
+    skg_cross(axes, axes + 3, axes + 6);
     skg_picture_numbers(axes, 9, text, sizeof text);
     fprintf(stream, "TransformMatrix = %s\n", text);
     skg_picture_numbers(first, 3, text, sizeof text);
@@ -50,7 +45,7 @@ static void write_place(const skg_view *view, FILE *stream) {
     fprintf(stream, "ElementSpacing = %s\n", text);
 }
 
-/* Values as the host holds them; the header says in which order. */
+/* Values are written in the byte order of the host, which the header names. */
 static int host_is_big_endian(void) {
     const uint16_t one = 1;
     unsigned char first;
@@ -84,7 +79,7 @@ static void write_header(const skg_picture *picture, FILE *stream) {
             picture->type == SKG_TYPE_FLOAT64 ? "MET_DOUBLE" : "MET_FLOAT");
 }
 
-/* One row with its channels side by side, as MetaImage has them. */
+/* Collects one row. MetaImage has the channels of a pixel side by side. */
 static void gather(const skg_picture *picture, int64_t row, char *to) {
     size_t element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
     for (int64_t c = 0; c < picture->columns; c++)
@@ -95,7 +90,7 @@ static void gather(const skg_picture *picture, int64_t row, char *to) {
         }
 }
 
-/* A failed write is found by skg_output_commit. */
+/* Failures to write are found by skg_output_commit. */
 skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file) {
     char *row = NULL;
     size_t element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;

@@ -1,4 +1,4 @@
-/* Pictures: what is checked before a writer sees them, and which writer that is. */
+/* Pictures: they are checked before a writer sees them, and the extension of the path chooses the writer. */
 #include "image/image.h"
 
 #include "core/names.h"
@@ -34,7 +34,7 @@ static skg_status check_range(const skg_picture *picture) {
     return SKG_OK;
 }
 
-/* Reads the caller's struct and refuses what no writer can use. */
+/* Reads the caller's struct and refuses a picture that no writer can use. */
 static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
     skg_picture_init(picture);
     SKG_TRY(skg_struct_read(theirs, "skg_picture", picture, sizeof *picture));
@@ -57,7 +57,7 @@ static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
                         picture->quantity);
     if (!(picture->flat_field >= 0) || isinf(picture->flat_field))
         return skg_fail(SKG_ERR_ARGUMENT,
-                        "picture: an open beam of %g; it has to be finite, and 0 where there is none",
+                        "picture: a flat field of %g; it has to be finite, and 0 if there is none",
                         picture->flat_field);
     if (picture->view && (picture->view->columns != picture->columns || picture->view->rows != picture->rows))
         return skg_fail(SKG_ERR_ARGUMENT,
@@ -92,7 +92,7 @@ skg_status skg_picture_check_path(const char *path) {
     return SKG_OK;
 }
 
-/* Numbers in headers have a decimal point in every locale (of this thread only). */
+/* Calls the writer with the C locale, set for this thread only, so that numbers in headers have a decimal point. */
 static skg_status write_plainly(const format *writer, const skg_picture *picture, skg_output_file *file) {
     locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (plain == (locale_t)0) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for a locale", file->path);
@@ -120,21 +120,8 @@ skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
 skg_status skg_picture_range(const skg_picture *theirs, double *low, double *high) {
     skg_picture picture;
     SKG_TRY(prepare(theirs, &picture));
-    if (!low || !high) return skg_fail(SKG_ERR_ARGUMENT, "skg_picture_range: no result");
-    double least = HUGE_VAL, most = -HUGE_VAL;
-    int64_t pixels = picture.columns * picture.rows;
-    for (int64_t i = 0; i < pixels; i++) {
-        double shown = skg_picture_shown(&picture, skg_picture_value(&picture, i));
-        if (!isfinite(shown)) continue;
-        if (shown < least) least = shown;
-        if (shown > most) most = shown;
-    }
-    if (least > most) least = 0, most = 1; /* not one finite value */
-    if (least == most) {                   /* flat: against 0 to 1, or as far as it goes */
-        if (least > 0) least = 0;
-        if (most < 1) most = most < 0 ? 0 : 1;
-    }
-    *low = least;
-    *high = most;
+    SKG_NEEDS(low);
+    SKG_NEEDS(high);
+    skg_picture_shown_range(&picture, low, high);
     return SKG_OK;
 }

@@ -1,4 +1,4 @@
-/* PNG: 16 bit grey, the first channel through its display curve. */
+/* PNG: the first channel in 16 bit grey, through its display curve. */
 #include "image/image.h"
 
 #include <skiagraph/version.h>
@@ -8,7 +8,7 @@
 #include <png.h>
 #include <string.h>
 
-/* Kept by libpng's error call; the jump goes back into write_all. */
+/* libpng reports an error here: the reason is kept, and the jump goes back into write_all. */
 static void on_error(png_structp png, png_const_charp message) {
     const char **reason = png_get_error_ptr(png);
     *reason = message;
@@ -38,7 +38,7 @@ static void set_texts(png_structp png, png_infop info, const skg_picture *pictur
     png_set_text(png, info, texts, 4);
 }
 
-/* 0 (black, at or below low) to 65535 (white, at or above high), most significant byte first. */
+/* Grey levels from 0 (black, at or below low) to 65535 (white, at or above high), the most significant byte first. */
 static void show_row(const skg_picture *picture, int64_t row, png_bytep bytes) {
     for (int64_t c = 0; c < picture->columns; c++) {
         double shown = skg_picture_shown(picture, skg_picture_value(picture, row * picture->columns + c));
@@ -50,7 +50,7 @@ static void show_row(const skg_picture *picture, int64_t row, png_bytep bytes) {
     }
 }
 
-/* 1 when all went well. Nothing is allocated here, so that libpng may jump out of it. */
+/* Returns 1 if everything was written. Nothing is allocated here, so that libpng may jump out of it. */
 static int write_all(png_structp png, png_infop info, const skg_picture *picture, FILE *stream,
                      png_bytep bytes) {
     if (setjmp(png_jmpbuf(png))) return 0;
@@ -75,8 +75,7 @@ skg_status skg_png_write(const skg_picture *theirs, skg_output_file *file) {
     png_structp png = NULL;
     png_infop info = NULL;
     png_bytep bytes = NULL;
-    if (picture.low == 0 && picture.high == 0)
-        SKG_TRY(skg_picture_range(theirs, &picture.low, &picture.high));
+    if (picture.low == 0 && picture.high == 0) skg_picture_shown_range(theirs, &picture.low, &picture.high);
     SKG_TRY(skg_alloc(2 * picture.columns, 1, "row of a PNG file", &bytes));
     png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, on_error, on_warning);
     info = png ? png_create_info_struct(png) : NULL;

@@ -1,23 +1,24 @@
-/* TIFF: floats or doubles as they are, one page per channel. */
+/* TIFF: floats or doubles without conversion, one page for each channel. */
+#include "core/vector.h"
 #include "image/image.h"
 
 #include <skiagraph/version.h>
 
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 #include <tiffio.h>
 #include <unistd.h>
 
-/* The offsets of a classic TIFF have 32 bits; a little is left for its tags. */
+/* Bytes of pixels beyond which a BigTIFF is written: the offsets of a classic TIFF have 32 bits, and its tags take the
+ * rest of the 4.29e9. */
 static const double classic_limit = 4.0e9;
 
 typedef struct {
     char text[256];
 } reason;
 
-/* 1: told, so that libtiff does not print it. */
+/* Keeps the first sentence. Returns 1, so that libtiff does not print it. */
 static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
     reason *kept = user;
     (void)tiff;
@@ -33,10 +34,6 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
     (void)format;
     (void)arguments;
     return 1;
-}
-
-static double norm(const double v[3]) {
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
@@ -61,12 +58,12 @@ static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
                TIFFSetField(tiff, TIFFTAG_PAGENUMBER, (int)channel, (int)picture->channels);
     if (done && picture->view) /* pixels per cm, from mm per pixel */
         done = TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_CENTIMETER) &&
-               TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 10 / norm(picture->view->column_step)) &&
-               TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 10 / norm(picture->view->row_step));
+               TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 10 / skg_length(picture->view->column_step)) &&
+               TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 10 / skg_length(picture->view->row_step));
     return done;
 }
 
-/* row: room for one row, since libtiff takes its data writable. */
+/* row: a buffer for one row, because libtiff may change its data. */
 static int write_pages(TIFF *tiff, const skg_picture *picture, void *row) {
     size_t row_bytes = (size_t)picture->columns * (picture->type == SKG_TYPE_FLOAT64 ? 8 : 4);
     for (int64_t channel = 0; channel < picture->channels; channel++) {
@@ -88,7 +85,7 @@ skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
     int written = 0, element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
     double bytes = (double)picture->columns * (double)picture->rows * (double)picture->channels * element;
     SKG_TRY(skg_alloc(picture->columns, (size_t)element, "row of a TIFF file", &row));
-    /* TIFFClose closes its descriptor; the stream keeps its own for the sync. */
+    /* TIFFClose closes the descriptor that it was given. The stream keeps its own, which is synced later. */
     int descriptor = dup(fileno(file->stream));
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
     if (descriptor >= 0 && options) {

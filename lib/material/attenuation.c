@@ -1,6 +1,7 @@
-/* What materials do to photons. */
+/* The attenuation of materials: linear, by process, as a Hounsfield number, and where it jumps. */
 #include "material/material.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,7 +14,7 @@ static skg_status table_value(const skg_material *material, double energy_kev, d
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: a photon energy of %g keV lies outside the table's %g to %g keV", material->name,
                         energy_kev, e[0], e[high]);
-    while (high - low > 1) { /* at an edge, the row above it */
+    while (high - low > 1) { /* at an edge the row above it is found */
         int64_t middle = low + (high - low) / 2;
         if (e[middle] <= energy_kev)
             low = middle;
@@ -29,14 +30,14 @@ static skg_status table_value(const skg_material *material, double energy_kev, d
     return SKG_OK;
 }
 
-/* Summed as skg_coefficients is documented to. */
-static double total(const double sections[SKG_PROCESSES]) {
+/* The order of the sum is that of the fields of skg_coefficients, so that a caller gets the same bits. */
+double skg_total_section(const double sections[SKG_PROCESSES]) {
     return sections[SKG_RAYLEIGH] + sections[SKG_COMPTON] + sections[SKG_PHOTO] + sections[SKG_PAIR];
 }
 
 skg_status skg_material_attenuation_get(const skg_material *material, double energy_kev, double *per_cm) {
-    if (!material || !per_cm)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_attenuation_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(per_cm);
     SKG_TRY(skg_check_energy(material->name, energy_kev));
     if (material->kind == SKG_MATTER_CONSTANT) {
         *per_cm = material->mu_per_cm;
@@ -47,7 +48,7 @@ skg_status skg_material_attenuation_get(const skg_material *material, double ene
         return skg_fail(SKG_ERR_MATERIAL, "%s: its density is not known; give one in g/cm3", material->name);
     double sections[SKG_PROCESSES];
     skg_mixed_sections(material->count, material->parts, energy_kev, sections);
-    *per_cm = material->density * total(sections);
+    *per_cm = material->density * skg_total_section(sections);
     return SKG_OK;
 }
 
@@ -57,8 +58,8 @@ void skg_coefficients_init(skg_coefficients *coefficients) {
 
 skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,
                                          skg_coefficients *coefficients) {
-    if (!material || !coefficients)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_coefficients_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(coefficients);
     if (material->kind != SKG_MATTER_COMPOSITION)
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: a material given by its linear attenuation coefficient has no mass coefficients",
@@ -72,16 +73,16 @@ skg_status skg_material_coefficients_get(const skg_material *material, double en
     ours.compton = sections[SKG_COMPTON];
     ours.photo = sections[SKG_PHOTO];
     ours.pair = sections[SKG_PAIR];
-    ours.total = total(sections);
+    ours.total = skg_total_section(sections);
     return skg_struct_write(&ours, sizeof ours, "skg_coefficients", coefficients);
 }
 
 skg_status skg_material_hounsfield_get(const skg_material *material, double energy_kev, double *hu) {
     double mu = 0, sections[SKG_PROCESSES];
-    if (!hu) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_hounsfield_get: no result");
+    SKG_NEEDS(hu);
     SKG_TRY(skg_material_attenuation_get(material, energy_kev, &mu));
     skg_mixed_sections(2, water, energy_kev, sections);
-    *hu = 1000 * (mu / total(sections) - 1);
+    *hu = 1000 * (mu / skg_total_section(sections) - 1);
     return SKG_OK;
 }
 
@@ -90,7 +91,7 @@ static int by_energy(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The jumps of one list of rising energies, appended. */
+/* Appends an edge. Those beyond `most` are counted only. */
 static void add_edge(double energy_kev, int64_t most, double *edges, int64_t *count) {
     if (energy_kev < SKG_LOWEST_KEV || energy_kev > SKG_HIGHEST_KEV) return;
     if (*count < most) edges[*count] = energy_kev;
@@ -99,8 +100,12 @@ static void add_edge(double energy_kev, int64_t most, double *edges, int64_t *co
 
 skg_status skg_material_edges_get(const skg_material *material, int64_t most, double *edges_kev,
                                   int64_t *count) {
-    if (!material || !count || most < 0 || (most > 0 && !edges_kev))
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_edges_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(count);
+    if (most > 0) SKG_NEEDS(edges_kev);
+    if (most < 0)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_material_edges_get: at most %" PRId64 " edges; give at least 0", most);
     *count = 0;
     if (material->kind == SKG_MATTER_TABLE)
         for (int64_t i = 1; i < material->count; i++)

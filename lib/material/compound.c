@@ -1,5 +1,5 @@
 /* Elements, formulas and mixtures as materials. */
-#include "material/material.h"
+#include "material/mixture.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -8,14 +8,13 @@
 static skg_status check_density(const char *name, double density) {
     if (isfinite(density) && density >= 0) return SKG_OK;
     return skg_fail(SKG_ERR_MATERIAL,
-                    "%s: a density of %g g/cm3 is not usable; give one above 0, or 0 for the tables'", name,
-                    density);
+                    "%s: a density of %g g/cm3 is not usable; give one above 0, or 0 for that of the tables",
+                    name, density);
 }
 
 skg_status skg_material_create_element(int32_t z, skg_material **material) {
     const char *symbol;
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_element: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     SKG_TRY(skg_element_symbol(z, &symbol));
     skg_mass_fraction part = {z, 1};
@@ -26,9 +25,8 @@ skg_status skg_material_create_formula(const char *formula, double density, skg_
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     int64_t count = 0;
     double sum = 0;
-    if (!material || !formula)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "skg_material_create_formula: no formula or no place for the material");
+    SKG_NEEDS(material);
+    SKG_NEEDS(formula);
     *material = NULL;
     SKG_TRY(check_density(formula, density));
     SKG_TRY(skg_read_formula(formula, 0, &count, parts, &sum));
@@ -39,7 +37,10 @@ skg_status skg_material_create_formula(const char *formula, double density, skg_
 }
 
 enum { LONGEST_NOTE = 160 };
+/* Published fractions are rounded to three or four decimals: those of ten elements sum to 1 within this. */
 static const double SUM_TOLERANCE = 5e-3;
+/* A sum that is off by less than this differs by the rounding of doubles only. */
+static const double SUM_ROUNDING = 1e-9;
 
 skg_status skg_material_create_mixture(const char *name, int64_t count, const int32_t *z,
                                        const double *fractions, double density, skg_material **material) {
@@ -47,8 +48,7 @@ skg_status skg_material_create_mixture(const char *name, int64_t count, const in
     double of[SKG_LAST_ELEMENT + 1] = {0}, sum = 0;
     char note[LONGEST_NOTE] = "";
     const char *symbol;
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_mixture: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!name || !*name) name = "mixture";
     if (count < 1 || !z || !fractions)
@@ -66,7 +66,7 @@ skg_status skg_material_create_mixture(const char *name, int64_t count, const in
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: the fractions by mass sum to %.6g; they have to sum to 1 within %g", name, sum,
                         SUM_TOLERANCE);
-    if (fabs(sum - 1) > 1e-9)
+    if (fabs(sum - 1) > SUM_ROUNDING)
         snprintf(note, sizeof note, "fractions by mass sum to %.6g and were scaled to 1", sum);
     int64_t used = 0;
     for (int32_t k = 1; k <= SKG_LAST_ELEMENT; k++)

@@ -14,7 +14,7 @@ skg_status skg_check_energy(const char *name, double energy_kev) {
                     energy_kev, SKG_LOWEST_KEV, SKG_HIGHEST_KEV);
 }
 
-/* The last knot at or below the energy: at an edge, the one above it. */
+/* The last knot at or below the energy. At an edge this is the knot above it. */
 static const skg_knot *find_knot(int32_t z, double energy_kev) {
     int32_t low = skg_elements[z].first, high = skg_elements[z].last - 1;
     while (high - low > 1) {
@@ -48,7 +48,7 @@ void skg_mixed_sections(int64_t count, const skg_mass_fraction *parts, double en
     }
 }
 
-/* Whether `names`, separated by ';', hold `name` but for case. */
+/* Whether `name` is one of the `names` that ';' separates, without regard to case. */
 static int one_of(const char *names, const char *name) {
     size_t length = strlen(name);
     for (const char *start = names; *start;) {
@@ -69,7 +69,7 @@ int32_t skg_find_element(const char *text) {
 }
 
 skg_status skg_element_symbol(int32_t z, const char **symbol) {
-    if (!symbol) return skg_fail(SKG_ERR_ARGUMENT, "skg_element_symbol: no place for the symbol");
+    SKG_NEEDS(symbol);
     *symbol = NULL;
     if (z < 1 || z > SKG_LAST_ELEMENT)
         return skg_fail(SKG_ERR_MATERIAL, "atomic number %d: elements 1 (H) to %d (U) are known", (int)z,
@@ -79,7 +79,8 @@ skg_status skg_element_symbol(int32_t z, const char **symbol) {
 }
 
 skg_status skg_element_number(const char *text, int32_t *z) {
-    if (!text || !z) return skg_fail(SKG_ERR_ARGUMENT, "skg_element_number: no text or no result");
+    SKG_NEEDS(text);
+    SKG_NEEDS(z);
     *z = skg_find_element(text);
     if (*z) return SKG_OK;
     char *end = NULL;
@@ -92,7 +93,7 @@ skg_status skg_element_number(const char *text, int32_t *z) {
     for (int32_t i = 0; i < SKG_LAST_ELEMENT; i++) {
         names[2 * i] = skg_elements[i + 1].symbol;
         names[2 * i + 1] = skg_elements[i + 1].names;
-        if (skg_same_name(text, names[2 * i])) /* "fe": its case is all that is wrong */
+        if (skg_same_name(text, names[2 * i])) /* only the case is wrong, as in "fe" */
             return skg_fail(SKG_ERR_MATERIAL, "\"%s\" is no element; did you mean %s?", text, names[2 * i]);
     }
     const char *near = skg_nearest_name(text, names, sizeof names / sizeof *names);

@@ -6,10 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 8 }; /* brackets */
+/* The deepest nesting of brackets; formulas of chemistry have two or three. */
+enum { DEEPEST = 8 };
 
-/* A number of digits and at most one point, without the surprises of strtod (signs, exponents, locale). 1
- * where there is none. */
+/* Reads digits with at most one decimal point; without digits the value is 1. strtod would accept signs, exponents and
+ * the decimal comma of a locale. */
 static double read_number(const char **text, int *given) {
     const char *c = *text;
     double value = 0, place = 1;
@@ -23,7 +24,8 @@ static double read_number(const char **text, int *given) {
     return value;
 }
 
-/* An element's symbol: a capital and, where that makes one, a small letter. */
+/* Reads the symbol of an element: a capital letter and the small one that follows, if any. Returns 0 if there is no
+ * such element. */
 static int32_t read_symbol(const char **text) {
     char symbol[3] = {(*text)[0], 0, 0};
     if (!isupper((unsigned char)symbol[0])) return 0;
@@ -45,7 +47,7 @@ static skg_status fail_at(const char *formula, const char *at, const char *why) 
     return skg_fail(SKG_ERR_MATERIAL, "\"%s\" is no formula: %s at \"%s\"", formula, why, at);
 }
 
-/* Ends a bracket: what it holds, times the number after it, joins what is around it. */
+/* Ends a bracket: its amounts times the number that follows are added to those of the level around it. */
 static skg_status close_bracket(const char *formula, const char **text, amounts *stack, int *depth,
                                 double *sum) {
     int given = 0;

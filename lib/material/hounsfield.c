@@ -1,12 +1,13 @@
 /* Tissue by Hounsfield number.
  *
- * Density: Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459, Eq. 19, 21 and 23, with a
- * straight line from air to adipose tissue below -98 and a constant between the two soft-tissue lines. */
+ * The density follows Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459, Eq. 19, 21 and 23, with a
+ * straight line from air to adipose tissue below -98 HU and a constant between the two lines of soft tissue. */
 #include "material/material.h"
 
 #include <math.h>
 #include <stdio.h>
 
+/* HU. Noise takes air below -1000; the last row of the table, a titanium implant, begins at 2300. */
 static const double LOWEST = -1050, HIGHEST = 3000;
 
 static double density_of(double hu) {
@@ -21,8 +22,7 @@ static double density_of(double hu) {
 
 skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
     char name[64], note[160];
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_hounsfield: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!(hu >= LOWEST && hu <= HIGHEST))
         return skg_fail(SKG_ERR_MATERIAL, "HU %g lies outside %g to %g, where tissue is tabled", hu, LOWEST,

@@ -36,7 +36,7 @@ skg_status skg_material_compose(const char *name, const char *note, int64_t coun
 }
 
 skg_status skg_material_create_mu(const char *name, double per_cm, skg_material **material) {
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_mu: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!isfinite(per_cm) || per_cm < 0)
         return skg_fail(
@@ -50,7 +50,7 @@ skg_status skg_material_create_mu(const char *name, double per_cm, skg_material 
 }
 
 skg_status skg_material_retain(skg_material *material) {
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_retain: no material");
+    SKG_NEEDS(material);
     skg_ref(&material->refs);
     return SKG_OK;
 }
@@ -70,10 +70,9 @@ void skg_material_release(skg_material **material) {
 
 skg_status skg_material_create_at_density(const skg_material *material, double density,
                                           skg_material **dense) {
-    if (!dense)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_at_density: no place for the material");
+    SKG_NEEDS(dense);
     *dense = NULL;
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_at_density: no material");
+    SKG_NEEDS(material);
     if (material->kind != SKG_MATTER_COMPOSITION)
         return skg_fail(SKG_ERR_MATERIAL,
                         "%s: a material given by its linear attenuation coefficient has no density to change",
@@ -86,29 +85,29 @@ skg_status skg_material_create_at_density(const skg_material *material, double d
 }
 
 skg_status skg_material_name_get(const skg_material *material, const char **name) {
-    if (!material || !name)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_name_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(name);
     *name = material->name;
     return SKG_OK;
 }
 
 skg_status skg_material_note_get(const skg_material *material, const char **note) {
-    if (!material || !note)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_note_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(note);
     *note = material->note;
     return SKG_OK;
 }
 
 skg_status skg_material_density_get(const skg_material *material, double *density) {
-    if (!material || !density)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_density_get: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(density);
     *density = material->density;
     return SKG_OK;
 }
 
 skg_status skg_material_element_count(const skg_material *material, int64_t *count) {
-    if (!material || !count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_element_count: no material or no result");
+    SKG_NEEDS(material);
+    SKG_NEEDS(count);
     *count = material->kind == SKG_MATTER_COMPOSITION ? material->count : 0;
     return SKG_OK;
 }
@@ -116,7 +115,8 @@ skg_status skg_material_element_count(const skg_material *material, int64_t *cou
 skg_status skg_material_element_get(const skg_material *material, int64_t index, int32_t *z,
                                     double *fraction) {
     int64_t count = 0;
-    if (!z || !fraction) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_element_get: no result");
+    SKG_NEEDS(z);
+    SKG_NEEDS(fraction);
     SKG_TRY(skg_material_element_count(material, &count));
     if (index < 0 || index >= count)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: element %" PRId64 " of %" PRId64, material->name, index,

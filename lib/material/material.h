@@ -25,36 +25,41 @@ struct skg_material {
     int32_t linear; /* the table is interpolated linearly, not log-log */
 };
 
-/* Where cross sections stand. */
+/* The range in keV over which cross sections are given: XCOM's table begins at 1 keV, and above 20 MeV photons of
+ * medical and industrial beams are rare. */
 #define SKG_LOWEST_KEV 1.0
 #define SKG_HIGHEST_KEV 20000.0
 
-/* A material with its name and note copied; the rest is zero. */
+/* Makes a material with a copy of its name and note. The rest is zero. */
 skg_status skg_material_make(const char *name, const char *note, int32_t kind, skg_material **material);
 
-/* A material of a composition that is known to be sound. */
+/* Makes a material of a composition that has been checked. */
 skg_status skg_material_compose(const char *name, const char *note, int64_t count,
                                 const skg_mass_fraction *parts, double density, skg_material **material);
 
-/* SKG_ERR_MATERIAL outside 1 keV to 20 MeV; name for the message. */
+/* Fails with SKG_ERR_MATERIAL outside that range. name: for the message. */
 skg_status skg_check_energy(const char *name, double energy_kev);
 
-/* Cross sections of an element in cm2/g, energy in the range. */
+/* Cross sections of an element in cm2/g at an energy in that range. */
 void skg_element_sections(int32_t z, double energy_kev, double sections[SKG_PROCESSES]);
 
-/* Sum over a composition; energy in the range. */
+/* The same of a composition: the sum weighted with its fractions by mass. */
 void skg_mixed_sections(int64_t count, const skg_mass_fraction *parts, double energy_kev,
                         double sections[SKG_PROCESSES]);
 
-/* Reads atoms ("Ca5(PO4)3OH") or, by_mass, parts by mass ("Ti90Al6V4") into fractions by mass, each element
- * once; sum: of the numbers. parts: [SKG_LAST_ELEMENT]. */
+/* The sum over the processes. */
+double skg_total_section(const double sections[SKG_PROCESSES]);
+
+/* Reads a formula into fractions by mass, in which each element occurs once.
+ *
+ * by_mass   0: the numbers count atoms ("Ca5(PO4)3OH"); 1: they are parts by mass ("Ti90Al6V4")
+ * parts     [SKG_LAST_ELEMENT], of which *count are filled
+ * sum       the sum of the numbers */
 skg_status skg_read_formula(const char *formula, int by_mass, int64_t *count, skg_mass_fraction *parts,
                             double *sum);
 
-/* The tabled mixture whose name, any of them, is this but for case, blanks and punctuation; NULL. */
-const skg_mixture_row *skg_find_mixture(const char *name);
-
-/* The element of this symbol (its case counts) or name (it does not); 0. */
+/* The atomic number of an element by its symbol, whose case counts, or by its name, whose case does not; 0 if there is
+ * none. */
 int32_t skg_find_element(const char *text);
 
 #endif

@@ -1,12 +1,12 @@
-/* The naive way from a Hounsfield number to mu: between materials that happen to be tabled. Kept to show its
- * error. */
+/* The naive way from a Hounsfield number to mu: interpolation between four materials of the tables. It is kept to show
+ * its error. */
 #include "material/material.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The paper's table 2, by rising Hounsfield number at 80 keV. */
+/* Table 2 of Vidal and Villard (2016), in the order of rising Hounsfield numbers at 80 keV. */
 static const char *const steps[] = {"Tissue-Equivalent Gas (Propane based)", "Water, Liquid",
                                     "Tissue, Soft (ICRU-44)", "Bone, Cortical (ICRU-44)"};
 enum { STEPS = sizeof steps / sizeof *steps };
@@ -24,7 +24,7 @@ static skg_status climb(ladder *l) {
     return SKG_OK;
 }
 
-/* Between two steps: linear in HU and mu, or in ln(HU + 1000) and ln mu. */
+/* Interpolates between two steps: linearly in HU and mu, or in ln(HU + 1000) and ln mu. */
 static skg_status between(const ladder *l, double hu, int logarithmic, double energy_kev, double *per_cm) {
     int i = 0;
     double low = 0, high = 0;
@@ -39,7 +39,8 @@ static skg_status between(const ladder *l, double hu, int logarithmic, double en
 }
 
 static skg_status fill(const ladder *l, double hu, int32_t interpolation, skg_material *material) {
-    const skg_element_row *hydrogen = &skg_elements[1]; /* no edges: the energies of every table */
+    const skg_element_row *hydrogen =
+        &skg_elements[1]; /* it has no edges, and every energy that all tables share */
     for (int32_t i = hydrogen->first; i < hydrogen->last && skg_knots[i].energy_kev <= SKG_HIGHEST_KEV; i++)
         material->energy_kev[material->count++] = skg_knots[i].energy_kev;
     for (int64_t i = 0; i < material->count; i++)
@@ -54,8 +55,7 @@ skg_status skg_material_create_naive_hounsfield(double hu, int32_t interpolation
     ladder l = {{NULL}, {0}};
     skg_material *made = NULL;
     skg_status status = SKG_OK;
-    if (!material)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_naive_hounsfield: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (interpolation != SKG_INTERPOLATION_BILINEAR && interpolation != SKG_INTERPOLATION_BILOGARITHMIC)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_naive_hounsfield: no such interpolation");
@@ -70,9 +70,9 @@ skg_status skg_material_create_naive_hounsfield(double hu, int32_t interpolation
              interpolation == SKG_INTERPOLATION_BILINEAR ? "bilinear" : "bilogarithmic");
     SKG_TRY_CLEANUP(
         skg_material_make(name, "not for images: no tissue is like this", SKG_MATTER_TABLE, &made));
-    int64_t room = skg_elements[1].last - skg_elements[1].first;
-    SKG_TRY_CLEANUP(skg_alloc(room, sizeof(double), "material", &made->energy_kev));
-    SKG_TRY_CLEANUP(skg_alloc(room, sizeof(double), "material", &made->per_cm));
+    int64_t capacity = skg_elements[1].last - skg_elements[1].first;
+    SKG_TRY_CLEANUP(skg_alloc(capacity, sizeof(double), "material", &made->energy_kev));
+    SKG_TRY_CLEANUP(skg_alloc(capacity, sizeof(double), "material", &made->per_cm));
     SKG_TRY_CLEANUP(fill(&l, hu, interpolation, made));
     *material = made;
     made = NULL;

@@ -1,4 +1,4 @@
-/* Materials of a user's table. */
+/* Materials by a table of the user: mu by energy. */
 #include "core/columns.h"
 #include "core/units.h"
 #include "material/material.h"
@@ -21,13 +21,13 @@ static skg_status check_rows(const char *name, int64_t count, const double *ener
                             i + 1);
     }
     if (!(energies[count - 1] > energies[count - 2]) || !(energies[1] > energies[0]))
-        return skg_fail(SKG_ERR_MATERIAL, "%s: an edge at the table's end has one side only", name);
+        return skg_fail(SKG_ERR_MATERIAL, "%s: an edge at the end of the table has one side only", name);
     return SKG_OK;
 }
 
 skg_status skg_material_create_table(const char *name, int64_t count, const double *energies_kev,
                                      const double *per_cm, skg_material **material) {
-    if (!material) return skg_fail(SKG_ERR_ARGUMENT, "skg_material_create_table: no place for the material");
+    SKG_NEEDS(material);
     *material = NULL;
     if (!name || !*name) name = "table";
     SKG_TRY(check_rows(name, count, energies_kev, per_cm));
@@ -49,8 +49,9 @@ cleanup:
 skg_status skg_material_load_table(const char *path, const char *unit, skg_material **material) {
     double *energies = NULL, *values = NULL, kev = 1;
     int64_t count = 0;
-    if (!material || !path || !unit)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_material_load_table: no path, unit or place for the material");
+    SKG_NEEDS(material);
+    SKG_NEEDS(path);
+    SKG_NEEDS(unit);
     *material = NULL;
     SKG_TRY(skg_unit_of_energy(unit, &kev));
     SKG_TRY(skg_read_columns(path, NULL, &count, &energies, &values));

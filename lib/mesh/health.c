@@ -1,6 +1,8 @@
-/* Is it closed, which way do its triangles run, how large is it? Everything in time linear in the triangles
- * but for the sorting of small groups. */
+/* The health of a mesh: whether it is closed, which way its triangles face, how large it is. The time is linear in
+ * the number of triangles except for the sorting of small groups. */
 #include "mesh/mesh.h"
+
+#include "core/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -14,7 +16,8 @@ static uint64_t bits_of(double x) {
     return bits;
 }
 
-/* Odd multipliers from the digits of the golden ratio and of pi; the shifts bring high bits down. */
+/* The odd multipliers are digits of the golden ratio and of pi: they spread bits evenly and have no other meaning.
+ * The shifts bring the high bits of a product down. */
 static uint64_t hash(const double p[3]) {
     uint64_t h = bits_of(p[0]) * 0x9E3779B97F4A7C15u;
     h = ((h ^ (h >> 32)) + bits_of(p[1])) * 0x9E3779B97F4A7C15u;
@@ -22,17 +25,17 @@ static uint64_t hash(const double p[3]) {
     return h ^ (h >> 29);
 }
 
-/* mesh->weld: for each vertex the first one at the same place. */
+/* Sets mesh->weld: for each vertex the first one at the same place, found in a hash table of vertices. */
 static skg_status weld(skg_mesh *mesh) {
     int32_t *table = NULL;
-    uint64_t room = 16;
-    while (room < (uint64_t)mesh->vertices + (uint64_t)mesh->vertices / 3) room *= 2;
+    uint64_t capacity = 16; /* a power of two, filled to three quarters at most */
+    while (capacity < (uint64_t)mesh->vertices + (uint64_t)mesh->vertices / 3) capacity *= 2;
     SKG_TRY(skg_alloc(mesh->vertices, sizeof *mesh->weld, mesh->name, &mesh->weld));
-    SKG_TRY(skg_alloc((int64_t)room, sizeof *table, mesh->name, &table));
+    SKG_TRY(skg_alloc((int64_t)capacity, sizeof *table, mesh->name, &table));
     for (int32_t i = 0; i < mesh->vertices; i++) {
         const double *p = mesh->positions + 3 * (int64_t)i;
-        uint64_t slot = hash(p) & (room - 1);
-        for (;; slot = (slot + 1) & (room - 1)) {
+        uint64_t slot = hash(p) & (capacity - 1);
+        for (;; slot = (slot + 1) & (capacity - 1)) {
             int32_t other = table[slot] - 1; /* 0: free */
             if (other < 0) {
                 table[slot] = i + 1;
@@ -51,24 +54,24 @@ static skg_status weld(skg_mesh *mesh) {
     return SKG_OK;
 }
 
-/* Welded corners of a triangle; 0 when two of them are the same vertex. */
+/* The welded corners of a triangle. Returns 0 if two of them are the same vertex. */
 static int welded(const skg_mesh *mesh, int64_t triangle, uint32_t corner[3]) {
     for (int k = 0; k < 3; k++) corner[k] = (uint32_t)mesh->weld[mesh->corners[3 * triangle + k]];
     return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
 }
 
-/* Items of the triangles, grouped by a vertex: those of vertex v are key[start[v]] to key[start[v + 1]-1],
- * sorted. */
+/* Items of the triangles, grouped by a vertex: those of vertex v are key[start[v]] to
+ * key[start[v + 1] - 1], sorted. */
 typedef struct {
     int64_t *start;
     uint64_t *key;
 } groups;
 
-/* Gives the items (at most 3) of a triangle with their vertices; returns how many. */
+/* Lists the items (at most 3) of a triangle with the vertex of each, and returns their number. */
 typedef int (*items_of)(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]);
 
-/* Its edges, each with the lower of its vertices: the other one, then the triangle, and the direction in the
- * lowest bit. Triangles are fewer than 2^30. */
+/* The edges of a triangle, each listed at the lower of its vertices. The key is the other vertex, then the triangle
+ * (fewer than 2^30), then the direction in the lowest bit. */
 static int edges_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
     for (int k = 0; k < 3; k++) {
         uint32_t a = corner[k], b = corner[(k + 1) % 3];
@@ -78,7 +81,7 @@ static int edges_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[
     return 3;
 }
 
-/* Itself, with the lowest of its vertices: the two others in order. */
+/* The triangle itself, listed at the lowest of its vertices. The key is the two others in order. */
 static int triangle_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
     uint32_t a = corner[0], b = corner[1], c = corner[2], swap;
     (void)triangle;
@@ -98,7 +101,7 @@ static int compare_keys(const void *a, const void *b) {
 }
 
 static void sort_keys(uint64_t *key, int64_t count) {
-    if (count > 32) {
+    if (count > 32) { /* below, a call of qsort takes longer than an insertion sort */
         qsort(key, (size_t)count, sizeof *key, compare_keys);
         return;
     }
@@ -115,14 +118,15 @@ static void groups_free(groups *found) {
     skg_free(&found->key);
 }
 
-/* Counting sort by vertex, then each group by key. Degenerate triangles have no items: their edges cancel. */
+/* A counting sort by vertex, then a sort of each group by key. Degenerate triangles have no items: their edges
+ * cancel. */
 static skg_status group(const skg_mesh *mesh, items_of items, groups *found) {
     uint32_t corner[3], vertex[3];
     uint64_t key[3];
     skg_status status = SKG_OK;
     *found = (groups){0};
     SKG_TRY_CLEANUP(skg_alloc(mesh->vertices + 2, sizeof *found->start, mesh->name, &found->start));
-    /* Shifted by two, so that after the filling start[v] is where group v begins. */
+    /* Counts are stored two places on, so that start[v] is where group v begins when the groups are filled. */
     for (int64_t t = 0; t < mesh->triangles; t++)
         for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
             found->start[vertex[k] + 2]++;
@@ -149,7 +153,7 @@ static void join(int32_t *parent, int32_t a, int32_t b) {
     parent[a > b ? a : b] = a > b ? b : a;
 }
 
-/* One edge: how often each way, and its triangles joined. */
+/* Counts how often one edge runs in each direction, and joins the components of its triangles. */
 static void examine_edge(skg_mesh_health *health, const uint64_t *key, int64_t count, int64_t vertex,
                          int32_t *parent, int32_t *multiplicity) {
     int64_t up = 0;
@@ -168,7 +172,8 @@ static void examine_edge(skg_mesh_health *health, const uint64_t *key, int64_t c
 static skg_status examine_edges(skg_mesh *mesh) {
     skg_mesh_health *health = &mesh->health;
     groups edges;
-    int32_t *parent = NULL, multiplicity = 1; /* of the triangles, joined by edges */
+    int32_t *parent = NULL; /* of the triangles, which edges join to components */
+    int32_t multiplicity = 1;
     SKG_TRY(group(mesh, edges_of, &edges));
     skg_status status = skg_alloc(mesh->triangles, sizeof *parent, mesh->name, &parent);
     if (status != SKG_OK) {
@@ -201,7 +206,7 @@ static skg_status count_duplicates(skg_mesh *mesh) {
     return SKG_OK;
 }
 
-/* Union-find over the welded vertices that triangles use. */
+/* Counts the components by union-find over the welded vertices that triangles use. */
 static skg_status count_components(skg_mesh *mesh) {
     int32_t *parent = NULL; /* -1: not used so far */
     SKG_TRY(skg_alloc(mesh->vertices, sizeof *parent, mesh->name, &parent));
@@ -224,11 +229,10 @@ static skg_status count_components(skg_mesh *mesh) {
     return SKG_OK;
 }
 
-/* Rounding leaves a cross product of parallel edges at a few units of |u| |v| epsilon. */
+/* Rounding leaves the cross product of parallel edges at a few |u| |v| epsilon. Eight leave a margin. */
 static int no_area(const double cross[3], const double u[3], const double v[3]) {
-    double c = 0, uu = 0, vv = 0, bar = 8 * DBL_EPSILON;
-    for (int k = 0; k < 3; k++) c += cross[k] * cross[k], uu += u[k] * u[k], vv += v[k] * v[k];
-    return c <= bar * bar * uu * vv;
+    const double bar = 8 * DBL_EPSILON;
+    return skg_dot(cross, cross) <= bar * bar * skg_dot(u, u) * skg_dot(v, v);
 }
 
 void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
@@ -243,16 +247,16 @@ void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
         }
     }
     for (int64_t t = 0; t < mesh->triangles; t++) {
-        double a[3], b[3], c[3], u[3], v[3];
+        double a[3], b[3], c[3], u[3], v[3], cross[3];
         skg_mesh_vertex(mesh, mesh->corners[3 * t], a);
         skg_mesh_vertex(mesh, mesh->corners[3 * t + 1], b);
         skg_mesh_vertex(mesh, mesh->corners[3 * t + 2], c);
         for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], a[k] -= mesh->origin[k];
-        double cross[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+        skg_cross(u, v, cross);
         degenerate += no_area(cross, u, v);
-        area += 0.5 * sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
+        area += 0.5 * skg_length(cross);
         /* Divergence theorem: the signed volume of the tetrahedron with the mesh's origin. */
-        volume += (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6;
+        volume += skg_dot(a, cross) / 6;
     }
     health->degenerate_triangles = degenerate;
     health->area = area;
@@ -280,4 +284,19 @@ skg_status skg_mesh_examine(skg_mesh *mesh) {
     if (!health->closed) skg_mesh_vertex(mesh, health->first_open_vertex, health->first_open_position);
     if (health->welded_vertices == mesh->vertices) skg_free(&mesh->weld);
     return SKG_OK;
+}
+
+void skg_mesh_health_init(skg_mesh_health *health) {
+    if (health) *health = (skg_mesh_health){.size = sizeof *health, .first_open_vertex = -1};
+}
+
+skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(health);
+    skg_mesh_health now = mesh->health;
+    if (mesh->version > 1) {
+        skg_mesh_measure(mesh, &now);
+        if (now.first_open_vertex >= 0) skg_mesh_vertex(mesh, now.first_open_vertex, now.first_open_position);
+    }
+    return skg_struct_write(&now, sizeof now, "skg_mesh_health", health);
 }

@@ -1,13 +1,14 @@
-/* How many components of a mesh may lie over each other at a point: what an integer plane must have room for.
- */
+/* How many components of a mesh may lie over each other at a point. The integer planes of sums are scaled so that as
+ * many fit. */
 #include "mesh/mesh.h"
 
 #include <float.h>
 #include <math.h>
 
+/* Cells along each axis. More would separate components better and cost more: 33^3 counts are 140 KiB. */
 enum { CELLS = 32, EDGES = CELLS + 1 };
 
-/* Counts per cell of the mesh's bounds, by differences at the corners of boxes. */
+/* Boxes counted per cell of the mesh's bounds: differences at the corners of each box, summed at the end. */
 typedef struct {
     double low[3], step[3];
     int32_t *counts; /* [EDGES][EDGES][EDGES] */
@@ -36,7 +37,7 @@ static void add_box(cell_grid *grid, const float *box) {
     }
 }
 
-/* Sums the differences along each axis in turn; the largest count. */
+/* Sums the differences along each axis in turn, and returns the largest count. */
 static int32_t largest(cell_grid *grid) {
     const int64_t strides[3] = {(int64_t)EDGES * EDGES, EDGES, 1}, all = (int64_t)EDGES * EDGES * EDGES;
     int32_t most = 1;
@@ -48,7 +49,7 @@ static int32_t largest(cell_grid *grid) {
     return most;
 }
 
-/* The box of each component, by the number that its root triangle gets; *count: how many. */
+/* The box of each component; components are numbered in the order of their root triangles. */
 static skg_status find_boxes(const skg_mesh *mesh, const int32_t *root, float **boxes, int64_t *count) {
     int32_t *number = NULL;
     *count = 0;

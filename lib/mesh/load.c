@@ -1,11 +1,11 @@
-/* Mesh files. STL, OBJ and PLY are read here, all else by Assimp, which would lose too much of these three:
- * it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's numbering is
- * gone; it keeps only floats; it takes truncated ascii STL and PLY files for whole, and leaks where it
- * refuses one. */
-#include "mesh/read.h"
-
+/* Mesh files. STL, OBJ and PLY have readers of our own; every other format is read by Assimp. Assimp would lose too
+ * much of these three: it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's
+ * numbering is gone; it keeps only floats; it accepts truncated ascii STL and PLY files as complete ones, and leaks
+ * memory when it refuses one. */
 #include "core/context.h"
 #include "core/names.h"
+#include "mesh/mesh.h"
+#include "mesh/read.h"
 
 #include <assimp/cimport.h>
 #include <assimp/scene.h>
@@ -17,35 +17,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static skg_status grow(int64_t count, int64_t *room, size_t size, void *array_address) {
-    if (count < *room) return SKG_OK;
-    int64_t more = *room < 512 ? 1024 : 2 * *room;
-    SKG_TRY(skg_realloc(more, size, "mesh", array_address));
-    *room = more;
-    return SKG_OK;
-}
-
-skg_status skg_mesh_add_vertex(skg_mesh_arrays *arrays, const double position[3]) {
-    SKG_TRY(grow(arrays->vertices, &arrays->vertex_room, 3 * sizeof(double), &arrays->positions));
-    memcpy(arrays->positions + 3 * arrays->vertices++, position, 3 * sizeof(double));
-    return SKG_OK;
-}
-
-skg_status skg_mesh_add_corner(skg_mesh_arrays *arrays, skg_polygon *polygon, int64_t vertex) {
-    if (vertex < 0 || vertex >= SKG_MESH_LIMIT)
-        return skg_fail(SKG_ERR_MESH, "triangle %" PRId64 " names vertex %" PRId64 ", which no mesh has",
-                        arrays->triangles, vertex);
-    if (polygon->corners++ == 0) polygon->first = (int32_t)vertex;
-    if (polygon->corners >= 3) {
-        SKG_TRY(grow(arrays->triangles, &arrays->triangle_room, 3 * sizeof(int32_t), &arrays->corners));
-        int32_t *corner = arrays->corners + 3 * arrays->triangles++;
-        corner[0] = polygon->first, corner[1] = polygon->last, corner[2] = (int32_t)vertex;
-    }
-    polygon->last = (int32_t)vertex;
-    return SKG_OK;
-}
-
-/* Opens a regular file with something in it. */
+/* Opens a regular file that is not empty. */
 static skg_status open_file(const char *path, FILE **stream, int64_t *size) {
     struct stat about;
     *stream = fopen(path, "rb");
@@ -64,7 +36,7 @@ static skg_status open_file(const char *path, FILE **stream, int64_t *size) {
 
 typedef skg_status (*reader)(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 
-/* The whole file into memory, numbers in the C locale (of this thread only), and the reader. */
+/* Reads the whole file into memory and calls the reader with the C locale, which is set for this thread only. */
 static skg_status read_here(FILE *stream, const char *path, int64_t size, reader read,
                             skg_mesh_arrays *arrays) {
     skg_mesh_file file = {path, NULL, size};
@@ -85,7 +57,7 @@ static skg_status read_here(FILE *stream, const char *path, int64_t size, reader
     return status;
 }
 
-/* One object of a file, placed by its node; its vertices and faces in their order. */
+/* Adds one object of a file, placed by its node. Vertices and faces keep their order. */
 static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4x4 *m,
                              skg_mesh_arrays *arrays) {
     int64_t base = arrays->vertices;
@@ -121,7 +93,7 @@ static skg_status add_node(const struct aiScene *scene, const struct aiNode *nod
     return SKG_OK;
 }
 
-/* Without any post-processing: it would weld, split and sort. */
+/* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. */
 static skg_status read_by_assimp(const char *path, skg_mesh_arrays *arrays) {
     const struct aiScene *scene = aiImportFile(path, 0);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
@@ -150,11 +122,14 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
 
 skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
     skg_mesh_arrays arrays = {0};
-    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no place for the mesh");
+    SKG_NEEDS(mesh);
     *mesh = NULL;
-    if (!path || !*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
+    SKG_NEEDS(path);
+    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
     if (!isfinite(unit_mm) || unit_mm <= 0)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm: finite and above 0", path, unit_mm);
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: unit %g mm is not usable; give one that is finite and above 0", path,
+                        unit_mm);
     skg_status status = read_file(path, &arrays);
     if (status != SKG_OK) {
         skg_mesh_arrays_free(&arrays);

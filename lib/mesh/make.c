@@ -1,16 +1,10 @@
-/* Closed meshes of simple shape, outward, centred at the origin. */
+/* Closed meshes of simple shapes. Their triangles face outward and they are centred at the origin. */
 #include "mesh/mesh.h"
+
+#include "core/maths.h"
 
 #include <inttypes.h>
 #include <math.h>
-
-static const double pi = 3.14159265358979323846;
-
-static skg_status check_place(const char *shape, skg_mesh **mesh) {
-    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "%s: no place for the mesh", shape);
-    *mesh = NULL;
-    return SKG_OK;
-}
 
 static skg_status check_length(const char *shape, const char *what, double length) {
     if (isfinite(length) && length > 0) return SKG_OK;
@@ -42,7 +36,7 @@ static void add_triangle(skg_mesh_arrays *arrays, int64_t a, int64_t b, int64_t 
     corner[0] = (int32_t)a, corner[1] = (int32_t)b, corner[2] = (int32_t)c;
 }
 
-/* Counter-clockwise as seen from outside. */
+/* The corners run counter-clockwise as seen from outside. */
 static void add_quad(skg_mesh_arrays *arrays, int64_t a, int64_t b, int64_t c, int64_t d) {
     add_triangle(arrays, a, b, c);
     add_triangle(arrays, a, c, d);
@@ -64,28 +58,31 @@ static skg_status make_cuboid(const char *shape, const double length[3], skg_mes
 }
 
 skg_status skg_mesh_create_cube(double edge, skg_mesh **mesh) {
-    SKG_TRY(check_place("cube", mesh));
+    SKG_NEEDS(mesh);
+    *mesh = NULL;
     SKG_TRY(check_length("cube", "edge", edge));
     return make_cuboid("cube", (double[3]){edge, edge, edge}, mesh);
 }
 
 skg_status skg_mesh_create_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh) {
-    SKG_TRY(check_place("cuboid", mesh));
+    SKG_NEEDS(mesh);
+    *mesh = NULL;
     SKG_TRY(check_length("cuboid", "length along x", length_x));
     SKG_TRY(check_length("cuboid", "length along y", length_y));
     SKG_TRY(check_length("cuboid", "length along z", length_z));
     return make_cuboid("cuboid", (double[3]){length_x, length_y, length_z}, mesh);
 }
 
-/* Vertices segment by segment around z; sine and cosine anew for each: a ring closes without a seam. */
+/* Adds a ring of vertices around the z axis. Sine and cosine are found for each: a ring turned step by step would not
+ * close exactly. */
 static void add_ring(skg_mesh_arrays *arrays, double radius, double z, int64_t segments) {
     for (int64_t s = 0; s < segments; s++) {
-        double angle = 2 * pi * (double)s / (double)segments;
+        double angle = 2 * SKG_PI * (double)s / (double)segments;
         add_vertex(arrays, radius * cos(angle), radius * sin(angle), z);
     }
 }
 
-/* Triangles from a vertex on the axis to a ring: above the ring when `up`. */
+/* Adds triangles from a vertex on the axis to a ring. up: the vertex is above the ring. */
 static void add_fan(skg_mesh_arrays *arrays, int64_t hub, int64_t ring, int64_t segments, int up) {
     for (int64_t s = 0; s < segments; s++) {
         int64_t a = ring + s, b = ring + (s + 1) % segments;
@@ -93,7 +90,7 @@ static void add_fan(skg_mesh_arrays *arrays, int64_t hub, int64_t ring, int64_t 
     }
 }
 
-/* The wall between a ring and the one above it. */
+/* Adds the wall between a ring and the one above it. */
 static void add_wall(skg_mesh_arrays *arrays, int64_t lower, int64_t upper, int64_t segments) {
     for (int64_t s = 0; s < segments; s++) {
         int64_t next = (s + 1) % segments;
@@ -103,7 +100,8 @@ static void add_wall(skg_mesh_arrays *arrays, int64_t lower, int64_t upper, int6
 
 skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **mesh) {
     skg_mesh_arrays arrays;
-    SKG_TRY(check_place("sphere", mesh));
+    SKG_NEEDS(mesh);
+    *mesh = NULL;
     SKG_TRY(check_length("sphere", "radius", radius));
     /* 26,000 around are 676 million triangles, within SKG_MESH_LIMIT. */
     SKG_TRY(check_count("sphere", "segments", segments, 3, 26000));
@@ -111,7 +109,7 @@ skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **me
     SKG_TRY(start("sphere", 2 + rings * segments, 2 * rings * segments, &arrays));
     add_vertex(&arrays, 0, 0, -radius);
     for (int64_t r = 1; r <= rings; r++) {
-        double angle = pi * (double)r / (double)bands; /* from the lower pole */
+        double angle = SKG_PI * (double)r / (double)bands; /* from the lower pole */
         add_ring(&arrays, radius * sin(angle), -radius * cos(angle), segments);
     }
     add_vertex(&arrays, 0, 0, radius);
@@ -123,7 +121,8 @@ skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **me
 
 skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh) {
     skg_mesh_arrays arrays;
-    SKG_TRY(check_place("cylinder", mesh));
+    SKG_NEEDS(mesh);
+    *mesh = NULL;
     SKG_TRY(check_length("cylinder", "radius", radius));
     SKG_TRY(check_length("cylinder", "height", height));
     SKG_TRY(check_count("cylinder", "segments", segments, 3, SKG_MESH_LIMIT / 4));
@@ -138,12 +137,13 @@ skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segmen
     return skg_mesh_adopt(NULL, "cylinder", &arrays, mesh);
 }
 
-/* The outline in the plane of x and z, counter-clockwise as seen from -y: the foot of every edge between
- * steps, then the stairs down from the last step. Front (-y) and back (+y) have `outline` vertices each. */
+/* The outline lies in the plane of x and z and runs counter-clockwise as seen from -y: along the foot of every edge
+ * between steps, then down the stairs from the last step. Front (-y) and back (+y) have `outline` vertices each. */
 skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
                                       skg_mesh **mesh) {
     skg_mesh_arrays arrays;
-    SKG_TRY(check_place("step wedge", mesh));
+    SKG_NEEDS(mesh);
+    *mesh = NULL;
     SKG_TRY(check_length("step wedge", "length along x", length_x));
     SKG_TRY(check_length("step wedge", "length along y", length_y));
     SKG_TRY(check_length("step wedge", "height", height_z));
@@ -160,12 +160,11 @@ skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double h
                            height_z * ((double)(k + 1) / n - 0.5));
     }
     for (int64_t k = 0; k < steps; k++) {
-        /* Front and back of a step: a fan from its lower right corner; the step before ends on its left edge.
-         */
+        /* Front and back of a step are fans from its lower right corner. The step before ends on its left edge. */
         int64_t foot = k + 1, right = steps + 1 + 2 * (steps - 1 - k), before = right + 2;
         for (int64_t back = 0; back < 2; back++) {
             int64_t ring[5] = {foot, right, right + 1, before, k}, corners = 5;
-            if (k == 0) ring[3] = k, corners = 4; /* nothing before the first */
+            if (k == 0) ring[3] = k, corners = 4; /* the first has none before it */
             for (int64_t c = 1; c + 1 < corners; c++)
                 add_triangle(&arrays, back * outline + ring[0], back * outline + ring[back ? c + 1 : c],
                              back * outline + ring[back ? c : c + 1]);

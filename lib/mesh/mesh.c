@@ -7,12 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-void skg_mesh_arrays_free(skg_mesh_arrays *arrays) {
-    skg_free(&arrays->positions);
-    skg_free(&arrays->corners);
-    *arrays = (skg_mesh_arrays){0};
-}
-
 static skg_status check_counts(const char *name, int64_t vertices, int64_t triangles) {
     if (vertices < 0 || triangles < 0)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId64 " vertices and %" PRId64 " triangles: counts from 0",
@@ -78,7 +72,7 @@ static void set_offsets(skg_mesh *mesh) {
             mesh->offsets[3 * i + k] = (float)(mesh->positions[3 * i + k] - mesh->origin[k]);
 }
 
-/* Bounds of the offsets; a comparison with NaN is false, so only what is finite or infinite enters them. */
+/* Bounds of the offsets that are finite. A comparison with NaN is false, so NaN is a bad vertex, too. */
 static void set_bounds(skg_mesh *mesh) {
     float lowest[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, highest[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
     int64_t bad = -1;
@@ -145,17 +139,18 @@ static skg_status check_stride(const char *name, const char *what, int64_t *stri
                     what, *stride);
 }
 
-/* positions as double or float, whichever is not NULL. */
+/* The positions are doubles or floats, whichever is not NULL. */
 static skg_status create(skg_context *context, const char *name, int64_t vertices, const double *doubles,
                          const float *floats, int64_t position_stride, int64_t triangles,
                          const int32_t *corners, int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
     skg_mesh_arrays arrays = {0};
     skg_status status = SKG_OK;
-    if (!mesh) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_create: no place for the mesh");
     *mesh = NULL;
     if (!name || !*name) name = "mesh";
     if (!isfinite(unit_mm) || unit_mm <= 0)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm: finite and above 0", name, unit_mm);
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: unit %g mm is not usable; give one that is finite and above 0", name,
+                        unit_mm);
     SKG_TRY(check_stride(name, "position", &position_stride));
     SKG_TRY(check_stride(name, "triangle", &triangle_stride));
     SKG_TRY(check_counts(name, vertices, triangles));
@@ -181,6 +176,7 @@ cleanup:
 skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices, const double *positions,
                            int64_t position_stride, int64_t triangles, const int32_t *corners,
                            int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+    SKG_NEEDS(mesh);
     return create(context, name, vertices, positions, NULL, position_stride, triangles, corners,
                   triangle_stride, unit_mm, mesh);
 }
@@ -189,17 +185,13 @@ skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t
                                  const float *positions, int64_t position_stride, int64_t triangles,
                                  const int32_t *corners, int64_t triangle_stride, double unit_mm,
                                  skg_mesh **mesh) {
+    SKG_NEEDS(mesh);
     return create(context, name, vertices, NULL, positions, position_stride, triangles, corners,
                   triangle_stride, unit_mm, mesh);
 }
 
-static skg_status check_mesh(const skg_mesh *mesh, const void *pointer, const char *call) {
-    if (mesh && pointer) return SKG_OK;
-    return skg_fail(SKG_ERR_ARGUMENT, "%s: the %s is NULL", call, mesh ? "place for the answer" : "mesh");
-}
-
 skg_status skg_mesh_retain(skg_mesh *mesh) {
-    SKG_TRY(check_mesh(mesh, mesh, __func__));
+    SKG_NEEDS(mesh);
     skg_ref(&mesh->refs);
     return SKG_OK;
 }
@@ -218,20 +210,22 @@ void skg_mesh_release(skg_mesh **mesh) {
 }
 
 skg_status skg_mesh_count(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles) {
-    SKG_TRY(check_mesh(mesh, mesh, __func__));
+    SKG_NEEDS(mesh);
     if (vertices) *vertices = mesh->vertices;
     if (triangles) *triangles = mesh->triangles;
     return SKG_OK;
 }
 
 skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name) {
-    SKG_TRY(check_mesh(mesh, name, __func__));
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(name);
     *name = mesh->name;
     return SKG_OK;
 }
 
 skg_status skg_mesh_version_get(const skg_mesh *mesh, int64_t *version) {
-    SKG_TRY(check_mesh(mesh, version, __func__));
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(version);
     *version = mesh->version;
     return SKG_OK;
 }
@@ -243,33 +237,36 @@ void skg_mesh_bounds(const skg_mesh *mesh, float lowest[3], float highest[3], in
 }
 
 skg_status skg_mesh_positions_get(const skg_mesh *mesh, double *positions, int64_t position_stride) {
-    SKG_TRY(check_mesh(mesh, positions, __func__));
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(positions);
     SKG_TRY(check_stride(mesh->name, "position", &position_stride));
     for (int64_t i = 0; i < mesh->vertices; i++) skg_mesh_vertex(mesh, i, positions + i * position_stride);
     return SKG_OK;
 }
 
 skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride) {
-    SKG_TRY(check_mesh(mesh, corners, __func__));
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(corners);
     SKG_TRY(check_stride(mesh->name, "triangle", &triangle_stride));
     for (int64_t i = 0; i < mesh->triangles; i++)
         memcpy(corners + i * triangle_stride, mesh->corners + 3 * i, 3 * sizeof(int32_t));
     return SKG_OK;
 }
 
-/* A closed mesh whose vertices were one by position only opens when they part: that is refused. */
+/* Vertices that are one only because they are at the same place have parted, and the closed mesh has become leaky. */
 static skg_status torn(const skg_mesh *mesh, int64_t vertex) {
     return skg_fail(
         SKG_ERR_MESH,
         "%s: vertices %" PRId32 " and %" PRId64
-        " were at the same place and now are not, which opens the closed mesh; move them together",
+        " were at the same place and now are not, which makes the closed mesh leaky; move them together",
         mesh->name, mesh->weld[vertex], vertex);
 }
 
 skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride) {
     double centre[3], reach;
     int far = 0;
-    SKG_TRY(check_mesh(mesh, positions, __func__));
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(positions);
     SKG_TRY(check_stride(mesh->name, "position", &position_stride));
     SKG_TRY(check_positions(mesh->name, positions, mesh->vertices, position_stride));
     centre_and_reach(positions, mesh->vertices, position_stride, centre, &reach);
@@ -280,7 +277,8 @@ skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64
                 return torn(mesh, i);
     for (int64_t i = 0; i < mesh->vertices; i++)
         memcpy(mesh->positions + 3 * i, positions + i * position_stride, 3 * sizeof(double));
-    /* The origin stays while it is inside the mesh's middle: vertices at rest keep their offsets' bits. */
+    /* The origin stays while it is near the middle of the mesh, so that vertices at rest keep the bits of their
+     * offsets. */
     for (int k = 0; k < 3; k++) far |= fabs(centre[k] - mesh->origin[k]) > 0.5 * reach;
     if (far) memcpy(mesh->origin, centre, sizeof centre);
     mesh->positions_stale = 0;
@@ -291,14 +289,15 @@ skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64
 }
 
 skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin) {
-    SKG_TRY(check_mesh(mesh, offsets, __func__));
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(offsets);
     *offsets = mesh->offsets;
     if (origin) *origin = mesh->origin;
     return SKG_OK;
 }
 
 skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
-    SKG_TRY(check_mesh(mesh, mesh, __func__));
+    SKG_NEEDS(mesh);
     mesh->positions_stale = 1;
     mesh->version++;
     set_bounds(mesh);
@@ -307,18 +306,4 @@ skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
             if (mesh->offsets[3 * i + k] != mesh->offsets[3 * (int64_t)mesh->weld[i] + k])
                 return torn(mesh, i);
     return SKG_OK;
-}
-
-void skg_mesh_health_init(skg_mesh_health *health) {
-    if (health) *health = (skg_mesh_health){.size = sizeof *health, .first_open_vertex = -1};
-}
-
-skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health) {
-    SKG_TRY(check_mesh(mesh, health, __func__));
-    skg_mesh_health now = mesh->health;
-    if (mesh->version > 1) {
-        skg_mesh_measure(mesh, &now);
-        if (now.first_open_vertex >= 0) skg_mesh_vertex(mesh, now.first_open_vertex, now.first_open_position);
-    }
-    return skg_struct_write(&now, sizeof now, "skg_mesh_health", health);
 }

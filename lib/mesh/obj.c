@@ -1,5 +1,5 @@
-/* Wavefront OBJ: vertex i is the i-th line "v", triangles stand in the order of the lines "f". All else
- * (normals, texture, groups, materials) has no bearing on path lengths and is passed over. */
+/* Wavefront OBJ. Vertex i is the i-th line "v"; triangles are in the order of the lines "f". Normals, textures,
+ * groups and materials do not change path lengths and are skipped. */
 #include "mesh/read.h"
 
 #include <errno.h>
@@ -17,14 +17,14 @@ static skg_status fail(const cursor *here, const char *reason) {
     return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": %s", here->file->name, here->line, reason);
 }
 
-/* Length of a backslash and the end of line that it takes away; 0: there is none here. */
+/* The length of a backslash with the end of line that it cancels; 0 if there is none here. */
 static int continuation(const char *c) {
     if (c[0] != '\\') return 0;
     if (c[1] == '\n') return 2;
     return c[1] == '\r' && c[2] == '\n' ? 3 : 0;
 }
 
-/* To the next word of the line, beyond continuations. 0: there is none. */
+/* Goes to the next word of the line, across continuations. Returns 0 if there is none. */
 static int next_word(cursor *here) {
     for (;;) {
         const char *c = here->at;
@@ -41,14 +41,14 @@ static int is_end(char c) {
 
 static void skip_line(cursor *here) {
     while (next_word(here)) do {
-            here->at++; /* a word has a letter at least, be it a backslash */
+            here->at++; /* a word has at least one character, which may be a backslash */
         } while (!is_end(*here->at) || (*here->at == '\\' && !continuation(here->at)));
     while (*here->at != '\0' && *here->at != '\n') here->at++; /* a comment */
     if (*here->at == '\n') here->at++;
     here->line++;
 }
 
-/* v x y z, after the "v"; a weight or colours may follow. */
+/* Reads "v x y z" from behind the "v". A weight or colours may follow. */
 static skg_status read_vertex(cursor *here, skg_mesh_arrays *arrays) {
     double position[3];
     for (int k = 0; k < 3; k++) {
@@ -61,7 +61,8 @@ static skg_status read_vertex(cursor *here, skg_mesh_arrays *arrays) {
     return skg_mesh_add_vertex(arrays, position);
 }
 
-/* f v v v ..., f v/vt ..., f v/vt/vn ..., f v//vn ...; v from 1, or from -1 backwards. */
+/* Reads "f v v v ...", "f v/vt ...", "f v/vt/vn ..." or "f v//vn ..." from behind the "f". Vertices count from 1, or
+ * from the last one back as -1, -2, ... */
 static skg_status read_face(cursor *here, skg_mesh_arrays *arrays) {
     skg_polygon polygon = {0};
     while (next_word(here)) {

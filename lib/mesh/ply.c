@@ -1,4 +1,4 @@
-/* PLY, ascii and binary of either byte order: any scalar types, any further elements and properties. */
+/* PLY, ascii or binary in either byte order, with any scalar types. Other elements and properties are skipped. */
 #include "mesh/read.h"
 
 #include <inttypes.h>
@@ -22,7 +22,8 @@ static const struct {
 typedef enum { NO_ROLE, X, Y, Z, CORNERS } role;
 
 typedef struct {
-    scalar type, count_type; /* count_type: of a list's length; NO_TYPE: not a list */
+    scalar type;
+    scalar count_type; /* of the length of a list; NO_TYPE: this is no list */
     role meaning;
 } property;
 
@@ -66,7 +67,7 @@ static skg_status read_format(ply *in, const char *line, const char *format) {
     return SKG_OK;
 }
 
-/* property TYPE NAME, property list COUNT_TYPE TYPE NAME */
+/* Reads "property TYPE NAME" or "property list COUNT_TYPE TYPE NAME". */
 static skg_status read_property(ply *in, const char *line) {
     char word[3][64] = {"", "", ""};
     property found = {0};
@@ -126,7 +127,7 @@ static skg_status read_header(ply *in) {
     }
 }
 
-/* A value in the file's byte order as the machine's own. */
+/* Reads the bytes of `raw` as a value of the type. */
 #define TAKE(ctype)                                                                                          \
     do {                                                                                                     \
         ctype taken;                                                                                         \
@@ -169,7 +170,7 @@ static int read_binary(ply *in, scalar type, double *value) {
     return 1;
 }
 
-/* 0: the file ends, or no number is there. */
+/* Returns 0 if the file ends here or holds no number. */
 static int read_value(ply *in, scalar type, double *value) {
     if (!in->ascii) return read_binary(in, type, value);
     char *end;
@@ -222,7 +223,7 @@ static skg_status read_instances(ply *in, const element *what, skg_mesh_arrays *
     return SKG_OK;
 }
 
-/* x, y and z of the vertices, and the faces' corners. */
+/* A mesh needs x, y and z of its vertices, and the corners of its faces. */
 static skg_status check_roles(const ply *in) {
     int seen[CORNERS + 1] = {0};
     for (int p = 0; p < in->property_count; p++) seen[in->properties[p].meaning]++;

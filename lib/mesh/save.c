@@ -1,11 +1,11 @@
-/* Meshes to files: binary PLY and binary STL, both little-endian. */
+/* Writing of mesh files: binary PLY and binary STL, both little-endian. */
 #include "mesh/mesh.h"
 
 #include "core/names.h"
 #include "core/output.h"
+#include "core/vector.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <string.h>
 
 static void put(unsigned char *to, uint64_t bits, int bytes) {
@@ -24,7 +24,7 @@ static void put_double(unsigned char *to, double x) {
     put(to, bits, 8);
 }
 
-/* Whether floats hold every position exactly: then a PLY file of half the size is as good. */
+/* Whether floats hold every position exactly. A PLY file of floats then has half the size and loses nothing. */
 static int fits_float(const skg_mesh *mesh) {
     for (int64_t i = 0; i < mesh->vertices; i++) {
         double p[3];
@@ -35,7 +35,7 @@ static int fits_float(const skg_mesh *mesh) {
     return 1;
 }
 
-/* A failed write is found by skg_output_commit. */
+/* Failures to write are found by skg_output_commit. */
 static void write_ply(const skg_mesh *mesh, FILE *stream) {
     int size = fits_float(mesh) ? 4 : 8;
     const char *type = size == 4 ? "float" : "double";
@@ -62,15 +62,15 @@ static void write_ply(const skg_mesh *mesh, FILE *stream) {
     }
 }
 
-/* Unit normal of the corners' order; zero without an area, as STL has it. */
+/* The unit normal that the order of the corners gives. STL has zeros for a triangle without area. */
 static void normal_of(float corner[3][3], float normal[3]) {
-    double u[3], v[3];
+    double u[3], v[3], n[3];
     for (int k = 0; k < 3; k++) {
         u[k] = (double)corner[1][k] - (double)corner[0][k];
         v[k] = (double)corner[2][k] - (double)corner[0][k];
     }
-    double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    skg_cross(u, v, n);
+    double length = skg_length(n);
     for (int k = 0; k < 3; k++) normal[k] = length > 0 ? (float)(n[k] / length) : 0;
 }
 
@@ -97,8 +97,9 @@ static void write_stl(const skg_mesh *mesh, FILE *stream) {
 
 skg_status skg_mesh_save(const skg_mesh *mesh, const char *path) {
     skg_output_file file;
-    if (!mesh || !path || !*path)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_save: no %s", mesh ? "path" : "mesh");
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(path);
+    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_save: no path");
     if (mesh->first_bad >= 0)
         return skg_fail(SKG_ERR_MESH, "%s: vertex %" PRId64 " is not finite; not written to %s", mesh->name,
                         mesh->first_bad, path);

@@ -1,4 +1,4 @@
-/* STL, binary and ascii: corner i of the file is vertex i. */
+/* STL, binary and ascii. Corner i of the file is vertex i. */
 #include "mesh/read.h"
 
 #include "core/names.h"
@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEADER = 84, RECORD = 50 }; /* bytes: 80 of text and a count; normal, three corners, attribute */
+/* Bytes: a header of 80 of text and a count; a record of a normal, three corners and an attribute. */
+enum { HEADER = 84, RECORD = 50 };
 
 static uint32_t number_at(const char *bytes) {
     const unsigned char *b = (const unsigned char *)bytes;
@@ -42,7 +43,7 @@ typedef struct {
     const skg_mesh_file *file;
     const char *at;
     int64_t line;
-    char word[16]; /* longer ones are cut: none of STL's is longer */
+    char word[16]; /* cut off where it is longer, as no word of STL is */
 } cursor;
 
 static skg_status fail(const cursor *here, const char *reason) {
@@ -53,7 +54,7 @@ static void skip_space(cursor *here) {
     for (; *here->at && strchr(" \t\r\n\v\f", *here->at); here->at++) here->line += *here->at == '\n';
 }
 
-/* 0 at the end of the file. */
+/* Returns 0 at the end of the file. */
 static int next_word(cursor *here) {
     skip_space(here);
     size_t length = strcspn(here->at, " \t\r\n\v\f");
@@ -86,10 +87,10 @@ static skg_status read_facet(cursor *here, skg_mesh_arrays *arrays) {
             SKG_TRY(read_numbers(here, number));
             SKG_TRY(add(arrays, &facet, number));
         } else if (skg_same_name(here->word, "normal"))
-            SKG_TRY(read_numbers(here, number)); /* the corners' order says it */
+            SKG_TRY(read_numbers(here, number)); /* not used: the order of the corners gives the normal */
         else if (!skg_same_name(here->word, "outer") && !skg_same_name(here->word, "loop") &&
                  !skg_same_name(here->word, "endloop"))
-            return fail(here, "no word of a facet");
+            return fail(here, "not a word that a facet may hold");
     }
     return fail(here, "truncated: a facet ends with \"endfacet\"");
 }
@@ -102,7 +103,7 @@ static skg_status read_text(const skg_mesh_file *file, skg_mesh_arrays *arrays) 
             SKG_TRY(read_facet(&here, arrays));
         else if (skg_same_name(here.word, in_solid ? "endsolid" : "solid")) {
             in_solid = !in_solid;
-            here.at += strcspn(here.at, "\n"); /* a name */
+            here.at += strcspn(here.at, "\n"); /* skips the name */
         } else
             return fail(&here, in_solid ? "neither \"facet\" nor \"endsolid\"" : "no \"solid\"");
     }
@@ -112,7 +113,7 @@ static skg_status read_text(const skg_mesh_file *file, skg_mesh_arrays *arrays) 
 skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
     int64_t said = file->size < HEADER ? -1 : (int64_t)number_at(file->bytes + 80);
     if (said >= 0 && file->size == HEADER + RECORD * said) return read_binary(file, said, arrays);
-    /* An ascii STL begins with "solid"; so do binary ones of careless programs, but those hold zero bytes. */
+    /* An ascii STL begins with "solid". Some programs begin binary files with it too, but those hold zero bytes. */
     if (strlen(file->bytes) == (size_t)file->size && strncmp(file->bytes, "solid", 5) == 0)
         return read_text(file, arrays);
     if (said < 0)

@@ -32,9 +32,9 @@ static double open_beam(const skg_plan *plan, int64_t channel) {
         return 0;
     case SKG_QUANTITY_FLUENCE:
         if (skg_camera_make(&plan->view, NULL, 0, 0, &camera) != SKG_OK) return 0;
-        return plan->model.open[channel] / skg_camera_pixel_area(&camera);
+        return plan->model.flat_field[channel] / skg_camera_pixel_area(&camera);
     default:
-        return plan->model.open[channel];
+        return plan->model.flat_field[channel];
     }
 }
 

@@ -30,7 +30,8 @@ static counts count(const skg_plan *plan, const skg_extent *extents) {
                 .pixels = (double)plan->view.columns * (double)plan->view.rows,
                 .passes = (double)plan->report.samples};
     for (int64_t p = 0; p < plan->scene->count; p++)
-        if (plan->model.first_write[p + 1] > plan->model.first_write[p]) c.hits += hits_of(&c, &extents[p]);
+        if (plan->model.first_contribution[p + 1] > plan->model.first_contribution[p])
+            c.hits += hits_of(&c, &extents[p]);
     return c;
 }
 
@@ -41,8 +42,9 @@ static double attenuation(const skg_model *model, double nodes, double planes) {
 
 static double writes_per_part(const skg_model *model, int64_t parts) {
     int64_t adding = 0;
-    for (int64_t p = 0; p < parts; p++) adding += model->first_write[p + 1] > model->first_write[p];
-    return adding ? (double)model->first_write[parts] / (double)adding : 1;
+    for (int64_t p = 0; p < parts; p++)
+        adding += model->first_contribution[p + 1] > model->first_contribution[p];
+    return adding ? (double)model->first_contribution[parts] / (double)adding : 1;
 }
 
 /* What of the plan's effects costs anything, in multiply-adds per pixel of a frame. plain: a pass without. */
@@ -87,8 +89,9 @@ void skg_report_costs(skg_plan *plan, const skg_extent *extents) {
     const skg_model *model = &plan->model;
     const counts c = count(plan, extents);
     const double set_up = TRIANGLE * (double)plan->report.triangles / c.pixels;
-    const double plain = set_up + c.hits * SKG_COST_OF_WRITE + attenuation(model, 1, 1);
-    const double pass = set_up + c.hits * SKG_COST_OF_WRITE * writes_per_part(model, plan->scene->count) +
+    const double plain = set_up + c.hits * SKG_COST_OF_CONTRIBUTION + attenuation(model, 1, 1);
+    const double pass = set_up +
+                        c.hits * SKG_COST_OF_CONTRIBUTION * writes_per_part(model, plan->scene->count) +
                         attenuation(model, model->nodes, model->planes);
     for (int e = 0; e < SKG_EFFECTS; e++)
         plan->effects[e].cost = plan->effects[e].on ? cost_of(&c, e, plain, pass) / plain : 0;

@@ -41,8 +41,8 @@ static void tell_noise(skg_plan *plan) {
         set(plan, SKG_EFFECT_QUANTISATION, 0, "no step is given");
 }
 
-static void report_contest(skg_plan *plan, int64_t competing) {
-    if (!plan->contest_possible)
+static void report_priorities(skg_plan *plan, int64_t competing) {
+    if (!plan->priority_possible)
         set(plan, SKG_EFFECT_PRIORITY, 0,
             "no two parts of one parent differ in priority, and none is clipped");
     else if (competing == 0)
@@ -57,7 +57,7 @@ static skg_status report_places(skg_plan *plan) {
     const skg_scene *scene = plan->scene;
     skg_camera camera;
     skg_extent *extents = NULL;
-    skg_contest contest = {0};
+    skg_priority priority = {0};
     int64_t near = 0;
     skg_status status = SKG_OK;
     SKG_TRY(skg_camera_make(&plan->view, NULL, 0, 0, &camera));
@@ -71,12 +71,12 @@ static skg_status report_places(skg_plan *plan) {
             skg_plural(near, "part reaches", "parts reach"));
     else
         set(plan, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
-    if (plan->contest_possible)
-        SKG_TRY_CLEANUP(skg_contest_find(scene, plan->options.clip, extents, &contest));
-    report_contest(plan, contest.count);
+    if (plan->priority_possible)
+        SKG_TRY_CLEANUP(skg_priority_find(scene, plan->options.clip, extents, &priority));
+    report_priorities(plan, priority.count);
     skg_report_costs(plan, extents);
 cleanup:
-    skg_contest_release(&contest);
+    skg_priority_release(&priority);
     skg_free(&extents);
     return status;
 }

@@ -35,7 +35,7 @@ static void warn_of_overlaps(skg_plan *plan) {
     int64_t count = 0;
     for (int64_t i = 0; i < plan->overlap_count; i++) {
         const skg_overlap_pair *pair = &plan->overlaps[i];
-        if (skg_contest_settles(scene, plan->options.clip, pair)) continue;
+        if (skg_priority_settles(scene, plan->options.clip, pair)) continue;
         if (!worst) worst = pair;
         volume += pair->volume;
         count++;
@@ -213,7 +213,7 @@ skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
     skg_plan_report ours = plan->report;
     ours.device_bytes = skg_geometry_bytes(&plan->geometry) + plan->image.bytes + plan->negative.bytes +
                         plan->bad.bytes + plan->gaps.bytes + plan->field.image.bytes +
-                        skg_contest_memory_bytes(&plan->contest_memory) +
+                        skg_priority_memory_bytes(&plan->priority_memory) +
                         plan->attenuation.coefficients.bytes + plan->attenuation.weights.bytes +
                         plan->attenuation.variances.bytes + plan->attenuation.range.bytes +
                         plan->lengths.coefficients.bytes + plan->lengths.weights.bytes;

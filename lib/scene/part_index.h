@@ -1,4 +1,4 @@
-/* Finds parts by a hash: a scene may have a million of them. Private. */
+/* An index of parts by a hash, because a scene may have a million of them. Private. */
 #ifndef SKG_PART_INDEX_H
 #define SKG_PART_INDEX_H
 
@@ -6,25 +6,25 @@
 
 typedef struct {
     uint64_t hash;
-    int64_t part; /* -1: free */
+    int64_t part; /* -1: the slot is free */
 } skg_part_slot;
 
-/* All zero: empty. Free slots follow each other no farther than hashes collide. */
+/* A hash table with linear probing. All zero: empty. At least half of the slots are free. */
 typedef struct {
     skg_part_slot *slots;
-    int64_t room, used;
+    int64_t capacity, used;
 } skg_part_index;
 
-/* FNV-1a, 64 bits, continued from `hash` (0: from the start). */
+/* The hash FNV-1a of 64 bits, continued from `hash`; 0 starts a new one. */
 uint64_t skg_hash_bytes(uint64_t hash, const void *bytes, size_t count);
 
-/* Room for one more: SKG_ERR_MEMORY, and the index stays as it was. */
+/* Makes sure that one part more fits. On SKG_ERR_MEMORY the index stays as it was. */
 skg_status skg_part_index_reserve(skg_part_index *index);
 
-/* After skg_part_index_reserve; does not fail. */
+/* Adds a part. Does not fail after skg_part_index_reserve. */
 void skg_part_index_add(skg_part_index *index, uint64_t hash, int64_t part);
 
-/* The next part with this hash, -1: none more. *at: 0 at first. */
+/* The next part with this hash; -1 if there are no more. *at is 0 for the first call and is advanced. */
 int64_t skg_part_index_next(const skg_part_index *index, uint64_t hash, int64_t *at);
 
 #endif

@@ -2,7 +2,6 @@
 
 #include "core/context.h"
 #include "core/names.h"
-#include "core/pose.h"
 #include "core/vector.h"
 
 #include <float.h>
@@ -17,7 +16,7 @@ void skg_part_init(skg_part *part) {
 }
 
 skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_create: no place for the scene");
+    SKG_NEEDS(scene);
     *scene = NULL;
     skg_scene *made = NULL;
     SKG_TRY(skg_alloc(1, sizeof *made, "scene", &made));
@@ -36,7 +35,7 @@ skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
 }
 
 skg_status skg_scene_retain(skg_scene *scene) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_retain: no scene");
+    SKG_NEEDS(scene);
     skg_ref(&scene->refs);
     return SKG_OK;
 }
@@ -60,8 +59,8 @@ void skg_scene_release(skg_scene **scene) {
     *scene = NULL;
 }
 
-/* Affine, finite, and not flat: |det| is compared with the product of the columns' lengths, so that the scale
- * of a pose does not matter. */
+/* The determinant is compared with the product of the lengths of the columns, so that a small or large scale is no
+ * reason to refuse a pose. */
 skg_status skg_scene_check_pose(const char *label, const double *pose) {
     if (!skg_all_finite(pose, 16))
         return skg_fail(SKG_ERR_SCENE, "part %s: its pose has an entry that is not finite", label);
@@ -72,7 +71,7 @@ skg_status skg_scene_check_pose(const char *label, const double *pose) {
                         label, pose[12], pose[13], pose[14], pose[15]);
     double volume = 1;
     for (int c = 0; c < 3; c++) volume *= skg_length((const double[3]){pose[c], pose[4 + c], pose[8 + c]});
-    /* 16 epsilon: the rounding of a determinant of three products of three. */
+    /* 16 epsilon cover the rounding of a determinant, which is a sum of six products of three. */
     if (!(fabs(skg_pose_determinant(pose)) > 16 * DBL_EPSILON * volume) || !isfinite(volume))
         return skg_fail(SKG_ERR_SCENE,
                         "part %s: its pose is singular (it flattens the part); give one that can be undone",
@@ -95,7 +94,7 @@ static uint64_t place_hash(const skg_scene_part_data *part) {
     return skg_hash_bytes(skg_hash_bytes(0, &part->mesh, sizeof part->mesh), part->pose, sizeof part->pose);
 }
 
-/* Adds the part to the index of places, or warns that one is already there. */
+/* Adds the part to the index of places, or warns if one like it is already there. */
 static void note_place(skg_scene *scene, const skg_scene_part_data *part) {
     const uint64_t hash = place_hash(part);
     int64_t at = 0, other;
@@ -127,7 +126,7 @@ static skg_status check_part(const skg_scene *scene, const skg_part *part, const
 }
 
 skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_add: no scene");
+    SKG_NEEDS(scene);
     skg_part ours;
     skg_part_init(&ours);
     SKG_TRY(skg_struct_read(part, "skg_part", &ours, sizeof ours));
@@ -161,7 +160,6 @@ skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
 }
 
 static skg_status check_id(const skg_scene *scene, int64_t id, const char *call) {
-    if (!scene) return skg_fail(SKG_ERR_ARGUMENT, "%s: no scene", call);
     if (id < 0 || id >= scene->count)
         return skg_fail(SKG_ERR_SCENE, "%s: part %" PRId64 " of %" PRId64 " is not there", call, id,
                         scene->count);
@@ -169,8 +167,9 @@ static skg_status check_id(const skg_scene *scene, int64_t id, const char *call)
 }
 
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
-    SKG_TRY(check_id(scene, id, "skg_scene_set_inside"));
-    if (inside != -1) SKG_TRY(check_id(scene, inside, "skg_scene_set_inside"));
+    SKG_NEEDS(scene);
+    SKG_TRY(check_id(scene, id, __func__));
+    if (inside != -1) SKG_TRY(check_id(scene, inside, __func__));
     if (inside == id)
         return skg_fail(SKG_ERR_SCENE, "part %s lies inside itself; its parent has to be another part",
                         scene->parts[id].label);
@@ -186,13 +185,15 @@ skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
 }
 
 skg_status skg_scene_part_count(const skg_scene *scene, int64_t *parts) {
-    if (!scene || !parts) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_part_count: no scene or no result");
+    SKG_NEEDS(scene);
+    SKG_NEEDS(parts);
     *parts = scene->count;
     return SKG_OK;
 }
 
 skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part) {
-    SKG_TRY(check_id(scene, id, "skg_scene_part_get"));
+    SKG_NEEDS(scene);
+    SKG_TRY(check_id(scene, id, __func__));
     const skg_scene_part_data *data = &scene->parts[id];
     skg_part ours = {.size = sizeof ours,
                      .priority = data->priority,
@@ -205,8 +206,9 @@ skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part
 }
 
 skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id) {
-    if (!scene || !label || !id)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_find: no scene, no label or no result");
+    SKG_NEEDS(scene);
+    SKG_NEEDS(label);
+    SKG_NEEDS(id);
     int64_t found = label_index(scene, label), alike = 0;
     for (int64_t i = 0; found < 0 && i < scene->count; i++)
         if (skg_same_name(scene->parts[i].label, label)) alike++;
@@ -227,8 +229,9 @@ skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id
 }
 
 skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) {
-    SKG_TRY(check_id(scene, id, "skg_scene_pose_set"));
-    if (!pose) return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_pose_set: no pose");
+    SKG_NEEDS(scene);
+    SKG_NEEDS(pose);
+    SKG_TRY(check_id(scene, id, __func__));
     SKG_TRY(skg_scene_check_pose(scene->parts[id].label, pose));
     memcpy(scene->parts[id].pose, pose, sizeof scene->parts[id].pose);
     scene->poses++;
@@ -236,7 +239,8 @@ skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) 
 }
 
 skg_status skg_scene_material_set(skg_scene *scene, int64_t id, skg_material *material) {
-    SKG_TRY(check_id(scene, id, "skg_scene_material_set"));
+    SKG_NEEDS(scene);
+    SKG_TRY(check_id(scene, id, __func__));
     if (!material)
         return skg_fail(SKG_ERR_ARGUMENT, "part %s has no material; give it one", scene->parts[id].label);
     skg_material_retain(material);

@@ -11,7 +11,8 @@ typedef struct {
     skg_mesh *mesh;         /* retained */
     skg_material *material; /* retained */
     char *label;
-    int64_t inside; /* -1: in the world. From a scene file it may be a later part, never in a circle. */
+    /* The parent; -1: the world. In a scene file a parent may follow its child; there are no circles. */
+    int64_t inside;
     double pose[16];
     int32_t priority, reserved;
 } skg_scene_part_data;
@@ -21,18 +22,18 @@ struct skg_scene {
     skg_context *context; /* retained; NULL: warnings are dropped */
     skg_scene_part_data *parts;
     int64_t count, capacity;
-    skg_part_index labels; /* by label */
-    skg_part_index places; /* by mesh and the pose it came with; of parts alike, the first */
-    int64_t structure; /* grows with every part added or put inside another: a plan of an older one is stale
-                        */
-    int64_t materials; /* grows with every material that changes */
-    int64_t poses;     /* grows with every pose that changes */
+    skg_part_index labels; /* parts by label */
+    /* Parts by mesh and the pose with which they were added; only the first of parts that are alike. */
+    skg_part_index places;
+    /* Each of these grows with every change of its kind. A plan made for an older structure (a part added, or put inside
+     * another) is stale. */
+    int64_t structure, materials, poses;
 };
 
-/* Puts part `id` inside another, or into the world (-1). A circle is refused: SKG_ERR_SCENE. */
+/* Puts part `id` inside another one or into the world (-1). SKG_ERR_SCENE if that would make a circle. */
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside);
 
-/* SKG_ERR_SCENE, naming the part, where a pose (4x4, row by row) is not finite, not affine or singular. */
+/* SKG_ERR_SCENE, with the label, if a pose (4x4, row by row) is not finite, not affine or singular. */
 skg_status skg_scene_check_pose(const char *label, const double *pose);
 
 #endif

@@ -1,5 +1,4 @@
 #include "core/core.h"
-
 #include "core/vector.h"
 
 #include <skiagraph/scene.h>
@@ -8,16 +7,17 @@
 #include <math.h>
 #include <string.h>
 
+/* Pixels of the longest side: products of two sides and of pixels with bits stay within 32 and 64 bit integers. */
 enum { LARGEST_SIDE = 32768 };
 
-/* Sines and relative distances below this are degenerate: single precision could not tell the pixels apart
- * long before. */
+/* Sines and relative distances below this are degenerate. Single precision fails to separate the pixels at much larger
+ * ones. */
 static const double DEGENERATE = 1e-9;
 
-/* mm: 1000 km, far beyond any set-up and far below what squares and products of lengths can hold. */
+/* In mm, so 1000 km: far beyond any set-up, and cubes of it are far below the largest float. */
 static const double LARGEST_LENGTH = 1e9;
 
-/* The detector's plane, as the checks need it. */
+/* The plane of the detector. */
 typedef struct {
     double corner[3]; /* centre of pixel (0, 0), mm */
     double normal[3]; /* length 1 */
@@ -79,7 +79,7 @@ static skg_status check_detector(const skg_view *view, detector_plane *plane) {
     return SKG_OK;
 }
 
-/* How far the farthest corner pixel is from the source. */
+/* The distance in mm of the farthest corner pixel from the source. */
 static double farthest_corner(const skg_view *view, const detector_plane *plane) {
     double farthest = 0;
     for (int k = 0; k < 4; k++) {
@@ -104,13 +104,13 @@ static skg_status check_point(const skg_view *view, const detector_plane *plane)
     return SKG_OK;
 }
 
-/* Direction of a parallel beam, length 1; 0 where it has none. */
+/* The direction of a parallel beam, of length 1. Returns 0 if it has none. */
 static int find_direction(const skg_view *view, double *direction) {
     if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
         memcpy(direction, view->source, 3 * sizeof *direction);
     else
         skg_add_scaled(view->centre, -1, view->source, direction);
-    /* Scaled first: a direction may be of any length, and its square need not be a number. */
+    /* A direction may have any length. It is scaled first, because its square may overflow. */
     double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
     if (!(largest > 0)) return 0;
     skg_scale_vector(1 / largest, direction, direction);

@@ -77,23 +77,23 @@ static skg_status describe(compressing *c, const skg_model *model) {
     return find_floor(c, model);
 }
 
-/* --- planes
- * ------------------------------------------------------------------------------------------------------ */
+/* --- planes --- */
 
 /* What a mm of a part adds to the planes of a basis: weights [planes]. */
-static void mix_writes(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
+static void mix_contributions(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
     memset(weights, 0, (size_t)basis->planes * sizeof *weights);
-    for (int64_t w = model->first_write[part]; w < model->first_write[part + 1]; w++)
+    for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
         for (int32_t k = 0; k < basis->planes; k++)
-            weights[k] += model->writes[w].weight * basis->mix[model->writes[w].plane * basis->planes + k];
+            weights[k] += model->contributions[w].weight *
+                          basis->mix[model->contributions[w].plane * basis->planes + k];
 }
 
 static double cost_of(const compressing *c, const skg_model *model, const skg_basis *basis, double *weights) {
     double cost = basis->planes * (SKG_COST_OF_PLANE + LIKELY_NODES);
     for (int64_t p = 0; p < c->scene->count; p++) {
-        mix_writes(model, basis, p, weights);
+        mix_contributions(model, basis, p, weights);
         for (int32_t k = 0; k < basis->planes; k++)
-            if (weights[k] != 0) cost += SKG_COST_OF_WRITE * c->ranges.hits[p];
+            if (weights[k] != 0) cost += SKG_COST_OF_CONTRIBUTION * c->ranges.hits[p];
     }
     return cost;
 }
@@ -133,37 +133,37 @@ cleanup:
     return status;
 }
 
-/* --- the model with fewer
- * ---------------------------------------------------------------------------------------- */
+/* --- the model with fewer --- */
 
-static skg_status rewrite_writes(const compressing *c, skg_model *model) {
+static skg_status rewrite_contributions(const compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;
     const int64_t parts = c->scene->count;
     int64_t *first = NULL, count = 0;
-    skg_contribution *writes = NULL;
+    skg_contribution *contributions = NULL;
     double *weights = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first, "planes of the parts", &first));
-    SKG_TRY_CLEANUP(skg_alloc(parts * planes, sizeof *writes, "planes of the parts", &writes));
+    SKG_TRY_CLEANUP(skg_alloc(parts * planes, sizeof *contributions, "planes of the parts", &contributions));
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *weights, "planes of the parts", &weights));
     for (int64_t p = 0; p < parts; p++) {
         first[p] = count;
-        mix_writes(model, &c->basis, p, weights);
+        mix_contributions(model, &c->basis, p, weights);
         for (int32_t k = 0; k < planes; k++)
-            if (weights[k] != 0) writes[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
+            if (weights[k] != 0)
+                contributions[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
     }
     first[parts] = count;
-    skg_free(&model->first_write);
-    skg_free(&model->writes);
-    model->first_write = first, model->writes = writes;
-    first = NULL, writes = NULL;
+    skg_free(&model->first_contribution);
+    skg_free(&model->contributions);
+    model->first_contribution = first, model->contributions = contributions;
+    first = NULL, contributions = NULL;
     int32_t world = 0;
     while (world < planes && c->basis.material[world] != model->world_plane) world++;
     if (model->world_plane >= 0) model->world_plane = world; /* the first that was taken */
     model->planes = planes;
 cleanup:
     skg_free(&first);
-    skg_free(&writes);
+    skg_free(&contributions);
     skg_free(&weights);
     return status;
 }
@@ -224,7 +224,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_
     if (c.found.nodes.count == 0) goto cleanup;
     c.found.bound *= errors;
     SKG_TRY_CLEANUP(find_range(&c, model));
-    SKG_TRY_CLEANUP(rewrite_writes(&c, model));
+    SKG_TRY_CLEANUP(rewrite_contributions(&c, model));
     rewrite_nodes(&c, model);
 cleanup:
     skg_ranges_release(&c.ranges);

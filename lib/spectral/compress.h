@@ -6,7 +6,7 @@
 
 /* Rough costs per pixel in multiply-adds of the attenuation: a plane written by a hit; a plane read. They
  * choose between layouts of the same accuracy, and tell what effects cost. */
-#define SKG_COST_OF_WRITE 50.0
+#define SKG_COST_OF_CONTRIBUTION 50.0
 #define SKG_COST_OF_PLANE 50.0
 
 /* Rewrites a model that has a plane per material and a node per bin; leaves it as it is where that meets no

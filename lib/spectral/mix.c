@@ -8,16 +8,16 @@ static const double PROPORTIONAL = 1e-13;
 
 void skg_mix_release(skg_mix *mix) {
     skg_free(&mix->lists);
-    skg_free(&mix->writes);
-    skg_free(&mix->first_write);
+    skg_free(&mix->contributions);
+    skg_free(&mix->first_contribution);
     mix->sums = 0;
 }
 
 /* A list over all planes, divided by its first weight of greatest size, which is returned. */
-static double normalise(int32_t planes, const skg_contribution *writes, int64_t count, double *list) {
+static double normalise(int32_t planes, const skg_contribution *contributions, int64_t count, double *list) {
     double largest = 0;
     memset(list, 0, (size_t)planes * sizeof *list);
-    for (int64_t w = 0; w < count; w++) list[writes[w].plane] += writes[w].weight;
+    for (int64_t w = 0; w < count; w++) list[contributions[w].plane] += contributions[w].weight;
     for (int32_t k = 0; k < planes; k++)
         if (fabs(list[k]) > fabs(largest)) largest = list[k];
     for (int32_t k = 0; k < planes && largest != 0; k++) list[k] /= largest;
@@ -39,8 +39,8 @@ static int32_t accumulator_of(const double *list, int32_t planes, int32_t most, 
     return mix->sums++;
 }
 
-skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_contribution *writes,
-                        const int64_t *first_write, int32_t most, skg_mix *mix) {
+skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_contribution *contributions,
+                        const int64_t *first_contribution, int32_t most, skg_mix *mix) {
     double *list = NULL;
     skg_status status = SKG_OK;
     int64_t count = 0;
@@ -49,32 +49,35 @@ skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_contribution *w
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *list, "planes of the parts", &list));
     SKG_TRY_CLEANUP(
         skg_alloc((int64_t)most * planes, sizeof *mix->lists, "planes of the parts", &mix->lists));
-    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *mix->writes, "planes of the parts", &mix->writes));
-    SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *mix->first_write, "planes of the parts", &mix->first_write));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *mix->contributions, "planes of the parts", &mix->contributions));
+    SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *mix->first_contribution, "planes of the parts",
+                              &mix->first_contribution));
     for (int64_t p = 0; p < parts && fits; p++) {
-        const int64_t first = first_write[p];
-        const double factor = normalise(planes, writes + first, first_write[p + 1] - first, list);
-        mix->first_write[p] = count;
+        const int64_t first = first_contribution[p];
+        const double factor =
+            normalise(planes, contributions + first, first_contribution[p + 1] - first, list);
+        mix->first_contribution[p] = count;
         if (factor == 0) continue;
         const int32_t sum = accumulator_of(list, planes, most, mix);
-        mix->writes[count++] = (skg_contribution){.plane = sum, .weight = factor};
+        mix->contributions[count++] = (skg_contribution){.plane = sum, .weight = factor};
         fits = sum >= 0;
     }
-    mix->first_write[parts] = count;
+    mix->first_contribution[parts] = count;
 cleanup:
     skg_free(&list);
     if (status != SKG_OK || !fits) skg_mix_release(mix);
     return status;
 }
 
-skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution *writes,
-                          const int64_t *first_write, int32_t *sums) {
+skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution *contributions,
+                          const int64_t *first_contribution, int32_t *sums) {
     skg_mix mix;
     int nested = 0;
-    for (int64_t p = 0; p < parts && !nested; p++) nested = first_write[p + 1] - first_write[p] > 1;
+    for (int64_t p = 0; p < parts && !nested; p++)
+        nested = first_contribution[p + 1] - first_contribution[p] > 1;
     *sums = 0;
     if (!nested) return SKG_OK;
-    SKG_TRY(skg_mix_find(parts, planes, writes, first_write, planes + planes / 2, &mix));
+    SKG_TRY(skg_mix_find(parts, planes, contributions, first_contribution, planes + planes / 2, &mix));
     *sums = mix.sums;
     skg_mix_release(&mix);
     return SKG_OK;

@@ -13,20 +13,20 @@
 typedef struct {
     int32_t sums; /* accumulators; 0: parts add to planes as their lists say */
     int32_t reserved;
-    double *lists;            /* [sums][planes] what a unit of an accumulator adds to the planes */
-    skg_contribution *writes; /* at most one a part, to an accumulator */
-    int64_t *first_write;     /* [parts + 1] */
+    double *lists;                   /* [sums][planes] what a unit of an accumulator adds to the planes */
+    skg_contribution *contributions; /* at most one a part, to an accumulator */
+    int64_t *first_contribution;     /* [parts + 1] */
 } skg_mix;
 
 /* The accumulators of these lists; mix->sums is 0 where there are more than `most`. */
-skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_contribution *writes,
-                        const int64_t *first_write, int32_t most, skg_mix *mix);
+skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_contribution *contributions,
+                        const int64_t *first_contribution, int32_t most, skg_mix *mix);
 void skg_mix_release(skg_mix *mix);
 
 /* How many accumulators pay for these planes: each is zeroed and read pixel by pixel, so no more than half as
  * many again. 0: no part adds to more than one plane. Measured with the generated thorax (42,000 triangles,
  * 512 x 512, 5 materials). */
-skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution *writes,
-                          const int64_t *first_write, int32_t *sums);
+skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution *contributions,
+                          const int64_t *first_contribution, int32_t *sums);
 
 #endif

@@ -16,12 +16,12 @@ typedef struct {
     const skg_scene *scene;
     const skg_spectrum *spectrum;
     const skg_plan_options *options;
-    int64_t matters; /* parts, then the world */
-    int64_t *bins;   /* [nodes] of the spectrum that have photons */
-    double *mu;      /* [matters][nodes] 1/mm */
-    double *bases;   /* [planes][nodes] 1/mm: what a mm of a plane attenuates */
-    int64_t *plane;  /* [matters] -1: attenuates nothing */
-    double *factor;  /* [matters] of its material, in its plane */
+    int64_t bodies; /* parts, then the world */
+    int64_t *bins;  /* [nodes] of the spectrum that have photons */
+    double *mu;     /* [bodies][nodes] 1/mm */
+    double *bases;  /* [planes][nodes] 1/mm: what a mm of a plane attenuates */
+    int64_t *plane; /* [bodies] -1: attenuates nothing */
+    double *factor; /* [bodies] of its material, in its plane */
 } making;
 
 static skg_status choose_nodes(making *m, skg_model *model) {
@@ -43,8 +43,8 @@ static const skg_material *material_of(const making *m, int64_t matter) {
 }
 
 static skg_status look_up(making *m, const skg_model *model) {
-    SKG_TRY(skg_alloc(m->matters * model->nodes, sizeof *m->mu, "attenuation of the parts", &m->mu));
-    for (int64_t p = 0; p < m->matters; p++) {
+    SKG_TRY(skg_alloc(m->bodies * model->nodes, sizeof *m->mu, "attenuation of the parts", &m->mu));
+    for (int64_t p = 0; p < m->bodies; p++) {
         double *mu = m->mu + p * model->nodes;
         const skg_material *material = material_of(m, p);
         if (!material) continue;                          /* vacuum */
@@ -83,9 +83,9 @@ static void start_basis(const making *m, const double *mu, int32_t nodes, double
 static skg_status choose_planes(making *m, skg_model *model) {
     const int32_t nodes = model->nodes;
     int64_t room = 0;
-    SKG_TRY(skg_alloc(m->matters, sizeof *m->plane, "planes of the parts", &m->plane));
-    SKG_TRY(skg_alloc(m->matters, sizeof *m->factor, "planes of the parts", &m->factor));
-    for (int64_t p = 0; p < m->matters; p++) {
+    SKG_TRY(skg_alloc(m->bodies, sizeof *m->plane, "planes of the parts", &m->plane));
+    SKG_TRY(skg_alloc(m->bodies, sizeof *m->factor, "planes of the parts", &m->factor));
+    for (int64_t p = 0; p < m->bodies; p++) {
         const double *mu = m->mu + p * nodes;
         m->plane[p] = -1;
         if (!(mu[0] > 0)) continue; /* no attenuation at one energy: none at any */
@@ -105,29 +105,32 @@ static skg_status choose_planes(making *m, skg_model *model) {
     return SKG_OK;
 }
 
-static void add_write(skg_model *model, int64_t first, int64_t *count, int64_t plane, double weight) {
+static void add_contribution(skg_model *model, int64_t first, int64_t *count, int64_t plane, double weight) {
     for (int64_t w = first; w < *count; w++)
-        if (model->writes[w].plane == plane) {
-            model->writes[w].weight += weight;
+        if (model->contributions[w].plane == plane) {
+            model->contributions[w].weight += weight;
             return;
         }
-    model->writes[(*count)++] = (skg_contribution){.plane = plane, .weight = weight};
+    model->contributions[(*count)++] = (skg_contribution){.plane = plane, .weight = weight};
 }
 
-static skg_status list_writes(const making *m, skg_model *model) {
+static skg_status list_contributions(const making *m, skg_model *model) {
     const int64_t parts = m->scene->count;
     int64_t count = 0;
-    SKG_TRY(skg_alloc(parts + 1, sizeof *model->first_write, "planes of the parts", &model->first_write));
-    SKG_TRY(skg_alloc(2 * parts, sizeof *model->writes, "planes of the parts", &model->writes));
+    SKG_TRY(skg_alloc(parts + 1, sizeof *model->first_contribution, "planes of the parts",
+                      &model->first_contribution));
+    SKG_TRY(skg_alloc(2 * parts, sizeof *model->contributions, "planes of the parts", &model->contributions));
     for (int64_t p = 0; p < parts; p++) {
         const int64_t inside = m->scene->parts[p].inside, parent = inside >= 0 ? inside : parts;
         const int64_t first = count;
-        model->first_write[p] = first;
-        if (m->plane[p] >= 0) add_write(model, first, &count, m->plane[p], m->factor[p]);
-        if (m->plane[parent] >= 0) add_write(model, first, &count, m->plane[parent], -m->factor[parent]);
-        if (count > first && model->writes[first].weight == 0) count = first; /* as its parent: not seen */
+        model->first_contribution[p] = first;
+        if (m->plane[p] >= 0) add_contribution(model, first, &count, m->plane[p], m->factor[p]);
+        if (m->plane[parent] >= 0)
+            add_contribution(model, first, &count, m->plane[parent], -m->factor[parent]);
+        if (count > first && model->contributions[first].weight == 0)
+            count = first; /* as its parent: not seen */
     }
-    model->first_write[parts] = count;
+    model->first_contribution[parts] = count;
     return SKG_OK;
 }
 
@@ -175,7 +178,7 @@ static skg_status weigh(const making *m, skg_model *model) {
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
     const int32_t channels = model->channels;
     SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->weights, "nodes", &model->weights));
-    SKG_TRY(skg_alloc(channels, sizeof *model->open, "nodes", &model->open));
+    SKG_TRY(skg_alloc(channels, sizeof *model->flat_field, "nodes", &model->flat_field));
     if (noise)
         SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->variances, "nodes",
                           &model->variances));
@@ -188,16 +191,16 @@ static skg_status weigh(const making *m, skg_model *model) {
         for (int32_t c = 0; c < channels; c++)
             if (in_band(m, c, energy)) {
                 model->weights[n * channels + c] = m->spectrum->photons[bin] * worth;
-                model->open[c] += m->spectrum->photons[bin] * worth;
+                model->flat_field[c] += m->spectrum->photons[bin] * worth;
                 if (noise) model->variances[n * channels + c] = m->spectrum->photons[bin] * variance;
             }
     }
     for (int32_t c = 0; c < channels && is_ratio; c++) {
-        if (!(model->open[c] > 0))
+        if (!(model->flat_field[c] > 0))
             return skg_fail(
                 SKG_ERR_BEAM,
                 "channel %" PRId32 " records nothing of the open beam, so there is no ratio to it", c);
-        for (int32_t n = 0; n < model->nodes; n++) model->weights[n * channels + c] /= model->open[c];
+        for (int32_t n = 0; n < model->nodes; n++) model->weights[n * channels + c] /= model->flat_field[c];
     }
     return SKG_OK;
 }
@@ -218,13 +221,13 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
 
 skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model) {
-    making m = {.scene = scene, .spectrum = spectrum, .options = options, .matters = scene->count + 1};
+    making m = {.scene = scene, .spectrum = spectrum, .options = options, .bodies = scene->count + 1};
     skg_status status = SKG_OK;
     *model = (skg_model){0};
     SKG_TRY_CLEANUP(choose_nodes(&m, model));
     SKG_TRY_CLEANUP(look_up(&m, model));
     SKG_TRY_CLEANUP(choose_planes(&m, model));
-    SKG_TRY_CLEANUP(list_writes(&m, model));
+    SKG_TRY_CLEANUP(list_contributions(&m, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
     if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
@@ -239,12 +242,12 @@ cleanup:
 }
 
 void skg_model_release(skg_model *model) {
-    skg_free(&model->first_write);
-    skg_free(&model->writes);
+    skg_free(&model->first_contribution);
+    skg_free(&model->contributions);
     skg_free(&model->coefficients);
     skg_free(&model->weights);
     skg_free(&model->variances);
-    skg_free(&model->open);
+    skg_free(&model->flat_field);
     skg_free(&model->node_kev);
     skg_free(&model->range);
     skg_free(&model->node_photons);

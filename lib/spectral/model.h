@@ -14,13 +14,13 @@
 
 typedef struct {
     int32_t planes, nodes, channels, reserved;
-    int64_t *first_write;     /* [parts + 1] into writes */
-    skg_contribution *writes; /* what a mm of a part's path adds; a part without any does not show */
-    double *coefficients;     /* [nodes][planes] 1/mm per mm of a plane */
+    int64_t *first_contribution;     /* [parts + 1] into contributions */
+    skg_contribution *contributions; /* what a mm of a part's path adds; a part without any does not show */
+    double *coefficients;            /* [nodes][planes] 1/mm per mm of a plane */
     double *weights; /* [nodes][channels]: of the quantity; per mm2 for fluence, of I/I0 for ratios */
     double
         *variances; /* [nodes][channels] with noise: sum of squares of what single photons add; else NULL */
-    double *open;   /* [channels] sum of the weights before they were made those of a ratio */
+    double *flat_field;  /* [channels] sum of the weights before they were made those of a ratio */
     int64_t world_plane; /* that a mm of the world's path adds world_weight to; -1: vacuum */
     double world_weight;
     double *node_photons; /* [nodes] of an open beam that would weigh as much */

@@ -26,8 +26,7 @@ typedef struct {
     int64_t row_room;
 } search;
 
-/* --- systems over the bins
- * --------------------------------------------------------------------------------------- */
+/* --- systems over the bins --- */
 
 static double unit_of(const search *s, int64_t point, int32_t set) {
     return 1 / fmax(s->fit.exact[point * s->beam->sets + set], s->beam->floor);
@@ -129,8 +128,7 @@ static void shift(search *s) {
     }
 }
 
-/* --- weights
- * ----------------------------------------------------------------------------------------------------- */
+/* --- weights --- */
 
 /* Errors at the points that weights are fitted to, of one set with weights s->x of the nodes in s->trial; the
  * greatest is returned. */
@@ -243,8 +241,7 @@ cleanup:
     return status;
 }
 
-/* --- the search
- * -------------------------------------------------------------------------------------------------- */
+/* --- the search --- */
 
 /* From the first bins downwards: s->best becomes the fewest bins that reach the aim, best_count 0 where none
  * do. */

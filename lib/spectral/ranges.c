@@ -139,8 +139,7 @@ static skg_status measure(const skg_camera *camera, const skg_scene_part_data *p
     return SKG_OK;
 }
 
-/* --- ranges
- * ------------------------------------------------------------------------------------------------------ */
+/* --- ranges --- */
 
 static void widen(skg_ranges *ranges, int64_t plane, double length) {
     ranges->low[plane] = fmin(ranges->low[plane], MARGIN * length);
@@ -149,9 +148,9 @@ static void widen(skg_ranges *ranges, int64_t plane, double length) {
 
 /* A length of one part alone. */
 static void widen_by_part(skg_ranges *ranges, const skg_model *model, int64_t part, double length) {
-    for (int64_t w = model->first_write[part]; w < model->first_write[part + 1]; w++)
-        if (model->writes[w].weight > 0)
-            widen(ranges, model->writes[w].plane, length * model->writes[w].weight);
+    for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
+        if (model->contributions[w].weight > 0)
+            widen(ranges, model->contributions[w].plane, length * model->contributions[w].weight);
 }
 
 static double longest_edge(const skg_scene_part_data *part) {
@@ -219,10 +218,10 @@ static skg_status add_part(const skg_scene *scene, int64_t part, looking *look, 
     lay_over_detector(grid, look);
     SKG_TRY(measure(&look->camera, &scene->parts[part], extent.near_source, grid));
     *hits = (double)grid->hits / (double)look->rays;
-    for (int64_t w = model->first_write[part]; w < model->first_write[part + 1]; w++)
+    for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
         for (int64_t r = 0; r < look->rays; r++)
-            look->lengths[r * ranges->planes + model->writes[w].plane] +=
-                model->writes[w].weight * grid->length[r];
+            look->lengths[r * ranges->planes + model->contributions[w].plane] +=
+                model->contributions[w].weight * grid->length[r];
     return SKG_OK;
 }
 
@@ -232,7 +231,7 @@ static skg_status add_view(const skg_scene *scene, looking *look, const skg_mode
     lay_over_detector(grid, look);
     add_world(look, model, grid, ranges);
     for (int64_t p = 0; p < scene->count; p++)
-        if (model->first_write[p + 1] > model->first_write[p])
+        if (model->first_contribution[p + 1] > model->first_contribution[p])
             SKG_TRY(add_part(scene, p, look, model, grid, ranges, &hits[p]));
     ranges->rays += look->rays;
     return SKG_OK;

@@ -16,7 +16,7 @@ typedef struct {
 
 /* Rays to 64 x 64 places over the view's detector, to 24 x 24 over that of each of `more` others, and to
  * 16 x 16 over each part's own rectangle, so that small parts are met; a part that a view does not show
- * counts with the longest edge of its box. model: its planes and writes. */
+ * counts with the longest edge of its box. model: its planes and contributions. */
 skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t more, const skg_view *views,
                            const skg_model *model, skg_ranges *ranges);
 void skg_ranges_release(skg_ranges *ranges);

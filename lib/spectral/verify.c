@@ -36,8 +36,7 @@ void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, do
     }
 }
 
-/* --- points
- * ------------------------------------------------------------------------------------------------------ */
+/* --- points --- */
 
 /* Thins lengths out until the energy that passes best has no more than the greatest exponent. */
 static void cap(const skg_polychromatic *beam, double *lengths) {
@@ -109,8 +108,7 @@ cleanup:
     return status;
 }
 
-/* --- errors
- * ------------------------------------------------------------------------------------------------------ */
+/* --- errors --- */
 
 double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
                        const double *lengths, const double *exact) {

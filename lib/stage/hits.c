@@ -1,4 +1,4 @@
-/* The contest on the device: hits listed, sorted, swept (hits.cl). */
+/* Priority resolution on the device: hits listed, sorted, swept (hits.cl). */
 #include "frame/frame.h"
 #include "stage/raster_private.h"
 
@@ -7,53 +7,53 @@
 
 enum { GROUP = 64, ROWS_AT_ONCE = 32 };
 
-void skg_contest_memory_release(skg_contest_memory *memory) {
+void skg_priority_memory_release(skg_priority_memory *memory) {
     skg_buffer *const buffers[] = {&memory->slots,  &memory->table, &memory->shifts, &memory->counts,
                                    &memory->starts, &memory->total, &memory->hits};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
-int64_t skg_contest_memory_bytes(const skg_contest_memory *memory) {
+int64_t skg_priority_memory_bytes(const skg_priority_memory *memory) {
     return memory->slots.bytes + memory->table.bytes + memory->shifts.bytes + memory->counts.bytes +
            memory->starts.bytes + memory->total.bytes + memory->hits.bytes;
 }
 
-/* One frame's contest. */
+/* The priority resolution of one frame. */
 typedef struct {
     skg_plan *plan;
     skg_job *job;
     const skg_frame_parts *frame;
     const skg_raster *raster;
     cl_program program;
-    skg_contest_memory *memory;
-} contest_run;
+    skg_priority_memory *memory;
+} priority_run;
 
-static skg_status compile(contest_run *run) {
+static skg_status compile(priority_run *run) {
     static const char *const files[] = {"pixel.clh", "hits.cl", "source_plane.cl"};
     char slots[32];
-    snprintf(slots, sizeof slots, "-D SKG_SLOTS=%" PRId64, skg_contest_slots(&run->frame->contest));
+    snprintf(slots, sizeof slots, "-D SKG_SLOTS=%" PRId64, skg_priority_slots(&run->frame->priority));
     return skg_kernels_get(run->plan->context, &run->raster->options.kernels, 3, files, slots, &run->program);
 }
 
-static skg_status reserve(contest_run *run, skg_buffer *buffer, int64_t bytes, const char *what) {
+static skg_status reserve(priority_run *run, skg_buffer *buffer, int64_t bytes, const char *what) {
     return skg_buffer_reserve(run->plan->context, buffer, bytes, CL_MEM_READ_WRITE, what);
 }
 
-static skg_status upload(contest_run *run, skg_buffer *buffer, int64_t bytes, const void *staged) {
+static skg_status upload(priority_run *run, skg_buffer *buffer, int64_t bytes, const void *staged) {
     SKG_TRY(reserve(run, buffer, bytes, "priorities"));
     return skg_stage_write(run->plan->context, "priority", buffer->memory, 0, bytes, staged, &run->job->log);
 }
 
 /* Depths are listed relative to the first competitor's reference, so that they keep their digits. */
-static skg_status upload_shifts(contest_run *run) {
-    const skg_contest *contest = &run->frame->contest;
+static skg_status upload_shifts(priority_run *run) {
+    const skg_priority *priority = &run->frame->priority;
     const int is_double = run->plan->options.precision == SKG_PRECISION_DOUBLE;
     const int64_t size = is_double ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
     double common = 0;
     void *shifts = NULL;
-    SKG_TRY(skg_job_stage(run->job, contest->count, (size_t)size, "priorities", &shifts));
-    for (int64_t s = 0; s < contest->count; s++) {
-        const skg_geometry_part *part = &run->frame->parts[contest->parts[s]];
+    SKG_TRY(skg_job_stage(run->job, priority->count, (size_t)size, "priorities", &shifts));
+    for (int64_t s = 0; s < priority->count; s++) {
+        const skg_geometry_part *part = &run->frame->parts[priority->parts[s]];
         skg_part_double seen;
         skg_camera_part(&run->frame->camera, part->pose, part->origin, part->reference, part->flipped, &seen);
         if (s == 0) common = seen.reference;
@@ -62,27 +62,27 @@ static skg_status upload_shifts(contest_run *run) {
         else
             ((float *)shifts)[s] = (float)(seen.reference - common);
     }
-    return upload(run, &run->memory->shifts, contest->count * size, shifts);
+    return upload(run, &run->memory->shifts, priority->count * size, shifts);
 }
 
-static skg_status upload_tables(contest_run *run) {
+static skg_status upload_tables(priority_run *run) {
     const skg_scene *scene = run->plan->scene;
-    const skg_contest *contest = &run->frame->contest;
-    const int64_t entries = contest->count * skg_contest_entry(contest);
+    const skg_priority *priority = &run->frame->priority;
+    const int64_t entries = priority->count * skg_priority_entry(priority);
     int32_t *slots = NULL, *table = NULL;
     SKG_TRY(skg_job_stage(run->job, scene->count, sizeof *slots, "priorities", &slots));
     SKG_TRY(skg_job_stage(run->job, entries, sizeof *table, "priorities", &table));
-    skg_contest_tables(scene, run->plan->options.clip, contest, slots, table);
+    skg_priority_tables(scene, run->plan->options.clip, priority, slots, table);
     SKG_TRY(upload(run, &run->memory->slots, scene->count * (int64_t)sizeof *slots, slots));
     SKG_TRY(upload(run, &run->memory->table, entries * (int64_t)sizeof *table, table));
     return upload_shifts(run);
 }
 
 /* Lists the hits of triangles in front of the source with one kernel, those at its plane with the other. */
-static skg_status list_hits(contest_run *run, const char *name, int32_t fill) {
+static skg_status list_hits(priority_run *run, const char *name, int32_t fill) {
     const skg_geometry *g = &run->plan->geometry;
     const skg_frame_args *frame = &run->raster->frame;
-    const skg_contest_memory *m = run->memory;
+    const skg_priority_memory *m = run->memory;
     const int at_source = name[4] == 's'; /* skg_source_plane: other arguments before the lists */
     const cl_mem memory[] = {g->corners.memory, g->projected.memory, g->part_table.memory,
                              g->triangle_blocks.memory, g->offsets.memory};
@@ -107,7 +107,7 @@ cleanup:
     return status;
 }
 
-static skg_status list_all(contest_run *run, int32_t fill) {
+static skg_status list_all(priority_run *run, int32_t fill) {
     const skg_kernel_options *kernels = &run->raster->options.kernels;
     SKG_TRY(list_hits(run, "skg_hits_list", fill));
     if (!kernels->source_plane || kernels->parallel) return SKG_OK;
@@ -115,10 +115,10 @@ static skg_status list_all(contest_run *run, int32_t fill) {
 }
 
 /* Room for every pixel's hits. The host waits for their number here. */
-static skg_status place_hits(contest_run *run) {
+static skg_status place_hits(priority_run *run) {
     const cl_int pixels = run->raster->frame.rows * run->raster->frame.columns, none = 0;
     const size_t local = GROUP, global = ((size_t)pixels + GROUP - 1) / GROUP * GROUP;
-    skg_contest_memory *m = run->memory;
+    skg_priority_memory *m = run->memory;
     cl_command_queue queue = run->plan->context->device->queue;
     cl_kernel kernel = NULL;
     cl_int total = 0;
@@ -143,10 +143,10 @@ cleanup:
     return status;
 }
 
-static skg_status settle(contest_run *run) {
+static skg_status settle(priority_run *run) {
     const skg_geometry *g = &run->plan->geometry;
     const skg_frame_args *frame = &run->raster->frame;
-    const skg_contest_memory *m = run->memory;
+    const skg_priority_memory *m = run->memory;
     const cl_mem memory[] = {g->part_table.memory,    g->write_table.memory, m->counts.memory,
                              m->starts.memory,        m->hits.memory,        m->table.memory,
                              run->raster->sums.memory};
@@ -163,9 +163,9 @@ cleanup:
     return status;
 }
 
-skg_status skg_contest_run(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
-                           const skg_raster *raster) {
-    contest_run run = {plan, job, frame, raster, NULL, &plan->contest_memory};
+skg_status skg_priority_run(skg_plan *plan, skg_job *job, const skg_frame_parts *frame,
+                            const skg_raster *raster) {
+    priority_run run = {plan, job, frame, raster, NULL, &plan->priority_memory};
     const int64_t pixels = (int64_t)raster->frame.rows * raster->frame.columns * (int64_t)sizeof(cl_int);
     const cl_int none = 0;
     SKG_TRY(compile(&run));

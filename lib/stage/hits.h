@@ -9,9 +9,9 @@
 /* Buffers of the lists, kept from frame to frame. */
 typedef struct {
     skg_buffer slots, table, shifts, counts, starts, total, hits;
-} skg_contest_memory;
+} skg_priority_memory;
 
-void skg_contest_memory_release(skg_contest_memory *memory);
-int64_t skg_contest_memory_bytes(const skg_contest_memory *memory);
+void skg_priority_memory_release(skg_priority_memory *memory);
+int64_t skg_priority_memory_bytes(const skg_priority_memory *memory);
 
 #endif

@@ -67,7 +67,7 @@ static void fill_batch(const batching *b, const skg_open_batch *batch, cl_int *t
         b->parts[part].weight = b->weights + plane;
         for (int64_t w = 0; w <= writes; w++, plane++) {
             const skg_contribution *shared = &b->frame->all_writes[b->frame->firsts[part] + w];
-            skg_extent_field(&b->frame->camera, &b->frame->extents[part], fields + 4 * plane);
+            skg_extent_pixels(&b->frame->camera, &b->frame->extents[part], fields + 4 * plane);
             if (w == writes) {
                 b->weights[plane] = (skg_contribution){.plane = plane, .bias = 1};
                 counts[k] = plane;

@@ -29,7 +29,8 @@ skg_status skg_plan_choose_mix(skg_plan *plan) {
     plan->mixed = 0;
     skg_free(&plan->mix_sent);                                        /* the next frame sends its own */
     if (plan->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* as the paper's buffers */
-    return skg_mix_choose(plan->scene->count, model->planes, model->writes, model->first_write, &plan->mixed);
+    return skg_mix_choose(plan->scene->count, model->planes, model->contributions, model->first_contribution,
+                          &plan->mixed);
 }
 
 skg_status skg_plan_choose_strategy(skg_plan *plan) {

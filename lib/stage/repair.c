@@ -163,7 +163,7 @@ static skg_status cast_part(const casting *c, int64_t part) {
     const skg_caps *caps = NULL;
     cl_int field[4];
     SKG_TRY(get_caps(c->plan, open, &caps));
-    skg_extent_field(&c->frame->camera, &c->frame->extents[number], field);
+    skg_extent_pixels(&c->frame->camera, &c->frame->extents[number], field);
     const int64_t first = field[0], end = field[1] < layout->rows ? field[1] : layout->rows;
     if (first >= end) return SKG_OK;
     memset(c->marks + first * layout->columns, 0,

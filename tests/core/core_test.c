@@ -1,4 +1,6 @@
 #include "core/core.h"
+#include "core/mailbox.h"
+#include "core/maths.h"
 #include "core/names.h"
 #include "core/output.h"
 #include "suite.h"
@@ -98,6 +100,51 @@ START_TEST(output_appears_whole_or_not_at_all) {
 }
 END_TEST
 
+static skg_status needs_a_mesh(const void *mesh) {
+    SKG_NEEDS(mesh);
+    return SKG_OK;
+}
+
+START_TEST(a_missing_argument_is_named) {
+    ck_skg(needs_a_mesh(""));
+    ck_skg_fails(needs_a_mesh(NULL), SKG_ERR_ARGUMENT, "needs_a_mesh: the argument mesh is NULL");
+}
+END_TEST
+
+START_TEST(rounding_up_stays_where_it_is_exact) {
+    ck_assert_int_eq(skg_round_up(0, 16), 0);
+    ck_assert_int_eq(skg_round_up(1, 16), 16);
+    ck_assert_int_eq(skg_round_up(32, 16), 32);
+    ck_assert_int_eq(skg_divide_up(33, 16), 3);
+}
+END_TEST
+
+/* A mailbox that is full keeps its oldest sentences and counts the others. */
+START_TEST(a_mailbox_is_bounded) {
+    skg_mailbox *mailbox = NULL;
+    char sentence[SKG_MAILBOX_SENTENCE], longest[2 * SKG_MAILBOX_SENTENCE];
+    ck_skg(skg_mailbox_create(&mailbox));
+    void *address = skg_mailbox_address(mailbox);
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    memset(longest, 'a', sizeof longest - 1);
+    longest[sizeof longest - 1] = '\0';
+    skg_mailbox_put(address, longest);
+    for (int i = 1; i < SKG_MAILBOX_CAPACITY + 3; i++) skg_mailbox_put(address, "device lost");
+    ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_uint_eq(strlen(sentence), SKG_MAILBOX_SENTENCE - 1);
+    for (int i = 1; i < SKG_MAILBOX_CAPACITY; i++) ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_str_eq(sentence, "device lost");
+    ck_assert(skg_mailbox_take(mailbox, sentence));
+    ck_assert_str_eq(sentence, "3 more sentences were dropped");
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    skg_mailbox_release(&mailbox);
+    skg_mailbox_put(address, "nobody reads this");
+    ck_skg(skg_mailbox_create(&mailbox)); /* an address is not used again */
+    ck_assert(!skg_mailbox_take(mailbox, sentence));
+    skg_mailbox_release(&mailbox);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_status_has_name_and_text);
     tcase_add_test(tests, last_error_may_quote_itself);
@@ -106,6 +153,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, structs_grow);
     tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
     tcase_add_test(tests, output_appears_whole_or_not_at_all);
+    tcase_add_test(tests, a_missing_argument_is_named);
+    tcase_add_test(tests, rounding_up_stays_where_it_is_exact);
+    tcase_add_test(tests, a_mailbox_is_bounded);
 }
 
 SKG_SUITE_MAIN("core", add_tests)

@@ -3,6 +3,7 @@
 
 #include <skiagraph/context.h>
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -153,6 +154,54 @@ START_TEST(a_callers_queue_is_checked_and_retained) {
 }
 END_TEST
 
+/* What a driver says in a thread of its own, and a log that notes which thread called it. */
+static void *call_back(void *address) {
+    skg_driver_says("device lost", NULL, 0, address);
+    return NULL;
+}
+
+static void say_in_a_thread(void *address) {
+    pthread_t thread;
+    ck_assert_int_eq(pthread_create(&thread, NULL, call_back, address), 0);
+    ck_assert_int_eq(pthread_join(thread, NULL), 0);
+}
+
+typedef struct {
+    pthread_t thread;
+    int sentences;
+    char last[128];
+} heard;
+
+static void hear(int32_t level, const char *sentence, void *user) {
+    heard *h = user;
+    ck_assert_int_eq(level, SKG_LOG_WARNING);
+    h->thread = pthread_self();
+    h->sentences++;
+    snprintf(h->last, sizeof h->last, "%s", sentence);
+}
+
+/* The driver's thread once read the log of a context while it was set, and of one that was gone. */
+START_TEST(the_drivers_words_wait_for_the_contexts_thread) {
+    skg_context *context = NULL;
+    skg_device_info info;
+    heard h = {0};
+    skg_device_info_init(&info);
+    ck_skg(skg_context_create("device=0:0", &context));
+    void *address = skg_mailbox_address(context->driver);
+    say_in_a_thread(address); /* kept until there is a log */
+    ck_skg(skg_context_log_set(context, hear, &h));
+    say_in_a_thread(address);
+    ck_assert_int_eq(h.sentences, 0);
+    ck_skg(skg_context_device_get(context, &info));
+    ck_assert_int_eq(h.sentences, 2);
+    ck_assert(pthread_equal(h.thread, pthread_self()));
+    ck_assert_str_eq(h.last, "OpenCL driver: device lost");
+    skg_context_release(&context);
+    say_in_a_thread(address); /* too late: dropped */
+    ck_assert_int_eq(h.sentences, 2);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_device_is_found_and_described);
     tcase_add_test(tests, config_words_choose);
@@ -162,6 +211,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, build_errors_name_file_and_line);
     tcase_add_test(tests, buffers_that_cannot_be_are_refused);
     tcase_add_test(tests, a_callers_queue_is_checked_and_retained);
+    tcase_add_test(tests, the_drivers_words_wait_for_the_contexts_thread);
 }
 
 SKG_SUITE_MAIN("device", add_tests)

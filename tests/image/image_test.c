@@ -224,7 +224,7 @@ START_TEST(an_unusable_picture_is_told) {
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "no data");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.flat_field = nan("");
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "open beam");
+    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "flat field");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = 0;
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "0 channels");

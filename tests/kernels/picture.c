@@ -1,6 +1,6 @@
 #include "kernels/picture.h"
 
-#include "core/pose.h"
+#include "core/vector.h"
 #include "stage/attenuate.h"
 #include "stage/raster_private.h"
 

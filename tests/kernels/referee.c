@@ -1,7 +1,7 @@
 /* Signed lengths, each pixel against each triangle, in long double. */
 #include "kernels/picture.h"
 
-#include "core/pose.h"
+#include "core/vector.h"
 
 #include <math.h>
 #include <stdlib.h>

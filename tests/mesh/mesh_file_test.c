@@ -133,7 +133,7 @@ START_TEST(damaged_stl_is_told) {
            "line 5: truncated: a facet ends");
     refuse(file_of("edge.stl", "solid a\nfacet\nvertex 1 2 3\nvertex 1 2 4\nendfacet\nendsolid"),
            SKG_ERR_FORMAT, "line 5: a facet of fewer");
-    refuse(file_of("word.stl", "solid a\nfacet\nvortex 1 2 3\n"), SKG_ERR_FORMAT, "line 3: no word");
+    refuse(file_of("word.stl", "solid a\nfacet\nvortex 1 2 3\n"), SKG_ERR_FORMAT, "line 3: not a word");
     refuse(file_of("out.stl", "solid a\nendsolid\nfacet\n"), SKG_ERR_FORMAT, "line 3: no \"solid\"");
     refuse(file_of("nothing.stl", "solid a\nendsolid a\n"), SKG_ERR_MESH, "no triangles");
     refuse(file_of("text.stl", "this is a letter to a friend"), SKG_ERR_FORMAT, "truncated");
@@ -153,8 +153,8 @@ START_TEST(files_that_are_none) {
     file_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     ck_skg_fails(skg_mesh_load(NULL, path, 0, &mesh), SKG_ERR_ARGUMENT, "unit 0 mm");
     ck_skg_fails(skg_mesh_load(NULL, path, (double)NAN, &mesh), SKG_ERR_ARGUMENT, "unit nan mm");
-    ck_skg_fails(skg_mesh_load(NULL, NULL, 1, &mesh), SKG_ERR_ARGUMENT, "no path");
-    ck_skg_fails(skg_mesh_load(NULL, path, 1, NULL), SKG_ERR_ARGUMENT, "no place");
+    ck_skg_fails(skg_mesh_load(NULL, NULL, 1, &mesh), SKG_ERR_ARGUMENT, "path is NULL");
+    ck_skg_fails(skg_mesh_load(NULL, path, 1, NULL), SKG_ERR_ARGUMENT, "mesh is NULL");
 }
 END_TEST
 
@@ -263,8 +263,8 @@ START_TEST(nothing_is_left_where_nothing_can_be_written) {
     ck_skg(skg_mesh_create_cube(1, &mesh));
     ck_skg_fails(skg_mesh_save(mesh, in_folder("no/such/folder.ply")), SKG_ERR_OUTPUT, "folder.ply");
     ck_skg_fails(skg_mesh_save(mesh, folder), SKG_ERR_OUTPUT, folder); /* a folder is there */
-    ck_skg_fails(skg_mesh_save(mesh, NULL), SKG_ERR_ARGUMENT, "no path");
-    ck_skg_fails(skg_mesh_save(NULL, "a.ply"), SKG_ERR_ARGUMENT, "no mesh");
+    ck_skg_fails(skg_mesh_save(mesh, NULL), SKG_ERR_ARGUMENT, "path is NULL");
+    ck_skg_fails(skg_mesh_save(NULL, "a.ply"), SKG_ERR_ARGUMENT, "mesh is NULL");
     skg_mesh_release(&mesh);
 }
 END_TEST

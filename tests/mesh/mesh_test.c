@@ -355,7 +355,8 @@ START_TEST(bad_arrays_are_named) {
                  "positions are NULL");
     ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, NULL, 0, 1, &mesh), SKG_ERR_ARGUMENT,
                  "triangles are NULL");
-    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, c, 0, 1, NULL), SKG_ERR_ARGUMENT, "no place");
+    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, c, 0, 1, NULL), SKG_ERR_ARGUMENT,
+                 "skg_mesh_create: the argument mesh is NULL");
     c[3 * 7 + 1] = 8;
     ck_skg_fails(CREATE(8, 0, 12, 0, 1), SKG_ERR_MESH, "liver: triangle 7 names vertex 8, but");
     c[3 * 7 + 1] = -1;

@@ -1,4 +1,4 @@
-#include "core/pose.h"
+#include "core/vector.h"
 #include "setup/setup_files.h"
 
 #include <math.h>

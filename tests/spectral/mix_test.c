@@ -17,10 +17,10 @@ static void ck_same(const skg_mix *mix) {
     for (int64_t p = 0; p < PARTS; p++) {
         double given[PLANES] = {0}, mixed[PLANES] = {0};
         for (int64_t w = firsts[p]; w < firsts[p + 1]; w++) given[writes[w].plane] += writes[w].weight;
-        ck_assert_int_le(mix->first_write[p + 1] - mix->first_write[p], 1);
-        for (int64_t w = mix->first_write[p]; w < mix->first_write[p + 1]; w++)
+        ck_assert_int_le(mix->first_contribution[p + 1] - mix->first_contribution[p], 1);
+        for (int64_t w = mix->first_contribution[p]; w < mix->first_contribution[p + 1]; w++)
             for (int k = 0; k < PLANES; k++)
-                mixed[k] += mix->writes[w].weight * mix->lists[mix->writes[w].plane * PLANES + k];
+                mixed[k] += mix->contributions[w].weight * mix->lists[mix->contributions[w].plane * PLANES + k];
         ck_assert(memcmp(given, mixed, sizeof given) == 0); /* halves and doubles: exact */
     }
 }
@@ -30,9 +30,9 @@ START_TEST(parts_that_add_alike_share) {
     ck_skg(skg_mix_find(PARTS, PLANES, writes, firsts, 4, &mix));
     ck_assert_int_eq(mix.sums, 3); /* fat; fat and bone; fat and lung */
     ck_same(&mix);
-    for (int p = 2; p < 4; p++) ck_assert_int_eq(mix.writes[p].plane, mix.writes[1].plane);
-    ck_assert_double_eq(mix.writes[3].weight, -2 * mix.writes[1].weight);
-    ck_assert_int_eq(mix.first_write[PARTS - 1], mix.first_write[PARTS]); /* what adds nothing */
+    for (int p = 2; p < 4; p++) ck_assert_int_eq(mix.contributions[p].plane, mix.contributions[1].plane);
+    ck_assert_double_eq(mix.contributions[3].weight, -2 * mix.contributions[1].weight);
+    ck_assert_int_eq(mix.first_contribution[PARTS - 1], mix.first_contribution[PARTS]); /* what adds nothing */
     for (int k = 0; k < PLANES; k++)
         ck_assert_double_eq(mix.lists[3 * PLANES + k], 0); /* room for one more */
     skg_mix_release(&mix);
@@ -43,7 +43,7 @@ START_TEST(too_many_kinds_are_not_mixed) {
     skg_mix mix;
     ck_skg(skg_mix_find(PARTS, PLANES, writes, firsts, 2, &mix));
     ck_assert_int_eq(mix.sums, 0);
-    ck_assert_ptr_null(mix.writes);
+    ck_assert_ptr_null(mix.contributions);
 }
 END_TEST
 
