@@ -1,18 +1,12 @@
 /* Spectra of the caller and from files, filters, half-value layers, energy responses. */
 #include <skiagraph/beam.h>
 
-#include "data.h"
 #include "suite.h"
+#include "support/named.h"
 
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
-
-static skg_material *named(const char *text) {
-    skg_material *material = NULL;
-    ck_skg(skg_material_create_named(text, &material));
-    return material;
-}
 
 static void expect(const skg_spectrum *s, int64_t count, const double *energies, const double *photons) {
     int64_t size = 0;
@@ -141,36 +135,6 @@ START_TEST(filters_harden) {
 }
 END_TEST
 
-/* 600 um of CsI, 4.51 g/cm3: detector_response.csv to its four digits at the energies of the cross sections'
- * table. Between them it was made with straight lines in log-log, which read low by up to 0.14 %; ours agrees
- * with xraylib there (xraylib_test). */
-START_TEST(response_of_cesium_iodide) {
-    FILE *file = open_data("physics/detector_response.csv");
-    if (!file) return;
-    char line[256];
-    int rows = 0;
-    skg_material *csi = named("CsI");
-    skg_response *layer = NULL;
-    ck_skg(skg_response_create_scintillator(csi, 0.6, 1, &layer));
-    while (fgets(line, sizeof line, file)) {
-        double e, efficiency, recorded, r = 0, seen = 0;
-        if (sscanf(line, "%lf,%lf,%lf", &e, &efficiency, &recorded) != 3) continue;
-        ck_skg(skg_response_get(layer, e, 1, &r, &seen));
-        static const double table[] = {5, 6, 8, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150};
-        int grid = 0;
-        for (size_t i = 0; i < sizeof table / sizeof *table; i++) grid = grid || fabs(e - table[i]) < 1e-9;
-        ck_assert_msg(fabs(r / recorded - 1) <= (grid ? 1e-4 : 1.5e-3), "%g keV: %.4f instead of %.4f keV", e,
-                      r, recorded);
-        ck_assert_double_eq_tol(seen, r / e, 1e-15);
-        rows++;
-    }
-    fclose(file);
-    ck_assert_int_gt(rows, 100);
-    skg_response_release(&layer);
-    skg_material_release(&csi);
-}
-END_TEST
-
 /* The same numbers of print, as gVXR's users have them. */
 START_TEST(response_of_cesium_iodide_in_print) {
     static const double rows[][2] = {{30, 27.4}, {33, 28.1},  {35, 34.8}, {60, 53.0},
@@ -241,7 +205,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, half_value_layers_of_one_energy);
     tcase_add_test(tests, air_kerma_per_photon);
     tcase_add_test(tests, filters_harden);
-    tcase_add_test(tests, response_of_cesium_iodide);
     tcase_add_test(tests, response_of_cesium_iodide_in_print);
     tcase_add_test(tests, response_tables);
 }

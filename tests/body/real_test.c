@@ -1,5 +1,6 @@
-/* Sixty-one organs of a real man breathe, where the data is present. */
+/* Sixty-one organs of a real man breathe: needs the data. */
 #include "body/body.h"
+#include "data.h"
 #include "suite.h"
 
 #include <dirent.h>
@@ -16,21 +17,15 @@ static void count_warnings(skg_body *body) {
         warnings += body->organ[i].role == ROLE_STATIC && !skg_label_stays(body->organ[i].label);
 }
 
-/* A body of all organs in the folder, in alphabetical order; NULL where there is none: skip. */
-static skg_body *load(const skg_body_options *options) {
-    char folder[1024];
-    const char *data = getenv("SKG_DATA");
-    snprintf(folder, sizeof folder, "%s/bodyparts3d", data ? data : SKG_SOURCE "/../shared/data");
+/* A body of all organs in the folder, in alphabetical order; NULL where the folder is missing. */
+static skg_body *load(const skg_body_options *options, char folder[DATA_PATH]) {
     struct dirent **entry;
-    int count = scandir(folder, &entry, NULL, alphasort);
-    if (count < 0) {
-        printf("real: skipped, no folder %s\n", folder);
-        return NULL;
-    }
+    int count = scandir(data_path("bodyparts3d", folder), &entry, NULL, alphasort);
+    if (count < 0) return NULL;
     skg_body *body;
     ck_skg(skg_body_create(NULL, options, &body));
     for (int i = 0; i < count; i++) {
-        char path[1400], *dot = strrchr(entry[i]->d_name, '.');
+        char path[DATA_PATH + 300], *dot = strrchr(entry[i]->d_name, '.');
         snprintf(path, sizeof path, "%s/%s", folder, entry[i]->d_name);
         if (dot && !strcmp(dot, ".obj")) {
             *dot = 0;
@@ -49,8 +44,9 @@ static skg_body *load(const skg_body_options *options) {
 }
 
 START_TEST(real_organs_breathe) {
-    skg_body *body = load(NULL);
-    if (!body) return;
+    char folder[DATA_PATH];
+    skg_body *body = load(NULL, folder);
+    if (!body) skip_test("%s is missing; SKG_DATA names its folder", folder);
     count_warnings(body);
     ck_assert_int_le(warnings, 1); /* aorta */
     for (int step = 0; step <= 2; step++) {
@@ -91,8 +87,9 @@ START_TEST(axes_from_bones) {
     skg_body_options options;
     skg_body_options_init(&options);
     options.rib_axes = SKG_RIB_AXES_BONES;
-    skg_body *body = load(&options);
-    if (!body) return;
+    char folder[DATA_PATH];
+    skg_body *body = load(&options, folder);
+    if (!body) skip_test("%s is missing; SKG_DATA names its folder", folder);
     int64_t ribs = 0;
     for (int64_t i = 0; i < body->organs; i++) {
         const skg_body_organ *o = body->organ + i;

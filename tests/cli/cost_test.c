@@ -1,28 +1,10 @@
 /* The verb cost: its table, .csv, JSON and page, and whether what it recommends holds. */
-#include "cli/command.h"
+#include "cli/cost_scene.h"
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
-enum { COLUMNS = 33, ROWS = 25, PIXELS = COLUMNS * ROWS, LARGEST_PAGE = 1 << 23 };
-
-/* A tube, a box and a sphere in it: every dial but the source's. */
-static const char small_scene[] =
-    "{ \"Source\": { \"Position\": [0, -400, 0, \"mm\"], \"Shape\": \"PointSource\",\n"
-    "    \"Beam\": {\"kVp\": 80, \"Filter\": [[\"Al\", 3, \"mm\"]]} },\n"
-    "  \"Detector\": { \"Position\": [0, 100, 0, \"mm\"], \"UpVector\": [0, 0, -1],\n"
-    "    \"NumberOfPixels\": [33, 25], \"Spacing\": [1, 2, \"mm\"] },\n"
-    "  \"Samples\": [\n"
-    "    {\"Label\": \"skin\", \"Cube\": [30.5, \"mm\"], \"Type\": \"outer\", \"Material\": [\"HU\", 20]},\n"
-    "    {\"Label\": \"bone\", \"Sphere\": [16, 7, \"mm\"], \"Material\": [\"HU\", 900]} ] }\n";
-
-static const char disc[] = "--set 'Source.Shape=[\"Disc\",2,\"mm\"]'";
-
-static void set_up_scene(void) {
-    set_up();
-    write_text("small scene.json", small_scene);
-}
+enum { COLUMNS = 33, ROWS = 25, PIXELS = COLUMNS * ROWS };
 
 /* Pixels of a .mha of one channel, floats or doubles as its header says. */
 static void read_pixels(const char *name, double values[PIXELS]) {
@@ -278,20 +260,6 @@ START_TEST(thorax_and_breath_are_swept) {
 }
 END_TEST
 
-/* A page of any size; the caller frees it. */
-static char *read_page(const char *name) {
-    char path[512], *text = malloc(LARGEST_PAGE);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *stream = fopen(path, "rb");
-    ck_assert_ptr_nonnull(text);
-    ck_assert_ptr_nonnull(stream);
-    size_t count = fread(text, 1, LARGEST_PAGE - 1, stream);
-    fclose(stream);
-    ck_assert_uint_lt(count, LARGEST_PAGE - 1);
-    text[count] = '\0';
-    return text;
-}
-
 START_TEST(table_csv_and_page_are_written) {
     ck_run(0, "cost 'small scene.json' --quick -o a.html");
     ck_assert_str_eq(complained, "");
@@ -343,90 +311,6 @@ START_TEST(what_cannot_be_done_is_told) {
 }
 END_TEST
 
-/* Works every control of the page, and says in an attribute what came of it. */
-static const char worker[] =
-    "<script>\n"
-    "const verdict = [], svg = document.getElementById('plot');\n"
-    "const points = () => svg.querySelectorAll('.point').length;\n"
-    "const check = (name, is) => { if (!is) verdict.push(name); };\n"
-    "const change = (element) => element.dispatchEvent(new Event('change', {bubbles: true}));\n"
-    "check('drawn', points() === study.points.filter(p => p.max_open !== null).length);\n"
-    "check('half', study.points.some(p => p.max_open === null));\n"
-    "check('rows', document.querySelectorAll('#rows tr').length === study.points.length);\n"
-    "check('advice', document.querySelectorAll('.advice code').length >= 4);\n"
-    "for (const id of ['error', 'time']) {\n"
-    "  const select = document.getElementById(id), seen = new Set();\n"
-    "  for (let i = 0; i < select.options.length; i++) {\n"
-    "    select.selectedIndex = i; change(select); seen.add(svg.innerHTML); check(id + i, points() > 0); }\n"
-    "  check(id, seen.size === select.options.length);\n"
-    "  select.selectedIndex = 0; change(select); }\n"
-    "for (const box of document.querySelectorAll('#dials input')) {\n"
-    "  const all = points(); box.checked = false; change(box); check('hide ' + box.value, points() < all);\n"
-    "  box.checked = true; change(box); check('show ' + box.value, points() === all); }\n"
-    "const buttons = id => document.getElementById(id).click();\n"
-    "const all = points(); buttons('none'); check('none', points() === 0);\n"
-    "check('no rows', [...document.querySelectorAll('#rows tr')].every(row => getComputedStyle(row).display === 'none'));\n"
-    "buttons('all'); check('all', points() === all);\n"
-    "for (const id of ['log_error', 'log_time']) {\n"
-    "  const box = document.getElementById(id), before = svg.innerHTML;\n"
-    "  box.checked = false; change(box); check(id, points() === all && before !== svg.innerHTML);\n"
-    "  check(id + ' finite', !/NaN|Infinity|undefined/.test(svg.innerHTML));\n"
-    "  box.checked = true; change(box); check(id + ' back', before === svg.innerHTML); }\n"
-    "document.querySelector('#rows tr').click(); const a = document.getElementById('told').textContent;\n"
-    "check('row', document.querySelector('#rows tr').className === 'chosen');\n"
-    "svg.querySelectorAll('.point')[1].dispatchEvent(new MouseEvent('click', {bubbles: true}));\n"
-    "check('point', a !== document.getElementById('told').textContent);\n"
-    "const canvas = document.getElementById('difference'), scale = document.getElementById('scale');\n"
-    "const image = document.getElementById('image'), pictured = document.getElementById('pictured');\n"
-    "const painted = async () => {\n"
-    "  await painting; return canvas.getContext('2d').getImageData(0, 0, 33, 25).data.join(); };\n"
-    "const look = async () => {\n"
-    "  const seen = new Set();\n"
-    "  for (let i = 0; i < pictured.options.length; i++) {\n"
-    "    pictured.selectedIndex = i; change(pictured);\n"
-    "    await image.decode(); seen.add(await painted());\n"
-    "    check('chosen ' + i, chosen === Number(pictured.value) && canvas.width === 33 && image.naturalWidth === 33); }\n"
-    "  check('pictures differ', seen.size > pictured.options.length / 2);\n"
-    "  pictured.value = study.points.findIndex(p => p.dial === 'supersampling'); change(pictured);\n"
-    "  const roots = await painted(); scale.value = 'straight'; change(scale);\n"
-    "  check('straight', roots !== await painted()); };\n"
-    "look().catch(error => verdict.push(error)).then(() =>\n"
-    "  document.body.setAttribute('data-verdict', verdict.length ? 'failed: ' + verdict : 'every control works'));\n"
-    "</script>\n</body>";
-
-/* In a real browser: $CHROMIUM, or chromium. The milliampere-seconds are so many that an image in 16 bits
- * overflows: an error that is no number is told as such. */
-START_TEST(page_works_in_a_browser) {
-    if (system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") != 0) {
-        printf("page_works_in_a_browser: skipped, there is no chromium\n");
-        return;
-    }
-    ck_run(0, "cost 'small scene.json' --quick --quiet -o a.html %s --set Source.Beam.mAs=20", disc);
-    char *page = read_page("a.html"), line[1024], profile[] = "/tmp/skg-browser-XXXXXX";
-    char *end = strstr(page, "</body>");
-    ck_assert_ptr_nonnull(end);
-    ck_assert_uint_lt(strlen(page) + sizeof worker, LARGEST_PAGE);
-    strcpy(end, worker);
-    write_text("worked.html", page);
-    free(page);
-    ck_assert_ptr_nonnull(mkdtemp(profile));
-    snprintf(line, sizeof line,
-             "cd %s && HOME=%s timeout 100 \"${CHROMIUM:-chromium}\" --headless --no-sandbox --disable-gpu "
-             "--user-data-dir=%s --virtual-time-budget=60000 --dump-dom 'file://%s/worked.html' "
-             "2>/dev/null >dom.html",
-             folder, profile, profile, folder);
-    int status = system(line);
-    snprintf(line, sizeof line, "rm -rf %s", profile);
-    ck_assert_int_eq(system(line), 0);
-    ck_assert_int_eq(status, 0);
-    page = read_page("dom.html");
-    const char *verdict = strstr(page, "<body data-verdict=\"");
-    ck_assert_msg(verdict != NULL, "the page's script did not end");
-    ck_assert_msg(strncmp(verdict, "<body data-verdict=\"every control works\"", 40) == 0, "%.200s", verdict);
-    free(page);
-}
-END_TEST
-
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, an_extended_source_is_swept);
@@ -437,7 +321,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, table_csv_and_page_are_written);
     tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);
     tcase_add_test(tests, what_cannot_be_done_is_told);
-    tcase_add_test(tests, page_works_in_a_browser);
 }
 
 SKG_SUITE_MAIN("cost", add_tests)

@@ -6,18 +6,21 @@
 #include <execinfo.h>
 #include <jansson.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_CALLS = 1 << 16, MOST_BLOCKS = 1 << 16, DEPTH = 8 };
+enum { MOST_CALLS = 1 << 16, MOST_BLOCKS = 1 << 16, MOST_SITES = 1 << 10, DEPTH = 8 };
 
 static atomic_flag locked = ATOMIC_FLAG_INIT;
 static int counting = -1; /* the kind; -1: not counting */
 static int parsing;       /* within Jansson's parser */
 static int64_t calls, target;
 static const char *hit;
-static uint64_t places[MOST_CALLS]; /* of each call, a hash of its callers */
-static void *blocks[MOST_BLOCKS];   /* open addressing; NULL: free, &gone: was used */
+static uint64_t places[MOST_CALLS];   /* of each call, a hash of its callers */
+static const void *sites[MOST_SITES]; /* that made a call which was counted */
+static int site_count;
+static void *blocks[MOST_BLOCKS]; /* open addressing; NULL: free, &gone: was used */
 static int gone;
 static int64_t live_blocks;
 static atomic_llong live_objects;
@@ -38,8 +41,18 @@ static uint64_t hash_callers(void) {
     return hash;
 }
 
-static int fails(int kind, const char *name) {
+static void note_site(const void *site) {
+    lock();
+    int n = 0;
+    while (n < site_count && sites[n] != site) n++;
+    if (n == site_count && n < MOST_SITES) sites[site_count++] = site;
+    unlock();
+}
+
+/* Whether this call has to fail. Notes where it comes from: `site` is the address to which it returns. */
+static int decide(int kind, const char *name, const void *site) {
     if (counting != kind || parsing) return 0;
+    note_site(site);
     lock();
     const int now = calls == target;
     if (now) hit = name;
@@ -48,6 +61,8 @@ static int fails(int kind, const char *name) {
     unlock();
     return now;
 }
+
+#define fails(kind, name) decide(kind, name, __builtin_return_address(0))
 
 void failing_start(int kind, int64_t at) {
     calls = 0;
@@ -73,6 +88,14 @@ int failing_is_new(int64_t at) {
         if (tried[n] == places[at]) return 0;
     if (count < MOST_CALLS) tried[count++] = places[at];
     return 1;
+}
+
+void failing_write_sites(const char *path) {
+    extern const char __executable_start[]; /* of the linker */
+    FILE *file = fopen(path, "a");
+    if (!file) abort();
+    for (int n = 0; n < site_count; n++) fprintf(file, "%tx\n", (const char *)sites[n] - __executable_start);
+    if (fclose(file) != 0) abort();
 }
 
 int64_t failing_live_blocks(void) {
@@ -218,6 +241,8 @@ OBJECT(cl_program, clCreateProgramWithSource,
 OBJECT(cl_kernel, clCreateKernel, (cl_program program, const char *name, cl_int *code), (program, name, code))
 OBJECT(cl_mem, clCreateBuffer, (cl_context context, cl_mem_flags flags, size_t size, void *host, cl_int *code),
        (context, flags, size, host, code))
+CODE(clCreateSubDevices, (cl_device_id device, const cl_device_partition_property *how, cl_uint most,
+                          cl_device_id *devices, cl_uint *count), (device, how, most, devices, count))
 CODE(clBuildProgram, (cl_program program, cl_uint count, const cl_device_id *devices, const char *options,
                       built_function built, void *user), (program, count, devices, options, built, user))
 CODE(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void *value), (kernel, index, size, value))
@@ -228,6 +253,8 @@ CODE(clGetDeviceIDs, (cl_platform_id platform, cl_device_type type, cl_uint most
                       cl_uint *count), (platform, type, most, devices, count))
 CODE(clGetDeviceInfo, (cl_device_id device, cl_device_info what, size_t size, void *value, size_t *used),
      (device, what, size, value, used))
+CODE(clGetCommandQueueInfo, (cl_command_queue queue, cl_command_queue_info what, size_t size, void *value,
+                             size_t *used), (queue, what, size, value, used))
 CODE(clGetEventProfilingInfo, (cl_event of, cl_profiling_info what, size_t size, void *value, size_t *used),
      (of, what, size, value, used))
 CODE(clGetKernelInfo, (cl_kernel kernel, cl_kernel_info what, size_t size, void *value, size_t *used),

@@ -20,6 +20,10 @@ const char *failing_hit(void);
  * place in the program that call `at` came from. */
 int failing_is_new(int64_t at);
 
+/* Appends to a file the addresses, hexadecimal and relative to the program's start, to which the counted calls
+ * return: one a line. */
+void failing_write_sites(const char *path);
+
 /* Blocks and OpenCL objects that the library holds. */
 int64_t failing_live_blocks(void);
 int64_t failing_live_objects(void);

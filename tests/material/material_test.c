@@ -2,17 +2,12 @@
 #include <skiagraph/material.h>
 
 #include "suite.h"
+#include "support/named.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-static skg_material *named(const char *text) {
-    skg_material *material = NULL;
-    ck_skg(skg_material_create_named(text, &material));
-    return material;
-}
 
 static double mu_of(skg_material *material, double kev) {
     double mu = 0;

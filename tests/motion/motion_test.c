@@ -1,41 +1,9 @@
-/* A set-up that breathes: what its key Breathing says, and the sixty-one organs where the data is present. */
-#include "setup/setup.h"
-#include "suite.h"
+/* A set-up that breathes: what its key Breathing says. */
+#include "motion/motion_files.h"
 
-#include <skiagraph/motion.h>
-
-#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
-
-static char folder[64], path[128];
-static skg_setup *setup;
-static skg_motion *motion;
-
-static const char heading[] =
-    "{\"Source\": {\"Position\": [0, -860, -20, \"mm\"], \"Shape\": \"PointSource\",\n"
-    "  \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1}]},\n"
-    " \"Detector\": {\"Position\": [0, 140, -20, \"mm\"], \"UpVector\": [0, 0, -1],\n"
-    "  \"NumberOfPixels\": [16, 16], \"Size\": [480, 480, \"mm\"]},\n \"Samples\": [\n";
-
-static void set_up(void) {
-    strcpy(folder, "/tmp/skg-motion-XXXXXX");
-    ck_assert_ptr_nonnull(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/scene.json", folder);
-}
-
-static void close_setup(void) {
-    skg_motion_release(&motion);
-    skg_setup_release(&setup);
-}
-
-static void tear_down(void) {
-    close_setup();
-    unlink(path);
-    ck_assert_int_eq(rmdir(folder), 0);
-}
 
 /* Two ribs of boxes, a diaphragm and a lung of spheres: enough of a body, with this key Breathing. */
 static skg_status load(const char *breathing) {
@@ -195,18 +163,6 @@ START_TEST(what_the_key_cannot_say) {
 }
 END_TEST
 
-static double height_of(const char *label) { /* of the part's lowest vertex */
-    int64_t part = 0;
-    skg_part found;
-    skg_mesh_health health;
-    skg_part_init(&found);
-    skg_mesh_health_init(&health);
-    ck_skg(skg_scene_find(setup->scene, label, &part));
-    ck_skg(skg_scene_part_get(setup->scene, part, &found));
-    ck_skg(skg_mesh_health_get(found.mesh, &health));
-    return health.bounds[2];
-}
-
 START_TEST(parts_move_as_they_are_told) {
     int32_t moves = 0;
     skg_motion_state state;
@@ -241,54 +197,6 @@ START_TEST(parts_move_as_they_are_told) {
 }
 END_TEST
 
-/* A scene file of the folder's meshes; 0 where there is none. */
-static int write_real_scene(const char *here, const char *data) {
-    struct dirent **entry;
-    int count = scandir(data, &entry, NULL, alphasort), organs = 0;
-    if (count < 0) return 0;
-    FILE *stream = fopen(path, "w");
-    ck_assert_ptr_nonnull(stream);
-    fputs(heading, stream);
-    for (int i = 0; i < count; i++) {
-        char *dot = strrchr(entry[i]->d_name, '.');
-        if (dot && strcmp(dot, ".obj") == 0) {
-            *dot = '\0';
-            fprintf(stream,
-                    "%s {\"Label\": \"%s\", \"Path\": \"%s/%s/%s.obj\", \"Unit\": \"mm\", "
-                    "\"Material\": [\"mu\", 0.2]}",
-                    organs++ ? ",\n" : "", entry[i]->d_name, here, data, entry[i]->d_name);
-        }
-        free(entry[i]);
-    }
-    free(entry);
-    fputs("]}\n", stream);
-    ck_assert_int_eq(fclose(stream), 0);
-    return organs;
-}
-
-START_TEST(a_scene_of_real_organs_breathes) {
-    char data[1024], here[512] = "";
-    const char *given = getenv("SKG_DATA");
-    snprintf(data, sizeof data, "%s/bodyparts3d", given ? given : SKG_SOURCE "/../shared/data");
-    if (*data != '/') ck_assert_ptr_nonnull(getcwd(here, sizeof here)); /* paths are relative to the scene */
-    if (!write_real_scene(here, data)) {
-        printf("a_scene_of_real_organs_breathes: skipped, no folder %s\n", data);
-        return;
-    }
-    skg_body *body;
-    skg_body_measure m;
-    skg_body_measure_init(&m);
-    ck_skg(skg_setup_load(NULL, path, 0, NULL, &setup));
-    ck_skg(skg_motion_create(NULL, setup, &motion));
-    const double rest = height_of("liver");
-    ck_skg(skg_motion_at_phase(motion, 0));
-    ck_assert(height_of("liver") < rest - 7);
-    ck_skg(skg_motion_body_get(motion, &body));
-    ck_skg(skg_body_measure_get(body, &m));
-    ck_assert(m.broken_links == 0 && m.tidal_ml > 200 && m.tidal_ml < 1000);
-}
-END_TEST
-
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, the_key_is_read);
@@ -297,7 +205,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, its_options_can_be_asked_for);
     tcase_add_test(tests, what_the_key_cannot_say);
     tcase_add_test(tests, parts_move_as_they_are_told);
-    tcase_add_test(tests, a_scene_of_real_organs_breathes);
 }
 
 SKG_SUITE_MAIN("motion", add_tests)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs the build tree into a folder of its own and uses it from there as a stranger would: pkg-config, CMake,
-# Fortran, Python, and the command. usage: run.sh SOURCE BUILD
+# Installs the build tree into BUILD/package-test and uses it from there as a stranger would: pkg-config, CMake,
+# and the command. usage: run.sh SOURCE BUILD
 set -eu
 source=$1
 build=$2
@@ -66,18 +66,4 @@ done
 echo "only skg_ names are exported:"
 if nm -D --defined-only "$lib/libskiagraph.so" | grep -v ' [A-Z] skg_'; then exit 1; fi
 
-if command -v gfortran >/dev/null 2>&1; then
-    echo "Fortran:"
-    # shellcheck disable=SC2046
-    gfortran -std=f2003 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
-    ./first_image_f
-else
-    echo "Fortran: skipped, no gfortran"
-fi
-if command -v python3 >/dev/null 2>&1; then
-    echo "Python:"
-    python3 "$source/examples/first_image.py" "$(ls "$lib"/libskiagraph.so.?)"
-else
-    echo "Python: skipped, no python3"
-fi
 if [ -x "$stage/usr/bin/skiagraph" ]; then "$stage/usr/bin/skiagraph" --version; fi

@@ -1,6 +1,6 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
-#include "geometry/overlap.h"
 #include "body/inside.h"
+#include "geometry/overlap.h"
 #include "phantom/thorax.h"
 #include "suite.h"
 

@@ -1,0 +1,47 @@
+/* The spectrum of a tube behind layers, and its quality. */
+#ifndef SKG_TESTS_TUBE_H
+#define SKG_TESTS_TUBE_H
+
+#include "support/named.h"
+
+#include <skiagraph/beam.h>
+
+enum { MOST_LAYERS = 8 };
+
+/* A layer of a filter; a list of layers ends with material NULL. */
+typedef struct {
+    const char *material;
+    double mm;
+} layer;
+
+static inline skg_spectrum *tube(int32_t model, double kvp, double angle, const layer *layers) {
+    skg_tube t;
+    skg_filter filters[MOST_LAYERS];
+    skg_material *materials[MOST_LAYERS];
+    skg_spectrum *spectrum = NULL;
+    int count = 0;
+    for (; layers && layers[count].material; count++) {
+        materials[count] = named(layers[count].material);
+        filters[count] = (skg_filter){materials[count], layers[count].mm};
+    }
+    skg_tube_init(&t);
+    t.model = model;
+    t.kvp = kvp;
+    t.angle_deg = angle;
+    t.filters = filters;
+    t.filter_count = count;
+    ck_skg(skg_spectrum_create_tube(&t, &spectrum));
+    while (count > 0) skg_material_release(&materials[--count]);
+    return spectrum;
+}
+
+static inline skg_quality quality(int32_t model, double kvp, double angle, const layer *layers) {
+    skg_quality q;
+    skg_quality_init(&q);
+    skg_spectrum *spectrum = tube(model, kvp, angle, layers);
+    ck_skg(skg_spectrum_quality_get(spectrum, &q));
+    skg_spectrum_release(&spectrum);
+    return q;
+}
+
+#endif

@@ -1,0 +1,168 @@
+/* Scenes small enough for a simulator (Oclgrind: races, bounds), a group of kernels each: simulated GROUP. Exit
+ * status 0: every call succeeded, and every pixel lies between nothing and the open beam. */
+#include "support/shapes.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLUMNS = 20, ROWS = 12, PIXELS = COLUMNS * ROWS };
+
+#define TRY(call)                                                                                            \
+    do {                                                                                                     \
+        if ((call) != SKG_OK) {                                                                              \
+            fprintf(stderr, "%s: %s\n", #call, skg_last_error());                                            \
+            exit(EXIT_FAILURE);                                                                              \
+        }                                                                                                    \
+    } while (0)
+
+/* What a group sets; 0 or NULL: not used. */
+typedef struct {
+    const char *name;
+    int32_t precision, strategy, quantity, repair, falloff, supersampling;
+    int32_t leaky;    /* the box lacks a triangle */
+    int32_t priority; /* the octahedron's, which overlaps the box */
+    int32_t inside;   /* the source stands in the box */
+    int32_t parallel, colours, world, bands, noise, blur, spot;
+    double electronic, step, tolerance;
+} group;
+
+enum { BLUR_LINES = 1, BLUR_POINT = 2 };
+
+static const group groups[] = {
+    {.name = "copies", .strategy = SKG_STRATEGY_COPIES},
+    {.name = "tiles", .strategy = SKG_STRATEGY_TILES},
+    {.name = "atomics", .strategy = SKG_STRATEGY_ATOMICS},
+    {.name = "parallel", .parallel = 1},
+    {.name = "attenuate", .colours = 1, .world = 1, .falloff = 1, .supersampling = 2, .spot = 1},
+    {.name = "logarithm", .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION, .world = 1, .spot = 1},
+    {.name = "bands", .colours = 1, .bands = 2, .tolerance = 1e-3},
+    {.name = "double", .precision = SKG_PRECISION_DOUBLE, .colours = 1, .world = 1},
+    {.name = "double_atomics", .precision = SKG_PRECISION_DOUBLE, .strategy = SKG_STRATEGY_ATOMICS},
+    {.name = "double_tiles", .precision = SKG_PRECISION_DOUBLE, .strategy = SKG_STRATEGY_TILES},
+    {.name = "double_noise",
+     .precision = SKG_PRECISION_DOUBLE,
+     .noise = 1,
+     .electronic = 2,
+     .blur = BLUR_LINES},
+    {.name = "half", .precision = SKG_PRECISION_HALF},
+    {.name = "hits", .priority = 2},
+    {.name = "double_hits", .precision = SKG_PRECISION_DOUBLE, .priority = 2},
+    {.name = "leaky", .leaky = 1, .repair = SKG_REPAIR_NEIGHBOURS},
+    {.name = "leaky_exact", .leaky = 1, .repair = SKG_REPAIR_EXACT},
+    {.name = "double_leaky", .precision = SKG_PRECISION_DOUBLE, .leaky = 1, .repair = SKG_REPAIR_NEIGHBOURS},
+    {.name = "source_plane", .inside = 1},
+    {.name = "double_source_plane", .precision = SKG_PRECISION_DOUBLE, .inside = 1},
+    {.name = "blur", .blur = BLUR_LINES},
+    {.name = "blur_point", .blur = BLUR_POINT},
+    {.name = "noise", .noise = 1, .colours = 1},
+    {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1}};
+
+static const group *find(const char *name) {
+    for (size_t n = 0; n < sizeof groups / sizeof *groups; n++)
+        if (strcmp(groups[n].name, name) == 0) return &groups[n];
+    fprintf(stderr, "no group %s\n", name);
+    exit(EXIT_FAILURE);
+}
+
+static void add(skg_context *context, skg_scene *scene, const char *label, solid s, const char *material,
+                int32_t priority) {
+    skg_part part;
+    skg_part_init(&part);
+    TRY(skg_mesh_create(context, label, s.vertices, s.positions, 0, s.triangles, s.corners, 0, 1,
+                        &part.mesh));
+    TRY(skg_material_create_named(material, &part.material));
+    part.label = label;
+    part.priority = priority;
+    TRY(skg_scene_add(scene, &part, NULL));
+    skg_mesh_release(&part.mesh);
+    skg_material_release(&part.material);
+    solid_free(&s);
+}
+
+static skg_scene *make_scene(skg_context *context, const group *g) {
+    skg_scene *scene = NULL;
+    solid box = g->inside ? solid_box(60, 40, 500) : solid_box(60, 40, 20);
+    solid ball = solid_sphere(12, 6, 4);
+    if (g->inside) solid_shift(&box, 0, 0, -600); /* around the source, at z = -600 */
+    if (g->leaky) box.triangles--;
+    solid_shift(&ball, 22, 5, g->priority ? 4 : 60);
+    TRY(skg_scene_create(context, &scene));
+    add(context, scene, "box", box, "Water", 0);
+    add(context, scene, "ball", ball, "Al", g->priority);
+    return scene;
+}
+
+static skg_view make_view(const group *g) {
+    skg_view view;
+    skg_view_init(&view);
+    view.columns = COLUMNS, view.rows = ROWS;
+    view.source[2] = g->inside ? -600 : -1000;
+    view.centre[2] = 200;
+    view.column_step[0] = view.row_step[1] = 6;
+    if (g->parallel) view.projection = SKG_PROJECTION_PARALLEL;
+    return view;
+}
+
+static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_view *view, const group *g) {
+    static const double energies[3] = {40, 60, 90}, photons[3] = {50, 80, 30}, edges[3] = {10, 55, 100};
+    static const double line[3] = {0.2, 1, 0.3}, point[9] = {0, 1, 0, 1, 4, 2, 0, 1, 0};
+    skg_plan_options options;
+    skg_detector_blur blur;
+    skg_spot spot;
+    skg_spectrum *beam = NULL;
+    skg_plan *plan = NULL;
+    skg_plan_options_init(&options);
+    skg_detector_blur_init(&blur);
+    skg_spot_init(&spot);
+    options.precision = g->precision, options.strategy = g->strategy, options.quantity = g->quantity;
+    options.repair = g->repair, options.falloff = g->falloff, options.overlaps = 0;
+    if (g->supersampling) options.supersampling = g->supersampling;
+    if (g->world) TRY(skg_material_create_named("Air", &options.world));
+    options.bands = g->bands, options.band_kev = edges, options.tolerance = g->tolerance;
+    options.noise = g->noise, options.electronic_kev = g->electronic, options.quantum_step_kev = g->step;
+    blur.columns = blur.rows = 3, blur.along_row = blur.along_column = line;
+    if (g->blur == BLUR_POINT) blur.along_row = blur.along_column = NULL, blur.point = point;
+    if (g->blur) options.blur = &blur;
+    spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 2;
+    if (g->spot) options.spot = &spot;
+    TRY(skg_spectrum_create_bins(g->colours ? 3 : 1, energies, photons, &beam));
+    TRY(skg_plan_create(context, scene, view, beam, &options, &plan));
+    skg_spectrum_release(&beam);
+    skg_material_release(&options.world);
+    return plan;
+}
+
+static int lies_between(const float *values, int64_t count, double least, double most) {
+    for (int64_t p = 0; p < count; p++)
+        if (!((double)values[p] >= least && (double)values[p] <= most)) {
+            fprintf(stderr, "pixel %lld: %g\n", (long long)p, (double)values[p]);
+            return 0;
+        }
+    return 1;
+}
+
+int main(int count, char **words) {
+    static float image[2 * PIXELS];
+    const group *g = find(count == 2 ? words[1] : "");
+    skg_context *context = NULL;
+    skg_output output;
+    TRY(skg_context_create(NULL, &context));
+    skg_scene *scene = make_scene(context, g);
+    const skg_view view = make_view(g);
+    skg_plan *plan = make_plan(context, scene, &view, g);
+    skg_output_init(&output);
+    output.data = image;
+    TRY(skg_plan_image(plan, &output));
+    /* 10,500 keV is the open beam; noise widens it, the logarithm of the range of a float is below 104. */
+    const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500;
+    const int good =
+        lies_between(image, g->bands ? g->bands * PIXELS : PIXELS, g->noise ? -100 : -1e-3, most);
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+    skg_context_release(&context);
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}
