@@ -209,8 +209,8 @@ static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
 }
 
 #if SKG_RATIO
-/* The greatest power of two of the open beam, in which there is the world alone. */
-static skg_realv skg_highest_open(const skg_pass *pass, skg_realv world) {
+/* The greatest power of two of the flat beam, in which there is the world alone. */
+static skg_realv skg_highest_flat_field(const skg_pass *pass, skg_realv world) {
     skg_realv highest = (skg_realv)(pass->coefficients[pass->world_plane]) * world;
     for (int n = 1; n < pass->nodes; n++) {
         const skg_realv power = (skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]) * world;
@@ -219,15 +219,15 @@ static skg_realv skg_highest_open(const skg_pass *pass, skg_realv world) {
     return highest;
 }
 
-/* Sum over nodes of weight * 2^(power - base) of one channel of the open beam. */
-static skg_realv skg_open_beam(const skg_pass *pass, int channel, skg_realv world, skg_realv base) {
-    skg_realv open = (skg_realv)(0);
+/* Sum over nodes of weight * 2^(power - base) of one channel of the flat beam. */
+static skg_realv skg_flat_field(const skg_pass *pass, int channel, skg_realv world, skg_realv base) {
+    skg_realv flat = (skg_realv)(0);
     for (int n = 0; n < pass->nodes; n++) {
         const skg_realv coefficient = (skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]);
-        open = fma((skg_realv)(pass->weights[n * SKG_CHANNELS + channel]),
-                   skg_exp2_v(fma(coefficient, world, -base)), open);
+        flat = fma((skg_realv)(pass->weights[n * SKG_CHANNELS + channel]),
+                   skg_exp2_v(fma(coefficient, world, -base)), flat);
     }
-    return open;
+    return flat;
 }
 #endif
 
@@ -278,17 +278,17 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
     const skg_realv all = (skg_realv)(pass->factor);
 #endif
 #if SKG_RATIO
-    const skg_realv top = skg_highest_open(pass, pixels->world[r]);
+    const skg_realv top = skg_highest_flat_field(pass, pixels->world[r]);
 #endif
     SKG_EACH_CHANNEL {
         skg_realv value = pixels->shown[c][r];
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
         value = -fma(pixels->highest[r], (skg_realv)(SKG_LN2), skg_log_v(value));
 #if SKG_RATIO
-        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_open_beam(pass, c, pixels->world[r], top)));
+        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_flat_field(pass, c, pixels->world[r], top)));
 #endif
 #elif SKG_RATIO
-        value = value / skg_open_beam(pass, c, pixels->world[r], top) * skg_exp2_v(-top) * all;
+        value = value / skg_flat_field(pass, c, pixels->world[r], top) * skg_exp2_v(-top) * all;
 #else
         value *= all;
 #endif

@@ -27,7 +27,7 @@ skg_bands_sort(skg_frame_args frame, __global const int *corners, __global const
                 skg_real4 a, b, c;
                 skg_box box;
                 met[triangle - start] = 0;
-                if (range.writes == 0) continue;
+                if (range.contributions == 0) continue;
                 skg_corners(corners, projected, &range, triangle, &a, &b, &c);
                 if (!skg_bounds(a, b, c, window, &box)) continue;
                 const int from = (box.j0 + range.pixel_j) / frame.tile_rows;

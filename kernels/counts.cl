@@ -6,12 +6,12 @@ __kernel void skg_count_bad_rows(skg_frame_args frame, __global const skg_sum *c
                                  __global const int *planes, __global int *rows_bad) {
     const int row = (int)get_global_id(0), k = (int)get_global_id(1);
     if (row >= frame.rows) return;
-    const int4 field = vload4(0, used + SKG_FIELD(frame.copies, planes[k]));
+    const int4 extent = vload4(0, used + SKG_EXTENT(frame.copies, planes[k]));
     skg_sumv bad = (skg_sumv)(0);
     int from = 0, to = 0;
-    if (row >= field.x && row < field.y) /* columns of the row's end that are none are 0 */
-        for (int column = field.z; column < field.w; column += SKG_WIDE) {
-            const skg_sumv hits = skg_field_sums_v(&frame, copies, used, planes[k], row, column);
+    if (row >= extent.x && row < extent.y) /* columns of the row's end that are none are 0 */
+        for (int column = extent.z; column < extent.w; column += SKG_WIDE) {
+            const skg_sumv hits = skg_extent_sums_v(&frame, copies, used, planes[k], row, column);
             if (!skg_any(SKG_TO_INT_V(hits != (skg_sumv)(0)))) continue;
             bad -= SKG_AS_SUM_V(hits != (skg_sumv)(0));
             from = to > 0 ? from : column;

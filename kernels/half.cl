@@ -1,6 +1,6 @@
 /* Precision `half`, kept to show what it costs (Vidal and Villard 2016, sections 3.2.3 and 4.3): the distance from the
  * source to each hit, in metres, is rounded once to binary16; its exact value, a multiple of 2^-24 m, is summed. One
- * work-item a triangle, planes without weights: of a write only the sign and the plane count. */
+ * work-item a triangle, planes without weights: of a contribution only the sign and the plane count. */
 
 /* metres as a multiple of 2^-24, after rounding to binary16. */
 static int skg_half_units(float metres) {
@@ -16,7 +16,7 @@ static float skg_ray_length(const skg_ray_args *ray, int column, int row) {
 }
 
 __kernel void skg_raster_half(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                              __global const skg_part_entry *parts, __global const skg_write *writes,
+                              __global const skg_part_entry *parts, __global const skg_contribution *contributions,
                               __global const int *blocks, __global skg_sum *sums, skg_ray_args ray) {
     const int triangle = (int)get_global_id(0);
     if (triangle >= frame.triangles) return;
@@ -27,7 +27,7 @@ __kernel void skg_raster_half(skg_frame_args frame, __global const int *corners,
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.writes == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), &box)) return;
+    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0; row < box.j1; row++) {
@@ -39,10 +39,10 @@ __kernel void skg_raster_half(skg_frame_args frame, __global const int *corners,
             const int i = range.pixel_i + column, j = range.pixel_j + row;
             const float t = fma(skg_depth(&f, &line, (skg_real)column), reference, reference);
             const int units = sign * skg_half_units(t * skg_ray_length(&ray, i, j) * 1e-3f);
-            for (int w = 0; w < range.writes; w++) {
-                __global const skg_write *write = &writes[range.first_write + w];
-                skg_add_global(sums + write->plane * frame.plane + j * frame.stride + i,
-                               (skg_sum)(write->weight < 0 ? -units : units));
+            for (int w = 0; w < range.contributions; w++) {
+                __global const skg_contribution *contribution = &contributions[range.first_contribution + w];
+                skg_add_global(sums + contribution->plane * frame.plane + j * frame.stride + i,
+                               (skg_sum)(contribution->weight < 0 ? -units : units));
             }
         }
     }

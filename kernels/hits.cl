@@ -18,7 +18,7 @@ typedef struct {
     __global const int *slots;       /* [parts] -1: does not compete */
     __global const skg_real *shifts; /* [slots] the part's reference less the common one */
     __global int *counts;            /* [rows][columns] */
-    __global const int *starts;
+    __global const uint *starts;
     __global skg_listed *hits;
     int fill; /* 0: hits are counted */
 } skg_lists;
@@ -32,11 +32,11 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
 #else
     const skg_real depth = fma(q, reference, lists->shifts[slot]);
 #endif
-    lists->hits[lists->starts[pixel] + place] = (skg_listed){depth, 2 * slot + enters};
+    lists->hits[lists->starts[pixel] + (uint)place] = (skg_listed){depth, 2 * slot + enters};
 }
 
 #define SKG_LIST_ARGUMENTS                                                                                            \
-    __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const int *starts,     \
+    __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
         __global skg_listed *hits, int fill
 
 /* One work-item every get_global_size(1)-th row of a triangle. */
@@ -67,12 +67,22 @@ __kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, _
     }
 }
 
-/* Room for each pixel's hits, in any order; *total: all of them. Counts become 0 and serve as cursors. */
-__kernel void skg_hits_place(int pixels, __global int *counts, __global int *starts, __global int *total) {
+/* Adds to a count of hits. The low word carries into the high one, so that the count is exact however many hits there
+ * are, without 64-bit atomics. Returns the low word as it was before. */
+static uint skg_add_hits(__global skg_hit_count *total, uint count) {
+    const uint low = atomic_add(&total->low, count);
+    if (low + count < low) atomic_inc(&total->high);
+    return low;
+}
+
+/* Gives each pixel a stretch of the list for its hits, in any order, and counts all hits in *total. Counts become 0 and
+ * then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_MOST_HITS. */
+__kernel void skg_hits_place(int pixels, __global int *counts, __global uint *starts,
+                             __global skg_hit_count *total) {
     const int pixel = (int)get_global_id(0);
     if (pixel >= pixels) return;
     const int count = counts[pixel];
-    starts[pixel] = count ? atomic_add(total, count) : 0;
+    starts[pixel] = count ? skg_add_hits(total, (uint)count) : 0;
     counts[pixel] = 0;
 }
 
@@ -101,25 +111,25 @@ static int skg_loses(__global const int *entry, const uint *active, const uint *
 }
 
 /* Takes off what a part has added to a pixel's sums over an interval. */
-static void skg_take_off(__global const skg_part_entry *part, __global const skg_write *writes, int plane,
+static void skg_take_off(__global const skg_part_entry *part, __global const skg_contribution *contributions, int plane,
                          skg_real length, __global skg_sum *sums) {
 #if !SKG_PARALLEL
-    length /= part->reference; /* as writes weigh it */
+    length /= part->reference; /* as contributions weigh it */
 #endif
-    for (int w = part->first_write; w < part->first_write + part->writes; w++)
-        sums[writes[w].plane * plane] -= (skg_sum)skg_round(length * writes[w].weight);
+    for (int w = part->first_contribution; w < part->first_contribution + part->contributions; w++)
+        sums[contributions[w].plane * plane] -= (skg_sum)skg_round(length * contributions[w].weight);
 }
 
 /* One work-item a pixel. table: [slots][SKG_ENTRY], parents before their children. sums: the first copy. */
 __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entry *parts,
-                              __global const skg_write *writes, __global const int *counts,
-                              __global const int *starts, __global skg_listed *lists, __global const int *table,
+                              __global const skg_contribution *contributions, __global const int *counts,
+                              __global const uint *starts, __global skg_listed *hits, __global const int *table,
                               __global skg_sum *sums) {
     const int column = (int)get_global_id(0), row = (int)get_global_id(1);
     if (column >= frame.columns || row >= frame.rows) return;
     const int count = counts[row * frame.columns + column];
     if (count == 0) return;
-    __global skg_listed *hits = lists + starts[row * frame.columns + column];
+    hits += starts[row * frame.columns + column];
     __global skg_sum *place = sums + (row * frame.stride + column);
     int winding[SKG_SLOTS];
     uint active[SKG_WORDS];
@@ -142,12 +152,13 @@ __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entr
                 __global const int *entry = table + s * SKG_ENTRY;
                 if (!skg_loses(entry, active, dropped)) continue;
                 dropped[w] |= lowest;
-                skg_take_off(&parts[entry[0]], writes, frame.plane, length * (skg_real)winding[s], place);
+                skg_take_off(&parts[entry[0]], contributions, frame.plane, length * (skg_real)winding[s], place);
             }
     }
 }
 
 /* Triangles at the source's plane, too (source_plane.cl). */
+#define SKG_SOURCE_KERNEL skg_hits_source_plane
 #define SKG_SOURCE_ARGUMENTS SKG_LIST_ARGUMENTS
 #define SKG_SOURCE_BEGIN(range)                                                                                       \
     const skg_lists lists = {slots, shifts, counts, starts, hits, fill};                                              \

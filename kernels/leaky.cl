@@ -20,20 +20,20 @@ static int skg_first_column(int column, int own, int step) {
 }
 
 /* Items along a row take vectors by turns, and each takes the parts one after another: no two add to one pixel. */
-__kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+__kernel void skg_leaky_add(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                            __global const int *table, __global skg_sum *shared) {
     const int row = (int)get_global_id(1), step = SKG_WIDE * (int)get_global_size(0);
     if (row >= frame.rows) return;
     for (int part = 0; part < parts; part++) {
         const int first = skg_first_plane(table, part), counts = table[part];
-        const int4 field = vload4(0, used + SKG_FIELD(frame.copies, counts));
-        if (row < field.x || row >= field.y) continue;
+        const int4 extent = vload4(0, used + SKG_EXTENT(frame.copies, counts));
+        if (row < extent.x || row >= extent.y) continue;
         const int own = SKG_WIDE * (int)get_global_id(0);
-        for (int column = skg_first_column(field.z, own, step); column < field.w; column += step) {
-            const skg_sumv hits = skg_field_sums_v(&frame, copies, used, counts, row, column);
+        for (int column = skg_first_column(extent.z, own, step); column < extent.w; column += step) {
+            const skg_sumv hits = skg_extent_sums_v(&frame, copies, used, counts, row, column);
             const skg_sumv valid = SKG_AS_SUM_V(hits == (skg_sumv)(0));
             for (int plane = first; plane < counts; plane++) {
-                const skg_sumv sums = skg_field_sums_v(&frame, copies, used, plane, row, column);
+                const skg_sumv sums = skg_extent_sums_v(&frame, copies, used, plane, row, column);
                 if (!skg_any(SKG_TO_INT_V((sums & valid) != (skg_sumv)(0)))) continue; /* most of a rectangle */
                 __global skg_sum *place = shared + skg_place(&frame, table[parts + plane], row, column);
                 SKG_STORE_V(SKG_LOAD_V(0, place) + (sums & valid), 0, place);
@@ -47,7 +47,7 @@ __kernel void skg_open_add(skg_frame_args frame, __global const skg_sum *copies,
 
 /* gaps[part][row][column]: pixels to the nearest valid one of the row, 0 where the pixel itself is; only in the columns
  * of a row that rows_bad (as skg_count_bad_rows leaves it) names. One item a row of a part. */
-__kernel void skg_open_gaps(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+__kernel void skg_leaky_gaps(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                             __global const int *table, __global const int *rows_bad, __global int *gaps) {
     const int row = (int)get_global_id(0), part = (int)get_global_id(1);
     if (row >= frame.rows || part >= parts) return;
@@ -110,8 +110,8 @@ static skg_sum skg_border_mean(const skg_frame_args *frame, __global const skg_s
 }
 
 /* Bad pixels of each part get the mean of their neighbourhood, which is grown until it holds valid ones (Vidal and
- * Villard 2016, 3.2.7). Items as those of skg_open_add, pixels instead of vectors. */
-__kernel void skg_open_repair(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+ * Villard 2016, 3.2.7). Items as those of skg_leaky_add, pixels instead of vectors. */
+__kernel void skg_leaky_repair(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                               __global const int *table, __global const int *rows_bad, __global const int *gaps,
                               __global skg_sum *shared) {
     const int own = (int)get_global_id(0), row = (int)get_global_id(1), step = (int)get_global_size(0);
@@ -133,8 +133,8 @@ __kernel void skg_open_repair(skg_frame_args frame, __global const skg_sum *copi
 }
 
 /* Gives `count` pixels of a part new sums: pixels[item] = row * columns + column, none twice; values[item][planes of
- * the part]. What skg_open_add has added for them is taken off. */
-__kernel void skg_open_put(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
+ * the part]. What skg_leaky_add has added for them is taken off. */
+__kernel void skg_leaky_put(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                            __global const int *table, int part, int count, __global const int *pixels,
                            __global const long *values, __global skg_sum *shared) {
     const int item = (int)get_global_id(0), first = skg_first_plane(table, part), counts = table[part];

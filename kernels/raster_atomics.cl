@@ -11,7 +11,7 @@ static int skg_strip_rows(const skg_box *box) {
 /* queue[0]: strips asked for; then pairs (triangle, strip). Strips that find no room are drawn here. */
 __kernel void skg_raster_atomics(skg_frame_args frame, __global const int *corners,
                                  __global const skg_real4 *projected, __global const skg_part_entry *parts,
-                                 __global const skg_write *writes, __global const int *blocks,
+                                 __global const skg_contribution *contributions, __global const int *blocks,
                                  __global skg_sum *sums, __global int *queue) {
     const int triangle = (int)get_global_id(0);
     if (triangle >= frame.triangles) return;
@@ -20,7 +20,7 @@ __kernel void skg_raster_atomics(skg_frame_args frame, __global const int *corne
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.writes == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), &box)) return;
+    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), &box)) return;
     if ((box.i1 - box.i0) * (box.j1 - box.j0) > SKG_LARGE) {
         const int rows = skg_strip_rows(&box), strips = (box.j1 - box.j0 + rows - 1) / rows;
         const int first = atomic_add(&queue[0], strips), kept = clamp(frame.queue - first, 0, strips);
@@ -32,13 +32,13 @@ __kernel void skg_raster_atomics(skg_frame_args frame, __global const int *corne
     }
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
-    skg_draw_global(sums, frame.stride, frame.plane, range.pixel_j * frame.stride + range.pixel_i, writes, &range, &f,
+    skg_draw_global(sums, frame.stride, frame.plane, range.pixel_j * frame.stride + range.pixel_i, contributions, &range, &f,
                     &box);
 }
 
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void
 skg_raster_queue(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                 __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
+                 __global const skg_part_entry *parts, __global const skg_contribution *contributions, __global const int *blocks,
                  __global skg_sum *sums, __global const int *queue) {
     const int entries = min(queue[0], frame.queue);
     for (int e = (int)get_group_id(0); e < entries; e += (int)get_num_groups(0)) {
@@ -61,7 +61,7 @@ skg_raster_queue(skg_frame_args frame, __global const int *corners, __global con
             skg_row(&f, (skg_real)row, &line);
             if (skg_hit(&line, (skg_real)column))
                 skg_deposit_global(sums + ((range.pixel_j + row) * frame.stride + range.pixel_i + column),
-                                   frame.plane, writes, &range, skg_depth(&f, &line, (skg_real)column),
+                                   frame.plane, contributions, &range, skg_depth(&f, &line, (skg_real)column),
                                    skg_negative(&f, &line) ? -1 : 1);
         }
     }

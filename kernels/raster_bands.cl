@@ -12,10 +12,10 @@ static void skg_draw_list(const skg_target *target, skg_batch *batch, __global c
 }
 
 /* scratch: an image of tile_rows + SKG_SPARE_ROWS rows for each plane of each work-group. used[copies]: the band that
- * is claimed next; then fields. */
+ * is claimed next; then extents. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_bands(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                 __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
+                 __global const skg_part_entry *parts, __global const skg_contribution *contributions, __global const int *blocks,
                  __global const int *counters, __global const int2 *pieces, __global const int *pool,
                  __global const int *for_all, __global skg_sum *sums, __global skg_sum *scratch,
                  __global int *used) {
@@ -27,7 +27,7 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
     target.corners = corners;
     target.projected = projected;
     target.parts = parts;
-    target.writes = writes;
+    target.contributions = contributions;
     skg_batch batch;
     skg_begin(&batch);
     skg_range range;
@@ -37,8 +37,8 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
         if (band >= frame.tiles_down) break;
         target.first_row = band * frame.tile_rows;
         target.last_row = min(target.first_row + frame.tile_rows, frame.rows);
-        __global const int *fields = used + SKG_FIELD(frame.copies, 0);
-        skg_zero(&target, fields, frame.planes, target.first_row, target.last_row);
+        __global const int *extents = used + SKG_EXTENT(frame.copies, 0);
+        skg_zero(&target, extents, frame.planes, target.first_row, target.last_row);
         for (int chunk = 0; chunk * SKG_CHUNK < frame.triangles; chunk++) {
             const int2 piece = pieces[chunk * frame.tiles_down + band];
             skg_draw_list(&target, &batch, blocks, pool + piece.x, piece.y, &range);
@@ -46,12 +46,12 @@ skg_raster_bands(skg_frame_args frame, __global const int *corners, __global con
         skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range);
         skg_flush(&target, &batch);
         for (int p = 0; p < frame.planes; p++) {
-            const int4 field = vload4(p, fields);
-            const int end = min(target.last_row, field.y);
-            for (int row = max(target.first_row, field.x); row < end; row++) {
+            const int4 extent = vload4(p, extents);
+            const int end = min(target.last_row, extent.y);
+            for (int row = max(target.first_row, extent.x); row < end; row++) {
                 __global const skg_sum *from = target.image + p * target.plane + (row - target.first_row) * frame.stride;
                 __global skg_sum *to = sums + (size_t)p * (size_t)frame.plane + (size_t)row * (size_t)frame.stride;
-                for (int k = field.z; k < field.w; k++) to[k] = from[k];
+                for (int k = extent.z; k < extent.w; k++) to[k] = from[k];
             }
         }
     }

@@ -1,10 +1,10 @@
 /* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and
  * claims runs of triangles until none are left. used[copy]: the copy has been zeroed and counts; used[copies]: the
- * triangle that the next claim begins with; then fields (skg_shared.h). */
+ * triangle that the next claim begins with; then extents (skg_shared.h). */
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_copies(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                  __global const skg_part_entry *parts, __global const skg_write *writes, __global const int *blocks,
+                  __global const skg_part_entry *parts, __global const skg_contribution *contributions, __global const int *blocks,
                   __global skg_sum *copies, __global int *used) {
     const int copy = (int)get_group_id(0), size = frame.planes * frame.plane;
     skg_target target;
@@ -17,7 +17,7 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
     target.corners = corners;
     target.projected = projected;
     target.parts = parts;
-    target.writes = writes;
+    target.contributions = contributions;
     skg_batch batch;
     skg_begin(&batch);
     for (;;) {
@@ -25,7 +25,7 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
         if (triangle >= frame.triangles) break;
         const int end = min(triangle + frame.claim, frame.triangles);
         if (!used[copy]) {
-            skg_zero(&target, used + SKG_FIELD(frame.copies, 0), frame.planes, 0, frame.rows);
+            skg_zero(&target, used + SKG_EXTENT(frame.copies, 0), frame.planes, 0, frame.rows);
             used[copy] = 1;
         }
         int part = skg_part_of_triangle(parts, blocks, triangle);
@@ -33,7 +33,7 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
             skg_range range;
             skg_range_of(parts, part++, &range);
             const int last = min(end, range.end);
-            if (range.writes == 0) triangle = max(triangle, last);
+            if (range.contributions == 0) triangle = max(triangle, last);
             for (; triangle < last; triangle++) skg_submit(&target, &batch, &range, triangle);
         }
     }

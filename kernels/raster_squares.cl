@@ -3,7 +3,7 @@
 /* local_sums: [planes][tile_rows][tile_columns] */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void
 skg_raster_squares(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                   __global const skg_part_entry *parts, __global const skg_write *writes,
+                   __global const skg_part_entry *parts, __global const skg_contribution *contributions,
                    __global const int *blocks, __global const int *starts, __global const int *list,
                    __global const int *for_all, __global skg_sum *sums, __local skg_sum *local_sums) {
     const int tile = (int)get_group_id(0), item = (int)get_local_id(0);
@@ -26,7 +26,7 @@ skg_raster_squares(skg_frame_args frame, __global const int *corners, __global c
             skg_face f;
             skg_face_of(&range, a, b, c, &f);
             skg_draw_local(local_sums, frame.tile_columns, plane,
-                           (range.pixel_j - top) * frame.tile_columns + range.pixel_i - left, writes, &range, &f,
+                           (range.pixel_j - top) * frame.tile_columns + range.pixel_i - left, contributions, &range, &f,
                            &box);
         }
     }

@@ -4,9 +4,11 @@
 
 #ifdef __OPENCL_C_VERSION__
 #define SKG_INT int
+#define SKG_UINT uint
 #else
 #include <stdint.h>
 #define SKG_INT int32_t
+#define SKG_UINT uint32_t
 #endif
 
 /* Items (triangles or projected vertices) per entry of a block table. */
@@ -31,10 +33,10 @@
 #define SKG_SOURCE_ROWS 32
 
 /* The table of what sums there are: for each copy whether it counts; the counter of claims; then of each
- * plane the field that has any: rows from, to, columns from, to, the latter multiples of SKG_FIELD_COLUMNS or
+ * plane the extent that has any: rows from, to, columns from, to, the latter multiples of SKG_EXTENT_COLUMNS or
  * the row's end. Outside it sums are 0, and neither zeroed nor read. */
-#define SKG_FIELD(copies, plane) ((copies) + 1 + 4 * (plane))
-#define SKG_FIELD_COLUMNS 32
+#define SKG_EXTENT(copies, plane) ((copies) + 1 + 4 * (plane))
+#define SKG_EXTENT_COLUMNS 32
 
 /* How many bad pixels of an open mesh are listed. */
 #define SKG_FIRST_BAD 8
@@ -44,7 +46,7 @@
  * row2.V is the path parameter (0 at the source, 1 at the pixel) less `reference`, t = reference + r, and the
  * vertex is seen at x = anchor_x + (offset_x + row0.V) / t, y alike; with a parallel beam without the
  * division. */
-#define SKG_PART_FIELDS(real)                                                                                \
+#define SKG_PART_MEMBERS(real)                                                                                \
     real row0[3], offset_x;                                                                                  \
     real row1[3], offset_y;                                                                                  \
     real row2[3], offset_r;                                                                                  \
@@ -60,12 +62,12 @@
     SKG_INT first_triangle; /* of the part, in the numbering over all parts */                               \
     SKG_INT triangles;                                                                                       \
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
-    SKG_INT first_write, writes;                                                                             \
+    SKG_INT first_contribution, contributions;                                                                             \
     SKG_INT reserved;
 
 /* One plane that a part's hits add to: round(q * weight + bias), q = r / reference (parallel: r). A count
  * plane has weight 0 and bias 1. */
-#define SKG_WRITE_FIELDS(real)                                                                               \
+#define SKG_CONTRIBUTION_MEMBERS(real)                                                                               \
     real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
 
@@ -89,46 +91,54 @@ typedef struct {
     SKG_INT reserved;
 } skg_noise_args;
 
+/* How many hits a frame lists: low + 2^32 high. A struct, so that no 32-bit integer can take its place: on the host
+ * skg_hits_bytes (stage/hits.h) alone reads it. Starts of the pixels' lists are 32 bits: more hits are refused. */
+typedef struct {
+    SKG_UINT low, high;
+} skg_hit_count;
+#define SKG_MOST_HITS 0xffffffffu
+
 /* Length of the ray to pixel (i, j): |centre + i column + j row|, mm; parallel: |centre|. */
-#define SKG_RAY_FIELDS(real)                                                                                 \
+#define SKG_RAY_MEMBERS(real)                                                                                 \
     real centre[3], column[3], row[3];                                                                       \
     real middle_i, middle_j; /* the pixel of `centre` */                                                     \
     real unit;               /* 1 / scale of the plane */
 
 #ifdef __OPENCL_C_VERSION__
 typedef struct {
-    SKG_PART_FIELDS(skg_real)
+    SKG_PART_MEMBERS(skg_real)
 } skg_part_entry;
 typedef struct {
-    SKG_WRITE_FIELDS(skg_real)
-} skg_write;
+    SKG_CONTRIBUTION_MEMBERS(skg_real)
+} skg_contribution;
 typedef struct {
-    SKG_RAY_FIELDS(skg_real)
+    SKG_RAY_MEMBERS(skg_real)
 } skg_ray_args;
 #else
 typedef struct {
-    SKG_PART_FIELDS(float)
+    SKG_PART_MEMBERS(float)
 } skg_part_float;
 typedef struct {
-    SKG_PART_FIELDS(double)
+    SKG_PART_MEMBERS(double)
 } skg_part_double;
 typedef struct {
-    SKG_WRITE_FIELDS(float)
-} skg_write_float;
+    SKG_CONTRIBUTION_MEMBERS(float)
+} skg_contribution_float;
 typedef struct {
-    SKG_WRITE_FIELDS(double)
-} skg_write_double;
+    SKG_CONTRIBUTION_MEMBERS(double)
+} skg_contribution_double;
 typedef struct {
-    SKG_RAY_FIELDS(float)
+    SKG_RAY_MEMBERS(float)
 } skg_ray_float;
 typedef struct {
-    SKG_RAY_FIELDS(double)
+    SKG_RAY_MEMBERS(double)
 } skg_ray_double;
 _Static_assert(sizeof(skg_part_float) == 20 * 4 + 12 * 4, "layout of a part, single");
 _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, double");
-_Static_assert(sizeof(skg_write_float) == 16 && sizeof(skg_write_double) == 24, "layout of a write");
+_Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24, "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
+_Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
 #endif
 #endif

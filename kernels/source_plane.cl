@@ -87,14 +87,15 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
 
 /* What is done with a hit: added to the sums, where no file before this one says otherwise. */
 #ifndef SKG_SOURCE_HIT
-#define SKG_SOURCE_ARGUMENTS __global const skg_write *writes, __global skg_sum *sums
-#define SKG_SOURCE_BEGIN(range) if (range.writes == 0) return
+#define SKG_SOURCE_KERNEL skg_source_plane
+#define SKG_SOURCE_ARGUMENTS __global const skg_contribution *contributions, __global skg_sum *sums
+#define SKG_SOURCE_BEGIN(range) if (range.contributions == 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                \
-    skg_deposit_global(sums + ((row) * frame.stride + (column)), frame.plane, writes, &range, q, factor)
+    skg_deposit_global(sums + ((row) * frame.stride + (column)), frame.plane, contributions, &range, q, factor)
 #endif
 
 /* One work-item SKG_SOURCE_ROWS rows of one triangle. */
-__kernel void skg_source_plane(skg_frame_args frame, __global const int *corners,
+__kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corners,
                                __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                __global const int *blocks, __global const skg_real *vertices,
                                SKG_SOURCE_ARGUMENTS) {

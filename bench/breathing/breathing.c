@@ -1,5 +1,5 @@
 /* Breathing: the exact solution of Chain Mail against the published queue, and steps of a whole body. */
-#include "body/body.h"
+#include "body/types.h"
 #include "breathing/queue.h"
 #include "common/bench.h"
 #include "common/thorax.h"

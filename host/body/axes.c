@@ -1,5 +1,4 @@
-/* Where ribs turn, from the shapes of bones. */
-#include "body/body.h"
+#include "body/axes.h"
 
 #include "core/vector.h"
 
@@ -7,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number k of "vertebra t05", "vertebra_T5"; 0: none. */
+/* Number of a thoracic vertebra: 5 for "vertebra t05" or "vertebra_T5". 0: none. */
 static long thoracic_number(const char *label) {
     if (!skg_label_begins(label, "vertebra")) return 0;
     const char *at = label + strlen("vertebra");
@@ -21,7 +20,7 @@ static const skg_body_organ *vertebra(const skg_body *body, int number) {
     return NULL;
 }
 
-/* A vertebra's body is its front: the mean of the vertices in the first two fifths of its depth. */
+/* The centre of a vertebra's body: the mean of the vertices in the front two fifths of the vertebra (a choice). */
 static void body_centre(const skg_body_organ *bone, double centre[3]) {
     const double *bounds = bone->bounds;
     double count = 0;
@@ -34,7 +33,7 @@ static void body_centre(const skg_body_organ *bone, double centre[3]) {
     skg_scale_vector(1 / count, centre, centre);
 }
 
-/* The tip of the transverse process: the vertex farthest to the side. */
+/* The tip of the transverse process is the vertex farthest to the side. */
 static const double *process_tip(const skg_body_organ *bone, int side) {
     int64_t best = 0;
     for (int64_t i = 1; i < bone->vertices; i++)
@@ -42,7 +41,8 @@ static const double *process_tip(const skg_body_organ *bone, int side) {
     return bone->rest + 3 * best;
 }
 
-/* Adds the rib's vertices that are nearest to a point, to within 3 mm. */
+/* Adds up the rib's vertices that are at most 3 mm farther from a point than the nearest one, as those of a joint
+ * are. */
 static void add_nearest(const skg_body_organ *rib, const double point[3], double sum[3], double *count) {
     double least = HUGE_VAL, d[3];
     for (int pass = 0; pass < 2; pass++)
@@ -72,13 +72,12 @@ int skg_rib_bone_axis(const skg_body *body, const skg_body_organ *rib, double he
     skg_scale_vector(1 / count, tubercle, tubercle);
     skg_add_scaled(tubercle, -1, head, along);
     const double length = skg_length(along);
-    if (!(length > 5)) return 0; /* mm: head and tubercle fell together */
+    if (!(length > 5)) return 0; /* mm; head and tubercle are 12 to 32 mm apart, so they were not found */
     skg_scale_vector(1 / length, along, along);
     return 1;
 }
 
-/* Principal axes of the surface's inertia, each triangle's area at its centroid: the axis of most spread
- * first. end: the one of its two ends that is farther back; of a rib, rather the one nearer to the spine. */
+/* Each triangle's area counts at its centroid. */
 void skg_inertia_axes(const skg_body_organ *o, double axes[9], double end[3]) {
     double mean[3] = {0}, area = 0, scatter[9] = {0}, values[3], least = HUGE_VAL, most = -HUGE_VAL;
     for (int pass = 0; pass < 2; pass++) {
@@ -98,13 +97,14 @@ void skg_inertia_axes(const skg_body_organ *o, double axes[9], double end[3]) {
         if (pass == 0) skg_scale_vector(1 / area, mean, mean);
     }
     skg_eigen(3, scatter, values, axes);
+    /* Of a rib, towards the spine and a little to the back, as its anterior end may be near the midplane too. */
     const double back[3] = {-o->side, o->side ? 0.3 : 1, 0};
     if (skg_dot(axes, back) < 0) skg_scale_vector(-1, axes, axes);
     for (int64_t i = 0; i < o->vertices; i++) {
         const double at = skg_dot(axes, o->rest + 3 * i) - skg_dot(axes, mean);
         least = fmin(least, at), most = fmax(most, at);
     }
-    /* the mean of the end's last tenth lies in the bone; a bent rib's axis does not */
+    /* The mean of the last tenth of the length lies in the bone; the axis of a bent rib does not. */
     double count = 0;
     memset(end, 0, 3 * sizeof *end);
     for (int64_t i = 0; i < o->vertices; i++)

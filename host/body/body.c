@@ -1,13 +1,16 @@
 /* A body as a handle. */
-#include "body/body.h"
+#include "body/types.h"
+
+#include "body/link.h"
+#include "body/organ.h"
 
 #include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-/* Below so many vertices a step takes about a millisecond, and threads that wait for work between steps take
- * more from a device on the same cores than they give. */
+/* Vertices of deformable organs from which threads are used. With fewer, a step takes about a millisecond, and
+ * threads that wait for work between steps take more from a device on the same cores than they give. */
 enum { THREADS_FROM = 40000 };
 
 void skg_body_options_init(skg_body_options *options) {
@@ -22,23 +25,24 @@ void skg_organ_init(skg_organ *organ) {
 
 static skg_status check_options(const skg_body_options *o) {
     if (o->relaxation < 0 || o->relaxation > 20)
-        return skg_fail(SKG_ERR_BREATHING, "body: %" PRId32 " relaxation passes; 0 to 20", o->relaxation);
+        return skg_fail(SKG_ERR_BREATHING, "body: %" PRId32 " relaxation passes; the range is 0 to 20",
+                        o->relaxation);
     if (!skg_all_finite(o->tendon_mm, 3) || skg_length(o->tendon_mm) > 100)
-        return skg_fail(SKG_ERR_BREATHING, "body: tendon_mm (%g, %g, %g); at most 100 mm", o->tendon_mm[0],
-                        o->tendon_mm[1], o->tendon_mm[2]);
+        return skg_fail(SKG_ERR_BREATHING, "body: tendon_mm is (%g, %g, %g); its length is at most 100 mm",
+                        o->tendon_mm[0], o->tendon_mm[1], o->tendon_mm[2]);
     if (!skg_all_finite(o->tendon_plane, 4))
-        return skg_fail(SKG_ERR_BREATHING, "body: tendon_plane not finite");
+        return skg_fail(SKG_ERR_BREATHING, "body: tendon_plane is not finite");
     if (!(o->reference_thoracic >= 0 && o->reference_thoracic <= 4 && o->reference_diaphragmatic >= 0 &&
           o->reference_diaphragmatic <= 4))
-        return skg_fail(SKG_ERR_BREATHING, "body: reference weights %g and %g; 0 to 4", o->reference_thoracic,
-                        o->reference_diaphragmatic);
+        return skg_fail(SKG_ERR_BREATHING, "body: reference weights are %g and %g; the range is 0 to 4",
+                        o->reference_thoracic, o->reference_diaphragmatic);
     if (!(o->hysteresis >= 0 && o->hysteresis <= 1))
-        return skg_fail(SKG_ERR_BREATHING, "body: hysteresis %g; 0 to 1", o->hysteresis);
+        return skg_fail(SKG_ERR_BREATHING, "body: hysteresis is %g; the range is 0 to 1", o->hysteresis);
     return SKG_OK;
 }
 
 skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **result) {
-    if (!result) return skg_fail(SKG_ERR_ARGUMENT, "body: no place for the result");
+    SKG_NEEDS(result);
     *result = NULL;
     skg_body_options ours;
     skg_body_options_init(&ours);
@@ -57,12 +61,12 @@ static void free_organ(skg_body_organ *o) {
     skg_mesh_release(&o->mesh);
     skg_chain_free(&o->chain);
     for (int64_t l = 0; l < o->given_count; l++) {
-        char *to = (char *)(uintptr_t)o->given[l].to; /* ours, as skg_copy_text made it */
+        char *to = (char *)(uintptr_t)o->given[l].to; /* our own copy */
         skg_free(&to);
     }
     void *block[] = {&o->label,  &o->rest,   &o->corner, &o->node_of,     &o->moved,
                      &o->link,   &o->anchor, &o->target, &o->block,       &o->state,
-                     &o->memory, &o->near,   &o->given,  &o->near_weight, &o->share};
+                     &o->memory, &o->near,   &o->given,  &o->near_weight, &o->fraction};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 
@@ -81,14 +85,15 @@ skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
     if (!body || body->linked)
         return skg_fail(SKG_ERR_BREATHING, "body: organs are added before skg_body_link");
     SKG_TRY(skg_struct_read(organ, "skg_organ", &ours, sizeof ours));
-    if (!ours.mesh || !ours.label) return skg_fail(SKG_ERR_ARGUMENT, "organ: needs a mesh and a label");
+    if (!ours.mesh || !ours.label)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_body_add: the organ has no mesh or no label");
     if (ours.inside < -1 || ours.inside >= body->organs)
         return skg_fail(SKG_ERR_BREATHING, "%s: inside organ %" PRId64 ", which was not added before it",
                         ours.label, ours.inside);
-    if (body->organs == body->room) {
-        int64_t room = 2 * body->room + 16;
-        SKG_TRY(skg_realloc(room, sizeof *body->organ, "body", &body->organ));
-        body->room = room;
+    if (body->organs == body->capacity) {
+        int64_t capacity = 2 * body->capacity + 16;
+        SKG_TRY(skg_realloc(capacity, sizeof *body->organ, "body", &body->organ));
+        body->capacity = capacity;
     }
     skg_body_organ *o = body->organ + body->organs;
     memset(o, 0, sizeof *o);
@@ -103,12 +108,13 @@ skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
 }
 
 skg_status skg_body_link(skg_body *body) {
-    if (!body || body->tried) return skg_fail(SKG_ERR_BREATHING, "body: is linked once");
+    if (!body || body->tried) return skg_fail(SKG_ERR_BREATHING, "body: skg_body_link is called once");
     int moves = 0;
     for (int64_t i = 0; i < body->organs; i++) moves |= body->organ[i].role != ROLE_STATIC;
     if (!moves)
-        return skg_fail(SKG_ERR_BREATHING,
-                        "body: no organ that moves; labels are as \"rib 5 left\", \"liver\"");
+        return skg_fail(
+            SKG_ERR_BREATHING,
+            "body: there is no organ that moves; labels such as \"rib 5 left\" or \"liver\" have rules");
     body->tried = 1;
     SKG_TRY(skg_body_find_links(body));
     int64_t deformable = 0;
@@ -121,7 +127,8 @@ skg_status skg_body_link(skg_body *body) {
 
 skg_status skg_body_needle_set(skg_body *body, double withdrawn_mm) {
     if (!body || !isfinite(withdrawn_mm) || fabs(withdrawn_mm) > 1000)
-        return skg_fail(SKG_ERR_BREATHING, "body: needle withdrawn by %g mm; at most 1000", withdrawn_mm);
+        return skg_fail(SKG_ERR_BREATHING, "body: the needle is withdrawn by %g mm; at most 1000 mm",
+                        withdrawn_mm);
     body->withdrawn = withdrawn_mm;
     return SKG_OK;
 }

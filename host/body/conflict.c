@@ -1,17 +1,17 @@
-/* Drivers that pull against each other: which organs they are. */
-#include "body/body.h"
+#include "body/conflict.h"
 
 #include "core/vector.h"
 
-static const double told_from_mm = 1;
+static const double warned_from_mm = 1; /* a choice */
 
 static const char *driver_name(const skg_body *body, const skg_link *link) {
     if (link->organ == LINK_TENDON) return "tendon";
     return link->organ < 0 ? "spine" : body->organ[link->organ].label;
 }
 
-/* The driver that is overrun most, and the one that overruns it: farther from it than the links between them
- * allow. One search from it over the state at rest, lifted so that no gain that matters is below 0. */
+/* The driver that is overrun most, and the one that overruns it: the two are farther apart than the links between
+ * them allow. A search from the first over the state at rest finds what the links allow; all targets are lifted by
+ * the same amount, so that gains are above 0. */
 void skg_conflict_partners(const skg_body *body, const skg_body_organ *o, const char *between[2]) {
     skg_chain *chain = o->chain;
     const skg_chain_report *report = &o->report;
@@ -39,19 +39,19 @@ void skg_conflict_partners(const skg_body *body, const skg_body_organ *o, const 
     between[1] = driver_name(body, o->link + partner);
 }
 
-void skg_body_tell_conflicts(skg_body *body) {
+void skg_body_warn_conflicts(skg_body *body) {
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
         const char *between[2];
-        if (!o->chain || o->told || !(o->report.conflict_mm > told_from_mm)) continue;
+        if (!o->chain || o->warned || !(o->report.conflict_mm > warned_from_mm)) continue;
         skg_conflict_partners(body, o, between);
         if (!between[0]) continue;
-        o->told = 1;
+        o->warned = 1;
         skg_log(
             body->context, SKG_LOG_WARNING,
-            "%s: %s and %s%s ask for %.1f mm more along %c than its tissue allows, and meet halfway; breathe "
-            "less deeply, or give it a softer tissue or other links",
-            o->label, between[0], between[0] == between[1] ? "another place of " : "", between[1],
-            o->report.conflict_mm, "xyz"[o->report.axis]);
+            "%s: along %c, the displacements of %s and %s%s differ by %.1f mm more than its tissue allows; they "
+            "meet halfway. Breathe less deeply, or give it a softer tissue or other links.",
+            o->label, "xyz"[o->report.axis], between[0], between[0] == between[1] ? "another place of " : "",
+            between[1], o->report.conflict_mm);
     }
 }

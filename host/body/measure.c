@@ -1,6 +1,7 @@
-/* What a pose is like. */
-#include "body/body.h"
+#include "body/measure.h"
 
+#include "body/conflict.h"
+#include "body/types.h"
 #include "core/vector.h"
 
 void skg_body_measure_init(skg_body_measure *measure) {
@@ -11,7 +12,7 @@ double skg_lung_hounsfield(double hounsfield, double density_ratio) {
     return (hounsfield + 1000) * density_ratio - 1000;
 }
 
-/* Volume by the divergence theorem, from the double displacements; mm3, of the mesh as it was turned. */
+/* Volume as posed in mm3, by the divergence theorem. Relative to the first vertex, so that nothing cancels. */
 static double volume_now(const skg_body_organ *o) {
     double volume = 0;
     for (int64_t t = 0; t < o->triangles; t++) {
@@ -76,6 +77,9 @@ static void measure_diaphragm(const skg_body_organ *o, skg_body_measure *m) {
     }
 }
 
+/* A link counts as broken from here on: paths of 1000 links over 1000 mm round to 1e-10. */
+static const double broken_mm = 1e-9;
+
 static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_body_measure *m) {
     for (int64_t t = 0; t < o->triangles; t++) {
         double before[3], after[3];
@@ -97,7 +101,7 @@ static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_bod
     }
     int64_t broken;
     double worst;
-    skg_chain_check(o->chain, o->state, 1e-9, &broken, &worst);
+    skg_chain_check(o->chain, o->state, broken_mm, &broken, &worst);
     m->broken_links += broken;
 }
 

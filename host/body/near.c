@@ -1,10 +1,9 @@
-/* Nearest points on triangles. */
-#include "body/body.h"
+#include "body/near.h"
 
 #include "core/vector.h"
 
-/* Weights of the point of triangle abc nearest to p: regions of the plane by the signs of areas (Ericson,
- * Real-Time Collision Detection (2005) 5.1.5). */
+/* Weights of the point of triangle abc that is nearest to p. The signs of areas say which corner, edge or face it
+ * lies on (Ericson, Real-Time Collision Detection (2005) 5.1.5). */
 static void nearest_weights(const double *a, const double *b, const double *c, const double *p, double w[3]) {
     double ab[3], ac[3], ap[3], bp[3], cp[3];
     skg_add_scaled(b, -1, a, ab);
@@ -78,4 +77,10 @@ double skg_nearest(const skg_body_organ *organ, const double p[3], double reach,
         if (box_distance(organ->block + 6 * block, p) <= least)
             nearest_of_block(organ, block, p, &least, &found, link);
     return found ? sqrt(least) : HUGE_VAL;
+}
+
+int32_t skg_find_organ(const skg_body *body, const char *word) {
+    for (int64_t o = 0; o < body->organs; o++)
+        if (skg_label_begins(body->organ[o].label, word)) return (int32_t)o;
+    return -1;
 }

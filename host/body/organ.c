@@ -1,19 +1,19 @@
-/* What the caller says of an organ. */
-#include "body/body.h"
+#include "body/organ.h"
 
+#include "body/axes.h"
+#include "body/near.h"
+#include "core/maths.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
-/* The rotation vector at weight 1. x to the left, y to the back: what raises the front turns about -x; what
- * raises the side about -y on the left, y on the right. */
+/* The rotation vector at weight 1. With x to the left and y to the back, the front is raised by a rotation about -x,
+ * and the side by one about -y on the left and about y on the right. */
 static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {
-    if (!skg_all_finite(given->turn_rad, 3) || !(skg_length(given->turn_rad) <= pi) ||
-        !(fabs(given->gamma_rad) <= pi) || !(fabs(given->lambda_rad) <= pi))
-        return skg_fail(SKG_ERR_BREATHING, "%s: its rotation is not finite or more than half a turn",
+    if (!skg_all_finite(given->turn_rad, 3) || !(skg_length(given->turn_rad) <= SKG_PI) ||
+        !(fabs(given->gamma_rad) <= SKG_PI) || !(fabs(given->lambda_rad) <= SKG_PI))
+        return skg_fail(SKG_ERR_BREATHING, "%s: its rotation is not finite, or more than half a turn",
                         o->label);
     const double paper[3] = {-given->lambda_rad, (o->side < 0 ? 1 : -1) * given->gamma_rad, 0};
     skg_add_scaled(given->turn_rad, 1, paper, o->axis);
@@ -22,7 +22,7 @@ static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {
     if (!o->turned && !has_rule)
         return skg_fail(
             SKG_ERR_BREATHING,
-            "%s: rigid, but its label has no rule; say how it turns (an axis and an angle, or gamma "
+            "%s: rigid, but its label has no rule; give it a rotation (an axis and an angle, or gamma "
             "and lambda)",
             o->label);
     if (!has_rule) o->role = ROLE_RIGID;
@@ -57,8 +57,8 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
               from->rigid_mm <= from->distance_mm))
             return skg_fail(
                 SKG_ERR_BREATHING,
-                "%s: link to %s within %g mm, rigid within %g mm; above 0 to 1000 mm, and rigid no "
-                "farther than that",
+                "%s: a link to %s within %g mm, rigid within %g mm; a link reaches above 0 to 1000 mm, and is rigid "
+                "no farther than that",
                 o->label, from->to, from->distance_mm, from->rigid_mm);
         SKG_TRY(skg_copy_text(from->to, &to));
         o->given[l] = (skg_organ_link){to, from->distance_mm, from->rigid_mm};
@@ -67,14 +67,14 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
     return SKG_OK;
 }
 
-/* Of ribs without one: as their axes are found. */
+/* The centre of the rotation. That of a rib is found with its axis, unless the caller gives one. */
 static skg_status take_centre(const skg_organ *given, skg_body_organ *o) {
     double axes[9];
     int known = 0;
     for (int k = 0; k < 3; k++) known += !isnan(given->centre_mm[k]);
     if (known > 0 && (o->kind != SKG_ORGAN_RIGID || !skg_all_finite(given->centre_mm, 3)))
         return skg_fail(SKG_ERR_BREATHING,
-                        "%s: a centre has three finite numbers, and belongs to a rigid organ", o->label);
+                        "%s: a centre of rotation needs three finite numbers and a rigid organ", o->label);
     o->centred = known > 0;
     if (known > 0)
         memcpy(o->head, given->centre_mm, sizeof o->head);

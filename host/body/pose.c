@@ -1,39 +1,18 @@
 /* Posing: each organ after those that it follows. */
-#include "body/body.h"
-
+#include "body/conflict.h"
+#include "body/corotate.h"
+#include "body/follow.h"
+#include "body/ribs.h"
 #include "core/vector.h"
 
 #include <string.h>
-
-void skg_link_follow(const skg_body *body, const skg_link *link, double displacement[3]) {
-    memset(displacement, 0, 3 * sizeof *displacement);
-    if (link->organ == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
-    if (link->organ < 0) return;
-    const skg_body_organ *o = body->organ + link->organ;
-    if (link->fixed) {
-        skg_rigid_displace(&o->rigid, link->point, displacement);
-        return;
-    }
-    for (int c = 0; c < 3; c++)
-        skg_add_scaled(displacement, link->part * link->weight[c], o->moved + 3 * link->corner[c],
-                       displacement);
-}
-
-void skg_carried_vertex(const skg_body *body, const skg_body_organ *o, int64_t i, double displacement[3]) {
-    memset(displacement, 0, 3 * sizeof *displacement);
-    if (o->carrier == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
-    for (int n = 0; o->carrier >= 0 && n < CARRIERS; n++)
-        skg_add_scaled(displacement, o->near_weight[CARRIERS * i + n],
-                       body->organ[o->carrier].moved + 3 * o->near[CARRIERS * i + n], displacement);
-    if (o->share) skg_scale_vector(o->share[i], displacement, displacement);
-}
 
 static void pose_rigid(skg_body_organ *o) {
     for (int64_t i = 0; i < o->vertices; i++)
         skg_rigid_displace(&o->rigid, o->rest + 3 * i, o->moved + 3 * i);
 }
 
-/* Rotation vector times a factor, about the head. */
+/* Turns an organ about its head, by its rotation vector times a factor. */
 static void pose_turn(skg_body_organ *o, double factor) {
     double vector[3];
     skg_scale_vector(factor, o->axis, vector);
@@ -43,13 +22,14 @@ static void pose_turn(skg_body_organ *o, double factor) {
     pose_rigid(o);
 }
 
-/* The sternum follows the anterior ends of ribs 1 to 7: their vertices farthest from the head. */
+/* The sternum follows the anterior ends of the true ribs, 1 to 7: their vertices farthest from the head. */
 static void fit_sternum(const skg_body *body, int moves, skg_rigid *rigid) {
-    double points[14][3], displacements[14][3];
+    enum { TRUE_RIBS = 7, ENDS = 2 * TRUE_RIBS };
+    double points[ENDS][3], displacements[ENDS][3];
     int64_t count = 0;
-    for (int64_t r = 0; r < body->organs && count < 14; r++) {
+    for (int64_t r = 0; r < body->organs && count < ENDS; r++) {
         const skg_body_organ *o = body->organ + r;
-        if (o->role != ROLE_RIB || o->number > 7) continue;
+        if (o->role != ROLE_RIB || o->number > TRUE_RIBS) continue;
         double most = -1, d[3];
         for (int64_t i = 0; i < o->vertices; i++) {
             skg_add_scaled(o->rest + 3 * i, -1, o->head, d);
@@ -62,7 +42,8 @@ static void fit_sternum(const skg_body *body, int moves, skg_rigid *rigid) {
     }
     memset(rigid, 0, sizeof *rigid);
     for (int k = 0; k < 3; k++) rigid->rotation[4 * k] = 1;
-    if (moves && count >= 3) skg_rigid_fit(count, points[0], displacements[0], rigid);
+    if (moves && count >= 3) /* fewer points leave the rotation open */
+        skg_rigid_fit(count, points[0], displacements[0], rigid);
 }
 
 static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
@@ -71,22 +52,25 @@ static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
         double a[3], b[3];
         skg_rigid_displace(from, o->rest + 3 * i, a);
         skg_rigid_displace(to, o->rest + 3 * i, b);
-        for (int k = 0; k < 3; k++) o->moved[3 * i + k] = (1 - o->share[i]) * a[k] + o->share[i] * b[k];
+        for (int k = 0; k < 3; k++) o->moved[3 * i + k] = (1 - o->fraction[i]) * a[k] + o->fraction[i] * b[k];
     }
 }
+
+/* Fraction of the way to the mean of its neighbours that a node goes in one pass (a choice). */
+static const double relaxed_by = 0.5;
 
 static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
     const double blend = body->options.hysteresis;
     const int64_t nodes = o->chain->nodes;
-    skg_rigid frame;
+    skg_rigid motion;
     for (int64_t d = 0; d < o->links; d++) skg_link_follow(body, o->link + d, o->target + 3 * d);
-    const int turns = o->corotates && skg_drivers_frame(o, &frame);
+    const int turns = o->corotates && skg_corotate_motion(o, &motion);
     for (int64_t d = 0; turns && d < o->links; d++)
-        skg_frame_enter(&frame, o->anchor + 3 * d, o->target + 3 * d, o->target + 3 * d);
+        skg_corotate_remove(&motion, o->anchor + 3 * d, o->target + 3 * d, o->target + 3 * d);
     memset(o->state, 0, (size_t)(3 * nodes) * sizeof(double));
     SKG_TRY(skg_chain_move(o->chain, o->target, o->state, &o->report));
     if (body->options.relaxation > 0)
-        SKG_TRY(skg_chain_relax(o->chain, body->options.relaxation, 0.5, o->state));
+        SKG_TRY(skg_chain_relax(o->chain, body->options.relaxation, relaxed_by, o->state));
     if (blend > 0) SKG_TRY(skg_chain_move(o->chain, o->target, o->memory, &o->report));
     for (int64_t i = 0; i < o->vertices; i++) {
         double *moved = o->moved + 3 * i;
@@ -95,12 +79,13 @@ static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
             moved[k] = o->state[at];
             if (blend > 0) moved[k] += blend * (o->memory[at] - moved[k]);
         }
-        if (turns) skg_frame_leave(&frame, o->rest + 3 * i, moved, moved);
+        if (turns) skg_corotate_restore(&motion, o->rest + 3 * i, moved, moved);
     }
     return SKG_OK;
 }
 
-/* Tip where its tissue is, axis through the place where the skin is entered, then drawn back. */
+/* Puts the tip where its tissue is, turns the axis through the place where the needle enters the skin, and draws it
+ * back. */
 static void pose_needle(const skg_body *body, skg_body_organ *o) {
     double tip[3], skin[3], rest[3], now[3], turn[3], at[3];
     skg_link_follow(body, &o->skin, skin);
@@ -142,7 +127,8 @@ static skg_status pose_one(skg_body *body, skg_body_organ *o) {
     }
 }
 
-/* Writes the float offsets where the upload reads them. At rest the file's own positions come back. */
+/* Writes an organ's positions into its mesh, as floats where the upload reads them. At rest the file's own positions
+ * return. */
 static skg_status write_mesh(skg_body_organ *o) {
     int rests = 1, differs = 0;
     for (int64_t i = 0; i < 3 * o->vertices; i++) rests = rests && o->moved[i] == 0;
@@ -168,7 +154,7 @@ static int is_of(const skg_body_organ *o, skg_role role, int stage) {
     return o->role == role && o->stage == stage;
 }
 
-/* Organs of one role and stage do not follow each other. */
+/* Organs of one role and stage do not follow each other, so that their order does not matter. */
 static skg_status pose_role(skg_body *body, skg_role role, int stage) {
     skg_status status = SKG_OK;
 #pragma omp parallel for schedule(dynamic, 1) if (role == ROLE_LINKED && body->large)
@@ -184,15 +170,15 @@ static skg_status pose_role(skg_body *body, skg_role role, int stage) {
     return status;
 }
 
-/* Bones: by Wilson's share of full inspiration, or as they were told, with the weight. */
+/* Bones turn by a fraction of their rotation at full inspiration, or by the caller's rotation times the weight. */
 static void pose_bones(skg_body *body, double thoracic) {
     const double from = body->options.reference_thoracic;
-    const double share = skg_rib_fraction(thoracic) - skg_rib_fraction(from);
+    const double fraction = skg_rib_fraction(thoracic) - skg_rib_fraction(from);
     skg_rigid sternum;
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
         if (o->role == ROLE_RIB || o->role == ROLE_RIGID || o->turned)
-            pose_turn(o, o->turned ? thoracic - from : share);
+            pose_turn(o, o->turned ? thoracic - from : fraction);
     }
     fit_sternum(body, thoracic != from, &sternum);
     for (int64_t i = 0; i < body->organs; i++) {
@@ -203,7 +189,7 @@ static void pose_bones(skg_body *body, double thoracic) {
     }
 }
 
-/* All organs in memory; meshes are written by the caller. */
+/* Poses all organs, without writing their meshes. */
 static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic) {
     const skg_body_options *options = &body->options;
     int stages = 0;
@@ -222,7 +208,7 @@ static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic
     return SKG_OK;
 }
 
-/* The memories of all chains, in or out of one step of the loop. */
+/* Copies the memories of all chains to a step of the loop (out 1) or from it. */
 static void copy_memories(skg_body *body, int step, int out) {
     double *at = body->loop_state + step * body->loop_size;
     for (int64_t i = 0; i < body->organs; i++) {
@@ -244,7 +230,7 @@ skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
             memset(body->organ[i].memory, 0, (size_t)(3 * body->organ[i].chain->nodes) * sizeof(double));
         }
     SKG_TRY(skg_realloc(LOOP_STEPS * body->loop_size, sizeof(double), "breathing loop", &body->loop_state));
-    for (int cycle = 0; cycle < 2; cycle++) /* periodic from the second cycle on */
+    for (int cycle = 0; cycle < 2; cycle++) /* the state is periodic from the second cycle on */
         for (int step = 0; step < LOOP_STEPS; step++) {
             skg_breath_state state;
             skg_breath_state_init(&state);
@@ -263,14 +249,16 @@ skg_status skg_body_pose(skg_body *body, const skg_breath_state *theirs) {
     SKG_TRY(skg_struct_read(theirs, "skg_breath_state", &state, sizeof state));
     if (!(state.thoracic >= 0 && state.thoracic <= 4 && state.diaphragmatic >= 0 &&
           state.diaphragmatic <= 4 && state.phase >= 0 && state.phase < 1))
-        return skg_fail(SKG_ERR_BREATHING, "body: phase %g with weights %g and %g: 0 to below 1, 0 to 4",
+        return skg_fail(SKG_ERR_BREATHING,
+                        "body: phase %g with weights %g and %g; the phase is 0 to below 1, a weight 0 to 4",
                         state.phase, state.thoracic, state.diaphragmatic);
     if (body->options.hysteresis > 0) {
-        if (!body->loop) return skg_fail(SKG_ERR_BREATHING, "body: hysteresis needs skg_body_breathe first");
+        if (!body->loop)
+            return skg_fail(SKG_ERR_BREATHING, "body: hysteresis needs a call of skg_body_breathe first");
         copy_memories(body, (int)(state.phase * LOOP_STEPS) % LOOP_STEPS, 0);
     }
     SKG_TRY(pose_all(body, state.thoracic, state.diaphragmatic));
     for (int64_t i = 0; i < body->organs; i++) SKG_TRY(write_mesh(body->organ + i));
-    skg_body_tell_conflicts(body);
+    skg_body_warn_conflicts(body);
     return SKG_OK;
 }

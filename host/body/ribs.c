@@ -1,28 +1,30 @@
-/* Ribs: a plane each, an axis through the head, one angle. */
-#include "body/body.h"
+#include "body/ribs.h"
 
+#include "body/axes.h"
+#include "core/maths.h"
 #include "core/vector.h"
 
 #include <string.h>
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = SKG_PI / 180;
 
-/* Fall of pump and bucket angle from the resting level to full inspiration, degrees. Ribs 3 to 7: linear
- * between Wilson's end points (J. Appl. Physiol. 62 (1987) 1872); 2 and 8 to 10 extrapolated, 1, 11 and 12
- * chosen: assumptions. */
+/* By how many degrees pump and bucket angle of ribs 1 to 12 fall from relaxed expiration to full inspiration. Ribs 3
+ * to 7 are linear between the end points of Wilson et al. (J. Appl. Physiol. 62 (1987) 1872). Ribs 2 and 8 to 10 are
+ * extrapolated, and 1, 11 and 12 chosen: assumptions. */
 static const double full_range[12][2] = {{8, 6},  {12, 13.5}, {11, 13}, {10, 12.25}, {9, 11.5}, {8, 10.75},
                                          {7, 10}, {6, 9.25},  {5, 8.5}, {4, 7.75},   {3, 6},    {3, 6}};
 
-/* Weight 1 is a quiet breath: 17 % of the capacity from rest to full inspiration. Angles grow faster than
- * the volume at first and slower at the end (Beyer et al., Respir. Physiol. Neurobiol. 232 (2016) 57; the
- * shape is a choice). */
+/* Weight 1 is a quiet breath: 0.5 of about 3 l, 17 % of the volume v from rest to full inspiration. Angles grow
+ * faster than the volume at first and slower at the end (Beyer et al., Respir. Physiol. Neurobiol. 232 (2016) 57).
+ * The curve is a choice: straight to half the volume, from there a parabola of the same slope, 1.25, to 1 at full
+ * inspiration, then its tangent. */
 double skg_rib_fraction(double weight) {
     double v = 0.17 * weight, s = 2 * v - 1;
     if (v <= 0.5) return 1.25 * v;
     return s < 1 ? 0.625 + 0.625 * s - 0.25 * s * s : 1 + 0.125 * (s - 1);
 }
 
-/* Normal of the plane through the rib, upward: the least eigenvector of the vertices' scatter. Frame: x to
+/* Upward normal of the plane through a rib: the least eigenvector of the vertices' scatter. In own-side axes: x to
  * the rib's own side, y to the front, z up. */
 static void plane_normal(const skg_body_organ *rib, const double *displacements, double normal[3]) {
     double mean[3] = {0}, scatter[9] = {0}, values[3], vectors[9];
@@ -52,7 +54,8 @@ void skg_rib_plane(const skg_body_organ *rib, const double *displacements, doubl
     angles(n, pump, bucket);
 }
 
-/* Fall of the angles when the normal turns about the sum of two vectors, own-side frame. */
+/* Fall of the angles when the normal turns by the rotation vector turn[0] basis[0..2] + turn[1] basis[3..5], in
+ * own-side axes. */
 static void fall_of(const double normal[3], const double basis[6], const double turn[2], double fall[2]) {
     double before[2], after[2], rotation[9], n[3], vector[3];
     skg_scale_vector(turn[0], basis, vector);
@@ -64,12 +67,13 @@ static void fall_of(const double normal[3], const double basis[6], const double 
     for (int k = 0; k < 2; k++) fall[k] = before[k] - after[k];
 }
 
-/* The head: mean of the vertices nearest to the midplane. */
+/* The head: the mean of the vertices nearest to the midplane, to within 6 mm, half the height of a rib. */
 static void find_head(skg_body_organ *rib) {
     double least = HUGE_VAL, count = 0;
     for (int64_t i = 0; i < rib->vertices; i++) {
         double x = rib->side * rib->rest[3 * i], y = rib->rest[3 * i + 1];
-        least = fmin(least, x - 0.3 * y); /* not the anterior end, which may be near the midplane too */
+        least =
+            fmin(least, x - 0.3 * y); /* the anterior end may be near the midplane too, so the back counts */
     }
     memset(rib->head, 0, sizeof rib->head);
     for (int64_t i = 0; i < rib->vertices; i++)
@@ -80,22 +84,22 @@ static void find_head(skg_body_organ *rib) {
     skg_scale_vector(1 / count, rib->head, rib->head);
 }
 
-/* From the body's frame to the own-side one, a mirror image of it on the left, and back. Axial: of rotation
- * vectors, which a mirror image turns round. */
+/* From the body's axes to own-side axes, which on the left are their mirror image, and back. axial: 1 for rotation
+ * vectors, which a mirror image reverses. */
 static void to_own_side(const skg_body_organ *rib, int axial, const double from[3], double to[3]) {
     const double sign = axial ? -rib->side : 1; /* det M of M = (side, -1, 1) */
     to[0] = sign * rib->side * from[0], to[1] = -sign * from[1], to[2] = sign * from[2];
 }
 
-/* The rotation vector in the span of a basis (own-side frame) that gives the table's falls: Newton from the
- * least answer, as the pump angle falls by the part across the midplane and the bucket angle by the part
- * along it. */
+/* Finds, in the span of a basis (own-side axes), the rotation vector that gives the falls of the table. Newton's
+ * method starts from 0, near the smallest solution: the pump angle falls with the component across the midplane, the
+ * bucket angle with the component along it. 20 steps are more than enough, as convergence is quadratic. */
 static skg_status solve_turn(skg_body_organ *rib, const double basis[6]) {
     double normal[3], wanted[2], turn[2] = {0}, sum[3];
     plane_normal(rib, NULL, normal);
     for (int k = 0; k < 2; k++) wanted[k] = degree * full_range[rib->number - 1][k];
     for (int step = 0; step < 20; step++) {
-        const double h = 1e-6;
+        const double h = 1e-6; /* rad; about the square root of a double's rounding */
         double fall[2], slope[2][2];
         fall_of(normal, basis, turn, fall);
         for (int k = 0; k < 2; k++) {
@@ -106,7 +110,7 @@ static skg_status solve_turn(skg_body_organ *rib, const double basis[6]) {
         }
         double det = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
         double miss[2] = {wanted[0] - fall[0], wanted[1] - fall[1]};
-        if (!(fabs(det) > 1e-6))
+        if (!(fabs(det) > 1e-6)) /* 1 for a level rib; above the rounding of the differences, 1e-10 */
             return skg_fail(SKG_ERR_BREATHING, "%s: its plane is upright; a rib slopes", rib->label);
         turn[0] += (slope[1][1] * miss[0] - slope[0][1] * miss[1]) / det;
         turn[1] += (slope[0][0] * miss[1] - slope[1][0] * miss[0]) / det;
@@ -117,7 +121,7 @@ static skg_status solve_turn(skg_body_organ *rib, const double basis[6]) {
     return SKG_OK;
 }
 
-/* One rotation of the table's two angles about an axis: the way round that raises the rib. */
+/* One rotation by both angles of the table about an axis, in the direction that raises the rib. */
 static void turn_about(skg_body_organ *rib, const double along[3]) {
     const double *range = full_range[rib->number - 1];
     double mean[3] = {0}, lever[3], motion[3];
@@ -128,7 +132,7 @@ static void turn_about(skg_body_organ *rib, const double along[3]) {
     skg_scale_vector((motion[2] < 0 ? -1 : 1) * degree * hypot(range[0], range[1]), along, rib->axis);
 }
 
-/* By the bones: Wilson's two angles about one axis from head to tubercle, else about the two longer principal
+/* By the bones: both angles about the axis from head to tubercle; without vertebrae about the two longer principal
  * axes of inertia. */
 static skg_status prepare_by_bones(const skg_body *body, skg_body_organ *rib, double head[3]) {
     double along[3], axes[9], basis[6];

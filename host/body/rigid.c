@@ -21,7 +21,7 @@ void skg_rigid_displace(const skg_rigid *rigid, const double point[3], double di
         displacement[i] = skg_dot(rigid->rotation + 3 * i, p) - p[i] + rigid->shift[i];
 }
 
-/* One Jacobi rotation that clears matrix[p][q]. */
+/* One Jacobi rotation, which makes matrix[p][q] zero. */
 static void clear_entry(int n, double *a, double *v, int p, int q) {
     if (a[n * p + q] == 0) return;
     double theta = (a[n * q + q] - a[n * p + p]) / (2 * a[n * p + q]);
@@ -41,7 +41,7 @@ static void clear_entry(int n, double *a, double *v, int p, int q) {
 
 void skg_eigen(int n, double *matrix, double *values, double *vectors) {
     for (int i = 0; i < n * n; i++) vectors[i] = i / n == i % n;
-    for (int sweep = 0; sweep < 12; sweep++) /* converges quadratically: 6 are enough for n = 4 */
+    for (int sweep = 0; sweep < 12; sweep++) /* converges quadratically; 6 sweeps are enough for n = 4 */
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++) clear_entry(n, matrix, vectors, p, q);
     for (int i = 0; i < n; i++) values[i] = matrix[n * i + i];

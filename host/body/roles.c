@@ -1,5 +1,4 @@
-/* What a label says. */
-#include "body/body.h"
+#include "body/roles.h"
 
 #include "core/names.h"
 
@@ -7,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether label begins with word, without regard to case, and no letter follows. */
 int skg_label_begins(const char *label, const char *word) {
     size_t i = 0;
     for (; word[i]; i++)
@@ -49,7 +47,7 @@ skg_role skg_role_of(const char *label, int *number, int *side) {
         if (rule[i].role == ROLE_RIB || rule[i].role == ROLE_CARTILAGE) {
             const char *digits = label + strcspn(label, "0123456789");
             long value = strtol(digits, NULL, 10);
-            if (rule[i].role == ROLE_CARTILAGE && !*digits) return ROLE_LINKED; /* all of a side in one */
+            if (rule[i].role == ROLE_CARTILAGE && !*digits) return ROLE_LINKED; /* all cartilages of a side */
             if (value < 1 || value > 12 || *side == 0) return ROLE_STATIC;
             *number = (int)value;
         }
@@ -65,7 +63,7 @@ int skg_label_stays(const char *label) {
     return 0;
 }
 
-/* Muscle is the paper's; the others are chosen softer the softer the organ (an assumption). */
+/* The diaphragm's is the paper's muscle. The others are assumptions: the softer the organ, the wider its limits. */
 skg_tissue skg_tissue_of(const char *label) {
     static const struct {
         const char *word;

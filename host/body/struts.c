@@ -1,20 +1,19 @@
-/* Struts: each face of a closed sheet is held to the other through its rim only, so every vertex of the
- * diaphragm is also tied to the nearest one of the face behind it. */
-#include "body/body.h"
+#include "body/struts.h"
 
 #include "core/vector.h"
 
 #include <string.h>
 
-static const double thickest = 4; /* mm: the sheet's thickness, with some obliquity */
+/* Longest strut in mm: the diaphragm's thickness, 2.5 to 4 mm, and a little more where the faces are not parallel. */
+static const double thickest = 4;
 
-/* Vertices in cells as wide as struts may be long. */
+/* Vertices in cells as wide as the longest strut. */
 typedef struct {
     double low[3];
     int64_t size[3];
     int64_t *first;
     int32_t *list;
-    double *normal; /* of the vertices: outward, of any length */
+    double *normal; /* of the vertices: outward, not of length 1 */
 } vertex_grid;
 
 static int64_t cell_at(const vertex_grid *grid, int k, double x) {
@@ -31,8 +30,8 @@ static skg_status fill_cells(const skg_body_organ *o, vertex_grid *grid) {
     int64_t cells = 1;
     for (int k = 0; k < 3; k++) {
         grid->low[k] = o->bounds[k];
-        grid->size[k] =
-            1 + (int64_t)fmin((o->bounds[3 + k] - o->bounds[k]) / thickest, 400); /* the rest: last */
+        /* 1.6 m; the last cell holds what lies beyond */
+        grid->size[k] = 1 + (int64_t)fmin((o->bounds[3 + k] - o->bounds[k]) / thickest, 400);
         cells *= grid->size[k];
     }
     SKG_TRY(skg_alloc(cells + 1, sizeof *grid->first, o->label, &grid->first));
@@ -41,7 +40,7 @@ static skg_status fill_cells(const skg_body_organ *o, vertex_grid *grid) {
         if (o->node_of[i] == i) grid->first[cell_of(grid, o->rest + 3 * i) + 1]++;
     for (int64_t c = 0; c < cells; c++) grid->first[c + 1] += grid->first[c];
     for (int64_t i = o->vertices - 1; i >= 0;
-         i--) /* from the ends of the cells: first comes out as its starts */
+         i--) /* fills cells from their ends, so that first[c + 1] becomes a start */
         if (o->node_of[i] == i) grid->list[--grid->first[cell_of(grid, o->rest + 3 * i) + 1]] = (int32_t)i;
     memmove(grid->first, grid->first + 1, (size_t)cells * sizeof *grid->first);
     grid->first[cells] = 0;
@@ -64,7 +63,7 @@ static void add_normals(const skg_body_organ *o, double *normal) {
     }
 }
 
-/* The nearest vertex on the other face: its normal goes the other way. -1: none is near enough. */
+/* The nearest vertex on the other face, whose normal points the other way. -1: none is near enough. */
 static int32_t behind(const skg_body_organ *o, const vertex_grid *grid, int64_t i) {
     const double *p = o->rest + 3 * i;
     double least = thickest * thickest, d[3];
@@ -98,7 +97,7 @@ skg_status skg_body_add_struts(const skg_body_organ *o, int64_t *links, int32_t 
 #pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < o->vertices; i++) other[i] = o->node_of[i] == i ? behind(o, &grid, i) : -1;
     SKG_TRY_CLEANUP(skg_realloc(2 * (*links + o->vertices), sizeof **ends, o->label, ends));
-    for (int32_t i = 0; i < o->vertices; i++) { /* two that are each other's nearest: one strut */
+    for (int32_t i = 0; i < o->vertices; i++) { /* two that are each other's nearest have one strut */
         if (other[i] < 0 || (other[i] < i && other[other[i]] == i)) continue;
         (*ends)[2 * *links] = i, (*ends)[2 * (*links)++ + 1] = other[i];
     }

@@ -1,10 +1,9 @@
-/* Links that the caller gives, in the place of a label's rule. */
-#include "body/body.h"
+#include "body/tie.h"
 
+#include "body/near.h"
 #include "core/vector.h"
 
 #include <ctype.h>
-#include <inttypes.h>
 #include <string.h>
 
 static int same_label(const char *a, const char *b) {
@@ -13,7 +12,7 @@ static int same_label(const char *a, const char *b) {
     return *a == *b;
 }
 
-/* "rib 5 left" is that organ; "rib" each whose label begins so. */
+/* Whether a link leads to an organ: "rib 5 left" to that organ, "rib" to each whose label begins so. */
 static int leads_to(const skg_body *body, const char *to, const skg_body_organ *other) {
     if (same_label(other->label, to)) return 1;
     for (int64_t i = 0; i < body->organs; i++)
@@ -33,12 +32,12 @@ static skg_status check_tie(const skg_body *body, const skg_body_organ *o, const
         found = 1;
         if (other->role == ROLE_CARRIED || other->role == ROLE_SPANNED || other->role == ROLE_NEEDLE)
             return skg_fail(SKG_ERR_BREATHING,
-                            "%s: linked to %s, which follows another organ itself; link it to that one",
+                            "%s: linked to %s, which itself follows another organ; link it to that one",
                             o->label, other->label);
     }
     if (found) return SKG_OK;
-    return skg_fail(SKG_ERR_BREATHING, "%s: linked to \"%s\", but no other organ's label is or begins so",
-                    o->label, to);
+    return skg_fail(SKG_ERR_BREATHING, "%s: linked to \"%s\", but no other organ's label begins so", o->label,
+                    to);
 }
 
 static int depends(const skg_body *body, const skg_body_organ *o, const skg_body_organ *other) {
@@ -59,7 +58,8 @@ skg_status skg_body_check_ties(skg_body *body) {
     for (int64_t i = 0; i < body->organs; i++)
         for (int64_t l = 0; l < body->organ[i].given_count; l++)
             SKG_TRY(check_tie(body, body->organ + i, body->organ[i].given[l].to));
-    for (int rises = 1; rises;) { /* the longest way to each, along what it follows */
+    for (int rises = 1;
+         rises;) { /* the stage of an organ is the length of the longest chain of organs that it follows */
         rises = 0;
         for (int64_t i = 0; i < body->organs; i++)
             for (int64_t j = 0; j < body->organs; j++) {
@@ -69,7 +69,7 @@ skg_status skg_body_check_ties(skg_body *body) {
                 o->stage = other->stage + 1, rises = 1;
                 if (o->stage > body->organs)
                     return skg_fail(SKG_ERR_BREATHING,
-                                    "%s: linked to %s, which is linked back to it; take one of the links out",
+                                    "%s: linked to %s, which is linked back to it; remove one of the links",
                                     o->label, other->label);
             }
     }
@@ -81,7 +81,7 @@ double skg_given_link(const skg_body *body, const skg_body_organ *o, const doubl
     double least = HUGE_VAL;
     for (int64_t l = 0; l < o->given_count; l++)
         for (int64_t i = 0; i < body->organs; i++) {
-            skg_link found = {.organ = (int32_t)i, .part = 1};
+            skg_link found = {.organ = (int32_t)i, .fraction = 1};
             if (body->organ + i == o || !leads_to(body, o->given[l].to, body->organ + i)) continue;
             double d = skg_nearest(body->organ + i, p, fmin(o->given[l].distance_mm, least), &found);
             if (d < least) least = d, *link = found, *rigid = o->given[l].rigid_mm;

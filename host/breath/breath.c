@@ -1,5 +1,6 @@
 /* Waveforms and phase. */
 #include "core/core.h"
+#include "core/maths.h"
 #include "core/names.h"
 
 #include <skiagraph/breathing.h>
@@ -7,8 +8,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 void skg_breath_init(skg_breath *breath) {
     *breath = (skg_breath){.size = (int32_t)sizeof *breath,
@@ -27,7 +26,7 @@ void skg_breath_state_init(skg_breath_state *state) {
 skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
     static const struct {
         double period_s, thoracic, diaphragmatic;
-    } value[] = {{4, 1, 1}, {4, 0, 1}, {4, 1, 0}, {3, 0.3, 0.3}, {6, 2.5, 2.5}, {1.5, 2, 2}};
+    } pattern[] = {{4, 1, 1}, {4, 0, 1}, {4, 1, 0}, {3, 0.3, 0.3}, {6, 2.5, 2.5}, {1.5, 2, 2}};
     static const char *const names[] = {"quiet",   "diaphragmatic", "thoracic",
                                         "shallow", "deep",          "hyperventilation"};
     enum { COUNT = sizeof names / sizeof *names };
@@ -35,9 +34,9 @@ skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
         if (!skg_same_name(name ? name : "", names[i])) continue;
         skg_breath_init(breath);
         breath->waveform = SKG_WAVEFORM_ASYMMETRIC;
-        breath->period_s = value[i].period_s;
-        breath->thoracic = value[i].thoracic;
-        breath->diaphragmatic = value[i].diaphragmatic;
+        breath->period_s = pattern[i].period_s;
+        breath->thoracic = pattern[i].thoracic;
+        breath->diaphragmatic = pattern[i].diaphragmatic;
         return SKG_OK;
     }
     const char *near = skg_nearest_name(name ? name : "", names, COUNT);
@@ -47,7 +46,7 @@ skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
 
 static skg_status check_range(const char *field, double value, double low, double high) {
     if (value >= low && value <= high) return SKG_OK;
-    return skg_fail(SKG_ERR_BREATHING, "breath: %s is %g; from %g to %g", field, value, low, high);
+    return skg_fail(SKG_ERR_BREATHING, "breath: %s is %g; the range is %g to %g", field, value, low, high);
 }
 
 static skg_status check_samples(const skg_breath *b) {
@@ -67,13 +66,16 @@ static skg_status check_samples(const skg_breath *b) {
 
 static skg_status check_holds(const skg_breath *b) {
     if (b->hold_count < 0 || (b->hold_count > 0 && !b->holds))
-        return skg_fail(SKG_ERR_BREATHING, "breath: %" PRId64 " holds without a list", b->hold_count);
+        return skg_fail(SKG_ERR_BREATHING,
+                        "breath: hold_count is %" PRId64 ", but holds is NULL or the count below 0",
+                        b->hold_count);
     double last = -HUGE_VAL;
     for (int64_t i = 0; i < b->hold_count; i++) {
         const skg_breath_hold *h = b->holds + i;
         if (!(h->from >= last && h->to >= h->from && isfinite(h->from) && isfinite(h->to)))
             return skg_fail(SKG_ERR_BREATHING,
-                            "breath: hold %" PRId64 " is from %g to %g s; in order of time, not overlapping",
+                            "breath: hold %" PRId64
+                            " is from %g to %g s; holds have to be in order of time and must not overlap",
                             i, h->from, h->to);
         last = h->to;
     }
@@ -100,14 +102,14 @@ skg_status skg_breath_check(const skg_breath *breath) {
     return check(&ours);
 }
 
-/* Phase modulo 1; rounding may give 1, which is 0. */
+/* Phase modulo 1. The rounding of a small negative phase gives 1, which is 0. */
 static double wrap(double phase) {
     double p = phase - floor(phase);
     return p < 1 ? p : 0;
 }
 
-/* Slope at sample i of a monotone cubic through evenly spaced samples (Fritsch and Butland: harmonic mean of
- * the slopes on both sides, 0 at a turn). */
+/* Slope at sample i of a monotone cubic through evenly spaced samples: the harmonic mean of the slopes on both sides,
+ * 0 at a turn (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300). */
 static double sample_slope(const skg_breath *b, int64_t i) {
     int64_t n = b->sample_count;
     double before = b->samples[i] - b->samples[(i + n - 1) % n];
@@ -127,12 +129,12 @@ static double sampled(const skg_breath *b, double p) {
 
 /* Amplitude of the waveform at a phase from 0 to below 1. */
 static double waveform(const skg_breath *b, double p) {
-    if (b->waveform == SKG_WAVEFORM_SINE) return 0.5 * (1 + cos(2 * pi * p));
-    if (b->waveform == SKG_WAVEFORM_LUJAN) return pow(cos(pi * p), 2 * b->exponent);
+    if (b->waveform == SKG_WAVEFORM_SINE) return 0.5 * (1 + cos(2 * SKG_PI * p));
+    if (b->waveform == SKG_WAVEFORM_LUJAN) return pow(cos(SKG_PI * p), 2 * b->exponent);
     if (b->waveform == SKG_WAVEFORM_SAMPLED) return sampled(b, p);
     double expiration = b->expiration_ratio / (1 + b->expiration_ratio);
-    return p < expiration ? 0.5 * (1 + cos(pi * p / expiration))
-                          : 0.5 * (1 - cos(pi * (p - expiration) / (1 - expiration)));
+    return p < expiration ? 0.5 * (1 + cos(SKG_PI * p / expiration))
+                          : 0.5 * (1 - cos(SKG_PI * (p - expiration) / (1 - expiration)));
 }
 
 static skg_status fill(const skg_breath *b, double phase, skg_breath_state *theirs) {
@@ -153,7 +155,7 @@ skg_status skg_breath_state_at_phase(const skg_breath *breath, double phase, skg
     return fill(&ours, phase, state);
 }
 
-/* Time spent breathing between 0 and time: what was not held. */
+/* Time between 0 and `time` without holds. */
 static double breathing_time(const skg_breath *b, double time) {
     double spent = time;
     for (int64_t i = 0; i < b->hold_count; i++) {

@@ -12,12 +12,12 @@ static skg_status check_tissue(const char *name, const skg_tissue *t) {
         return SKG_OK;
     return skg_fail(
         SKG_ERR_BREATHING,
-        "%s: tissue with alpha_min %g, alpha_max %g, beta %g: 0 <= alpha_min <= 1 <= alpha_max and "
-        "beta >= 0, or the organ does not hold at rest",
+        "%s: its tissue has alpha_min %g, alpha_max %g, beta %g; without 0 <= alpha_min <= 1 <= alpha_max and "
+        "beta >= 0 it would not keep its shape at rest",
         name, t->alpha_min, t->alpha_max, t->beta);
 }
 
-/* rise of u_B - u_A along axis for a rest offset d; the fall is that of -d. */
+/* Rise (sign 1) or fall (sign -1) of u_B - u_A along an axis for a rest offset d. */
 static double slack(const skg_tissue *t, const double d[3], int axis, double sign) {
     double along = sign * d[axis];
     double across = fabs(d[(axis + 1) % 3]) + fabs(d[(axis + 2) % 3]);
@@ -81,7 +81,8 @@ skg_status skg_chain_create(const char *name, int64_t nodes, const double *rest,
                             const int32_t *kind, skg_chain **result) {
     *result = NULL;
     if (nodes < 0 || nodes > INT32_MAX - 1 || links < 0)
-        return skg_fail(SKG_ERR_BREATHING, "%s: %" PRId64 " nodes, %" PRId64 " links", name, nodes, links);
+        return skg_fail(SKG_ERR_BREATHING, "%s: %" PRId64 " nodes and %" PRId64 " links are not possible",
+                        name, nodes, links);
     for (int64_t t = 0; t < kinds; t++) SKG_TRY(check_tissue(name, tissues + t));
     SKG_TRY(check_links(name, nodes, rest, links, ends, kinds, kind));
 
@@ -182,7 +183,8 @@ void skg_chain_check(const skg_chain *chain, const double *u, double tolerance, 
             double most = -HUGE_VAL;
             for (int k = 0; k < 3; k++) {
                 double stretch = u[k * chain->nodes + chain->node[e]] - u[k * chain->nodes + i];
-                most = fmax(most, stretch - chain->rise[k][e]); /* the fall is the neighbour's rise */
+                most =
+                    fmax(most, stretch - chain->rise[k][e]); /* the fall is tested as the neighbour's rise */
             }
             *worst = fmax(*worst, most);
             *broken += most > tolerance;

@@ -1,7 +1,10 @@
-/* One search: from its starts outward over the links, the largest remaining gains first. */
+/* One search: from its starts outward over the links, the largest remaining gain first. */
 #include "chainmail/chainmail.h"
 
-enum { UNSEEN = -1, QUIET = -2, BUCKETS = 512 };
+/* Values of next: the search has not reached the node; or it has, and the node does not wait. */
+enum { UNSEEN = -1, QUIET = -2 };
+
+enum { BUCKETS = 512 }; /* enough for motions of 512 times the mean slack; beyond it buckets get wider */
 
 skg_status skg_chain_make_front(int64_t nodes, skg_chain_front *f) {
     SKG_TRY(skg_alloc(nodes, sizeof(double), "chain", &f->gain));
@@ -35,7 +38,8 @@ static inline void leave(skg_chain_front *f, int32_t node) {
     f->next[last] = next, f->last[next] = last;
 }
 
-/* At the end of the bucket of its gain: first in, first out, as Bellman and Ford do, bounds second visits. */
+/* Puts a node at the end of the bucket of its gain. First in, first out, as in the algorithm of Bellman and Ford,
+ * bounds the number of second visits. */
 static inline void join(skg_chain_front *f, int64_t nodes, int32_t node) {
     double place = (f->top - f->gain[node]) * f->per_mm;
     int32_t ring = (int32_t)nodes + (place < BUCKETS - 1 ? (int32_t)place : BUCKETS - 1);
@@ -53,8 +57,8 @@ static inline void lift(skg_chain_front *f, int64_t nodes, int32_t node, double 
     join(f, nodes, node);
 }
 
-/* Buckets as wide as the mean slack, or wider so that they suffice. From a tenth to three times that width
- * made no difference that could be measured on the thorax. */
+/* Buckets are as wide as the mean slack, or wider where more than BUCKETS would be needed. Widths from a tenth to
+ * three times that made no measurable difference on the thorax. */
 static void open_buckets(const skg_chain *chain, int axis, skg_chain_front *f) {
     double low = 0, high = 0;
     for (int64_t n = 0; n < f->found; n++) {

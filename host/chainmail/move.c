@@ -6,25 +6,24 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Below this, drivers that contradict each other are rounding: paths of 1e3 links over 1e3 mm round to 1e-10.
- */
+/* Contradictions of drivers below this are rounding: paths of 1000 links over 1000 mm round to 1e-10 mm. */
 static const double rounding_mm = 1e-9;
 
-/* The states that the drivers push to, one way after the other: max(u, L), then the least of that and U. */
-static int64_t push(const skg_chain *chain, int axis, int direction, double least, double *u,
-                    skg_chain_front *f) {
+/* Pushes u in one direction as the drivers ask: to max(u, L) upwards, to min(u, U) downwards. Returns the number of
+ * nodes that moved. */
+static int64_t push(const skg_chain *chain, int axis, int direction, double *u, skg_chain_front *f) {
     const double *target = chain->target[axis];
     skg_chain_forget(f);
     for (int64_t s = 0; s < chain->drivers; s++) {
         double gain = direction * (target[s] - u[chain->driver[s]]);
-        if (gain > least) skg_chain_start(f, chain->driver[s], gain);
+        if (gain > 0) skg_chain_start(f, chain->driver[s], gain);
     }
     skg_chain_spread(chain, axis, direction, u, f);
     for (int64_t n = 0; n < f->found; n++) u[f->seen[n]] += direction * f->gain[f->seen[n]];
     return f->found;
 }
 
-/* Drivers that are where they are to be but for rounding are there. */
+/* Puts drivers that differ from their targets by rounding only onto them. */
 static void round_drivers(const skg_chain *chain, int axis, double *u) {
     for (int64_t s = 0; s < chain->drivers; s++) {
         double *at = u + chain->driver[s], target = chain->target[axis][s];
@@ -32,7 +31,8 @@ static void round_drivers(const skg_chain *chain, int axis, double *u) {
     }
 }
 
-/* Where L > U, u is U by now, and what the drivers still lack spreads to L: half of it leads halfway. */
+/* Where L > U, u is U after both pushes. A search with what the drivers still lack leads to L; half of its gains
+ * leads halfway. */
 static void meet_halfway(skg_chain *chain, int axis, double *u, skg_chain_report *report) {
     skg_chain_front *f = chain->front + axis;
     double *target = chain->target[axis];
@@ -52,15 +52,15 @@ static void meet_halfway(skg_chain *chain, int axis, double *u, skg_chain_report
     }
 }
 
-/* Below so many nodes, starting threads costs more than they save. */
+/* With fewer nodes, starting threads costs more than they save. */
 static const int64_t threads_from = 10000;
 
 static void solve_axis(skg_chain *chain, int axis, double *u, skg_chain_report *report) {
     skg_chain_front *f = chain->front + axis;
     *report = (skg_chain_report){.axis = -1, .driver = -1};
-    report->settled[2 * axis] = push(chain, axis, 1, 0, u, f);
+    report->settled[2 * axis] = push(chain, axis, 1, u, f);
     round_drivers(chain, axis, u);
-    report->settled[2 * axis + 1] = push(chain, axis, -1, 0, u, f);
+    report->settled[2 * axis + 1] = push(chain, axis, -1, u, f);
     round_drivers(chain, axis, u);
     meet_halfway(chain, axis, u, report);
 }
@@ -81,10 +81,10 @@ static void solve(skg_chain *chain, double *u, skg_chain_report *report) {
 skg_status skg_chain_move(skg_chain *chain, const double *targets, double *u, skg_chain_report *report) {
     for (int64_t s = 0; s < chain->drivers; s++)
         if (!skg_all_finite(targets + 3 * s, 3))
-            return skg_fail(SKG_ERR_BREATHING,
-                            "%s: driver %" PRId64 " (node %" PRId32 ") goes to (%g, %g, %g) mm: not finite",
-                            chain->name, s, chain->driver[s], targets[3 * s], targets[3 * s + 1],
-                            targets[3 * s + 2]);
+            return skg_fail(
+                SKG_ERR_BREATHING,
+                "%s: the target (%g, %g, %g) mm of driver %" PRId64 " (node %" PRId32 ") is not finite",
+                chain->name, targets[3 * s], targets[3 * s + 1], targets[3 * s + 2], s, chain->driver[s]);
     for (int64_t s = 0; s < chain->drivers; s++)
         for (int k = 0; k < 3; k++) chain->target[k][s] = targets[3 * s + k];
     skg_chain_report ours;
@@ -93,8 +93,8 @@ skg_status skg_chain_move(skg_chain *chain, const double *targets, double *u, sk
     return SKG_OK;
 }
 
-/* One axis: to the neighbours' mean, then to the middle of the nearest states above and below that keep
- * every link. scratch: two numbers a node. */
+/* One axis of a pass: towards the neighbours' mean, then to the middle of the nearest states above and below that
+ * keep every link. scratch: two numbers for each node. */
 static void relax_axis(skg_chain *chain, int axis, double fraction, double *u, double *scratch) {
     skg_chain_front *f = chain->front + axis;
     double *wish = scratch, *above = scratch + chain->nodes;
@@ -116,7 +116,9 @@ static void relax_axis(skg_chain *chain, int axis, double fraction, double *u, d
 
 skg_status skg_chain_relax(skg_chain *chain, int32_t passes, double fraction, double *u) {
     if (!(fraction >= 0 && fraction <= 1) || passes < 0)
-        return skg_fail(SKG_ERR_BREATHING, "%s: %" PRId32 " relaxation passes of %g: at least 0, of 0 to 1",
+        return skg_fail(SKG_ERR_BREATHING,
+                        "%s: %" PRId32
+                        " relaxation passes by a fraction of %g; at least 0 passes, a fraction of 0 to 1",
                         chain->name, passes, fraction);
     double *scratch;
     SKG_TRY(skg_alloc(6 * chain->nodes, sizeof(double), chain->name, &scratch));

@@ -1,7 +1,8 @@
 /* A set-up that breathes. */
-#include "body/body.h"
+#include "body/measure.h"
+#include "body/types.h"
 #include "scene/scene.h"
-#include "setup/setup.h"
+#include "setup/organs.h"
 
 #include <skiagraph/motion.h>
 
@@ -15,13 +16,15 @@ struct skg_motion {
     int64_t *organ;   /* [parts] number in the body */
     double needle_mm; /* depth as the meshes have it; NaN: no needle */
     skg_motion_state state;
-    int64_t matters; /* lungs, then parts with contrast */
-    int64_t *ids;    /* [matters] */
-    double *density, *share;
-    double lung_hu; /* as the meshes have it */
+    int64_t override_count;  /* lungs, then parts with contrast */
+    int64_t *override_parts; /* [override_count] */
+    double *density_ratios;  /* [override_count] */
+    double *fill_fractions;  /* [override_count] */
+    double lung_hu;          /* as the meshes have it */
 };
 
-static const double HU_KEV = 70; /* about the mean of 120 kV */
+/* Energy at which Hounsfield units are reported, keV: about the mean of a beam of 120 kV. */
+static const double hu_kev = 70;
 
 void skg_motion_state_init(skg_motion_state *state) {
     *state = (skg_motion_state){.size = (int32_t)sizeof *state};
@@ -39,7 +42,7 @@ static skg_status add_organ(skg_motion *motion, int64_t part) {
     return skg_body_add(motion->body, &organ, &motion->organ[part]);
 }
 
-/* Parents before what lies in them; there is no circle. */
+/* Adds parents before what lies in them. A scene has no circle of parents. */
 static skg_status add_organs(skg_motion *motion) {
     const skg_scene *scene = motion->setup->scene;
     int64_t added = 0;
@@ -58,7 +61,7 @@ static const skg_body_organ *organ_of(const skg_motion *motion, int64_t part) {
     return &motion->body->organ[motion->organ[part]];
 }
 
-/* The body writes meshes where they are: each is to be one part's, and where its file has it. */
+/* The body writes positions into meshes. So a mesh that moves belongs to one part only, and that part has no pose. */
 static skg_status check_parts(const skg_motion *motion) {
     static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const skg_scene *scene = motion->setup->scene;
@@ -68,13 +71,13 @@ static skg_status check_parts(const skg_motion *motion) {
             if (scene->parts[p].pose[k] != identity[k])
                 return skg_fail(
                     SKG_ERR_BREATHING,
-                    "%s: breathes, but has a Transform; its file has to have it in place (x to the "
+                    "%s: breathes, but has a Transform; give it a file with its vertices in place (x to the "
                     "left, y to the back, z to the head, mm)",
                     scene->parts[p].label);
         for (int64_t q = 0; q < scene->count; q++)
             if (q != p && scene->parts[q].mesh == scene->parts[p].mesh)
                 return skg_fail(SKG_ERR_BREATHING,
-                                "%s: breathes, but %s has the same mesh; give each its own",
+                                "%s: breathes, so it cannot share its mesh with %s; give each its own file",
                                 scene->parts[p].label, scene->parts[q].label);
     }
     return SKG_OK;
@@ -85,22 +88,23 @@ static skg_status find_lung(skg_motion *motion) {
     motion->lung_hu = (double)NAN;
     for (int64_t p = 0; p < scene->count && isnan(motion->lung_hu); p++)
         if (skg_label_begins(organ_of(motion, p)->label, "lung"))
-            SKG_TRY(skg_material_hounsfield_get(scene->parts[p].material, HU_KEV, &motion->lung_hu));
+            SKG_TRY(skg_material_hounsfield_get(scene->parts[p].material, hu_kev, &motion->lung_hu));
     return SKG_OK;
 }
 
-static skg_status list_matters(skg_motion *motion) {
+static skg_status list_overrides(skg_motion *motion) {
     const skg_breathing_section *section = &motion->setup->breathing;
     const int64_t parts = motion->setup->scene->count, most = parts + section->contrast_count;
-    SKG_TRY(skg_alloc(most, sizeof *motion->ids, "motion", &motion->ids));
-    SKG_TRY(skg_alloc(2 * most, sizeof *motion->density, "motion", &motion->density));
-    motion->share = motion->density + most;
+    SKG_TRY(skg_alloc(most, sizeof *motion->override_parts, "motion", &motion->override_parts));
+    SKG_TRY(skg_alloc(most, sizeof *motion->density_ratios, "motion", &motion->density_ratios));
+    SKG_TRY(skg_alloc(most, sizeof *motion->fill_fractions, "motion", &motion->fill_fractions));
     for (int64_t p = 0; p < parts && section->lung_density; p++)
         if (organ_of(motion, p)->role == ROLE_LINKED && skg_label_begins(organ_of(motion, p)->label, "lung"))
-            motion->ids[motion->matters++] = p;
+            motion->override_parts[motion->override_count++] = p;
     for (int64_t c = 0; c < section->contrast_count; c++)
-        motion->ids[motion->matters++] = section->contrasts[c].part;
-    for (int64_t k = 0; k < motion->matters; k++) motion->density[k] = motion->share[k] = 1;
+        motion->override_parts[motion->override_count++] = section->contrasts[c].part;
+    for (int64_t k = 0; k < motion->override_count; k++)
+        motion->density_ratios[k] = motion->fill_fractions[k] = 1;
     return SKG_OK;
 }
 
@@ -111,19 +115,21 @@ static skg_status make(skg_context *context, skg_motion *motion) {
     SKG_TRY(add_organs(motion));
     SKG_TRY(skg_body_link(motion->body));
     SKG_TRY(check_parts(motion));
-    SKG_TRY(list_matters(motion));
+    SKG_TRY(list_overrides(motion));
     SKG_TRY(find_lung(motion));
     motion->needle_mm = skg_body_needle_depth(motion->body);
     if (section->needle.count && isnan(motion->needle_mm))
-        return skg_fail(SKG_ERR_BREATHING,
-                        "Breathing.Events: there is no needle in liver and skin to insert");
+        return skg_fail(
+            SKG_ERR_BREATHING,
+            "Breathing.Events: there is no needle to insert; it needs samples \"needle\", \"liver\" and \"skin\"");
     if (section->body.hysteresis > 0) SKG_TRY(skg_body_breathe(motion->body, &section->breath));
     return SKG_OK;
 }
 
 skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **result) {
     skg_motion *motion = NULL;
-    if (!setup || !result) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_create: no set-up or no result");
+    SKG_NEEDS(setup);
+    SKG_NEEDS(result);
     *result = NULL;
     SKG_TRY(skg_alloc(1, sizeof *motion, "motion", &motion));
     motion->setup = setup;
@@ -140,8 +146,9 @@ void skg_motion_release(skg_motion **motion) {
     if (!motion || !*motion) return;
     skg_body_release(&(*motion)->body);
     skg_free(&(*motion)->organ);
-    skg_free(&(*motion)->ids);
-    skg_free(&(*motion)->density);
+    skg_free(&(*motion)->override_parts);
+    skg_free(&(*motion)->density_ratios);
+    skg_free(&(*motion)->fill_fractions);
     skg_free(motion);
 }
 
@@ -151,11 +158,11 @@ static double value_at(const skg_curve *curve, double time) {
     while (i < curve->count && p[2 * i] <= time) i++;
     if (i == 0) return p[1];
     if (i == curve->count) return p[2 * i - 1];
-    const double share = (time - p[2 * i - 2]) / (p[2 * i] - p[2 * i - 2]);
-    return p[2 * i - 1] + share * (p[2 * i + 1] - p[2 * i - 1]);
+    const double fraction = (time - p[2 * i - 2]) / (p[2 * i] - p[2 * i - 2]);
+    return p[2 * i - 1] + fraction * (p[2 * i + 1] - p[2 * i - 1]);
 }
 
-/* Breath and needle of motion->state into the meshes. */
+/* Poses the meshes by the breath and the needle of motion->state. */
 static skg_status pose(skg_motion *motion) {
     const skg_breathing_section *section = &motion->setup->breathing;
     if (!isnan(motion->needle_mm))
@@ -163,13 +170,13 @@ static skg_status pose(skg_motion *motion) {
     SKG_TRY(skg_body_pose(motion->body, &motion->state.breath));
     motion->state.lung_density_ratio = section->lung_density ? skg_body_lung_ratio(motion->body) : 1;
     motion->state.lung_hu = skg_lung_hounsfield(motion->lung_hu, motion->state.lung_density_ratio);
-    for (int64_t k = 0; k < motion->matters - section->contrast_count; k++)
-        motion->density[k] = motion->state.lung_density_ratio;
+    for (int64_t k = 0; k < motion->override_count - section->contrast_count; k++)
+        motion->density_ratios[k] = motion->state.lung_density_ratio;
     return SKG_OK;
 }
 
 skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
-    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_time: no motion");
+    SKG_NEEDS(motion);
     const skg_breathing_section *section = &motion->setup->breathing;
     skg_motion_state *state = &motion->state;
     SKG_TRY(skg_breath_state_at_time(&section->breath, time_s, &state->breath));
@@ -180,68 +187,81 @@ skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
         state->breath.thoracic *= weight;
         state->breath.diaphragmatic *= weight;
     }
-    const int64_t first = motion->matters - section->contrast_count;
+    const int64_t first = motion->override_count - section->contrast_count;
     for (int64_t c = 0; c < section->contrast_count; c++)
-        motion->share[first + c] = value_at(&section->contrasts[c].share, time_s);
+        motion->fill_fractions[first + c] = value_at(&section->contrasts[c].fill_fraction, time_s);
     return pose(motion);
 }
 
 skg_status skg_motion_at_phase(skg_motion *motion, double phase) {
-    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_at_phase: no motion");
+    SKG_NEEDS(motion);
     SKG_TRY(skg_breath_state_at_phase(&motion->setup->breathing.breath, phase, &motion->state.breath));
     motion->state.time_s = (double)NAN;
     motion->state.needle_mm = motion->needle_mm;
-    for (int64_t k = 0; k < motion->matters; k++) motion->share[k] = 1;
+    for (int64_t k = 0; k < motion->override_count; k++) motion->fill_fractions[k] = 1;
     return pose(motion);
 }
 
 skg_status skg_motion_fill(const skg_motion *motion, skg_frame *frame) {
-    if (!motion || !frame) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_fill: no motion or no frame");
+    SKG_NEEDS(motion);
+    SKG_NEEDS(frame);
     skg_frame ours;
     skg_frame_init(&ours);
     SKG_TRY(skg_struct_read(frame, "skg_frame", &ours, sizeof ours));
-    ours.override_count = motion->matters;
-    ours.override_parts = motion->ids;
-    ours.density_ratios = motion->density;
-    ours.fill_fractions = motion->share;
+    ours.override_count = motion->override_count;
+    ours.override_parts = motion->override_parts;
+    ours.density_ratios = motion->density_ratios;
+    ours.fill_fractions = motion->fill_fractions;
     return skg_struct_write(&ours, sizeof ours, "skg_frame", frame);
 }
 
 skg_status skg_motion_state_get(const skg_motion *motion, skg_motion_state *state) {
-    if (!motion) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_state_get: no motion");
+    SKG_NEEDS(motion);
     return skg_struct_write(&motion->state, sizeof motion->state, "skg_motion_state", state);
 }
 
 skg_status skg_motion_period_get(const skg_motion *motion, double *period_s) {
-    if (!motion || !period_s) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_period_get: NULL");
+    SKG_NEEDS(motion);
+    SKG_NEEDS(period_s);
     *period_s = motion->setup->breathing.breath.period_s;
     return SKG_OK;
 }
 
 skg_status skg_motion_body_get(const skg_motion *motion, skg_body **body) {
-    if (!motion || !body) return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_body_get: NULL");
+    SKG_NEEDS(motion);
+    SKG_NEEDS(body);
     *body = motion->body;
     return SKG_OK;
 }
 
 skg_status skg_setup_body_options_get(const skg_setup *setup, int32_t *breathes, skg_body_options *options) {
-    if (!setup || !breathes) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_body_options_get: NULL");
+    SKG_NEEDS(setup);
+    SKG_NEEDS(breathes);
     SKG_TRY(
         skg_struct_write(&setup->breathing.body, sizeof setup->breathing.body, "skg_body_options", options));
     *breathes = setup->breathing.is_given;
     return SKG_OK;
 }
 
+static skg_status check_part(const skg_motion *motion, int64_t part) {
+    const int64_t count = motion->setup->scene->count;
+    if (part >= 0 && part < count) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "motion: no part %" PRId64 "; parts are 0 to %" PRId64, part,
+                    count - 1);
+}
+
 skg_status skg_motion_part_moves(const skg_motion *motion, int64_t part, int32_t *moves) {
-    if (!motion || !moves || part < 0 || part >= motion->setup->scene->count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_part_moves: no part %" PRId64, part);
+    SKG_NEEDS(motion);
+    SKG_NEEDS(moves);
+    SKG_TRY(check_part(motion, part));
     *moves = organ_of(motion, part)->role != ROLE_STATIC;
     return SKG_OK;
 }
 
 skg_status skg_motion_rest_get(const skg_motion *motion, int64_t part, double *positions) {
-    if (!motion || !positions || part < 0 || part >= motion->setup->scene->count)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_motion_rest_get: no part %" PRId64, part);
+    SKG_NEEDS(motion);
+    SKG_NEEDS(positions);
+    SKG_TRY(check_part(motion, part));
     const skg_body_organ *organ = organ_of(motion, part);
     memcpy(positions, organ->rest, (size_t)(3 * organ->vertices) * sizeof *positions);
     return SKG_OK;

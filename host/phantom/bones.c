@@ -1,7 +1,10 @@
 /* Ribs, costal cartilage, sternum, spine, clavicles. */
-#include "phantom/thorax.h"
-
 #include "core/vector.h"
+#include "phantom/cage.h"
+#include "phantom/curve.h"
+#include "phantom/makers.h"
+#include "phantom/star.h"
+#include "phantom/tube.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -16,10 +19,12 @@ static skg_status add_tube(skg_thorax *thorax, const char *label, double hounsfi
     return status;
 }
 
+enum { CARTILAGES = 10 };
+
 static const char *const side_name[2] = {"left", "right"};
 static const double side_sign[2] = {1, -1};
 
-/* Half widths of the sternum by z; joints leave 1 mm. */
+/* Half widths of the sternum by z, mm. */
 static const double sternum_width[][2] = {{-42, 5}, {-25, 8}, {-22, 14}, {0, 18},  {40, 16},
                                           {86, 14}, {90, 20}, {115, 25}, {134, 24}};
 
@@ -31,7 +36,10 @@ static skg_status sternum(const skg_thorax_plan *plan, int64_t skin, skg_thorax 
     static const struct {
         const char *label;
         double low, high;
-    } piece[3] = {{"sternum xiphoid", -41, -26}, {"sternum body", -20, 85}, {"sternum manubrium", 91, 132}};
+    } piece[3] = {/* mm; gaps between the pieces are joints */
+                  {"sternum xiphoid", -41, -26},
+                  {"sternum body", -20, 85},
+                  {"sternum manubrium", 91, 132}};
     int64_t around = skg_shape_count(plan->resolution, 14, 6);
     for (int i = 0; i < 3; i++) {
         int64_t rings = skg_shape_count(plan->resolution, 3 + (piece[i].high - piece[i].low) / 8, 3);
@@ -70,7 +78,7 @@ static skg_status ribs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *th
     return SKG_OK;
 }
 
-/* From the rib's end to the sternum, or (8 to 10) to below the cartilage above. */
+/* From the end of a rib to the sternum; from ribs 8 to 10 to below the cartilage above. */
 static skg_status cartilages(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
     static const double joint[7] = {120, 95.5, 64, 42, 22, 4, -14}; /* z at the sternum */
     static const double radius[CARTILAGES] = {5, 5, 5, 5, 5, 5, 5, 4.5, 4, 3.5};
@@ -81,7 +89,7 @@ static skg_status cartilages(const skg_thorax_plan *plan, int64_t skin, skg_thor
         double along[3], p[3][3], curve[17][3], r = radius[k];
         skg_add_scaled(end, -1, before, along);
         skg_scale_vector(1 / skg_length(along), along, along);
-        skg_add_scaled(end, 0.5 * rib->width + 0.5 * r + 1.5, along, p[0]);
+        skg_add_scaled(end, 0.5 * rib->width + 0.5 * r + 1.5, along, p[0]); /* 1.5 mm between their poles */
         if (k < 7) {
             p[2][2] = joint[k];
             p[2][0] = sternum_edge(joint[k]) + 0.5 * r + 2;
@@ -119,7 +127,7 @@ static skg_status clavicles(const skg_thorax_plan *plan, int64_t skin, skg_thora
     return SKG_OK;
 }
 
-/* A vertebra's arch with its spinous and transverse processes: lobes about a centre. */
+/* A vertebra's arch with its spinous and transverse processes: three lobes about a centre. */
 typedef struct {
     double centre[3], size;
 } arch;

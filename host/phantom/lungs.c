@@ -1,84 +1,51 @@
-/* Lungs and airways. A lung is made straight, as rings between a flat base and its apex, and then warped so
- * that the base lies on the diaphragm: no ring can cross another. */
-#include "phantom/thorax.h"
-
+/* Lungs. A lung is made straight, as rings between a flat base and its apex, and then warped so that the base
+ * lies on the diaphragm: no ring can cross another. */
+#include "core/maths.h"
 #include "core/vector.h"
-
-static const double pi = 3.14159265358979323846;
-
-enum { AIRWAYS = 3 };
-
-/* Trachea and main bronchi: ends and radius, mm. */
-static const struct {
-    const char *label;
-    double from[3], to[3], radius;
-} airway[AIRWAYS] = {{"trachea", {0, -56, 200}, {0, -40, 102}, 8.5},
-                     {"bronchus left", {10, -39, 88}, {21, -37, 77}, 5.5},
-                     {"bronchus right", {-10, -39, 87}, {-19, -37, 75}, 6}};
-
-double skg_airway_distance(const double point[3]) {
-    double least = HUGE_VAL;
-    for (int i = 0; i < AIRWAYS; i++) {
-        double d[3], p[3];
-        skg_add_scaled(airway[i].to, -1, airway[i].from, d);
-        skg_add_scaled(point, -1, airway[i].from, p);
-        double t = fmin(fmax(skg_dot(p, d) / skg_dot(d, d), 0), 1);
-        skg_add_scaled(p, -t, d, p);
-        least = fmin(least, skg_length(p) - airway[i].radius);
-    }
-    return least;
-}
-
-skg_status skg_thorax_airways(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
-    for (int i = 0; i < AIRWAYS; i++) {
-        skg_mesh_arrays arrays = {0};
-        double line[2][3], r = airway[i].radius;
-        for (int k = 0; k < 3; k++) line[0][k] = airway[i].from[k], line[1][k] = airway[i].to[k];
-        skg_status status = skg_shape_cord(airway[i].label, (const double(*)[3])line, 2, r, r, 1,
-                                           skg_shape_count(plan->resolution, i == 0 ? 10 : 6, 3),
-                                           skg_shape_count(plan->resolution, 12, 6), &arrays);
-        if (status == SKG_OK) status = skg_thorax_add(thorax, airway[i].label, -1000, skin, &arrays);
-        skg_mesh_arrays_free(&arrays);
-        SKG_TRY(status);
-    }
-    return SKG_OK;
-}
+#include "phantom/airways.h"
+#include "phantom/cage.h"
+#include "phantom/fold.h"
+#include "phantom/makers.h"
+#include "phantom/star.h"
 
 typedef struct {
     const skg_thorax_plan *plan;
     double side;                 /* 1: left */
-    double gap;                  /* mm to everything else */
     int64_t base, sides, around; /* rings of the base, of the sides; points around the sides */
     const double *radius;        /* sides * around, mm from the axis */
 } lung;
 
 static const double apex = 160; /* mm */
 
-/* How low the recess between diaphragm and wall reaches: lowest at the back, beside the spine. */
+/* z down to which the lung fills the recess between diaphragm and wall: lowest at the back, beside the spine. At
+ * end-expiration most of the recess is empty (mm, a choice). */
 static double recess(double x, double y) {
     double azimuth = atan2(y - skg_dome_centre[1], x - skg_dome_centre[0]);
     double behind = (fabs(x) - 70) / 26, back = fmax(0, sin(azimuth));
     return skg_dome_rim_height(azimuth) + 70 - 26 * back * exp(-behind * behind);
 }
 
-/* Height of a ball's upper side that rolls under the diaphragm's middle: `radius` mm clear of it, also where
- * it is steep. */
+/* Height that is `radius` mm clear of the diaphragm's middle, also where it is steep: that of the top of a ball about
+ * (x, y) that rests on the surface. Tested on three circles of 12 points. */
 static double clear_of_dome(const skg_thorax_plan *plan, double x, double y, double radius) {
     enum { CIRCLES = 3, AROUND = 12 };
-    double most = skg_dome_height(plan, x, y) + radius;
+    double most = skg_dome_height(&plan->diaphragm, x, y) + radius;
     for (int c = 1; c <= CIRCLES; c++)
         for (int i = 0; i < AROUND; i++) {
-            double angle = 2 * pi * (i + 0.5 * (c % 2)) / AROUND, d = (double)c / CIRCLES;
-            double z = skg_dome_height(plan, x + d * radius * cos(angle), y + d * radius * sin(angle));
+            double angle = 2 * SKG_PI * (i + 0.5 * (c % 2)) / AROUND, d = (double)c / CIRCLES;
+            double z =
+                skg_dome_height(&plan->diaphragm, x + d * radius * cos(angle), y + d * radius * sin(angle));
             most = fmax(most, z + radius * sqrt(1 - d * d));
         }
     return most;
 }
 
-/* z over a point of the base: above the diaphragm, and no lower than the recess reaches. */
+/* z of the base: above the diaphragm, and not below the recess. The ball is half the diaphragm's thickness and a gap
+ * that allows for the facets of both surfaces. */
 static double base_height(const lung *l, double x, double y) {
-    double over = clear_of_dome(l->plan, x, y, 1.5 + 3.4 * l->gap), floor = recess(x, y);
-    double d = over - floor; /* the larger, rounded over 8 mm */
+    double over = clear_of_dome(l->plan, x, y, skg_dome_half_thickness + 3.4 * l->plan->gap),
+           floor = recess(x, y);
+    double d = over - floor; /* the larger of both, rounded over 8 mm */
     return floor + 0.5 * (d + sqrt(d * d + 64));
 }
 
@@ -88,11 +55,11 @@ static double height_of(const lung *l, double level, double x, double y) {
 }
 
 static void axis_at(const lung *l, double level, double axis[2]) {
-    /* left, where the heart is, farther out: it sees the lung in front of the heart */
+    /* Farther out on the left: from there the part of the lung in front of the heart is seen. */
     axis[0] = l->side * ((l->side > 0 ? 84 : 72) * (1 - level) + 40 * level), axis[1] = -48 + 10 * level;
 }
 
-/* Where the lung may be. Level rides in z: the region is asked along rays at one level. */
+/* Region of the lung at one level: 0 is the base, 1 the apex. z of the points is ignored. */
 typedef struct {
     const lung *l;
     double level;
@@ -102,21 +69,21 @@ static double lung_region(const void *shape, const double flat[3]) {
     const lung_level *at = shape;
     const lung *l = at->l;
     const double p[3] = {flat[0], flat[1], height_of(l, at->level, flat[0], flat[1])};
-    double most = skg_cage_inside(p, 9.5 + l->gap);
-    /* apart from the other lung: vessels, thymus, oesophagus; and from the bronchus at its root */
+    double most = skg_cage_inside(p, 9.5 + l->plan->gap);
+    /* the mediastinum: vessels, thymus and oesophagus between the lungs, widest at the root with its bronchus */
     double up = (p[2] - 78) / 28, across = (p[1] + 37) / 28;
     most = fmax(most, 11 + 32 * exp(-up * up - across * across) - l->side * p[0]);
-    /* beside the spine, the diaphragm's rim has a fold that the lung does not fill */
+    /* beside the spine the diaphragm's rim has a fold, which the lung does not fill */
     double fold = 15 / (1 + exp((p[2] - 15) / 12));
-    most = fmax(most, skg_spine_inside(p, l->gap + fold));
-    most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->gap + 0.5));
-    most = fmax(most, l->gap - skg_airway_distance(p));
-    if (p[2] > 95) { /* the apex is a dome of its own */
+    most = fmax(most, skg_spine_inside(p, l->plan->gap + fold));
+    most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->plan->gap + 0.5));
+    most = fmax(most, l->plan->gap - skg_airway_distance(p));
+    if (p[2] > 95) { /* the apex is a dome: the upper half of an ellipsoid */
         double u = (p[0] - l->side * 44) / 62, v = (p[1] + 36) / 66, w = (p[2] - 95) / (apex + 1 - 95);
         most = fmax(most, 30 * (u * u + v * v + w * w - 1));
     }
-    if (p[1] > -30 && fabs(p[0]) < 80 && most <= 0) /* necks of the ribs; elsewhere the inset is enough */
-        most = fmax(most, 7 + l->gap - skg_rib_distance(l->plan, p));
+    if (p[1] > -30 && fabs(p[0]) < 80 && most <= 0) /* only the necks of the ribs lie inside the cage */
+        most = fmax(most, 7 + l->plan->gap - skg_rib_distance(l->plan->rib, p));
     return most;
 }
 
@@ -128,18 +95,15 @@ static double radius_at(const lung *l, int64_t side_ring, double azimuth) {
     return (1 - w) * row[i] + w * row[j];
 }
 
-/* Rings: pole of the base, `base` - 1 rings of it, `sides` rings, pole of the apex. */
+/* Rings are the pole of the base, `base` - 1 rings of it, `sides` rings, and the pole of the apex. */
 static void lung_place(const void *shape, int64_t ring, double azimuth, double p[3]) {
     const lung *l = shape;
     int64_t side = ring < l->base ? 0 : ring - l->base < l->sides ? ring - l->base : l->sides - 1;
     double level = (double)side / (double)l->sides, r = radius_at(l, side, azimuth), axis[2];
-    if (ring < l->base) { /* denser to the rim, where the diaphragm bends */
-        double t = (double)ring / (double)l->base;
-        r *= 1.45 * t - 0.45 * t * t;
-    }
+    if (ring < l->base) r *= skg_shape_towards_rim((double)ring / (double)l->base);
     if (ring == l->base + l->sides) r = 0, level += 0.5 / (double)l->sides;
     axis_at(l, level, axis);
-    p[0] = axis[0] + r * cos(2 * pi * azimuth), p[1] = axis[1] + r * sin(2 * pi * azimuth);
+    p[0] = axis[0] + r * cos(2 * SKG_PI * azimuth), p[1] = axis[1] + r * sin(2 * SKG_PI * azimuth);
     p[2] = height_of(l, level, p[0], p[1]);
 }
 
@@ -150,14 +114,14 @@ static void find_radii(const lung *l, double *radius) {
         double from[3] = {0};
         axis_at(l, at.level, from);
         for (int64_t i = 0; i < l->around; i++) {
-            double angle = 2 * pi * (double)i / (double)l->around;
+            double angle = 2 * SKG_PI * (double)i / (double)l->around;
             const double direction[3] = {cos(angle), sin(angle), 0};
             radius[s * l->around + i] = skg_shape_exit(lung_region, &at, from, direction, 150);
         }
         skg_shape_limit(radius + s * l->around, l->around, 2.5);
         skg_shape_smooth(radius + s * l->around, l->around, 3);
     }
-    /* and from level to level, by 2 mm a mm of height */
+    /* From level to level a radius may change by 2 mm for each mm of height; a lung is 250 mm high. */
     double rise = 2 * 250 / (double)l->sides;
     for (int64_t i = 0; i < l->around; i++) {
         double *column = radius + i;
@@ -193,7 +157,7 @@ cleanup:
 
 skg_status skg_thorax_lungs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
     for (double side = 1; side >= -1; side -= 2) {
-        lung l = {.plan = plan, .side = side, .gap = fmax(1.2, 1.5 / plan->resolution)};
+        lung l = {.plan = plan, .side = side};
         l.base = skg_shape_count(plan->resolution, 15, 4);
         l.sides = skg_shape_count(plan->resolution, 29, 8);
         l.around = skg_shape_count(plan->resolution, 46, 12);

@@ -1,15 +1,14 @@
 /* The thorax as files. */
-#include "phantom/thorax.h"
-
 #include "core/output.h"
+#include "phantom/builder.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static skg_status path_of(const char *folder, const char *label, const char *extension, char **path) {
-    size_t room = strlen(folder) + strlen(label) + strlen(extension) + 2;
-    SKG_TRY(skg_alloc((int64_t)room, 1, "path", path));
-    snprintf(*path, room, "%s/%s%s", folder, label, extension);
+    size_t size = strlen(folder) + strlen(label) + strlen(extension) + 2;
+    SKG_TRY(skg_alloc((int64_t)size, 1, "path", path));
+    snprintf(*path, size, "%s/%s%s", folder, label, extension);
     for (char *c = *path + strlen(folder) + 1; *c; c++)
         if (*c == ' ') *c = '-';
     return SKG_OK;
@@ -35,9 +34,10 @@ static void write_sample(const skg_thorax *thorax, int64_t i, FILE *f) {
     fprintf(f, i + 1 < thorax->parts ? "},\n" : "}\n");
 }
 
-/* The source in front of the patient, the detector behind the back, rows from head to foot: the patient's
- * right is on the viewer's left. The events: breath held at end-expiration (2.4 s: phase 0.6 of "quiet")
- * while the needle goes 110 mm deep, shallow breathing, ducts that fill while it is drawn back. */
+/* The source is in front of the patient, the detector behind the back, and rows go from head to foot, so that the
+ * patient's right is on the viewer's left. The events: the breath is held at end-expiration (2.4 s is phase 0.6 of
+ * "quiet") while the needle is inserted 110 mm deep; then breathing is shallow, and the ducts fill while the needle
+ * is drawn back. */
 static void write_scene(const skg_thorax *thorax, FILE *f) {
     fprintf(
         f,
@@ -73,7 +73,8 @@ static void write_scene(const skg_thorax *thorax, FILE *f) {
 }
 
 skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {
-    if (!thorax || !folder) return skg_fail(SKG_ERR_ARGUMENT, "thorax: NULL");
+    SKG_NEEDS(thorax);
+    SKG_NEEDS(folder);
     for (int64_t i = 0; i < thorax->parts; i++) {
         char *path;
         SKG_TRY(path_of(folder, thorax->part[i].label, ".ply", &path));

@@ -2,7 +2,7 @@
 #include "core/context.h"
 #include "core/units.h"
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -49,13 +49,13 @@ static skg_status read_channel(const skg_json_node *node, double *energy_kev, do
     SKG_TRY(skg_json_text(&unit_node, &unit));
     SKG_TRY(skg_json_number(&photons_node, photons));
     skg_status status = skg_unit_of_energy(unit, &kev);
-    if (status != SKG_OK) return skg_json_fail(&unit_node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(&unit_node, status));
     *energy_kev = energy * kev;
-    /* One energy, to have its fault told in its own place. */
+    /* A spectrum of this energy alone, so that an error names this channel. */
     skg_spectrum *check = NULL;
     status = skg_spectrum_create_mono(*energy_kev, *photons, &check);
     skg_spectrum_release(&check);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 static skg_status read_channels(skg_setup *setup, const skg_json_node *node) {
@@ -88,7 +88,7 @@ static skg_status read_file(skg_setup_reader *reader, const skg_json_object *bea
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
     skg_status status = skg_spectrum_load(resolved, unit, &reader->setup->spectrum);
     skg_free(&resolved);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 /* A number, or [number, unit] with one of the names given. */
@@ -132,7 +132,7 @@ typedef struct {
     int64_t count;
 } filter_list;
 
-/* ["Cu", 0.1, "mm"]; mm where there is no unit; an element also by its number. */
+/* ["Cu", 0.1, "mm"]; the unit may be absent and is then mm; an element may be given by its number. */
 static skg_status read_filter(const skg_json_node *node, filter_list *list) {
     static const char *const one = "[\"Cu\", 0.1, \"mm\"]";
     int64_t length = 0, z = 0;
@@ -154,7 +154,7 @@ static skg_status read_filter(const skg_json_node *node, filter_list *list) {
         SKG_TRY(skg_json_text(&material, &name));
         status = skg_material_create_named(name, place);
     }
-    if (status != SKG_OK) return skg_json_fail(&material, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(&material, status));
     list->filters[list->count] = (skg_filter){*place, thickness * mm};
     list->count++;
     return SKG_OK;
@@ -166,7 +166,7 @@ static skg_status read_filters(const skg_json_object *beam, filter_list *list) {
     if (!node.value) return SKG_OK;
     SKG_TRY(skg_json_array(&node, "[[\"Cu\", 0.1, \"mm\"]]", &count));
     if (count > MOST_FILTERS)
-        return skg_json_fail(&node, SKG_ERR_FORMAT, "has %" PRId64 " filters; %d are the most", count,
+        return skg_json_fail(&node, SKG_ERR_FORMAT, "has %" PRId64 " filters; at most %d are possible", count,
                              MOST_FILTERS);
     for (int64_t i = 0; i < count; i++) {
         skg_json_node filter = skg_json_element(&node, i);
@@ -175,7 +175,7 @@ static skg_status read_filters(const skg_json_object *beam, filter_list *list) {
     return SKG_OK;
 }
 
-/* [65, "uGy/mAs", 100, "cm"] */
+/* Output of a tube: air kerma by load, and the distance where it was measured. */
 static skg_status read_output(const skg_json_object *beam, skg_tube *tube) {
     static const char *const form = "[65, \"uGy/mAs\", 100, \"cm\"]", *const units[] = {"uGy/mAs"};
     skg_json_node node = skg_json_member(beam, "Output");
@@ -209,7 +209,7 @@ static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
     if (anode.value) {
         SKG_TRY(skg_json_text(&anode, &text));
         skg_status status = skg_element_number(text, &tube->anode);
-        if (status != SKG_OK) return skg_json_fail(&anode, status, "%s", skg_last_error());
+        SKG_TRY(skg_json_at(&anode, status));
     }
     if (model.value) SKG_TRY(skg_json_choice(&model, "model of a tube", models, 2, &choice));
     tube->model = choice == 0 ? SKG_TUBE_MODEL_EBEL : SKG_TUBE_MODEL_BIRCH;
@@ -233,7 +233,7 @@ static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *bea
     tube.filters = list.filters;
     tube.filter_count = list.count;
     status = skg_spectrum_create_tube(&tube, &reader->setup->spectrum);
-    if (status != SKG_OK) status = skg_json_fail(beam->node, status, "%s", skg_last_error());
+    status = skg_json_at(beam->node, status);
 cleanup:
     for (int64_t i = 0; i < MOST_FILTERS; i++) skg_material_release(&list.materials[i]);
     return status;
@@ -255,7 +255,7 @@ skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *no
     return skg_json_fail(node, SKG_ERR_FORMAT, "describes no beam; give %s, or {\"kVp\": 85}", example);
 }
 
-/* From photons per mm2 at 1 m to photons per pixel at the foot of the perpendicular from the source. */
+/* From photons per mm2 at 1 m to photons per pixel where the perpendicular from the source meets the detector. */
 skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node) {
     skg_setup *setup = reader->setup;
     const skg_view *view = &setup->view;
@@ -265,7 +265,7 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
     if (view->projection != SKG_PROJECTION_POINT)
         return skg_json_fail(
             node, SKG_ERR_BEAM,
-            "a parallel beam has no distance from the tube; leave out mAs, or use PointSource");
+            "a parallel beam has no distance from a tube; leave out mAs, or use PointSource");
     skg_cross(view->column_step, view->row_step, normal);
     double area = skg_length(normal);
     skg_add_scaled(view->centre, -1, view->source, way);
@@ -273,7 +273,8 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
     SKG_TRY(skg_spectrum_create_scaled(setup->spectrum, area * pow(1000 / distance, 2), &placed));
     skg_spectrum_release(&setup->spectrum);
     setup->spectrum = placed;
-    skg_log(reader->context, SKG_LOG_NOTE,
-            "mAs is given: photons are counted absolutely; noise is simulated where Noise is given only");
+    skg_log(
+        reader->context, SKG_LOG_NOTE,
+        "mAs is given, so photons are counted absolutely. Noise is simulated only where the key Noise is given.");
     return SKG_OK;
 }

@@ -1,5 +1,5 @@
 /* The section Breathing of a scene file. */
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -25,7 +25,8 @@ static const char *const points_example = "[[0, 0], [2.5, 110]]: seconds, value"
 
 void skg_breathing_section_free(skg_breathing_section *section) {
     skg_setup_organs_free(section);
-    for (int64_t i = 0; i < section->contrast_count; i++) skg_free(&section->contrasts[i].share.points);
+    for (int64_t i = 0; i < section->contrast_count; i++)
+        skg_free(&section->contrasts[i].fill_fraction.points);
     skg_free(&section->samples);
     skg_free(&section->holds);
     skg_free(&section->contrasts);
@@ -51,7 +52,7 @@ static skg_status read_samples(skg_breathing_section *section, const skg_json_no
     return SKG_OK;
 }
 
-/* A named pattern first; the other keys change it. */
+/* The named pattern comes first, because the other keys change it. */
 static skg_status read_waveform(skg_breathing_section *section, const skg_json_object *object) {
     static const char *const waveforms[] = {"Sine", "Lujan", "Asymmetric"};
     skg_breath *breath = &section->breath;
@@ -63,7 +64,7 @@ static skg_status read_waveform(skg_breathing_section *section, const skg_json_o
     if (pattern.value) {
         SKG_TRY(skg_json_text(&pattern, &name));
         skg_status status = skg_breath_pattern(name, breath);
-        if (status != SKG_OK) return skg_json_fail(&pattern, status, "%s", skg_last_error());
+        SKG_TRY(skg_json_at(&pattern, status));
     }
     if (waveform.value && json_is_array(waveform.value)) {
         SKG_TRY(read_samples(section, &waveform));
@@ -95,9 +96,9 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     double amplitude = 0;
     if (reference.value) SKG_TRY(skg_json_number(&reference, &amplitude));
     if (!(amplitude >= 0 && amplitude <= 1))
-        return skg_json_fail(&reference, SKG_ERR_BREATHING,
-                             "is %g; the amplitude at which the meshes were made, 0 (end-expiration) to 1",
-                             amplitude);
+        return skg_json_fail(
+            &reference, SKG_ERR_BREATHING,
+            "is %g; give the amplitude at which the meshes were made, 0 (end-expiration) to 1", amplitude);
     body->reference_thoracic = amplitude * section->breath.thoracic;
     body->reference_diaphragmatic = amplitude * section->breath.diaphragmatic;
     if (tendon.value) SKG_TRY(skg_json_lengths(&tendon, "[0, 0, -15, \"mm\"]", 3, body->tendon_mm));
@@ -123,10 +124,11 @@ static skg_status read_curve(const skg_json_node *node, double lowest, double hi
         double *at = curve->points + 2 * i;
         SKG_TRY(skg_json_numbers(&point, "[2.5, 110]", 2, at));
         if (!(at[0] > last))
-            return skg_json_fail(&point, SKG_ERR_FORMAT, "is at %g s, the one before at %g s; times rise",
-                                 at[0], last);
+            return skg_json_fail(&point, SKG_ERR_FORMAT,
+                                 "is at %g s, the one before at %g s; times have to rise", at[0], last);
         if (!(at[1] >= lowest && at[1] <= highest))
-            return skg_json_fail(&point, SKG_ERR_FORMAT, "is %g; %g to %g", at[1], lowest, highest);
+            return skg_json_fail(&point, SKG_ERR_FORMAT, "is %g; the range is %g to %g", at[1], lowest,
+                                 highest);
         last = at[0];
     }
     curve->count = count;
@@ -160,7 +162,7 @@ static skg_status read_event(skg_setup_reader *reader, const skg_json_node *node
     struct skg_breathing_contrast *filling = &section->contrasts[section->contrast_count++];
     SKG_TRY(skg_json_text(&contrast, &label));
     SKG_TRY(skg_setup_find_part(reader, &contrast, label, &filling->part));
-    return read_curve(&share, 0, 1, &filling->share);
+    return read_curve(&share, 0, 1, &filling->fill_fraction);
 }
 
 static skg_status read_events(skg_setup_reader *reader, const skg_json_node *node) {
@@ -176,7 +178,7 @@ static skg_status read_events(skg_setup_reader *reader, const skg_json_node *nod
     }
     if (section->weight.count && section->body.hysteresis > 0)
         return skg_json_fail(node, SKG_ERR_UNSUPPORTED,
-                             "Weight changes the breath, so it needs Hysteresis 0");
+                             "has a Weight, which changes the breath; it needs Hysteresis 0");
     return SKG_OK;
 }
 
@@ -197,5 +199,5 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     if (organs.value) SKG_TRY(skg_setup_read_organs(reader, &organs));
     if (events.value) SKG_TRY(read_events(reader, &events));
     skg_status status = skg_breath_check(&section->breath);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }

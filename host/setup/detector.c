@@ -1,5 +1,6 @@
+/* The section Detector. */
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,13 +42,13 @@ static skg_status read_pixels(const skg_json_object *detector, skg_view *view) {
     for (int64_t k = 0; k < 2; k++) {
         skg_json_node element = skg_json_element(&node, k);
         int64_t *count = k == 0 ? &view->columns : &view->rows;
-        /* The view's own limits are told by skg_view_check. */
+        /* skg_view_check reports the limits of a view. */
         SKG_TRY(skg_json_integer(&element, INT32_MIN, INT32_MAX, count));
     }
     return SKG_OK;
 }
 
-/* Directions in which the column and the row number grow. */
+/* The directions in which the column and the row number grow. */
 static skg_status read_axes(const skg_json_object *detector, const skg_view *view, double *right,
                             double *up) {
     skg_json_node node;
@@ -62,9 +63,9 @@ static skg_status read_axes(const skg_json_object *detector, const skg_view *vie
         skg_add_scaled(view->source, -1, view->centre, towards_source);
     skg_cross(up, towards_source, right);
     double length = skg_length(right);
-    if (!(length > 1e-9 * skg_length(towards_source)))
+    if (!(length > 1e-9 * skg_length(towards_source))) /* sine of the angle between both; rounding is 1e-16 */
         return skg_json_fail(&node, SKG_ERR_SCENE,
-                             "points along the beam, so that right is not defined by it; give RightVector");
+                             "points along the beam, so it does not define where right is; give RightVector");
     skg_scale_vector(1 / length, right, right);
     return SKG_OK;
 }
@@ -89,7 +90,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(read_pixels(&detector, view));
     if (view->columns < 1 || view->rows < 1) { /* before Size is divided by them */
         skg_status status = skg_view_check(view);
-        return skg_json_fail(node, status, "%s", skg_last_error());
+        return skg_json_at(node, status);
     }
     SKG_TRY(read_spacing(&detector, view, spacing));
     SKG_TRY(read_axes(&detector, view, right, up));
@@ -99,6 +100,6 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     skg_scale_vector(spacing[0], right, view->column_step);
     skg_scale_vector(spacing[1], up, view->row_step);
     skg_status status = skg_view_check(view);
-    if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(node, status));
     return SKG_OK;
 }

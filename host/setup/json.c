@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Appends the path of a node: "Samples[3].Material"; returns the length used. */
+/* Writes the path of a node, "Samples[3].Material"; returns its length. */
 static size_t write_path(const skg_json_node *node, char *text, size_t size) {
     if (!node->up) return 0;
     size_t used = write_path(node->up, text, size);
@@ -35,11 +35,15 @@ skg_status skg_json_fail(const skg_json_node *node, skg_status status, const cha
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
     write_path(node, path, sizeof path);
-    if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT; /* the file is wrong, not its reader's caller */
+    if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT;
     int64_t line = skg_json_line(node);
     if (line > 0)
         return skg_fail(status, "%s: line %" PRId64 ": %s: %s", node->file->path, line, path, sentence);
     return skg_fail(status, "%s: %s%s%s", node->file->path, path, *path ? ": " : "", sentence);
+}
+
+skg_status skg_json_at(const skg_json_node *node, skg_status status) {
+    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
 }
 
 static const char *kind_of(const json_t *value) {
@@ -119,7 +123,7 @@ skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *k
             if (other != name && another && another->kind == SKG_KEY_READ &&
                 strcmp(canonical(another), canonical(key)) == 0)
                 return skg_json_fail(&member, SKG_ERR_FORMAT,
-                                     "is there twice (%s and %s are the same key); keep one", name, other);
+                                     "is given twice (%s and %s are the same key); keep one", name, other);
         }
     }
     return SKG_OK;
@@ -230,7 +234,7 @@ skg_status skg_json_unit_of_length(const skg_json_node *node, double *mm) {
     const char *name = NULL;
     SKG_TRY(skg_json_text(node, &name));
     skg_status status = skg_unit_of_length(name, mm);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 skg_status skg_json_lengths(const skg_json_node *node, const char *example, int64_t count, double *mm) {

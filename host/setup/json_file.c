@@ -1,10 +1,10 @@
-#include "setup/json.h"
+#include "setup/json_file.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The whole file, with a 0 behind it. */
+/* The whole file, with a 0 at its end. */
 static skg_status read_text(const char *path, char **text, size_t *length) {
     FILE *stream = fopen(path, "rb");
     if (!stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
@@ -32,7 +32,7 @@ skg_status skg_json_open(const char *path, skg_json_file *file) {
     *file = (skg_json_file){.path = path};
     size_t length = 0;
     SKG_TRY(read_text(path, &file->text, &length));
-    /* The byte order mark that some editors write is no JSON. */
+    /* Some editors write a byte order mark, which JSON does not allow. */
     if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
     json_error_t error;
     file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &error);
@@ -57,7 +57,7 @@ skg_json_node skg_json_root(const skg_json_file *file) {
     return (skg_json_node){.file = file, .value = file->root};
 }
 
-/* Whether a setting put this value, or one around it, in. */
+/* Whether this value, or one around it, comes from a setting. */
 static int was_set(const skg_json_node *node) {
     size_t count = json_array_size(node->file->set);
     for (; node; node = node->up)
@@ -66,7 +66,7 @@ static int was_set(const skg_json_node *node) {
     return 0;
 }
 
-/* The text is known to be JSON, so that skipping needs no checks beyond its end. */
+/* The text was parsed without an error, so skipping has to watch for its end only. */
 static const char *skip_space(const char *at) {
     return at + strspn(at, " \t\r\n");
 }
@@ -95,7 +95,7 @@ static const char *skip_value(const char *at) {
     return at;
 }
 
-/* Whether the string literal at `at` is this key; literals with escapes are parsed. */
+/* Whether the string literal at `at` is this key. It is parsed, as it may have escapes. */
 static int is_key(const char *at, const char *key) {
     const char *end = skip_string(at);
     json_t *parsed = json_loadb(at, (size_t)(end - at), JSON_DECODE_ANY, NULL);
@@ -104,8 +104,8 @@ static int is_key(const char *at, const char *key) {
     return same;
 }
 
-/* From the first character of a container to the child that the node names: its key, or the element itself.
- * NULL where it is not there. */
+/* The child of a container that a node names: its key, or the element itself. at: the container's first character.
+ * NULL: it is not there. */
 static const char *find_child(const char *at, const skg_json_node *node, const char **value) {
     if (*at != '{' && *at != '[') return NULL;
     int object = *at == '{';
@@ -124,7 +124,7 @@ static const char *find_child(const char *at, const skg_json_node *node, const c
     return NULL;
 }
 
-/* First character of a node (its key where it has one); *value: of its value. */
+/* The first character of a node (of its key, where it has one). *value: that of its value. */
 static const char *find_node(const skg_json_node *node, const char **value) {
     if (!node->up) return *value = skip_space(node->file->text);
     const char *around = NULL;

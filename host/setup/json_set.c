@@ -1,11 +1,12 @@
-#include "core/names.h"
+#include "setup/json_set.h"
+
 #include "setup/json.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The key of an object that a step of a path means; the step itself where it is new. */
+/* The key of an object that is the same as a step of a path; the step itself where there is none. */
 static const char *find_key(json_t *object, const char *step) {
     const char *key = NULL;
     json_t *value = NULL;
@@ -13,14 +14,14 @@ static const char *find_key(json_t *object, const char *step) {
     return step;
 }
 
-/* Whether a path goes on with this label, which may hold dots itself. */
+/* Whether a path continues with this label, which may contain dots. */
 static int starts_with_label(const char *path, const char *label) {
     size_t length = strlen(label);
     return length > 0 && strncmp(path, label, length) == 0 && (path[length] == '.' || path[length] == '\0');
 }
 
-/* The element of an array that the path goes on with: by number, or by the longest Label that fits. -1: none.
- * *length: characters of the path used. */
+/* The element of an array with which a path continues: by the longest Label that fits, or by number. -1: none.
+ * *length: number of characters of the path that name it. */
 static int64_t find_element(json_t *array, const char *path, size_t *length) {
     int64_t count = (int64_t)json_array_size(array), found = -1;
     *length = 0;
@@ -45,7 +46,7 @@ static skg_status no_element(const char *setting, json_t *array, const char *ste
                     setting, step, (int64_t)json_array_size(array) - 1);
 }
 
-/* Puts the value at the end of the path; a missing object on the way is made. path is written to. */
+/* Puts a value at the end of a path, and makes objects that are missing on the way. path is overwritten. */
 static skg_status put(const char *setting, json_t *at, char *path, json_t *value) {
     for (;;) {
         size_t length = strcspn(path, ".");
@@ -70,7 +71,8 @@ static skg_status put(const char *setting, json_t *at, char *path, json_t *value
         } else {
             return skg_fail(
                 SKG_ERR_ARGUMENT,
-                "--set %s: there is nothing inside the value before \"%s\"; it is neither an object nor an array",
+                "--set %s: the value before \"%s\" is neither an object nor an array; there is nothing inside it "
+                "to set",
                 setting, path);
         }
         path += length + 1;

@@ -1,13 +1,13 @@
 /* The key Material of a sample, and of everything else that has one. */
 #include "core/context.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <string.h>
 
 static const char *const example = "[\"mu\", 0.2], [\"Compound\", \"H2O\"] or a name such as \"Water\"";
 
-/* A number, or a string that holds one: gVXR's exporter writes the latter. */
+/* A number, or a string with a number, as gVXR's exporter writes it. */
 static skg_status read_mu(const skg_json_node *node, double *per_cm) {
     if (!json_is_string(node->value)) return skg_json_number(node, per_cm);
     const char *text = json_string_value(node->value);
@@ -16,10 +16,10 @@ static skg_status read_mu(const skg_json_node *node, double *per_cm) {
     *per_cm = usable ? json_number_value(number) : 0;
     json_decref(number);
     if (usable) return SKG_OK;
-    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no number; give 1/cm", text);
+    return skg_json_fail(node, SKG_ERR_FORMAT, "\"%s\" is no number; give mu in 1/cm", text);
 }
 
-/* 26, "Fe", "Iron". */
+/* 26, "Fe" or "Iron". */
 static skg_status read_z(const skg_json_node *node, int32_t *z) {
     const char *text = NULL;
     if (json_is_integer(node->value)) {
@@ -30,7 +30,7 @@ static skg_status read_z(const skg_json_node *node, int32_t *z) {
     }
     SKG_TRY(skg_json_text(node, &text));
     skg_status status = skg_element_number(text, z);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 static skg_status read_named(const skg_json_node *node, const char *before, skg_material **material) {
@@ -42,7 +42,7 @@ static skg_status read_named(const skg_json_node *node, const char *before, skg_
     strcpy(text, before);
     strcat(text, name);
     skg_status status = skg_material_create_named(text, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 static skg_status read_element(const skg_json_node *node, skg_material **material) {
@@ -71,7 +71,7 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
         SKG_TRY(skg_json_number(&fraction, &fractions[i / 2]));
     }
     skg_status status = skg_material_create_mixture(label, count / 2, z, fractions, 0, material);
-    if (status != SKG_OK) return skg_json_fail(node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(node, status));
     SKG_TRY(skg_material_note_get(*material, &note));
     if (*note) {
         char place[256];
@@ -81,7 +81,7 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
     return SKG_OK;
 }
 
-/* A formula by atoms; a name of the tables where it is none. */
+/* A chemical formula, or a name of the material tables. */
 static skg_status read_compound(const skg_json_node *node, skg_material **material) {
     const char *formula = NULL;
     SKG_TRY(skg_json_text(node, &formula));
@@ -93,7 +93,7 @@ static skg_status read_hounsfield(const skg_json_node *node, skg_material **mate
     double hu = 0;
     SKG_TRY(skg_json_number(node, &hu));
     skg_status status = skg_material_create_hounsfield(hu, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 /* ["Table", "mu.txt", "keV"] */
@@ -106,10 +106,10 @@ static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
     skg_status status = skg_material_load_table(resolved, unit, material);
     skg_free(&resolved);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(path_node, status, "%s", skg_last_error());
+    return skg_json_at(path_node, status);
 }
 
-/* Its density is not set yet. */
+/* The material without the density that the sample gives. */
 static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node, const char *label,
                             skg_material **material) {
     enum { MU, ELEMENT, MIXTURE, COMPOUND, HU, TABLE, KINDS };
@@ -134,7 +134,7 @@ static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node,
     if (kind == TABLE) return read_table(reader, &value, &unit, material);
     SKG_TRY(read_mu(&value, &per_cm));
     skg_status status = skg_material_create_mu(label, per_cm, material);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(&value, status, "%s", skg_last_error());
+    return skg_json_at(&value, status);
 }
 
 skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,
@@ -149,8 +149,8 @@ skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(read_kind(reader, node, label, &made));
     SKG_TRY_CLEANUP(skg_material_element_count(made, &elements));
     SKG_TRY_CLEANUP(skg_material_density_get(made, &known));
-    if (elements == 0 ||
-        (known > 0 && !density->value)) { /* given by its attenuation, or nothing to change */
+    /* A material without elements is given by its attenuation, which no density changes. */
+    if (elements == 0 || (known > 0 && !density->value)) {
         *material = made;
         return SKG_OK;
     }

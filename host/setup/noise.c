@@ -1,6 +1,6 @@
 /* What the detector does to an image: LSF, PSF and Noise. */
 #include "core/units.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 
@@ -12,12 +12,11 @@ static const skg_json_key noise_keys[] = {
 static const char lines_example[] = "[0.1, 0.8, 0.1]";
 static const char rows_example[] = "[[0, 0.1, 0], [0.1, 0.6, 0.1], [0, 0.1, 0]]";
 
-/* An odd number of samples: others have no middle. */
+/* The number of samples is odd, so that there is a middle one. */
 static skg_status check_odd(const skg_json_node *node, int64_t count) {
     if (count % 2 == 1) return SKG_OK;
     return skg_json_fail(node, SKG_ERR_FORMAT,
-                         "has %" PRId64 " samples; an odd number is needed, whose middle one stays in place",
-                         count);
+                         "has %" PRId64 " samples; give an odd number, so that there is a middle one", count);
 }
 
 static int is_list_of_lists(const skg_json_node *node) {
@@ -81,7 +80,7 @@ skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *
     return points.value ? read_points(reader->setup, &points) : SKG_OK;
 }
 
-/* [2.5, "keV"]; absent: 0. */
+/* An energy with its unit; 0 where it is absent. */
 static skg_status read_energy(const skg_json_object *noise, const char *name, double *kev) {
     skg_json_node node = skg_json_member(noise, name);
     const char *unit = NULL;
@@ -95,15 +94,15 @@ static skg_status read_energy(const skg_json_object *noise, const char *name, do
     skg_json_node number = skg_json_element(&node, 0), unit_node = skg_json_element(&node, 1);
     SKG_TRY(skg_json_number(&number, kev));
     if (!(*kev >= 0))
-        return skg_json_fail(&number, SKG_ERR_FORMAT, "is %g; an energy of 0 or more is needed", *kev);
+        return skg_json_fail(&number, SKG_ERR_FORMAT, "is %g; give an energy of 0 or more", *kev);
     SKG_TRY(skg_json_text(&unit_node, &unit));
     skg_status status = skg_unit_of_energy(unit, &per_unit);
-    if (status != SKG_OK) return skg_json_fail(&unit_node, status, "%s", skg_last_error());
+    SKG_TRY(skg_json_at(&unit_node, status));
     *kev *= per_unit;
     return SKG_OK;
 }
 
-/* true, false, or an object. */
+/* Noise is true, false, or an object. */
 skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node) {
     skg_setup_noise *noise = &reader->setup->noise;
     skg_json_object object;

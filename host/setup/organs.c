@@ -1,11 +1,11 @@
-/* The key Organs of a scene file's section Breathing. */
+#include "setup/organs.h"
+
+#include "core/maths.h"
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double degree = 3.14159265358979323846 / 180;
 
 static const skg_json_key organ_keys[] = {
     {"As", NULL, SKG_KEY_READ},         {"Kind", NULL, SKG_KEY_READ},  {"Tissue", NULL, SKG_KEY_READ},
@@ -19,21 +19,15 @@ static const skg_json_key link_keys[] = {
 
 static const char *const link_example = "[{\"To\": \"rib\", \"Distance\": [15, \"mm\"]}]";
 
-skg_status skg_setup_find_part(const skg_setup_reader *reader, const skg_json_node *node, const char *label,
-                               int64_t *part) {
-    skg_status status = skg_scene_find(reader->setup->scene, label, part);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
-}
-
-/* Angles in degrees, at most half a turn. */
+/* An angle of at most half a turn, in degrees. */
 static skg_status read_angle(const skg_json_object *object, const char *name, double *radians) {
     skg_json_node node = skg_json_member(object, name);
     double degrees = 0;
     if (!node.value) return SKG_OK;
     SKG_TRY(skg_json_number(&node, &degrees));
     if (!(fabs(degrees) <= 180))
-        return skg_json_fail(&node, SKG_ERR_BREATHING, "is %g degrees; -180 to 180", degrees);
-    *radians = degrees * degree;
+        return skg_json_fail(&node, SKG_ERR_BREATHING, "is %g degrees; the range is -180 to 180", degrees);
+    *radians = degrees * (SKG_PI / 180);
     return SKG_OK;
 }
 
@@ -45,9 +39,10 @@ static skg_status read_rotation(const skg_json_object *object, skg_organ *organ)
     SKG_TRY(read_angle(object, "Angle", &angle));
     if (axis.value) SKG_TRY(skg_json_direction(&axis, direction));
     if ((axis.value != NULL) != (skg_json_member(object, "Angle").value != NULL))
-        return skg_json_fail(object->node, SKG_ERR_FORMAT,
-                             "has one of Axis and Angle; give both (\"Axis\": [0, 0, 1], \"Angle\": 10), or "
-                             "Gamma and Lambda");
+        return skg_json_fail(
+            object->node, SKG_ERR_FORMAT,
+            "has only one of Axis and Angle; give both (\"Axis\": [0, 0, 1], \"Angle\": 10), or "
+            "Gamma and Lambda");
     skg_scale_vector(angle, direction, organ->turn_rad);
     if (centre.value) SKG_TRY(skg_json_lengths(&centre, "[0, 20, 100, \"mm\"]", 3, organ->centre_mm));
     return SKG_OK;
@@ -66,10 +61,11 @@ static skg_status read_link(const skg_json_node *node, skg_organ_link *link, cha
     link->rigid_mm = link->distance_mm;
     if (rigid.value) SKG_TRY(skg_json_lengths(&rigid, "[3, \"mm\"]", 1, &link->rigid_mm));
     if (!(link->distance_mm > 0 && link->distance_mm <= 1000))
-        return skg_json_fail(&distance, SKG_ERR_BREATHING, "is %g mm; above 0 to 1000 mm", link->distance_mm);
-    if (!(link->rigid_mm >= 0 && link->rigid_mm <= link->distance_mm))
-        return skg_json_fail(&rigid, SKG_ERR_BREATHING, "is %g mm; 0 to Distance, %g mm", link->rigid_mm,
+        return skg_json_fail(&distance, SKG_ERR_BREATHING, "is %g mm; the range is above 0 to 1000 mm",
                              link->distance_mm);
+    if (!(link->rigid_mm >= 0 && link->rigid_mm <= link->distance_mm))
+        return skg_json_fail(&rigid, SKG_ERR_BREATHING, "is %g mm; the range is 0 to Distance, %g mm",
+                             link->rigid_mm, link->distance_mm);
     SKG_TRY(skg_copy_text(label, to));
     link->to = *to;
     return SKG_OK;

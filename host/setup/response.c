@@ -1,7 +1,7 @@
 /* What the detector makes of a photon: Energy response and Scintillator. */
 #include "core/names.h"
 #include "core/units.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 
@@ -9,7 +9,7 @@ static const skg_json_key response_keys[] = {
     {"File", NULL, SKG_KEY_READ},
     {"LUT", NULL, SKG_KEY_READ},
     {"Unit", NULL, SKG_KEY_READ},
-    {"Energy", "Unit", SKG_KEY_READ}, /* so in files in use */
+    {"Energy", "Unit", SKG_KEY_READ}, /* files in use have this */
 };
 
 static const skg_json_key scintillator_keys[] = {
@@ -24,7 +24,7 @@ static skg_status read_file(skg_setup_reader *reader, const skg_json_node *node,
     SKG_TRY(skg_setup_resolve(reader, path, &resolved));
     skg_status status = skg_response_load(resolved, unit, &reader->setup->response);
     skg_free(&resolved);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 /* [[10, 10], [20, 19.98], ...] */
@@ -43,7 +43,7 @@ static skg_status read_rows(skg_setup_reader *reader, const skg_json_node *node,
         recorded[i] = pair[1] * kev;
     }
     status = skg_response_create_table(count, energies, recorded, NULL, &reader->setup->response);
-    if (status != SKG_OK) status = skg_json_fail(node, status, "%s", skg_last_error());
+    status = skg_json_at(node, status);
 cleanup:
     skg_free(&energies);
     skg_free(&recorded);
@@ -60,7 +60,7 @@ static skg_status read_response(skg_setup_reader *reader, const skg_json_node *n
     if (unit_node.value) {
         SKG_TRY(skg_json_text(&unit_node, &unit));
         skg_status status = skg_unit_of_energy(unit, &kev);
-        if (status != SKG_OK) return skg_json_fail(&unit_node, status, "%s", skg_last_error());
+        SKG_TRY(skg_json_at(&unit_node, status));
     }
     skg_json_node file = skg_json_member(&response, "File"), rows = skg_json_member(&response, "LUT");
     if (file.value && rows.value)
@@ -93,7 +93,7 @@ static skg_status make_scintillator(skg_setup_reader *reader, const skg_json_obj
         status =
             skg_response_create_scintillator(material, thickness * mm, packing, &reader->setup->response);
     }
-    return status == SKG_OK ? SKG_OK : skg_json_fail(object->node, status, "%s", skg_last_error());
+    return skg_json_at(object->node, status);
 }
 
 static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_node *node) {

@@ -1,5 +1,6 @@
+/* The section Samples. */
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -111,7 +112,7 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     SKG_TRY_CLEANUP(skg_setup_read_shape(reader, sample, flip, cache, &part.mesh, own));
     SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
     status = skg_scene_add(reader->setup->scene, &part, id);
-    if (status != SKG_OK) status = skg_json_fail(sample->node, status, "%s", skg_last_error());
+    status = skg_json_at(sample->node, status);
 cleanup:
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
@@ -153,7 +154,7 @@ static skg_status read_parent(skg_scene *scene, const skg_json_node *samples, co
         SKG_TRY(skg_json_text(&parent, &label));
         skg_status status = skg_scene_find(scene, label, &inside);
         if (status == SKG_OK) status = skg_scene_set_inside(scene, part->part, inside);
-        return status == SKG_OK ? SKG_OK : skg_json_fail(&parent, status, "%s", skg_last_error());
+        return skg_json_at(&parent, status);
     }
     if (parent.value || part->outer || list->outers == 0) return SKG_OK;
     if (list->outers > 1)
@@ -162,7 +163,7 @@ static skg_status read_parent(skg_scene *scene, const skg_json_node *samples, co
                              "label of the sample around it, or null",
                              list->outers);
     skg_status status = skg_scene_set_inside(scene, part->part, list->outer_part);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(&node, status, "%s", skg_last_error());
+    return skg_json_at(&node, status);
 }
 
 /* Widens bounds (min x, y, z, max x, y, z) by a part's vertices in the world. */

@@ -1,13 +1,14 @@
+/* The section Scan. */
+#include "core/maths.h"
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Of a full turn every 22.5 degrees: flat things along the axes are seen edge-on. */
+/* Projections for which a plan is verified: one every 22.5 degrees of a full turn, so that flat parts along the axes
+ * are seen edge-on. */
 enum { SAMPLED_VIEWS = 16 };
-
-static const double RADIANS = 3.14159265358979323846 / 180;
 
 static const skg_json_key scan_keys[] = {
     {"NumberOfProjections", NULL, SKG_KEY_READ},
@@ -42,7 +43,7 @@ static skg_status read_count(const skg_json_object *object, const char *name, in
     return node.value ? skg_json_integer(&node, 1, INT32_MAX, count) : SKG_OK;
 }
 
-/* The centre may lack its unit: files in use have [0, 0, 0]. */
+/* The centre may have no unit, as files in use have [0, 0, 0]. */
 static skg_status read_rotation(const skg_json_object *object, const skg_view *view, skg_scan_section *scan) {
     static const char *const example = "[0, 0, 0, \"mm\"]";
     skg_json_node centre = skg_json_member(object, "CentreOfRotation");
@@ -56,10 +57,10 @@ static skg_status read_rotation(const skg_json_object *object, const skg_view *v
     return SKG_OK;
 }
 
-/* Samples turned by an angle look the same as source and detector turned back by it. */
+/* Turns source and detector back by an angle, which looks the same as samples turned by it. */
 static void turn_view(skg_view *view, const skg_scan_section *scan, double degrees) {
     double turn[16];
-    skg_pose_rotation(-degrees * RADIANS, scan->axis, turn);
+    skg_pose_rotation(-degrees * (SKG_PI / 180), scan->axis, turn);
     double *points[] = {view->source, view->centre}, *steps[] = {view->column_step, view->row_step};
     for (int k = 0; k < 2; k++) {
         int is_point = k == 1 || view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY;
@@ -70,7 +71,7 @@ static void turn_view(skg_view *view, const skg_scan_section *scan, double degre
     }
 }
 
-/* A sample of the projections, evenly over all that they turn by: what a plan has to hold for. */
+/* Lists projections evenly over the whole rotation, for which a plan has to hold. */
 static skg_status list_views(skg_scan_section *scan, const skg_view *first) {
     const double turns = scan->has_step && scan->projections > 0
                              ? scan->step * (double)(scan->projections - 1)

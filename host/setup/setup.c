@@ -1,6 +1,9 @@
-#include "setup/setup.h"
+/* A set-up as a handle, and the keys at the top of its file. */
 #include "core/names.h"
+#include "setup/json_set.h"
+#include "setup/sections.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -22,21 +25,14 @@ static const skg_json_key top_keys[] = {
     {"Clip", NULL, SKG_KEY_READ},
 };
 
-skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved) {
-    const char *folder = *path == '/' ? "" : reader->folder;
-    SKG_TRY(skg_alloc((int64_t)(strlen(folder) + strlen(path)) + 1, 1, "path", resolved));
-    strcpy(*resolved, folder);
-    strcat(*resolved, path);
-    return SKG_OK;
-}
-
-/* [1, 0, 0]: anything of version 1 is read. */
+/* The version is [1, 0, 0]. Any of version 1 is read. */
 static skg_status read_version(const skg_json_object *top) {
     skg_json_node node = skg_json_member(top, "File format version");
     double version[3] = {1, 0, 0};
     if (node.value) SKG_TRY(skg_json_numbers(&node, "[1, 0, 0]", 3, version));
     if (version[0] != 1)
-        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "version %g is not known; version 1 is", version[0]);
+        return skg_json_fail(&node, SKG_ERR_UNSUPPORTED, "is version %g; only version 1 is known",
+                             version[0]);
     return SKG_OK;
 }
 
@@ -52,8 +48,8 @@ static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
-/* What becomes of open meshes, and of what leaves its parent. */
-static skg_status read_mends(skg_setup *setup, const skg_json_object *top) {
+/* Repair of leaky meshes, and whether parts are clipped at their parents. */
+static skg_status read_repair(skg_setup *setup, const skg_json_object *top) {
     static const char *const names[] = {
         [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
     const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
@@ -79,7 +75,7 @@ static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
-/* "Air", ["Compound", ...] or "Vacuum". */
+/* A material, or "Vacuum". */
 static skg_status read_world(skg_setup_reader *reader, const skg_json_object *top) {
     skg_json_node node = skg_json_member(top, "World"), no_density = {0};
     if (!node.value) return SKG_OK;
@@ -97,7 +93,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
-    SKG_TRY(read_mends(reader->setup, &top));
+    SKG_TRY(read_repair(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
@@ -116,10 +112,11 @@ static skg_status read_all(skg_setup_reader *reader) {
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
                           skg_setup **setup) {
-    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: no place for the set-up");
+    SKG_NEEDS(setup);
     *setup = NULL;
-    if (!path || count < 0 || (count > 0 && !settings))
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: no path, or no settings where there should be");
+    SKG_NEEDS(path);
+    if (count < 0) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: %" PRId64 " settings", count);
+    if (count > 0) SKG_NEEDS(settings);
     skg_setup_reader reader = {.context = context};
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader.setup, "set-up", &reader.setup));
@@ -152,25 +149,26 @@ void skg_setup_release(skg_setup **setup) {
 }
 
 skg_status skg_setup_scene_get(const skg_setup *setup, skg_scene **scene) {
-    if (!setup || !scene) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_scene_get: no set-up or no result");
+    SKG_NEEDS(setup);
+    SKG_NEEDS(scene);
     *scene = setup->scene;
     return SKG_OK;
 }
 
 skg_status skg_setup_spectrum_get(const skg_setup *setup, skg_spectrum **spectrum) {
-    if (!setup || !spectrum)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_spectrum_get: no set-up or no result");
+    SKG_NEEDS(setup);
+    SKG_NEEDS(spectrum);
     *spectrum = setup->spectrum;
     return SKG_OK;
 }
 
 skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view) {
-    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_view_get: no set-up");
+    SKG_NEEDS(setup);
     return skg_struct_write(&setup->view, sizeof setup->view, "skg_view", view);
 }
 
 skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options) {
-    if (!setup) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_options_get: no set-up");
+    SKG_NEEDS(setup);
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;

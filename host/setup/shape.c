@@ -1,6 +1,6 @@
 #include "core/context.h"
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 enum { PATH, CUBE, CUBOID, CYLINDER, SPHERE, STEP_WEDGE, SHAPES };
 static const char *const shapes[] = {"Path", "Cube", "Cuboid", "Cylinder", "Sphere", "StepWedge"};
 
-/* The makers' lengths come last in their arrays, before the unit; a number of sectors comes first. */
+/* In the arrays of generated shapes a number of sectors comes first, then lengths, and the unit last. */
 static const struct {
     int64_t sectors, lengths;
     const char *example;
@@ -28,7 +28,7 @@ void skg_mesh_cache_clear(skg_mesh_cache *cache) {
     cache->count = 0;
 }
 
-/* Takes path over; the mesh gets one more owner. */
+/* Takes ownership of the path; the mesh gets one more owner. */
 static skg_status remember(skg_mesh_cache *cache, char **path, double unit_mm, int32_t flip, skg_mesh *mesh) {
     SKG_TRY(skg_realloc(cache->count + 1, sizeof *cache->loaded, "meshes", &cache->loaded));
     SKG_TRY(skg_mesh_retain(mesh));
@@ -38,8 +38,8 @@ static skg_status remember(skg_mesh_cache *cache, char **path, double unit_mm, i
     return SKG_OK;
 }
 
-/* A closed mesh is outward whatever its file says; an open one is what it is, and may be turned: then *mesh
- * becomes one with every triangle reversed. */
+/* Replaces a leaky mesh by one with every triangle reversed. The normals of a closed mesh point outward whatever its
+ * file says, so nothing changes. */
 static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json_node *node,
                                   skg_mesh **mesh) {
     skg_mesh_health health;
@@ -49,7 +49,7 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
         char place[256];
         skg_json_place(node, place, sizeof place);
         skg_log(reader->context, SKG_LOG_NOTE,
-                "%s: FlipNormals has no effect on a closed mesh, which is outward anyway", place);
+                "%s: FlipNormals has no effect on a closed mesh, whose normals point outward anyway", place);
         return SKG_OK;
     }
     const char *name = NULL;
@@ -97,7 +97,7 @@ static skg_status load(const skg_setup_reader *reader, const skg_json_object *sa
     }
     status = skg_mesh_load(reader->context, path, unit_mm, mesh);
     if (status != SKG_OK) {
-        status = skg_json_fail(node, status, "%s", skg_last_error());
+        status = skg_json_at(node, status);
         goto cleanup;
     }
     if (flip) SKG_TRY_CLEANUP(turn_inside_out(reader, node, mesh));
@@ -131,15 +131,15 @@ static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
     }
     if (length[2] != length[3])
         return skg_json_fail(node, SKG_ERR_UNSUPPORTED,
-                             "a first step of another height than the others is not made yet; give the same "
+                             "has a first step of another height, which is not supported yet; give the same "
                              "FirstStepHeight and OtherStepHeight");
     skg_status status =
         skg_mesh_create_step_wedge(length[0], length[1], (double)steps * length[2], steps, mesh);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
-/* The schema's cylinders stand along y, the maker's along z. */
-static const double Y_FROM_Z[16] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
+/* The axis of the schema's cylinders is y, that of generated ones z. */
+static const double y_from_z[16] = {1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
 
 static skg_status make(const skg_json_node *node, int shape, skg_mesh **mesh, double *own) {
     if (shape == STEP_WEDGE) return make_step_wedge(node, mesh);
@@ -161,12 +161,12 @@ static skg_status make(const skg_json_node *node, int shape, skg_mesh **mesh, do
         SKG_TRY(skg_json_number(&element, &length[k]));
         length[k] *= mm;
     }
-    if (shape == CYLINDER) memcpy(own, Y_FROM_Z, sizeof Y_FROM_Z);
+    if (shape == CYLINDER) memcpy(own, y_from_z, sizeof y_from_z);
     skg_status status = shape == CUBE     ? skg_mesh_create_cube(length[0], mesh)
                         : shape == CUBOID ? skg_mesh_create_cuboid(length[0], length[1], length[2], mesh)
                         : shape == SPHERE ? skg_mesh_create_sphere(length[0], sectors, mesh)
                                           : skg_mesh_create_cylinder(length[1], length[0], sectors, mesh);
-    return status == SKG_OK ? SKG_OK : skg_json_fail(node, status, "%s", skg_last_error());
+    return skg_json_at(node, status);
 }
 
 skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,

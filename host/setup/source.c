@@ -1,4 +1,5 @@
-#include "setup/setup.h"
+/* The section Source. */
+#include "setup/sections.h"
 
 static const skg_json_key source_keys[] = {
     {"Position", NULL, SKG_KEY_READ}, {"Direction", NULL, SKG_KEY_READ},
@@ -20,7 +21,7 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     if (direction.value) {
         if (!parallel)
             return skg_json_fail(&direction, SKG_ERR_FORMAT,
-                                 "only a parallel beam has a direction; give a Position");
+                                 "only a parallel beam has a Direction; give a Position");
         if (position.value)
             return skg_json_fail(&direction, SKG_ERR_FORMAT,
                                  "give either Position or Direction (a beam from infinity), not both");

@@ -1,9 +1,9 @@
 /* Shape of a source: a point, a parallel beam, or a focal spot. */
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <math.h>
 
-/* Names of spots, in the order of SKG_SPOT_LINE and so on, and how many sizes each has. */
+/* Names of focal spots in the order of SKG_SPOT_LINE and so on, and the number of sizes of each. */
 static const char *const spot_names[] = {"Line",   "Rectangle", "Cube",     "Disc",
                                          "Sphere", "Gaussian",  "FocalSpot"};
 static const char *const spot_examples[] = {
@@ -13,7 +13,7 @@ static const char *const spot_examples[] = {
 static const int spot_sizes[] = {1, 2, 1, 1, 1, 2, 1};
 enum { FOCAL_SPOT = 6 };
 
-/* gVXR's spot is a cube about the position, sampled at the middles of n x n x n equal cubes. */
+/* gVXR's focal spot is a cube about the position, sampled at the centres of n x n x n equal cubes. */
 static skg_status read_focal_spot(const skg_json_node *node, skg_spot *spot) {
     const skg_json_node pieces = skg_json_element(node, 3);
     spot->shape = SKG_SPOT_CUBE;
@@ -37,7 +37,8 @@ static skg_status read_spot(const skg_json_node *node, skg_spot *spot) {
         SKG_TRY(skg_json_number(&size, &spot->extent[k]));
         spot->extent[k] *= mm;
         if (!(spot->extent[k] >= 0) || !isfinite(spot->extent[k]))
-            return skg_json_fail(&size, SKG_ERR_FORMAT, "is no size of a focal spot");
+            return skg_json_fail(&size, SKG_ERR_FORMAT,
+                                 "is no size of a focal spot; give a length of 0 or more");
     }
     spot->shape = (int32_t)choice + SKG_SPOT_LINE;
     return choice == FOCAL_SPOT ? read_focal_spot(node, spot) : SKG_OK;
@@ -54,7 +55,7 @@ static skg_status read_sampling(const skg_json_object *source, skg_spot *spot) {
     SKG_TRY(skg_json_number(&tolerance, &spot->tolerance));
     if (!(spot->tolerance > 0 && spot->tolerance < 1))
         return skg_json_fail(&tolerance, SKG_ERR_FORMAT,
-                             "is %g; give a fraction of the open beam above 0, below 1", spot->tolerance);
+                             "is %g; give a fraction of the flat field above 0, below 1", spot->tolerance);
     return SKG_OK;
 }
 

@@ -1,9 +1,9 @@
+/* The key Transform of a sample. */
+#include "core/maths.h"
 #include "core/vector.h"
-#include "setup/setup.h"
+#include "setup/sections.h"
 
 #include <inttypes.h>
-
-static const double RADIANS = 3.14159265358979323846 / 180;
 
 enum { ROTATION, TRANSLATION, SCALING, MATRIX };
 static const char *const kinds[] = {"Rotation", "Translation", "Scaling", "Matrix"};
@@ -11,7 +11,7 @@ static const char *const forms[] = {"[\"Rotation\", degrees, x, y, z]", "[\"Tran
                                     "[\"Scaling\", x, y, z]", "[\"Matrix\", [16 numbers, column by column]]"};
 static const int64_t lengths[] = {5, 5, 4, 2};
 
-/* Elements first, first + 1, ... of an entry. */
+/* `count` numbers of an entry from element `first` on. */
 static skg_status read_from(const skg_json_node *entry, int64_t first, int64_t count, double *numbers) {
     for (int64_t i = 0; i < count; i++) {
         skg_json_node element = skg_json_element(entry, first + i);
@@ -29,7 +29,7 @@ static skg_status read_rotation(const skg_json_node *entry, double *matrix) {
         return skg_json_fail(entry, SKG_ERR_SCENE, "the axis of a rotation is (0, 0, 0); give %s",
                              forms[ROTATION]);
     for (int k = 0; k < 3; k++) axis[k] /= length;
-    skg_pose_rotation(degrees * RADIANS, axis, matrix);
+    skg_pose_rotation(degrees * (SKG_PI / 180), axis, matrix);
     return SKG_OK;
 }
 

@@ -11,8 +11,8 @@
 /* The solid angle of one mm2 at 1 m, steradian. */
 static const double MM2_AT_1M = 1e-6;
 
-/* The mean depth in g/cm2 at which photons are made. u: overvoltage, the tube voltage over the energy of the photon or
- * the edge. */
+/* The mean depth in g/cm2 at which photons are made. u: overvoltage, the tube voltage over the energy of the
+ * photon or the edge. */
 static double mean_depth(const skg_anode *anode, double u) {
     double z = anode->z, kv = anode->kvp, j = 0.0135 * z; /* mean ionisation energy, keV */
     double lz = log(z), lu = log(u);
@@ -24,8 +24,8 @@ static double mean_depth(const skg_anode *anode, double u) {
            (0.70256 - 1.09865 * eta + 1.0046 * eta * eta + lu);
 }
 
-/* The share of the photons made in the target that leave it: (1 - exp(-chi)) / chi. The electrons arrive at 90 degrees
- * less the angle of the anode, and the photons leave at that angle. */
+/* The share of the photons made in the target that leave it: (1 - exp(-chi)) / chi. The electrons arrive at 90
+ * degrees less the angle of the anode, and the photons leave at that angle. */
 static double escape(const skg_anode *anode, double energy_kev, double u) {
     double sections[SKG_PROCESSES], angle = anode->angle_deg * (SKG_PI / 180);
     skg_element_sections(anode->z, energy_kev, sections);

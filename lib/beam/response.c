@@ -15,7 +15,8 @@ struct skg_response {
     double mm;              /* thickness at the full density of the material */
 };
 
-/* A recorded energy may exceed that of the photon by this share, because published tables are rounded to three digits. */
+/* A recorded energy may exceed that of the photon by this share, because published tables are rounded to three
+ * digits. */
 static const double ROUNDING = 0.01;
 
 static skg_status check_table(int64_t count, const double *energies, const double *recorded,

@@ -50,9 +50,9 @@ static skg_status check_tube(const skg_tube *tube) {
 
 /* Factors on Ebel's continuum and lines. u: tube voltage over K edge.
  *
- * They are fitted to the air kerma that SpekPy 2.5 gives for tungsten at 12 degrees behind 2.5 mm of aluminium, and to
- * the share of the K lines in the photons there: 1.6, 5.7, 8.7 and 11.2 % at 80, 100, 120 and 150 kV. As published,
- * the model is 45 to 60 % too high, and its lines are 4 to 5 times too weak. */
+ * They are fitted to the air kerma that SpekPy 2.5 gives for tungsten at 12 degrees behind 2.5 mm of aluminium,
+ * and to the share of the K lines in the photons there: 1.6, 5.7, 8.7 and 11.2 % at 80, 100, 120 and 150 kV. As
+ * published, the model is 45 to 60 % too high, and its lines are 4 to 5 times too weak. */
 static double continuum_factor(double kvp) {
     return 0.688 * exp(-0.00133 * (kvp - 60));
 }

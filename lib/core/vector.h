@@ -7,10 +7,18 @@
 #define SKG_VECTOR_H
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 static inline double skg_dot(const double *a, const double *b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The same for vectors of any length, added up in rising order. */
+static inline double skg_dot_long(int64_t count, const double *a, const double *b) {
+    double sum = 0;
+    for (int64_t i = 0; i < count; i++) sum += a[i] * b[i];
+    return sum;
 }
 
 static inline void skg_cross(const double *a, const double *b, double *product) {

@@ -1,11 +1,13 @@
 #include "core/names.h"
 #include "device/device.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Platforms and devices beyond these are not seen. */
 enum { MOST_PLATFORMS = 32, MOST_DEVICES = 64 };
 
 typedef struct {
@@ -14,7 +16,7 @@ typedef struct {
     int32_t platform_number, device_number;
 } found_device;
 
-/* Every device of every platform; a machine without a platform has none, which is no failure. */
+/* Lists every device of every platform. A machine without a platform has no devices, which is no failure. */
 static skg_status find_devices(found_device *found, int32_t *count) {
     cl_platform_id platforms[MOST_PLATFORMS];
     cl_uint platform_count = 0;
@@ -27,7 +29,7 @@ static skg_status find_devices(found_device *found, int32_t *count) {
         cl_device_id devices[MOST_DEVICES];
         cl_uint device_count = 0;
         code = clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, MOST_DEVICES, devices, &device_count);
-        if (code != CL_SUCCESS) continue; /* a platform without devices says so by an error */
+        if (code != CL_SUCCESS) continue; /* a platform without devices returns an error */
         for (cl_uint d = 0; d < device_count && d < MOST_DEVICES && *count < MOST_DEVICES; d++)
             found[(*count)++] = (found_device){platforms[p], devices[d], (int32_t)p, (int32_t)d};
     }
@@ -101,7 +103,8 @@ skg_status skg_device_get(int64_t index, skg_device_info *info) {
     return skg_struct_write(&ours, sizeof ours, "skg_device_info", info);
 }
 
-/* Whether `wanted` (NULL: anything) names this device: cpu, gpu, PLATFORM:DEVICE, or part of its name. */
+/* Whether `wanted` names this device: auto or NULL (any), cpu, gpu, PLATFORM:DEVICE, or a part of its name in any
+ * case. */
 static int fits(const char *wanted, const skg_device_info *info) {
     if (!wanted || skg_same_name(wanted, "auto")) return 1;
     if (skg_same_name(wanted, "gpu")) return info->is_gpu;
@@ -111,13 +114,13 @@ static int fits(const char *wanted, const skg_device_info *info) {
         return platform == info->platform && device == info->device;
     for (const char *at = info->name; *at; at++) {
         size_t i = 0;
-        while (wanted[i] && at[i] && (wanted[i] | 32) == (at[i] | 32)) i++;
+        while (wanted[i] && at[i] && tolower((unsigned char)wanted[i]) == tolower((unsigned char)at[i])) i++;
         if (!wanted[i]) return 1;
     }
     return 0;
 }
 
-/* GPUs before others, then more compute units. */
+/* GPUs come before other devices; then the number of compute units decides. */
 static int better(const skg_device_info *a, const skg_device_info *b) {
     if (a->is_gpu != b->is_gpu) return a->is_gpu > b->is_gpu;
     return a->compute_units > b->compute_units;

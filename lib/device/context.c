@@ -15,7 +15,7 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 }
 
 typedef struct {
-    char device[128]; /* "": not asked for */
+    char device[128]; /* "": any */
     char kernels[1024];
     int32_t threads; /* 0: all */
 } wanted_device;
@@ -28,7 +28,7 @@ static skg_status copy_word(const char *value, size_t length, char *place, size_
     return SKG_OK;
 }
 
-/* device= takes the rest up to the next known word, so that names with spaces work. */
+/* Reads words such as "device=gpu threads=4". A word without "=" is the value of device=. */
 static skg_status read_words(const char *words, wanted_device *wanted) {
     static const char *const keys[] = {"device", "threads", "kernels"};
     const char *at = words;
@@ -36,7 +36,7 @@ static skg_status read_words(const char *words, wanted_device *wanted) {
     while (*at) {
         size_t length = strcspn(at, " ");
         const char *equals = memchr(at, '=', length);
-        char key[32] = "device"; /* the bare value of device= */
+        char key[32] = "device"; /* for a word without "=" */
         if (equals) SKG_TRY(copy_word(at, (size_t)(equals - at), key, sizeof key));
         const char *value = equals ? equals + 1 : at;
         length -= (size_t)(value - at);
@@ -73,7 +73,7 @@ static skg_status read_config(const char *config, wanted_device *wanted) {
     return config ? read_words(config, wanted) : SKG_OK;
 }
 
-/* A sub-device of so many compute units, where that is fewer than there are. */
+/* Restricts the context to a sub-device of `threads` compute units, if the device has more. 0: all. */
 static skg_status limit_threads(skg_context *context, int32_t threads) {
     skg_device *device = context->device;
     if (threads == 0 || threads >= device->info.compute_units) return SKG_OK;
@@ -176,11 +176,11 @@ void skg_context_release(skg_context **context) {
     *context = NULL;
     if (!skg_unref(&last->refs)) return;
     skg_device *device = last->device;
-    int ours = last->process == (int64_t)getpid(); /* after a fork OpenCL must not be touched */
+    int ours = last->process == (int64_t)getpid(); /* a child process must not call OpenCL */
     skg_programs_release(device, ours);
     if (ours && device->queue) clReleaseCommandQueue(device->queue);
     if (ours && device->cl) clReleaseContext(device->cl);
-    if (ours && device->id) clReleaseDevice(device->id); /* no-op for a root device */
+    if (ours && device->id) clReleaseDevice(device->id); /* does nothing unless it is a sub-device */
     skg_free(&device->kernel_dir);
     skg_mailbox_release(&last->driver);
     skg_free(&last->device);

@@ -1,6 +1,6 @@
-/* An OpenCL device with its queue, programs and buffers, and OpenCL's errors in our words. Private.
+/* An OpenCL device with its queue, programs and buffers, and the errors of OpenCL. Private.
  *
- * One in-order queue per context; everything is enqueued there, only jobs wait. */
+ * A context has one in-order queue. All commands are enqueued there, and only jobs wait. */
 #ifndef SKG_DEVICE_H
 #define SKG_DEVICE_H
 
@@ -15,20 +15,20 @@ typedef struct skg_device {
     cl_device_id id;
     cl_context cl;
     cl_command_queue queue;
-    int32_t profiling; /* the queue's commands are timed */
+    int32_t profiling; /* 1: the commands of the queue are timed */
     skg_device_info info;
-    char *kernel_dir;             /* kernels are read from here instead of those built in; NULL: built in */
+    char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
-    int64_t builds; /* programs compiled so far: a second scene with the same effects adds none */
+    int64_t builds; /* programs compiled so far; a second scene with the same effects adds none */
 } skg_device;
 
 /* --- errors --- */
 
-/* "CL_OUT_OF_RESOURCES"; static storage. */
+/* The name of a code, such as "CL_OUT_OF_RESOURCES". Static storage. */
 const char *skg_cl_name(cl_int code);
 
-/* Keeps the code for skg_last_cl_error and says which call failed where; memory codes become
- * SKG_ERR_DEVICE_MEMORY. */
+/* Fails with a sentence that names the code, the call and the place, and keeps the code for skg_last_cl_error.
+ * Codes on memory become SKG_ERR_DEVICE_MEMORY, others SKG_ERR_DEVICE. */
 skg_status skg_cl_fail(cl_int code, const char *call, const char *file, int line);
 
 #define SKG_CL_TRY(call)                                                                                     \
@@ -52,44 +52,43 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 
 /* --- programs and kernels --- */
 
-/* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1
- * ..."): from the context's cache, or built. The cache keeps it; do not release. Failure shows the build log.
- */
+/* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1 ...").
+ * It comes from the cache of the context or is built. The cache owns it; do not release it. If it does not
+ * compile, the sentence of SKG_ERR_BUILD holds the build log. */
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program);
 
-/* A kernel of such a program; the caller releases it with clReleaseKernel. */
+/* Makes a kernel of such a program. The caller releases it with clReleaseKernel. */
 skg_status skg_kernel_create(cl_program program, const char *name, cl_kernel *kernel);
 
-/* clSetKernelArg for several arguments: skg_kernel_set(kernel, index, sizeof x, &x), the kernel named on
- * failure. */
+/* Sets one argument of a kernel. If it fails, the sentence names the kernel and the argument. */
 skg_status skg_kernel_set(cl_kernel kernel, cl_uint index, size_t size, const void *value);
 
 /* --- buffers --- */
 
-/* Device memory that grows as needed. All zero: none yet. */
+/* Device memory that grows as needed. All zero: nothing is allocated. */
 typedef struct {
     cl_mem memory;
     int64_t bytes;
 } skg_buffer;
 
-/* At least so many bytes (at least 1 is allocated); contents are lost when it grows. what: for the message.
- */
+/* Makes sure that the buffer has at least these bytes (at least 1 is allocated). The contents are lost when it grows.
+ * what: for the message. */
 skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t bytes, cl_mem_flags flags,
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
 
-/* Enqueues a write whose source is copied by the time the call returns, reserving as needed. */
+/* Reserves the bytes and writes the data. The call returns when the data has been copied. */
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what);
 
 /* --- choosing (choose.c) --- */
 
-/* The device that config asks for. info is filled. */
+/* Chooses the device for the words of a config, and fills info. */
 skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_device_id *device,
                              skg_device_info *info);
 
-/* Everything OpenCL tells about one device. */
+/* Fills info with what OpenCL reports on a device. */
 skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_platform_id platform,
                              cl_device_id device, skg_device_info *info);
 

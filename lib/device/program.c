@@ -41,11 +41,11 @@ static skg_status read_file(const char *dir, const char *name, char **text) {
         return skg_fail(SKG_ERR_FILE, "%s: %s (kernels are read from here on demand)", path, strerror(errno));
     skg_status status = SKG_OK;
     size_t used = 0, got = 0;
-    int64_t room = 0;
+    int64_t capacity = 0;
     do {
-        if ((int64_t)used + 4096 > room) {
-            room = room * 2 + 16384;
-            SKG_TRY_CLEANUP(skg_realloc(room, 1, path, text));
+        if ((int64_t)used + 4096 > capacity) {
+            capacity = capacity * 2 + 16384;
+            SKG_TRY_CLEANUP(skg_realloc(capacity, 1, path, text));
         }
         got = fread(*text + used, 1, 4095, file);
         used += got;
@@ -57,7 +57,7 @@ cleanup:
     return status;
 }
 
-/* The source of one kernel file behind a line that makes build logs name it. */
+/* The source of one kernel file, after a #line directive that makes build logs name the file. */
 static skg_status load_source(const skg_device *device, const char *name, char **source) {
     char *text = NULL;
     *source = NULL;
@@ -102,7 +102,7 @@ static skg_status build(skg_context *context, int32_t files, const char *const *
     skg_status status = SKG_OK;
     if (files > MOST_FILES) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", key);
     for (int32_t i = 0; i < files; i++) SKG_TRY_CLEANUP(load_source(device, names[i], &sources[i]));
-    /* Correctly rounded division is what makes images equal bit for bit from device to device. */
+    /* With correctly rounded division, images are equal bit for bit on different devices. */
     if (snprintf(full, sizeof full, "-cl-std=CL1.2%s %s",
                  device->info.correct_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
                  options) >= (int)sizeof full) {

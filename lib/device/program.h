@@ -4,7 +4,7 @@
 
 #include "device/device.h"
 
-/* Frees the cache; OpenCL is told only where `ours` (not in a child after fork). */
+/* Frees the cache. OpenCL is called only if `ours`: not in a child process after a fork. */
 void skg_programs_release(skg_device *device, int ours);
 
 #endif

@@ -1,4 +1,4 @@
-/* The kernels' sources as built in: kernels/CMakeLists.txt writes the table. Private. */
+/* The sources of the kernels, built in. kernels/CMakeLists.txt makes the table. Private. */
 #ifndef SKG_SOURCES_H
 #define SKG_SOURCES_H
 

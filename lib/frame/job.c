@@ -1,66 +1,54 @@
 #include "frame/job.h"
-#include "frame/plan.h"
-#include "plan/report.h"
 
-struct skg_staged {
-    struct skg_staged *next;
-    void *bytes;
-};
-
-skg_status skg_job_create(skg_plan *plan, skg_job **job) {
+skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome, skg_job **job) {
     SKG_TRY(skg_alloc(1, sizeof **job, "job", job));
-    (*job)->plan = plan;
-    (*job)->log.on = plan->options.profile;
-    skg_ref(&plan->refs);
+    skg_job *made = *job;
+    skg_results *results = &made->results;
+    skg_status status = SKG_OK;
+    made->recipe = skg_recipe_retain(recipe);
+    made->machine = machine;
+    made->outcome = outcome;
+    made->staging.context = machine->context;
+    made->staging.log.on = recipe->options.profile;
+    SKG_TRY_CLEANUP(
+        skg_staging_take(&made->staging, 2, sizeof *results->negative, "counters", &results->negative));
+    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
+    SKG_TRY_CLEANUP(
+        skg_staging_take(&made->staging, 1, sizeof *results->bad_vertex, "counters", &results->bad_vertex));
+    SKG_TRY_CLEANUP(skg_leaky_verdicts_create(recipe->leaky_count, &made->staging, &results->leaky));
     return SKG_OK;
-}
-
-skg_status skg_job_stage(skg_job *job, int64_t count, size_t size, const char *what, void *pointer_address) {
-    skg_staged *entry = NULL;
-    SKG_TRY(skg_alloc(1, sizeof *entry, what, &entry));
-    skg_status status = skg_alloc(count, size, what, &entry->bytes);
-    if (status != SKG_OK) {
-        skg_free(&entry);
-        return status;
-    }
-    entry->next = job->staged;
-    job->staged = entry;
-    *(void **)pointer_address = entry->bytes;
-    return SKG_OK;
-}
-
-skg_status skg_job_read(skg_job *job, cl_mem buffer, int64_t bytes, void *staged) {
-    SKG_CL_TRY(clEnqueueReadBuffer(job->plan->context->device->queue, buffer, CL_FALSE, 0, (size_t)bytes,
-                                   staged, 0, NULL, NULL));
-    return SKG_OK;
+cleanup:
+    skg_job_release(job);
+    return status;
 }
 
 void skg_job_release(skg_job **job) {
     if (!job || !*job) return;
     skg_job *done = *job;
-    /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged
-     * memory. */
-    if (!done->finished) clFinish(done->plan->context->device->queue);
+    /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged memory. */
+    if (!done->finished) clFinish(done->machine->context->device->queue);
     if (done->last) clReleaseEvent(done->last);
-    skg_stage_log_clear(&done->log);
-    while (done->staged) {
-        skg_staged *entry = done->staged;
-        done->staged = entry->next;
-        skg_free(&entry->bytes);
-        skg_free(&entry);
-    }
+    skg_staging_release(&done->staging);
+    skg_recipe_release(&done->recipe);
     skg_plan_release(&done->plan);
     skg_free(job);
 }
 
-skg_status skg_job_wait(skg_job **job) {
-    if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
-    SKG_TRY(skg_context_enter((*job)->plan->context));
-    skg_status status = SKG_OK;
-    cl_int code = clWaitForEvents(1, &(*job)->last);
-    if (code != CL_SUCCESS) status = skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
-    (*job)->finished = code == CL_SUCCESS;
-    if (status == SKG_OK) status = skg_report_job(*job);
+skg_status skg_job_complete(skg_job **job) {
+    skg_job *done = *job;
+    skg_context *context = done->machine->context;
+    const cl_int code = clWaitForEvents(1, &done->last);
+    done->finished = code == CL_SUCCESS;
+    const skg_status status =
+        code == CL_SUCCESS ? skg_report_work(done->recipe, context, &done->machine->geometry, &done->results,
+                                             &done->staging.log, done->outcome)
+                           : skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     skg_job_release(job);
     return status;
+}
+
+skg_status skg_job_wait(skg_job **job) {
+    if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
+    SKG_TRY(skg_context_enter((*job)->machine->context));
+    return skg_job_complete(job);
 }

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* matrix = [a b c]^-1, by cofactors; returns the determinant of [a b c]. */
+/* matrix = [a b c]^-1, by cofactors. Returns the determinant of [a b c]. */
 static double invert(const double a[3], const double b[3], const double c[3], double matrix[3][3]) {
     skg_cross(b, c, matrix[0]);
     skg_cross(c, a, matrix[1]);
@@ -15,11 +15,11 @@ static double invert(const double a[3], const double b[3], const double c[3], do
     return determinant;
 }
 
-/* t at which the paths of a parallel beam start: the plane through the source across the direction d; t - 1 =
- * -((D0 + i Du + j Dv - S) . d) / d.d */
+/* The t at which the paths of a parallel beam start: at the plane through the source across the direction d. There
+ * t - 1 = -((D0 + i Du + j Dv - S) . d) / d.d for pixel (i, j). */
 static void parallel_start(const skg_view *view, const double pixel[3], skg_camera *camera) {
     if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY) {
-        camera->start[0] = -1e30;
+        camera->start[0] = -1e30; /* before every part, and a float */
         return;
     }
     const double *d = camera->first, square = skg_dot(d, d);
@@ -30,7 +30,7 @@ static void parallel_start(const skg_view *view, const double pixel[3], skg_came
     camera->start[2] = -skg_dot(view->row_step, d) / square;
 }
 
-/* Nothing is rounded: from infinity, the direction is only brought to a length near 1 by a power of two. */
+/* Nothing is rounded here. A direction from infinity is scaled to a length near 1 by a power of two. */
 static void parallel_direction(const skg_view *view, double direction[3]) {
     int exponent = 0;
     if (view->projection == SKG_PROJECTION_PARALLEL) {
@@ -74,7 +74,7 @@ void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]
     for (int r = 0; r < 3; r++) h[r] = skg_dot(camera->matrix[r], v);
 }
 
-/* The nearest pixel of the detector, along one axis. */
+/* The pixel of the detector that is nearest to x along one axis. */
 static double own_pixel(double x, int64_t count) {
     const double last = (double)(count - 1);
     const double pixel = floor(x + 0.5);
@@ -87,10 +87,10 @@ static double determinant(double m[3][3]) {
     return skg_dot(m[0], c);
 }
 
-/* Along one axis of the picture: anchor, offset and row, relative to the part's pixel. */
+/* One axis of the picture: anchor, offset and row of the part, relative to its pixel (skg_shared.h). */
 static void point_axis(double h, double depth, const double linear[3], const double deep[3], int64_t count,
                        double row[3], double *offset, double *anchor, SKG_INT *pixel) {
-    const int seen = depth > (double)SKG_NEAR; /* else the origin has no projection to be relative to */
+    const int seen = depth > (double)SKG_NEAR; /* otherwise the origin of the mesh has no projection */
     const double at = seen ? h / depth : 0.5 * (double)(count - 1);
     const double own = own_pixel(at, count);
     const double relative_to = seen ? at : own;
@@ -143,7 +143,7 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
     part->start[2] = camera->start[2];
     part->unused = 0;
     part->reserved = 0;
-    /* Seen from the source, the far faces of an outward mesh turn as the picture's axes do. */
+    /* Seen from the source, the far faces of an outward mesh turn in the sense of the picture's axes. */
     const int mirrored = (determinant(pose_linear) < 0) != (camera->determinant < 0);
     part->turned = mirrored != (flipped != 0) ? -1 : 0;
 }
@@ -155,7 +155,7 @@ double skg_camera_pixel_area(const skg_camera *camera) {
 }
 
 double skg_camera_nearest_ray(const skg_camera *camera) {
-    /* The foot is where the ray is across both steps: least squares over (i, j). */
+    /* At the foot the ray is perpendicular to both steps: a least squares problem in (i, j). */
     const double uu = skg_dot(camera->column, camera->column), vv = skg_dot(camera->row, camera->row);
     const double uv = skg_dot(camera->column, camera->row), fu = skg_dot(camera->first, camera->column);
     const double fv = skg_dot(camera->first, camera->row), area = uu * vv - uv * uv;
@@ -172,7 +172,7 @@ void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray
     *ray = (skg_ray_double){.unit = 1 / scale};
     for (int k = 0; k < 3; k++) {
         ray->centre[k] = camera->first[k];
-        if (camera->parallel) continue; /* every ray is d */
+        if (camera->parallel) continue; /* all rays have the direction d */
         ray->centre[k] += column * camera->column[k] + row * camera->row[k];
         ray->column[k] = camera->column[k];
         ray->row[k] = camera->row[k];

@@ -13,7 +13,7 @@ static int by_ends(const void *a, const void *b) {
     return (x->to > y->to) - (x->to < y->to);
 }
 
-/* Both directions next to each other; the lower end first. */
+/* Orders by the lower end, then by the higher one, so that both directions of an edge are neighbours. */
 static int by_pair(const void *a, const void *b) {
     const edge *x = a, *y = b;
     const int32_t x_low = x->from < x->to ? x->from : x->to, y_low = y->from < y->to ? y->from : y->to;
@@ -27,7 +27,7 @@ static int same_pair(const edge *a, const edge *b) {
     return (a->from == b->from && a->to == b->to) || (a->from == b->to && a->to == b->from);
 }
 
-/* Keeps the edges that have no opposite, and sorts them by where they start; returns how many. */
+/* Keeps the edges that have no opposite, sorted by their start. Returns their number. */
 static int64_t keep_open(edge *edges, int64_t count) {
     int64_t kept = 0;
     qsort(edges, (size_t)count, sizeof *edges, by_pair);
@@ -56,12 +56,12 @@ static skg_status list_edges(const skg_mesh *mesh, edge **edges, int64_t *count)
     return SKG_OK;
 }
 
-/* What is known while loops are traced: every vertex has as many open edges that start there as end there. */
+/* The state of tracing loops. At every vertex as many open edges start as end, so that a walk always goes on. */
 typedef struct {
     const edge *edges;
     int64_t count;
-    int64_t *next;    /* [vertices] its first edge that is not used up */
-    int64_t *on_path; /* [vertices] place on the path + 1; 0: not on it */
+    int64_t *next;    /* [vertices] the first edge from the vertex that is not used yet */
+    int64_t *on_path; /* [vertices] place on the path, counted from 1; 0: not on it */
     int32_t *path;    /* [count + 1] */
 } tracing;
 
@@ -70,7 +70,7 @@ static int unused(const tracing *t, int32_t vertex) {
     return e < t->count && t->edges[e].from == vertex;
 }
 
-/* Walks from a vertex along unused edges; where the path meets itself, the loop is cut off. */
+/* Walks from a vertex along unused edges. Whenever the path meets itself, the loop is cut off. */
 static void trace(tracing *t, int32_t start, skg_caps *caps) {
     int64_t length = 0;
     t->path[length++] = start;

@@ -4,28 +4,26 @@
 
 #include <math.h>
 
-/* h (pixel times t, and t) of the corners of the mesh's box: of its lowest one, and from there along its
- * edges. There may be a million parts a frame, so each is posed and seen once. */
+/* h (pixel times t, and t) of the corners of the mesh's box: that of the lowest corner, and from there along the
+ * edges. A frame may have a million parts, so only one corner and three edges of each are transformed. */
 static void see_corners(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double h[8][3]) {
     double lowest[3], world[3], edge[3][3];
     for (int k = 0; k < 3; k++) lowest[k] = mesh->origin[k] + (double)mesh->lowest[k];
-    for (int k = 0; k < 3; k++)
-        world[k] = pose[4 * k] * lowest[0] + pose[4 * k + 1] * lowest[1] + pose[4 * k + 2] * lowest[2] +
-                   pose[4 * k + 3];
+    skg_pose_point(pose, lowest, world);
     skg_camera_see(camera, world, h[0]);
-    if (camera->parallel) h[0][2] += 1; /* t, as for a point source */
+    if (camera->parallel) h[0][2] += 1; /* t, counted as for a point source */
     for (int k = 0; k < 3; k++) {
         const double along[3] = {pose[k], pose[4 + k], pose[8 + k]};
         const double length = (double)mesh->highest[k] - (double)mesh->lowest[k];
         for (int r = 0; r < 3; r++) edge[k][r] = length * skg_dot(camera->matrix[r], along);
     }
-    for (int corner = 1; corner < 8; corner++) { /* by one edge from a corner that is known */
+    for (int corner = 1; corner < 8; corner++) { /* one edge away from a corner that is known */
         const int k = corner & 4 ? 2 : corner & 2 ? 1 : 0;
         for (int r = 0; r < 3; r++) h[corner][r] = h[corner & ~(1 << k)][r] + edge[k][r];
     }
 }
 
-/* As fmin and fmax of numbers, which are calls. */
+/* Like fmin and fmax of numbers, but without a call. */
 static double lesser(double a, double b) {
     return a < b ? a : b;
 }
@@ -34,7 +32,7 @@ static double greater(double a, double b) {
     return a > b ? a : b;
 }
 
-/* The least and greatest t at which parallel paths start on this detector. */
+/* The least and the greatest t at which parallel paths to this detector start. */
 static void start_range(const skg_camera *camera, double *first, double *last) {
     const double across = camera->start[1] * (double)(camera->columns - 1);
     const double down = camera->start[2] * (double)(camera->rows - 1);
@@ -49,7 +47,7 @@ void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const doubl
     see_corners(camera, mesh, pose, h);
     for (int k = 0; k < 8; k++) low = lesser(low, h[k][2]), high = greater(high, h[k][2]);
     if (camera->parallel) start_range(camera, &first, &last);
-    /* Twice the limit of the kernels: a box is decided on in double, a vertex in float. */
+    /* Twice the limit of the kernels, which compare vertices in float; the box is compared in double. */
     extent->near_source = camera->parallel ? low <= last : low <= 2.0 * (double)SKG_NEAR;
     for (int k = 0; k < 8; k++) {
         const double t = camera->parallel ? 1 : h[k][2];
@@ -63,7 +61,7 @@ void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const doubl
         part->low_column = part->low_row = -HUGE_VAL;
         part->high_column = part->high_row = HUGE_VAL;
     }
-    /* What lies before the start of the rays or behind the detector adds nothing. */
+    /* The part of the mesh before the start of the rays or behind the detector adds nothing. */
     part->low_depth = lesser(greater(low, lesser(first, 1)), 1);
     part->high_depth = lesser(greater(high, part->low_depth), 1);
     extent->on_detector = part->high_column >= -0.5 && part->high_row >= -0.5 &&
@@ -71,7 +69,7 @@ void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const doubl
                           part->low_row <= (double)camera->rows - 0.5 && part->high_depth > part->low_depth;
 }
 
-/* Rows by which extents grow, so that what moves a little does not change them. */
+/* Rows that are added to an extent and that it is rounded to, so that a part that moves a little keeps its extent. */
 enum { EXTENT_ROWS = 16 };
 
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]) {
@@ -79,7 +77,7 @@ void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32
     const skg_scale_part *at = &extent->scale;
     pixels[0] = (int32_t)fmin(fmax(at->low_row - 2, 0), rows) & -EXTENT_ROWS;
     pixels[1] = (int32_t)fmin(fmax(at->high_row + 2 + EXTENT_ROWS, 0), rows + EXTENT_ROWS) & -EXTENT_ROWS;
-    pixels[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_FIELD_COLUMNS * SKG_FIELD_COLUMNS;
-    pixels[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_FIELD_COLUMNS + 1) *
-                SKG_FIELD_COLUMNS;
+    pixels[2] = (int32_t)fmin(fmax(at->low_column - 2, 0), columns) / SKG_EXTENT_COLUMNS * SKG_EXTENT_COLUMNS;
+    pixels[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_EXTENT_COLUMNS + 1) *
+                SKG_EXTENT_COLUMNS;
 }

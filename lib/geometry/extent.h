@@ -1,4 +1,4 @@
-/* Where a part can come to lie on the detector and along the rays: what scale and warnings are decided from.
+/* The bounds of a part on the detector and along the rays. Scale, extents of planes and warnings follow from them.
  * Private. */
 #ifndef SKG_EXTENT_H
 #define SKG_EXTENT_H
@@ -8,16 +8,16 @@
 #include "mesh/mesh.h"
 
 typedef struct {
-    skg_scale_part scale; /* its weight is the caller's to fill */
-    int32_t near_source;  /* may reach the source's plane, or where parallel rays start */
-    int32_t on_detector;  /* its rectangle meets the detector, between where rays start and end */
+    skg_scale_part scale; /* the caller fills its weight */
+    int32_t near_source; /* 1: it may reach the plane of the source, or the plane where parallel rays start */
+    int32_t on_detector; /* 1: its rectangle meets the detector, between the start and the end of the rays */
 } skg_extent;
 
-/* From the mesh's bounds as they stand, under a pose. */
+/* The extent of a mesh at a pose, from the present bounds of the mesh. */
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent);
 
-/* The field (skg_shared.h) that its rectangle and 2 pixels for rounding cover; rows may lie beyond the last
- * one. */
+/* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
+ * outward as skg_shared.h wants them. The last row may lie beyond the detector. */
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);
 
 #endif

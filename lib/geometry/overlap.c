@@ -1,10 +1,12 @@
 #include "geometry/overlap.h"
 
+#include "core/vector.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns per side of the grid: 65,536 columns resolve 1.4 mm in a thorax. */
+/* Columns along each side of the grid: 65,536 columns are 1.4 mm apart in a thorax. */
 enum { SIDE = 256 };
 
 typedef struct {
@@ -20,19 +22,21 @@ typedef struct {
 
 typedef struct {
     int64_t slots, used;
-    skg_overlap_pair *table; /* open addressing; part < 0: empty */
+    skg_overlap_pair *table; /* a hash table with linear probing; part < 0: the slot is free */
 } pair_table;
 
 /* --- columns --- */
 
-/* Columns stand off the cell centres by an irrational part of a cell, so that axis-aligned faces and shared
- * vertices are not met exactly as a rule; where they are, the half-open rule below still balances. */
+/* Columns are off the corner of their cell by an irrational part of it (the square roots of 3 and 2 less 1), so that
+ * faces along the axes and shared vertices are rarely met exactly. Where they are, the half-open rule below still
+ * balances the hits. */
 static double column_place(const columns *grid, int axis, int64_t index) {
     return grid->low[axis] +
            ((double)index + (axis ? 0.4142135623730951 : 0.7320508075688772)) * grid->step[axis];
 }
 
-/* Where the edge a->b (the lower y first, so that both triangles at an edge agree) crosses y. */
+/* The x at which the edge from a to b crosses y. The end with the lower y comes first, so that both triangles at
+ * an edge get the same bits. */
 static double crossing(const double *a, const double *b, double y) {
     if (a[1] > b[1] || (a[1] == b[1] && a[0] > b[0])) {
         const double *swap = a;
@@ -41,13 +45,14 @@ static double crossing(const double *a, const double *b, double y) {
     return a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
 }
 
-/* One triangle against the columns: the scan-crossing rule, as in the kernels but in double. */
+/* Adds the hits of one triangle by the scan-crossing rule of the kernels, in double. */
 static void add_triangle(columns *grid, int32_t part, const double *a, const double *b, const double *c) {
     const double *p[3] = {a, b, c};
     double lo = fmin(a[1], fmin(b[1], c[1])), hi = fmax(a[1], fmax(b[1], c[1]));
-    double normal[3] = {(b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]),
-                        (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]),
-                        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])};
+    double ab[3], ac[3], normal[3];
+    skg_add_scaled(b, -1, a, ab);
+    skg_add_scaled(c, -1, a, ac);
+    skg_cross(ab, ac, normal);
     int64_t row = (int64_t)fmax(0, floor((lo - grid->low[1]) / grid->step[1]) - 1);
     for (; row < SIDE; row++) {
         double y = column_place(grid, 1, row), x[2];
@@ -72,9 +77,8 @@ static void add_triangle(columns *grid, int32_t part, const double *a, const dou
                 double depth = normal[2] != 0
                                    ? a[2] - ((at - a[0]) * normal[0] + (y - a[1]) * normal[1]) / normal[2]
                                    : a[2];
-                /* A normal against +z means clockwise in x, y: the first crossing runs up, and the ray
-                 * enters.
-                 */
+                /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and
+                 * the ray enters. */
                 grid->hits[grid->first[cell]] = (column_hit){depth, part, downward[first] ? -1 : 1};
             }
             grid->first[cell]++;
@@ -92,7 +96,8 @@ static void add_all(columns *grid, int64_t count, const skg_solid *solids) {
         }
 }
 
-/* Counts, prefix sums, fills: grid->first[c] .. grid->first[c + 1] are the hits of column c. */
+/* Counts the hits of each column, sums the counts, and fills: the hits of column c are those from grid->first[c] to
+ * grid->first[c + 1] - 1. */
 static skg_status gather(columns *grid, int64_t count, const skg_solid *solids) {
     const int64_t cells = (int64_t)SIDE * SIDE;
     SKG_TRY(skg_alloc(cells + 1, sizeof *grid->first, "overlap columns", &grid->first));
@@ -155,7 +160,7 @@ static skg_status add_chord(pair_table *pairs, int32_t kind, int64_t part, int64
 static int by_depth(const void *a, const void *b) {
     const column_hit *left = a, *right = b;
     if (left->depth != right->depth) return left->depth < right->depth ? -1 : 1;
-    /* Touching surfaces: leave before entering, so that they do not overlap. */
+    /* At touching surfaces the ray leaves one part before it enters the other, so that they do not overlap. */
     if (left->sign != right->sign) return left->sign < right->sign ? -1 : 1;
     return left->part < right->part ? -1 : left->part > right->part;
 }
@@ -178,8 +183,8 @@ static void pass(sweep_state *state, const column_hit *hit) {
             }
 }
 
-/* The stretch of a column between two hits: every active part against its siblings and its parent. Cousins
- * need no look: where they overlap, their ancestors do or one of them has left its parent. */
+/* Compares every active part with its siblings and its parent over the stretch of a column between two hits.
+ * Cousins need not be compared: where they overlap, their ancestors overlap or one of them has left its parent. */
 static skg_status judge(const sweep_state *state, const skg_solid *solids, pair_table *pairs,
                         const double *place, double length, double area) {
     for (int64_t i = 0; i < state->count; i++) {
@@ -198,7 +203,8 @@ static skg_status judge(const sweep_state *state, const skg_solid *solids, pair_
 
 static skg_status sweep(const columns *grid, const skg_solid *solids, sweep_state *state, pair_table *pairs) {
     const double area = grid->step[0] * grid->step[1];
-    const double least = 1e-9 * (grid->high[2] - grid->low[2]); /* rounding of touching surfaces */
+    /* Touching surfaces differ by rounding, which is far below this share of the depth of the scene. */
+    const double least = 1e-9 * (grid->high[2] - grid->low[2]);
     for (int64_t cell = 0; cell < (int64_t)SIDE * SIDE; cell++) {
         int64_t first = grid->first[cell], end = grid->first[cell + 1];
         qsort(grid->hits + first, (size_t)(end - first), sizeof *grid->hits, by_depth);
@@ -242,7 +248,7 @@ skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pa
     *pair_count = 0;
     *pairs = NULL;
     bound(&grid, count, solids);
-    if (!(grid.step[0] > 0 && grid.step[1] > 0)) return SKG_OK; /* nothing with an extent */
+    if (!(grid.step[0] > 0 && grid.step[1] > 0)) return SKG_OK; /* no solid has an extent */
     SKG_TRY_CLEANUP(gather(&grid, count, solids));
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *state.depth, "overlap sweep", &state.depth));
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *state.active, "overlap sweep", &state.active));

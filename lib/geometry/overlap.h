@@ -1,15 +1,16 @@
-/* Which parts overlap, and which leave their parent. Private.
+/* Parts that overlap, and parts that leave their parent. Private.
  *
- * Lengths of overlapping siblings add and a child outside its parent subtracts the parent: nothing is
- * clamped, so both are found and told. Method: a grid of parallel columns over the scene; along each, the
- * signed hits of all closed parts are sorted and swept. Volumes are sums over columns, so they carry the
- * grid's resolution. */
+ * The lengths of overlapping siblings are added, and a child outside its parent subtracts the parent. Nothing is
+ * clamped, so both cases are found and reported.
+ *
+ * Method: a grid of parallel columns covers the scene. Along each column, the signed hits of all closed parts
+ * are sorted and swept. Volumes are sums over columns and therefore have the resolution of the grid. */
 #ifndef SKG_OVERLAP_H
 #define SKG_OVERLAP_H
 
 #include "core/core.h"
 
-/* A closed part as the sweep needs it, in world coordinates (mm). */
+/* A closed part in world coordinates (mm). */
 typedef struct {
     int64_t vertices, triangles;
     const double *positions; /* [vertices][3] */
@@ -21,14 +22,14 @@ enum { SKG_OVERLAP_SIBLINGS = 0, SKG_OVERLAP_PROTRUDES = 1 };
 
 typedef struct {
     int32_t kind;
-    int64_t part, other; /* siblings: part < other; protrudes: part leaves its parent `other` */
+    int64_t part, other; /* siblings: part < other; protrudes: `part` leaves its parent `other` */
     double volume;       /* mm3 */
-    double longest;      /* mm, longest chord along the columns */
+    double longest;      /* mm, the longest chord along a column */
     double place[3];     /* mm, the middle of that chord */
 } skg_overlap_pair;
 
-/* Finds every pair, worst volume first; *pairs is freed by the caller with skg_free. Solids without triangles
- * (open parts, left out) are allowed. */
+/* Finds every pair; the largest volume comes first. The caller frees *pairs with skg_free. A solid without triangles
+ * takes no part: leaky parts are passed so. */
 skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pair_count,
                              skg_overlap_pair **pairs);
 

@@ -16,7 +16,7 @@ static int64_t clipped_to(const skg_scene *scene, int32_t clip, int64_t part) {
 int skg_priority_possible(const skg_scene *scene, int32_t clip) {
     for (int64_t p = 0; p < scene->count; p++) {
         if (clipped_to(scene, clip, p) >= 0) return 1;
-        if (scene->parts[p].priority == 0) continue; /* where priorities differ, one is not 0 */
+        if (scene->parts[p].priority == 0) continue; /* if priorities differ, one is not 0 */
         for (int64_t q = 0; q < scene->count; q++)
             if (may_win(&scene->parts[p], &scene->parts[q]) || may_win(&scene->parts[q], &scene->parts[p]))
                 return 1;
@@ -29,7 +29,7 @@ int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap
     return scene->parts[pair->part].priority != scene->parts[pair->other].priority;
 }
 
-/* Whether their bounds meet, in pixels and along the rays. */
+/* Whether the bounds of two parts meet on the detector and along the rays. */
 static int meet(const skg_extent *a, const skg_extent *b) {
     const skg_scale_part *p = &a->scale, *q = &b->scale;
     return a->on_detector && b->on_detector && p->low_column <= q->high_column &&
@@ -54,7 +54,7 @@ static void mark_rivals(const skg_scene *scene, int32_t clip, const skg_extent *
     }
 }
 
-/* Levels below the world; parts inside one that may fall are marked on the way. */
+/* The level of a part below the world. On the way up the part is marked if one of its ancestors may fall. */
 static int64_t level_of(const skg_scene *scene, const skg_extent *extents, int64_t part, int32_t *marks) {
     int64_t level = 0;
     for (int64_t up = scene->parts[part].inside; up >= 0; up = scene->parts[up].inside) {
@@ -96,7 +96,7 @@ void skg_priority_release(skg_priority *priority) {
 
 int64_t skg_priority_slots(const skg_priority *priority) {
     int64_t slots = 32;
-    while (slots < priority->count) slots *= 2; /* few sizes: few programs */
+    while (slots < priority->count) slots *= 2; /* each size is a program of its own */
     return slots;
 }
 

@@ -1,10 +1,10 @@
-/* Which part has an interval of a ray to itself: priorities of overlapping parts, and children clipped to
- * their parents. Private.
+/* Priority resolution: which part an interval of a ray belongs to if parts overlap, and children that are clipped
+ * to their parents. Private.
  *
- * Of the closed parts with one parent (or in the world) that a point lies in, those of the highest priority
- * count; parts of the same priority add. With clipping a part counts only where its closed parent is. What
- * falls takes along what lies inside it, at any depth. Open parts neither win nor lose. Who may compete
- * follows from each frame's bounds, so that parts may move. */
+ * Of the closed parts of one parent (or of the world) that contain a point, those of the highest priority count
+ * there; parts of the same priority add. With clipping, a part counts only inside its closed parent. A part that
+ * does not count ("falls") takes along every part inside it, at any depth. Leaky parts neither displace nor are
+ * displaced. The parts that may compete follow from the bounds of each frame, so that parts may move. */
 #ifndef SKG_PRIORITY_H
 #define SKG_PRIORITY_H
 
@@ -13,28 +13,32 @@
 #include "scene/scene.h"
 
 typedef struct {
-    int64_t count;  /* of parts that compete, or fall with one that does */
-    int64_t *parts; /* [count] their numbers, parents before children */
+    int64_t count;  /* of parts that compete, or fall with a part that does */
+    int64_t *parts; /* [count] numbers of the parts, parents before children */
 } skg_priority;
 
-/* Whether anything of a scene can ever compete. */
+/* Whether any parts of a scene can ever compete. */
 int skg_priority_possible(const skg_scene *scene, int32_t clip);
 
-/* Who competes where parts lie as the extents say. */
+/* The parts that compete for these extents [parts of the scene]. */
 skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
                              skg_priority *priority);
 void skg_priority_release(skg_priority *priority);
 
-/* Ints of an entry of the kernels' table (hits.cl) for this many competitors, and how many those kernels are
- * made for. */
+/* The number of competitors that the kernels of hits.cl are compiled for, and the ints of one entry of their
+ * table. */
 int64_t skg_priority_slots(const skg_priority *priority);
 int64_t skg_priority_entry(const skg_priority *priority);
 
-/* slots: [parts of the scene]; table: [competitors][entry]. */
+/* Fills the tables of hits.cl.
+ *
+ * slots   [parts of the scene] the competitor that a part is, or -1
+ * table   [competitors][entry] part, slot of the parent that it is clipped to or -1, the set of slots that displace
+ *         it, the set of slots of its ancestors */
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
                          int32_t *table);
 
-/* Whether priority or clipping decides what an overlapping pair shows. */
+/* Whether priority or clipping decides what is seen of an overlapping pair, so that no warning is due. */
 int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair);
 
 #endif

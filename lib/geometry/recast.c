@@ -1,12 +1,15 @@
-/* The method is that of the kernel for the source's plane (kernels/source_plane.cl): a row of pixels and the
- * source span a plane, which cuts two edges of a triangle; a ray hits where it passes the two cuts on
- * different sides. Each cut is computed from its edge's ends in one order, so that neighbours agree and
- * signed hits of a closed mesh cancel. */
+/* The method is that of the kernel for the plane of the source (kernels/source_plane.cl). A row of pixels and
+ * the source span a plane, which cuts two edges of a triangle; a ray hits the triangle if it passes the two cuts
+ * on different sides. Each cut is computed from the ends of its edge in one order, so that neighbouring
+ * triangles agree and the signed hits of a closed mesh cancel. */
 #include "geometry/recast.h"
+
+#include "core/vector.h"
 
 #include <math.h>
 
-/* A vertex: (x, y, w) is w times (column, row, 1); t the path parameter. Parallel beam: w = 1. */
+/* A projected vertex: (x, y, w) is w times (column, row, 1), and t is the path parameter. A parallel beam has w
+ * = 1. */
 typedef struct {
     double x, y, w, t;
 } seen;
@@ -43,18 +46,17 @@ void skg_pixel_list_release(skg_pixel_list *list) {
 
 static seen see(const skg_camera *camera, const double *pose, const double at[3]) {
     double world[3], h[3];
-    for (int k = 0; k < 3; k++)
-        world[k] = pose[4 * k] * at[0] + pose[4 * k + 1] * at[1] + pose[4 * k + 2] * at[2] + pose[4 * k + 3];
+    skg_pose_point(pose, at, world);
     skg_camera_see(camera, world, h);
     return camera->parallel ? (seen){h[0], h[1], 1, h[2] + 1} : (seen){h[0], h[1], h[2], h[2]};
 }
 
-/* Whether numbers may be divided by this w. */
+/* Whether a vertex is far enough in front of the source to be divided by its w. */
 static int in_front(double w) {
     return w > (double)SKG_NEAR;
 }
 
-/* Where the plane of row j cuts an edge that goes from below to above it. */
+/* The cut of the plane of row j with an edge whose ends are on both sides of it. */
 static seen cut_edge(const seen *low, const seen *high, double j) {
     const double s = low->y - j * low->w, e = high->y - j * high->w;
     const double part = fmin(fmax(s / (s - e), 0), 1);
@@ -62,7 +64,7 @@ static seen cut_edge(const seen *low, const seen *high, double j) {
                   low->t + part * (high->t - low->t)};
 }
 
-/* The first pixel of a row's list, from `first` to `end`, at or right of a column. */
+/* The first pixel in the list from `first` to `end` that is at a column or to the right of it. */
 static int64_t first_from(const int32_t *columns, int64_t first, int64_t end, double column) {
     while (first < end) {
         const int64_t middle = (first + end) / 2;
@@ -95,7 +97,7 @@ static void cast_row(const casting *c, const seen *up, const seen *down, int64_t
     }
 }
 
-/* Rows between the lowest and the highest corner; all where one is not in front. */
+/* The rows between the lowest and the highest corner; all rows if a corner is not in front of the source. */
 static void rows_of(const casting *c, const seen *const corner[3], int64_t *first, int64_t *end) {
     const int64_t rows = c->camera->rows;
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -130,7 +132,7 @@ static void cast_triangle(const casting *c, const seen *p0, const seen *p1, cons
     }
 }
 
-/* The middle of a loop, about which its cap is a fan. */
+/* The mean of a loop, which is the hub of its cap. */
 static seen see_middle(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps, int64_t loop,
                        const double *pose) {
     const int64_t first = caps->first[loop], end = caps->first[loop + 1];
@@ -179,11 +181,11 @@ skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_
 
 /* --- where caps are --- */
 
-/* Pixels by which caps grow: more than a device errs by, so that rays past a rim count as through the hole.
- */
+/* Pixels that are added around caps: more than the error of a device, so that a ray that a device may see pass a rim
+ * counts as passing the hole. */
 static const double MARGIN = 0.25;
 
-/* Widens [low, high] to the columns of edge ab between two rows. */
+/* Widens [low, high] by the columns of edge ab between two rows. */
 static void widen(const seen *a, const seen *b, double from, double to, double *low, double *high) {
     const double ax = a->x / a->w, ay = a->y / a->w, dx = b->x / b->w - ax, dy = b->y / b->w - ay;
     double s = 0, e = 1;

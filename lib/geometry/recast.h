@@ -1,28 +1,28 @@
-/* Rays of an open mesh cast anew on the host, in double, through the mesh and its caps. Private. */
+/* Rays through a leaky mesh, traced again on the host in double, through the mesh and its caps. Private. */
 #ifndef SKG_RECAST_H
 #define SKG_RECAST_H
 
 #include "geometry/camera.h"
 #include "geometry/caps.h"
 
-/* Pixels by rows. */
+/* A list of pixels, by rows. */
 typedef struct {
     int64_t count;
     int64_t *first;   /* [rows + 1] into columns */
-    int32_t *columns; /* [count] ascending within a row */
+    int32_t *columns; /* [count] rising within a row */
 } skg_pixel_list;
 
-/* The pixels that are not 0 in marks [rows][columns], of rows first to end - 1. */
+/* Lists the pixels of the rows first to end - 1 that are not 0 in marks [rows][columns]. */
 skg_status skg_pixel_list_make(int64_t columns, int64_t rows, int64_t first, int64_t end,
                                const int32_t *marks, skg_pixel_list *list);
 void skg_pixel_list_release(skg_pixel_list *list);
 
-/* paths[k]: of the ray to pixel k of the list the part of its length that lies in the mesh, 0 to 1 where the
- * mesh runs outward. pose: 4x4, row by row. */
+/* Sets paths[k] to the share of the length of the ray to pixel k of the list that lies in the mesh: 0 to 1 if its
+ * triangles face outward. pose: 4x4, row by row. */
 skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps,
                       const double *pose, const skg_pixel_list *pixels, double *paths);
 
-/* Sets marks [rows][columns] to 1 where a ray passes a cap, or may pass it as the device rounds. */
+/* Sets marks [rows][columns] to 1 where a ray passes a cap, or may pass it on a device that rounds. */
 void skg_recast_mark(const skg_camera *camera, const skg_mesh *mesh, const skg_caps *caps, const double *pose,
                      int32_t *marks);
 

@@ -1,5 +1,6 @@
 #include "geometry/samples.h"
 
+#include "core/maths.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
@@ -11,7 +12,7 @@ void skg_spot_init(skg_spot *spot) {
     if (spot) *spot = (skg_spot){.size = (int32_t)sizeof *spot, .tolerance = 5e-3, .most = 1024};
 }
 
-/* How many extents a shape has. */
+/* The number of extents of a shape. */
 static int extents_of(int32_t shape) {
     static const int extents[] = {0, 1, 2, 3, 1, 1, 2};
     return extents[shape];
@@ -37,9 +38,10 @@ static skg_status check_spot(const skg_spot *spot) {
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " samples of the source, at most %" PRId64 "; 0 to %d",
                         spot->samples, spot->most, MOST_SAMPLES);
     if (!(spot->tolerance > 0 && spot->tolerance < 1))
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "a tolerance of %g of the open beam for the source; above 0, below 1",
-                        spot->tolerance);
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "a tolerance of %g of the flat field for the source is not usable; give one above 0 and below 1",
+            spot->tolerance);
     if (spot->grid < 0 || spot->grid > 256 || (spot->grid > 0 && spot->shape > SKG_SPOT_CUBE))
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a grid of %" PRId64 " pieces a side; 0 to 256, of a line, a rectangle or a cube",
@@ -71,22 +73,26 @@ int64_t skg_samples_count(const skg_samples *samples) {
 
 /* --- Sobol's sequence in three dimensions --- */
 
-/* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86: polynomials 1, x + 1, x^2 + x + 1 with starting
- * numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. */
+/* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86, with the polynomials 1, x + 1, x^2 + x + 1 and the
+ * initial numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. DIGITS: 2^17 points exceed
+ * MOST_SAMPLES. */
+enum { DIGITS = 17 };
+
 static void sobol(int64_t index, double x[3]) {
-    uint32_t direction[3][17], sum[3] = {0, 0, 0};
-    for (int k = 0; k < 17; k++) direction[0][k] = UINT32_C(1) << (31 - k);
+    uint32_t direction[3][DIGITS], sum[3] = {0, 0, 0};
+    for (int k = 0; k < DIGITS; k++) direction[0][k] = UINT32_C(1) << (31 - k);
     direction[1][0] = UINT32_C(1) << 31;
-    for (int k = 1; k < 17; k++) direction[1][k] = direction[1][k - 1] ^ (direction[1][k - 1] >> 1);
+    for (int k = 1; k < DIGITS; k++) direction[1][k] = direction[1][k - 1] ^ (direction[1][k - 1] >> 1);
     direction[2][0] = UINT32_C(1) << 31;
     direction[2][1] = UINT32_C(3) << 30;
-    for (int k = 2; k < 17; k++)
+    for (int k = 2; k < DIGITS; k++)
         direction[2][k] = direction[2][k - 1] ^ direction[2][k - 2] ^ (direction[2][k - 2] >> 2);
-    for (int k = 0; k < 17; k++)
+    for (int k = 0; k < DIGITS; k++)
         if (index >> k & 1)
             for (int d = 0; d < 3; d++) sum[d] ^= direction[d][k];
-    /* Digits turned by 0.1010...: at every length of the sequence the pieces' samples stand a third from
-     * their middle, to one side or the other, not all at their corner. */
+    /* The digits are shifted by 0.1010... At every length of the sequence the samples of the pieces are then a
+     * third of a piece from its middle, to one side or the other, and not all in its corner. The half step 2^14
+     * centres them. */
     for (int d = 0; d < 3; d++) x[d] = ((sum[d] ^ UINT32_C(0xaaaa8000)) + 0x1p14) * 0x1p-32;
 }
 
@@ -99,9 +105,9 @@ static void grid_point(const skg_spot *spot, int64_t index, double x[3]) {
 
 /* --- shapes --- */
 
-static const double TURN = 6.283185307179586;
+static const double TURN = 2 * SKG_PI;
 
-/* A point of the spot in its own axes, mm: across, down, along. */
+/* A point of the spot in the axes of the spot, mm: across, down, along. */
 static void place_in_spot(const skg_spot *spot, const double x[3], double local[3]) {
     const double *extent = spot->extent;
     for (int k = 0; k < 3; k++) local[k] = k < extents_of(spot->shape) ? (x[k] - 0.5) * extent[k] : 0;
@@ -116,14 +122,14 @@ static void place_in_spot(const skg_spot *spot, const double x[3], double local[
         local[1] = radius * across * sin(TURN * x[2]);
         local[2] = radius * z;
     } else if (spot->shape == SKG_SPOT_GAUSSIAN) {
-        /* Box and Muller; a full width at half maximum is 2 sqrt(2 ln 2) standard deviations. */
+        /* The transform of Box and Muller. A full width at half maximum is 2 sqrt(2 ln 2) standard deviations. */
         const double radius = sqrt(-2 * log(1 - x[0])) / 2.3548200450309493;
         local[0] = extent[0] * radius * cos(TURN * x[1]);
         local[1] = extent[1] * radius * sin(TURN * x[1]);
     }
 }
 
-/* The spot's axes in the world: across (along the projected column step), down, and towards the detector. */
+/* The axes of the spot in the world: across (along the projected column step), down, and towards the detector. */
 static void find_axes(const skg_spot *spot, const skg_view *view, double axes[3][3]) {
     double *along = axes[2];
     for (int k = 0; k < 3; k++) along[k] = spot->axis[k];
@@ -131,8 +137,8 @@ static void find_axes(const skg_spot *spot, const skg_view *view, double axes[3]
     skg_scale_vector(1 / skg_length(along), along, along);
     const double *step = view->column_step;
     skg_add_scaled(step, -skg_dot(step, along), along, axes[0]);
-    if (!(skg_length(axes[0]) >
-          1e-9 * skg_length(step))) { /* the columns run along the axis: take the rows */
+    /* If the columns run along the axis, up to rounding, the rows do not. */
+    if (!(skg_length(axes[0]) > 1e-9 * skg_length(step))) {
         step = view->row_step;
         skg_add_scaled(step, -skg_dot(step, along), along, axes[0]);
     }

@@ -13,7 +13,7 @@ void skg_scale_grid_release(skg_scale_grid *grid) {
     skg_free(&grid->sums);
 }
 
-/* The cell of a pixel coordinate, clamped to -1 .. count, so that what lies outside stays outside. */
+/* The cell of a pixel coordinate, clamped to -1 and count, which are both outside the detector. */
 static int64_t cell_of(double pixel, int64_t count) {
     double cell = floor(pixel / SKG_SCALE_CELL);
     return cell < -1 ? -1 : cell > (double)count ? count : (int64_t)cell;
@@ -23,10 +23,10 @@ static double most_of(const skg_scale_part *part) {
     return part->weight * (part->high_depth - part->low_depth) * part->multiplicity;
 }
 
-/* Adds to a rectangle of cells by its four corners (largest_sum makes sums of them); 0 where it misses the
- * detector. */
+/* Adds a part to its rectangle of cells, as differences at the four corners that largest_sum sums up. Returns 0
+ * if the rectangle misses the detector. */
 static int add_rectangle(const skg_scale_grid *grid, const skg_scale_part *part) {
-    /* One pixel of margin: coverage is decided on rounded coordinates. */
+    /* One pixel of margin, because the kernels decide with rounded coordinates what is covered. */
     int64_t c0 = cell_of(part->low_column - 1, grid->columns),
             c1 = cell_of(part->high_column + 1, grid->columns);
     int64_t r0 = cell_of(part->low_row - 1, grid->rows), r1 = cell_of(part->high_row + 1, grid->rows);
@@ -68,7 +68,7 @@ void skg_scale_find(const skg_scale_grid *grid, int64_t count, const skg_scale_p
         low = fmin(low, parts[i].low_depth);
         high = fmax(high, parts[i].high_depth);
     }
-    /* Differences of large sums leave rounding behind: at most a few ulp of the total. */
+    /* Sums of differences keep the rounding of larger sums: a few ulp of the total, which 1e-12 exceeds by far. */
     const double bound = total > 0 ? largest_sum(grid) + 1e-12 * total : 0;
     const double plausible = bound > 0 ? fmin(bound, weight * (high - low)) : 0;
     *scale = (skg_scale){.bound = bound, .plausible = plausible, .scale = 1, .bits = bits_wanted};
@@ -76,6 +76,6 @@ void skg_scale_find(const skg_scale_grid *grid, int64_t count, const skg_scale_p
     int exponent = 0;
     frexp(bound, &exponent); /* bound < 2^exponent */
     if (bits_wanted == 32 && ldexp(plausible, 30 - exponent) < 0x1p24) scale->bits = 64;
-    /* 2^50: the kernels round doubles to integers by adding 1.5 * 2^52. */
+    /* 2^50, because the kernels round doubles to integers by adding 1.5 * 2^52. */
     scale->scale = ldexp(1, (scale->bits == 32 ? 30 : 50) - exponent);
 }

@@ -23,7 +23,8 @@ double skg_picture_shown(const skg_picture *picture, double value) {
     double transmission =
         picture->quantity == SKG_QUANTITY_TRANSMISSION ? value : value / picture->flat_field;
     if (!radiograph) return transmission;
-    /* Without transmission, or with a negative one by noise, the object is infinitely dense. 0 - x gives 0, not -0. */
+    /* Without transmission, or with a negative one by noise, the object is infinitely dense. 0 - x gives 0, not
+     * -0. */
     return transmission <= 0 ? HUGE_VAL : 0 - log(transmission);
 }
 

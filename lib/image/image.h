@@ -13,7 +13,8 @@ enum { SKG_DESCRIPTION_LENGTH = 1024 };
 /* The value at `index`, counted from the first value of the first channel. */
 double skg_picture_value(const skg_picture *picture, int64_t index);
 
-/* The number that is shown for a value: -ln(I/I0) or I/I0, or the value itself if the picture has no flat field I0. */
+/* The number that is shown for a value: -ln(I/I0) or I/I0, or the value itself if the picture has no flat field
+ * I0. */
 double skg_picture_shown(const skg_picture *picture, double value);
 
 /* The smallest and the largest number that is shown in the first channel; 0 and 1 if none is finite. */

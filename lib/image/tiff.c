@@ -10,8 +10,8 @@
 #include <tiffio.h>
 #include <unistd.h>
 
-/* Bytes of pixels beyond which a BigTIFF is written: the offsets of a classic TIFF have 32 bits, and its tags take the
- * rest of the 4.29e9. */
+/* Bytes of pixels beyond which a BigTIFF is written: the offsets of a classic TIFF have 32 bits, and its tags
+ * take the rest of the 4.29e9. */
 static const double classic_limit = 4.0e9;
 
 typedef struct {

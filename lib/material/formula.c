@@ -9,8 +9,8 @@
 /* The deepest nesting of brackets; formulas of chemistry have two or three. */
 enum { DEEPEST = 8 };
 
-/* Reads digits with at most one decimal point; without digits the value is 1. strtod would accept signs, exponents and
- * the decimal comma of a locale. */
+/* Reads digits with at most one decimal point; without digits the value is 1. strtod would accept signs,
+ * exponents and the decimal comma of a locale. */
 static double read_number(const char **text, int *given) {
     const char *c = *text;
     double value = 0, place = 1;

@@ -58,8 +58,8 @@ double skg_total_section(const double sections[SKG_PROCESSES]);
 skg_status skg_read_formula(const char *formula, int by_mass, int64_t *count, skg_mass_fraction *parts,
                             double *sum);
 
-/* The atomic number of an element by its symbol, whose case counts, or by its name, whose case does not; 0 if there is
- * none. */
+/* The atomic number of an element by its symbol, whose case counts, or by its name, whose case does not; 0 if
+ * there is none. */
 int32_t skg_find_element(const char *text);
 
 #endif

@@ -14,7 +14,8 @@ void skg_mixture_name(const skg_mixture_row *row, char name[SKG_LONGEST_NAME]);
 /* The mixture that has this name, without regard to case, blanks and punctuation; NULL if there is none. */
 const skg_mixture_row *skg_find_mixture(const char *name);
 
-/* Counts the mixtures whose names hold every word of the query. *row is the last of them; list names the first few. */
+/* Counts the mixtures whose names hold every word of the query. *row is the last of them; list names the first
+ * few. */
 int skg_find_mixtures(const char *query, const skg_mixture_row **row, char *list, size_t size);
 
 /* The name of a mixture or element that is nearest to the text; "" if none is near. */

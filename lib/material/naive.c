@@ -1,5 +1,5 @@
-/* The naive way from a Hounsfield number to mu: interpolation between four materials of the tables. It is kept to show
- * its error. */
+/* The naive way from a Hounsfield number to mu: interpolation between four materials of the tables. It is kept
+ * to show its error. */
 #include "material/material.h"
 
 #include <math.h>

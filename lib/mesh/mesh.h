@@ -54,9 +54,9 @@ static inline void skg_mesh_vertex(const skg_mesh *mesh, int64_t vertex, double 
  * finite, or -1. Both are kept up to date whenever positions change, so this call costs nothing. */
 void skg_mesh_bounds(const skg_mesh *mesh, float lowest[3], float highest[3], int64_t *first_bad);
 
-/* The corners (3 * triangles) in an order that suits the device: along a space-filling curve if neighbours in the
- * caller's order are far apart, otherwise the caller's order. Each triangle keeps the order of its corners. *sorted is
- * 1 if the triangles were reordered. */
+/* The corners (3 * triangles) in an order that suits the device: along a space-filling curve if neighbours in
+ * the caller's order are far apart, otherwise the caller's order. Each triangle keeps the order of its corners.
+ * *sorted is 1 if the triangles were reordered. */
 skg_status skg_mesh_sorted_corners(const skg_mesh *mesh, int32_t *corners, int32_t *sorted);
 
 #endif

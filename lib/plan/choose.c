@@ -1,22 +1,28 @@
-#include "stage/raster.h"
+#include "plan/choose.h"
+#include "geometry/extent.h"
 
-#include <skiagraph/plan.h>
+#include <math.h>
 
-/* Measured on two cores (Zen 3, AVX2, PoCL 3.1), spheres, project + raster + resolve, least of 3 x 21 frames,
- * ms: triangles, detector      copies   bands   atomics 41,616,    512^2           0.86    1.16      3.44
- *     41,616,    1024^2          1.94    2.21
- *     168,100,   2048^2         10.4     9.42
- *     1,000,000, 2048^2         21.1    24.4
- * Copies cost two passes over the image for each worker, bands about 10 ns a triangle and worker: bands win
- * where the image is large and the triangles are not small. The line for many workers is an estimate by the
- * same costs; what a GPU does best has not been measured. */
+/* clang-format off */
+/* Time of project, raster and resolve for spheres on two cores (Zen 3, AVX2, PoCL 3.1), the least of 3 x 21 frames, ms:
+ *
+ *     triangles  detector   copies   bands   atomics
+ *        41,616   512^2       0.86    1.16      3.44
+ *        41,616  1024^2       1.94    2.21
+ *       168,100  2048^2      10.4     9.42
+ *     1,000,000  2048^2      21.1    24.4
+ *
+ * Copies cost two passes over the image for each worker. Bands cost about 10 ns for each triangle and worker, so they win
+ * if the image is large and the triangles are not small. The limit for many workers is an estimate by the same costs. The
+ * best strategy of a GPU has not been measured. */
+/* clang-format on */
 enum {
     FEW_WORKERS = 4,
     LARGE_IMAGE = 8 << 20, /* bytes of a private copy */
     LARGE_TRIANGLE = 32    /* pixels of a box: 168,100 triangles at 2048^2 have some 80, a million some 14 */
 };
 
-int32_t skg_raster_choose(const skg_raster_facts *facts, const char **why) {
+int32_t skg_strategy_choose(const skg_strategy_facts *facts, const char **why) {
     if (facts->is_gpu) {
         *why = "a GPU adds integers in global memory without sorting first";
         return SKG_STRATEGY_ATOMICS;
@@ -31,4 +37,51 @@ int32_t skg_raster_choose(const skg_raster_facts *facts, const char **why) {
     }
     *why = "few workers, a small image or small triangles: a private image each needs no sorting";
     return SKG_STRATEGY_COPIES;
+}
+
+/* Mean number of pixels of a triangle's box. A closed part covers its rectangle about twice, and a box has twice the
+ * area of its triangle. */
+static double mean_box(const skg_scene *scene, const skg_camera *camera) {
+    double pixels = 0, triangles = 0;
+    for (int64_t p = 0; p < scene->count; p++) {
+        const skg_scene_part_data *part = &scene->parts[p];
+        skg_extent extent;
+        skg_extent_find(camera, part->mesh, part->pose, &extent);
+        if (!extent.on_detector) continue;
+        const skg_scale_part *r = &extent.scale;
+        const double width = fmin(r->high_column, (double)camera->columns) - fmax(r->low_column, 0);
+        const double height = fmin(r->high_row, (double)camera->rows) - fmax(r->low_row, 0);
+        pixels += 4 * width * height;
+        triangles += (double)part->mesh->triangles;
+    }
+    return triangles > 0 ? pixels / triangles : 0;
+}
+
+static int64_t count_triangles(const skg_scene *scene) {
+    int64_t triangles = 0;
+    for (int64_t p = 0; p < scene->count; p++) triangles += scene->parts[p].mesh->triangles;
+    return triangles;
+}
+
+skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *strategy, const char **why) {
+    const skg_view *view = request->view;
+    skg_camera camera;
+    SKG_TRY(skg_camera_make(view, NULL, 0, 0, &camera));
+    *strategy = request->wanted;
+    *why = "asked for";
+    if (request->precision == SKG_PRECISION_HALF) {
+        *strategy = SKG_STRATEGY_ATOMICS;
+        *why = "precision half has no other";
+    }
+    if (*strategy != SKG_STRATEGY_AUTO) return SKG_OK;
+    const skg_strategy_facts facts = {
+        .is_gpu = request->device->is_gpu,
+        .workers = request->device->compute_units,
+        .image_bytes = view->rows * view->columns * request->accumulators *
+                       (request->precision == SKG_PRECISION_DOUBLE ? 8 : 4),
+        .triangles = count_triangles(request->scene),
+        .triangle_pixels = mean_box(request->scene, &camera),
+    };
+    *strategy = skg_strategy_choose(&facts, why);
+    return SKG_OK;
 }

@@ -1,36 +1,42 @@
-/* What effects cost, estimated from what they do: counts of operations per pixel, over those of a frame
- * without any. */
-#include "plan/report.h"
+#include "plan/costs.h"
+#include "plan/decide.h"
 #include "spectral/compress.h"
 
 #include <math.h>
 
-/* Multiply-adds: an exponential; a triangle set up; what an effect does for a pixel (a deviate with its
- * random words, the ray's length, a pixel of a repair), and for a hit that is listed and sorted. Rough. */
-static const double EXPONENTIAL = 12, TRIANGLE = 100, DEVIATE = 100, RAY = 10, MENDED = 30, LISTED = 200;
+/* Rough numbers of multiply-adds. */
+static const double EXPONENTIAL = 12; /* an exponential */
+static const double TRIANGLE = 100;   /* setting up a triangle */
+static const double DEVIATE = 100;    /* a random deviate with its random words */
+static const double RAY = 10;         /* the length of a ray */
+static const double REPAIRED = 30;    /* a pixel of a repair */
+static const double LISTED = 200;     /* a hit that is listed and sorted */
 
 typedef struct {
-    const skg_plan *plan;
-    double pixels, hits; /* of a pass; hits per pixel that closed parts write */
+    const skg_recipe *recipe;
+    const skg_blur *blur; /* NULL: none */
+    double pixels;
+    double hits; /* of a pass, per pixel */
     double passes;
 } counts;
 
-/* A closed part covers about its rectangle, front and back. */
+/* Hits per pixel of the detector: a closed part covers about its rectangle, front and back. */
 static double hits_of(const counts *c, const skg_extent *extent) {
     const skg_scale_part *r = &extent->scale;
-    const skg_view *view = &c->plan->view;
+    const skg_view *view = &c->recipe->view;
     if (!extent->on_detector) return 0;
     const double width = fmin(r->high_column, (double)view->columns) - fmax(r->low_column, 0);
     const double height = fmin(r->high_row, (double)view->rows) - fmax(r->low_row, 0);
     return 2 * fmax(width, 0) * fmax(height, 0) / c->pixels;
 }
 
-static counts count(const skg_plan *plan, const skg_extent *extents) {
-    counts c = {.plan = plan,
-                .pixels = (double)plan->view.columns * (double)plan->view.rows,
-                .passes = (double)plan->report.samples};
-    for (int64_t p = 0; p < plan->scene->count; p++)
-        if (plan->model.first_contribution[p + 1] > plan->model.first_contribution[p])
+static counts count(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents) {
+    counts c = {.recipe = recipe,
+                .blur = blur,
+                .pixels = (double)recipe->view.columns * (double)recipe->view.rows,
+                .passes = (double)skg_samples_count(&recipe->samples)};
+    for (int64_t p = 0; p < recipe->scene->count; p++)
+        if (recipe->model.first_contribution[p + 1] > recipe->model.first_contribution[p])
             c.hits += hits_of(&c, &extents[p]);
     return c;
 }
@@ -40,19 +46,21 @@ static double attenuation(const skg_model *model, double nodes, double planes) {
     return planes * SKG_COST_OF_PLANE + nodes * (planes + EXPONENTIAL + model->channels);
 }
 
-static double writes_per_part(const skg_model *model, int64_t parts) {
+static double contributions_per_part(const skg_model *model, int64_t parts) {
     int64_t adding = 0;
     for (int64_t p = 0; p < parts; p++)
         adding += model->first_contribution[p + 1] > model->first_contribution[p];
     return adding ? (double)model->first_contribution[parts] / (double)adding : 1;
 }
 
-/* What of the plan's effects costs anything, in multiply-adds per pixel of a frame. plain: a pass without. */
+/* Multiply-adds per pixel of a frame that an effect costs. plain: those of a pass without effects; pass: of a pass. */
 static double cost_of(const counts *c, int effect, double plain, double pass) {
-    const skg_plan *plan = c->plan;
-    const skg_model *model = &plan->model;
+    const skg_recipe *recipe = c->recipe;
+    const skg_model *model = &recipe->model;
     const double nodes = model->nodes, planes = model->planes, channels = model->channels;
-    const double shifts = (double)(plan->samples.shifts * plan->samples.shifts);
+    const double shifts = (double)(recipe->samples.shifts * recipe->samples.shifts);
+    skg_attenuation shape;
+    skg_decide_attenuation(recipe, &shape);
     switch (effect) {
     case SKG_EFFECT_ENERGIES:
         return pass - plain;
@@ -63,36 +71,40 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_SUPERSAMPLING:
         return (c->passes - c->passes / shifts) * pass;
     case SKG_EFFECT_WORLD:
-        return c->passes * (RAY + (plan->attenuation.ratio ? nodes * (1 + EXPONENTIAL) : 0));
+        return c->passes * (RAY + (shape.ratio ? nodes * (1 + EXPONENTIAL) : 0));
     case SKG_EFFECT_FALLOFF:
         return c->passes * RAY;
-    case SKG_EFFECT_OPEN:
-        return c->passes * (double)plan->open_count * 2 * SKG_COST_OF_PLANE;
+    case SKG_EFFECT_LEAKY:
+        return c->passes * (double)recipe->leaky_count * 2 * SKG_COST_OF_PLANE;
     case SKG_EFFECT_REPAIR:
-        return c->passes * (double)plan->open_count * MENDED;
+        return c->passes * (double)recipe->leaky_count * REPAIRED;
     case SKG_EFFECT_PRIORITY:
         return c->passes * c->hits * LISTED;
     case SKG_EFFECT_NOISE:
         return c->passes * channels * (nodes + DEVIATE);
     case SKG_EFFECT_BLUR:
-        return channels * (double)skg_blur_samples(plan->blur);
+        return channels * (double)skg_blur_samples(c->blur);
     case SKG_EFFECT_ELECTRONIC:
         return channels * DEVIATE;
     case SKG_EFFECT_QUANTISATION:
         return channels;
-    default: /* in what is done anyway, or when the plan is made */
+    default: /* part of what is done anyway, or done when the plan is made */
         return 0;
     }
 }
 
-void skg_report_costs(skg_plan *plan, const skg_extent *extents) {
-    const skg_model *model = &plan->model;
-    const counts c = count(plan, extents);
-    const double set_up = TRIANGLE * (double)plan->report.triangles / c.pixels;
+void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
+                        skg_outcome *outcome) {
+    const skg_model *model = &recipe->model;
+    const counts c = count(recipe, blur, extents);
+    const double set_up = TRIANGLE * (double)outcome->report.triangles / c.pixels;
     const double plain = set_up + c.hits * SKG_COST_OF_CONTRIBUTION + attenuation(model, 1, 1);
-    const double pass = set_up +
-                        c.hits * SKG_COST_OF_CONTRIBUTION * writes_per_part(model, plan->scene->count) +
-                        attenuation(model, model->nodes, model->planes);
-    for (int e = 0; e < SKG_EFFECTS; e++)
-        plan->effects[e].cost = plan->effects[e].on ? cost_of(&c, e, plain, pass) / plain : 0;
+    const double pass =
+        set_up +
+        c.hits * SKG_COST_OF_CONTRIBUTION * contributions_per_part(model, recipe->scene->count) +
+        attenuation(model, model->nodes, model->planes);
+    for (int e = 0; e < SKG_EFFECTS; e++) {
+        skg_effect_state *effect = &outcome->effects[e];
+        effect->cost = effect->on ? cost_of(&c, e, plain, pass) / plain : 0;
+    }
 }

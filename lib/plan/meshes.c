@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct {
     const skg_mesh *mesh;
@@ -15,7 +14,7 @@ static int by_mesh(const void *a, const void *b) {
     return left->part < right->part ? -1 : 1;
 }
 
-/* Gives each part the number of its mesh; meshes are numbered by the first part that has them. */
+/* Gives each part the number of its mesh. Meshes are numbered in the order of the first part that uses them. */
 static skg_status find_distinct(const skg_scene *scene, skg_plan_meshes *meshes) {
     mesh_of_part *sorted = NULL;
     int64_t *first = NULL; /* [parts] the first part with the same mesh */
@@ -32,7 +31,7 @@ static skg_status find_distinct(const skg_scene *scene, skg_plan_meshes *meshes)
     SKG_TRY_CLEANUP(skg_alloc(meshes->count, sizeof *meshes->meshes, "meshes", &meshes->meshes));
     int64_t number = 0;
     for (int64_t i = 0; i < scene->count; i++) {
-        if (first[i] == i) meshes->meshes[number].mesh = scene->parts[i].mesh;
+        if (first[i] == i) meshes->meshes[number] = scene->parts[i].mesh;
         meshes->of_part[i] = first[i] == i ? number++ : meshes->of_part[first[i]];
     }
 cleanup:
@@ -53,7 +52,7 @@ void skg_plan_meshes_release(skg_plan_meshes *meshes) {
 
 skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene *scene) {
     for (int64_t i = 0; i < meshes->count; i++) {
-        const skg_mesh *mesh = meshes->meshes[i].mesh;
+        const skg_mesh *mesh = meshes->meshes[i];
         if (mesh->first_bad < 0) continue;
         int64_t part = 0;
         while (meshes->of_part[part] != i) part++;
@@ -62,16 +61,4 @@ skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene 
                         scene->parts[part].label, mesh->first_bad, mesh->name);
     }
     return SKG_OK;
-}
-
-void skg_plan_mesh_offsets(const skg_mesh *mesh, int32_t is_double, void *offsets) {
-    if (!is_double) {
-        memcpy(offsets, mesh->offsets, (size_t)mesh->vertices * 3 * sizeof *mesh->offsets);
-        return;
-    }
-    double *to = offsets;
-    for (int64_t v = 0; v < mesh->vertices; v++) {
-        skg_mesh_vertex(mesh, v, to + 3 * v);
-        for (int k = 0; k < 3; k++) to[3 * v + k] -= mesh->origin[k];
-    }
 }

@@ -1,21 +1,21 @@
-/* What a plan tells: effects with reasons, overlaps, and after a job its stages and its bad pixels. Private.
- */
+/* What is reported of finished work: times, bad pixels, negative exponents, lengths outside the verified range. Private. */
 #ifndef SKG_REPORT_H
 #define SKG_REPORT_H
 
-#include "frame/plan.h"
-#include "geometry/extent.h"
+#include "plan/outcome.h"
+#include "stage/leaky.h"
 
-/* Fills the effects of a new plan. */
-skg_status skg_report_effects(skg_plan *plan);
+/* What the device leaves of work, in staged memory. */
+typedef struct {
+    int32_t *negative; /* [2] pixels with a negative exponent in the last frame; outside the range in any frame */
+    int32_t *listed;   /* [2] of the last frame, as skg_raster_read_listed leaves it */
+    int32_t *bad_vertex; /* the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
+    skg_leaky_verdicts leaky; /* of the last frame */
+} skg_results;
 
-/* Estimates what the effects of a plan cost; extents: [parts], at its view (effect_costs.c). */
-void skg_report_costs(skg_plan *plan, const skg_extent *extents);
-
-/* Finds overlaps and warns of them, where asked for. */
-skg_status skg_report_overlaps(skg_plan *plan);
-
-/* A finished job: stage times, bad and negative pixels, with their warnings. */
-skg_status skg_report_job(skg_job *job);
+/* Reports finished work, with its warnings. SKG_ERR_MESH for a vertex that could not be projected; SKG_RANGE if the
+ * error bound is not stated for the lengths that were met. */
+skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const skg_geometry *geometry,
+                           const skg_results *results, const skg_stage_log *log, skg_outcome *outcome);
 
 #endif

@@ -1,11 +1,8 @@
-/* The warning that nothing falls on the detector, with the direction and the distance of what comes nearest.
- */
-#include "frame/frame.h"
+#include "plan/unseen.h"
 
 #include <math.h>
 
-/* By how many pixels a stretch misses the detector along one axis: negative before it, positive beyond, 0 on
- * it. */
+/* By how many pixels a stretch misses the detector along one axis: negative before it, positive beyond it, 0 on it. */
 static double miss(double low, double high, int64_t count) {
     if (high < -0.5) return high + 0.5;
     const double last = (double)count - 0.5;
@@ -17,29 +14,29 @@ static const char *direction(double across, double down) {
     return down < 0 ? "before its first row" : "beyond its last row";
 }
 
-void skg_warn_unseen(skg_plan *plan, const skg_frame_parts *frame) {
-    const skg_scene *scene = plan->scene;
+void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const skg_camera *camera,
+                     const skg_extent *extents, skg_outcome *outcome) {
     double nearest = HUGE_VAL, across = 0, down = 0;
     int64_t part = -1;
-    if (plan->told_unseen) return;
+    if (outcome->warned_unseen) return;
     for (int64_t p = 0; p < scene->count; p++) {
-        if (frame->extents[p].on_detector) return;
-        const skg_scale_part *at = &frame->extents[p].scale;
+        if (extents[p].on_detector) return;
+        const skg_scale_part *at = &extents[p].scale;
         if (!(at->high_depth > at->low_depth)) continue; /* behind the source or the detector */
-        const double i = miss(at->low_column, at->high_column, frame->camera.columns);
-        const double j = miss(at->low_row, at->high_row, frame->camera.rows);
+        const double i = miss(at->low_column, at->high_column, camera->columns);
+        const double j = miss(at->low_row, at->high_row, camera->rows);
         if (hypot(i, j) < nearest) nearest = hypot(i, j), across = i, down = j, part = p;
     }
-    plan->told_unseen = 1;
+    outcome->warned_unseen = 1;
     if (part < 0) {
-        skg_log(plan->context, SKG_LOG_WARNING,
+        skg_log(context, SKG_LOG_WARNING,
                 "nothing falls on the detector: all parts lie behind the source or behind the detector");
         return;
     }
-    const double *step = fabs(across) >= fabs(down) ? frame->camera.column : frame->camera.row;
+    const double *step = fabs(across) >= fabs(down) ? camera->column : camera->row;
     const double pixels = fmax(fabs(across), fabs(down));
     skg_log(
-        plan->context, SKG_LOG_WARNING,
+        context, SKG_LOG_WARNING,
         "nothing falls on the detector: the shadow of %s, which comes nearest, lies %.4g pixels (%.4g mm on the "
         "detector) %s",
         scene->parts[part].label, pixels,

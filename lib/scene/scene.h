@@ -25,8 +25,8 @@ struct skg_scene {
     skg_part_index labels; /* parts by label */
     /* Parts by mesh and the pose with which they were added; only the first of parts that are alike. */
     skg_part_index places;
-    /* Each of these grows with every change of its kind. A plan made for an older structure (a part added, or put inside
-     * another) is stale. */
+    /* Each of these grows with every change of its kind. A plan made for an older structure (a part added, or
+     * put inside another) is stale. */
     int64_t structure, materials, poses;
 };
 

@@ -10,8 +10,8 @@
 /* Pixels of the longest side: products of two sides and of pixels with bits stay within 32 and 64 bit integers. */
 enum { LARGEST_SIDE = 32768 };
 
-/* Sines and relative distances below this are degenerate. Single precision fails to separate the pixels at much larger
- * ones. */
+/* Sines and relative distances below this are degenerate. Single precision fails to separate the pixels at much
+ * larger ones. */
 static const double DEGENERATE = 1e-9;
 
 /* In mm, so 1000 km: far beyond any set-up, and cubes of it are far below the largest float. */

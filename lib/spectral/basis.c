@@ -1,10 +1,13 @@
 #include "spectral/basis.h"
+
+#include "core/vector.h"
 #include "spectral/nnls.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Share of the greatest weight that every energy has: none is left out. */
+/* The least weight of an energy, as a share of the greatest: no energy is left out, and those that hardly arrive
+ * count for little. */
 static const double LEAST_WEIGHT = 1e-4;
 
 void skg_basis_release(skg_basis *basis) {
@@ -14,8 +17,8 @@ void skg_basis_release(skg_basis *basis) {
     basis->planes = 0;
 }
 
-/* Roots of the mean share that a bin has of what is recorded, over points and sets: errors of exponents count
- * by it. */
+/* Weighs each bin with the root of its mean share of the recorded signal over points and sets, because the error
+ * of an exponent counts in proportion to that share. */
 static skg_status weigh_bins(const skg_polychromatic *beam, const skg_lengths *points, double *weight) {
     double *passed = NULL, greatest = 0;
     SKG_TRY(skg_alloc(beam->bins, sizeof *passed, "basis", &passed));
@@ -36,16 +39,10 @@ static double thickness(const skg_polychromatic *beam, int32_t material) {
     return fmax(fabs(beam->low[material]), fabs(beam->high[material]));
 }
 
-static double dot(const double *a, const double *b, int32_t count) {
-    double sum = 0;
-    for (int32_t i = 0; i < count; i++) sum += a[i] * b[i];
-    return sum;
-}
-
-/* Takes what `column` has along the unit vector away, twice: once leaves rounding. */
+/* Removes the component of `column` along a unit vector. It is done twice, because once leaves rounding behind. */
 static void take_away(double *column, const double *unit, int32_t count) {
     for (int twice = 0; twice < 2; twice++) {
-        const double along = dot(column, unit, count);
+        const double along = skg_dot_long(count, column, unit);
         for (int32_t i = 0; i < count; i++) column[i] -= along * unit[i];
     }
 }
@@ -69,12 +66,12 @@ skg_status skg_basis_order(const skg_polychromatic *beam, const skg_lengths *poi
             const double *left = rest + order[j] * bins, *best = rest + order[most] * bins;
             if (k == 0 && order[j] == first) most = j;
             if (k == 0 && order[most] == first) break;
-            if (dot(left, left, bins) > dot(best, best, bins)) most = j;
+            if (skg_dot_long(bins, left, left) > skg_dot_long(bins, best, best)) most = j;
         }
         const int32_t taken = order[most];
         order[most] = order[k], order[k] = taken;
         double *unit = rest + taken * bins;
-        const double length = sqrt(dot(unit, unit, bins));
+        const double length = sqrt(skg_dot_long(bins, unit, unit));
         for (int32_t b = 0; b < bins && length > 0; b++) unit[b] /= length;
         for (int32_t j = k + 1; j < materials; j++) take_away(rest + order[j] * bins, unit, bins);
     }
@@ -84,7 +81,7 @@ cleanup:
     return status;
 }
 
-/* mix of every material: itself where it is a plane, else by weighted least squares. */
+/* The mix of every material: 1 of its own plane if it has one, otherwise by weighted least squares. */
 static skg_status mix_materials(const skg_polychromatic *beam, const double *weight, skg_basis *basis) {
     const int32_t bins = beam->bins, planes = basis->planes;
     skg_least_squares system = {0};
@@ -116,7 +113,7 @@ cleanup:
     return status;
 }
 
-/* All bins, with the attenuation that the planes give. */
+/* The greatest error over the points if every bin is used with the attenuation that the planes give. */
 static skg_status find_error(const skg_polychromatic *beam, const skg_lengths *points, skg_basis *basis) {
     skg_nodes all = {.count = beam->bins, .shares = (double *)beam->shares};
     SKG_TRY(skg_alloc(beam->bins, sizeof *all.bin, "basis", &all.bin));

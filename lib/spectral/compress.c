@@ -8,11 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-/* How many nodes a plane is multiplied for, as long as that is not known. */
+/* The number of nodes that a plane is multiplied for, while it is not known: most beams need 8 to 24. */
 static const double LIKELY_NODES = 12;
-/* What of the tolerance planes may use, before the doubling of what is found. */
+/* The share of the tolerance that the error of the planes may have. An error that is found is doubled to a bound, so
+ * this leaves three quarters of the tolerance to the nodes. */
 static const double SHARE_OF_PLANES = 0.125;
-/* Points that planes are chosen by. */
+/* Points by which planes are chosen: corners of the range, random points, and lengths that rays meet. A few hundred
+ * points suffice for a choice; the verification uses thousands. */
 enum { CORNERS = 64, DRAWS = 160, GIVEN = 96 };
 
 typedef struct {
@@ -27,7 +29,8 @@ typedef struct {
     skg_compression found;
 } compressing;
 
-/* An image over the open beam shows what is left of little where the world lets little pass. */
+/* Errors are relative from this transmission on. A ratio to the flat field in a world that transmits little
+ * shows small transmissions, so it needs a lower limit. */
 static skg_status find_floor(compressing *c, const skg_model *model) {
     double *lengths = NULL, *exact = NULL;
     skg_status status = SKG_OK;
@@ -46,15 +49,17 @@ cleanup:
     return status;
 }
 
-/* Means of the channels, then their variances where there is noise. */
+/* The sets of weights: the means of the channels and, with noise, their variances. */
 static int32_t sets_of(const skg_model *model) {
     return model->variances ? 2 * model->channels : model->channels;
 }
 
-/* What set s takes of node n. */
+/* The table that holds the weights of set s. */
 static double *table_of(const skg_model *model, int32_t s) {
     return s < model->channels ? model->weights : model->variances;
 }
+
+/* The weight of node n in set s. */
 static double *weight_at(const skg_model *model, int32_t n, int32_t s) {
     return &table_of(model, s)[n * model->channels + s % model->channels];
 }
@@ -79,7 +84,7 @@ static skg_status describe(compressing *c, const skg_model *model) {
 
 /* --- planes --- */
 
-/* What a mm of a part adds to the planes of a basis: weights [planes]. */
+/* Sets weights [planes] to what a mm of a part adds to the planes of a basis. */
 static void mix_contributions(const skg_model *model, const skg_basis *basis, int64_t part, double *weights) {
     memset(weights, 0, (size_t)basis->planes * sizeof *weights);
     for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
@@ -98,7 +103,7 @@ static double cost_of(const compressing *c, const skg_model *model, const skg_ba
     return cost;
 }
 
-/* The cheapest of the layouts that the tolerance allows, from a plane per material down. */
+/* Chooses the cheapest of the layouts that the tolerance allows, from one plane for each material downwards. */
 static skg_status choose_planes(compressing *c, const skg_model *model) {
     const int32_t materials = c->beam.materials;
     skg_lengths points = {0};
@@ -159,7 +164,7 @@ static skg_status rewrite_contributions(const compressing *c, skg_model *model) 
     first = NULL, contributions = NULL;
     int32_t world = 0;
     while (world < planes && c->basis.material[world] != model->world_plane) world++;
-    if (model->world_plane >= 0) model->world_plane = world; /* the first that was taken */
+    if (model->world_plane >= 0) model->world_plane = world; /* the basis took its material first */
     model->planes = planes;
 cleanup:
     skg_free(&first);
@@ -168,7 +173,8 @@ cleanup:
     return status;
 }
 
-/* What planes hold over the range of lengths; and rounding of their sums more. */
+/* The values that planes take over the range of lengths, widened by the rounding of their sums in single
+ * precision. */
 static skg_status find_range(const compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;
     SKG_TRY(skg_alloc(2 * (int64_t)planes, sizeof *model->range, "planes", &model->range));
@@ -189,7 +195,7 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     const skg_nodes *nodes = &c->found.nodes;
     const int32_t sets = c->beam.sets, bins = c->beam.bins, planes = c->basis.planes;
     for (int32_t n = 0; n < nodes->count; n++) {
-        const int32_t bin = nodes->bin[n]; /* n or above: nothing is overwritten before it is read */
+        const int32_t bin = nodes->bin[n]; /* at least n, so that nothing is overwritten before it is read */
         double before = 0, after = 0;
         for (int32_t s = 0; s < sets; s++) {
             const double weight = nodes->shares[n * sets + s] * c->sums[s];
@@ -211,7 +217,7 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
 skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
                         const double *mu, skg_model *model) {
     const int is_ratio = skg_quantity_is_ratio(options);
-    /* A ratio to what the world lets pass has the errors of both. */
+    /* A ratio to the transmission of the world has the errors of both. */
     const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
     compressing c = {
         .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};

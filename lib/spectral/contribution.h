@@ -1,11 +1,11 @@
-/* What a part's hits add to one plane. Private. */
+/* The contribution of a part to a plane. Private. */
 #ifndef SKG_CONTRIBUTION_H
 #define SKG_CONTRIBUTION_H
 
 #include <stdint.h>
 
-/* weight (per mm of path: mm per mm, or a basis coefficient) times the path parameter, plus bias in units of
- * the accumulator (1 with weight 0: a count plane). */
+/* A hit adds weight times the path parameter, plus bias in units of the accumulator. The weight is mm per mm of
+ * path, or a coefficient of a basis. A count plane has weight 0 and bias 1. */
 typedef struct {
     int64_t plane;
     double weight, bias;

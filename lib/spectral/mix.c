@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Lists whose weights differ by less, over their largest, are proportional: rounding of tables and sums. */
+/* Lists whose weights differ by less, relative to the largest, are proportional: tables and sums are rounded. */
 static const double PROPORTIONAL = 1e-13;
 
 void skg_mix_release(skg_mix *mix) {
@@ -13,7 +13,8 @@ void skg_mix_release(skg_mix *mix) {
     mix->sums = 0;
 }
 
-/* A list over all planes, divided by its first weight of greatest size, which is returned. */
+/* Writes the contributions as a list over all planes, divided by the first weight of largest size, which is
+ * returned. */
 static double normalise(int32_t planes, const skg_contribution *contributions, int64_t count, double *list) {
     double largest = 0;
     memset(list, 0, (size_t)planes * sizeof *list);
@@ -30,7 +31,7 @@ static int same_list(const double *a, const double *b, int32_t planes) {
     return 1;
 }
 
-/* The accumulator of a normalised list, a new one if need be; -1: there are `most` already. */
+/* The accumulator of a normalised list; a new one if there is none. Returns -1 if there are `most` already. */
 static int32_t accumulator_of(const double *list, int32_t planes, int32_t most, skg_mix *mix) {
     for (int32_t s = 0; s < mix->sums; s++)
         if (same_list(mix->lists + (int64_t)s * planes, list, planes)) return s;

@@ -1,9 +1,9 @@
-/* How path lengths become an image: which planes parts add to, and with which coefficients and weights planes
- * become exponents and channels. Private.
+/* The model of a plan: the planes that parts add to, and the coefficients and weights with which planes become
+ * exponents and channels of the image. Private.
  *
- * Materials whose attenuation is proportional over the energies share a plane, each with its factor; so a
- * beam of one energy has one plane for any number of materials (numerics.md 5). A part adds what it has more
- * than the parent that it displaces (Vidal and Villard 2016, Eq. 9, for any depth). */
+ * Materials whose attenuation is proportional over the energies share a plane, each with its factor. A beam of
+ * one energy therefore has one plane for any number of materials (docs/numerics.md, Planes and nesting). A part
+ * adds its attenuation less that of the parent that it displaces (Vidal and Villard 2016, Eq. 9, for any depth). */
 #ifndef SKG_MODEL_H
 #define SKG_MODEL_H
 
@@ -14,27 +14,30 @@
 
 typedef struct {
     int32_t planes, nodes, channels, reserved;
-    int64_t *first_contribution;     /* [parts + 1] into contributions */
-    skg_contribution *contributions; /* what a mm of a part's path adds; a part without any does not show */
-    double *coefficients;            /* [nodes][planes] 1/mm per mm of a plane */
-    double *weights; /* [nodes][channels]: of the quantity; per mm2 for fluence, of I/I0 for ratios */
-    double
-        *variances; /* [nodes][channels] with noise: sum of squares of what single photons add; else NULL */
-    double *flat_field;  /* [channels] sum of the weights before they were made those of a ratio */
-    int64_t world_plane; /* that a mm of the world's path adds world_weight to; -1: vacuum */
+    int64_t *first_contribution; /* [parts + 1] into contributions */
+    /* What a mm of a part's path adds. A part without any is not seen. */
+    skg_contribution *contributions;
+    double *coefficients; /* [nodes][planes] 1/mm per mm of a plane */
+    double *weights;      /* [nodes][channels] of the quantity: per mm2 for fluence, of I/I0 for ratios */
+    /* [nodes][channels] with noise: the sum of squares of what single photons add; otherwise NULL. */
+    double *variances;
+    double *flat_field;  /* [channels] the sum of the weights before they were made those of a ratio */
+    int64_t world_plane; /* the plane to which a mm of the world's path adds world_weight; -1: vacuum */
     double world_weight;
-    double *node_photons; /* [nodes] of an open beam that would weigh as much */
+    double *node_photons; /* [nodes] photons of the flat field that would have the same weight */
     double *node_kev;     /* [nodes] */
-    int32_t bins;         /* of the spectrum that have photons */
-    int32_t materials;    /* that differ: planes without compression */
-    double *range;        /* [planes][2] mm: what planes may hold for the bound to hold; NULL: no matter */
-    double bound;         /* of the error that fewer nodes and planes make, stated; 0: every bin is used */
-    int64_t verified;     /* points of the range of lengths on which it was found */
+    int32_t bins;         /* bins of the spectrum that have photons */
+    int32_t materials;    /* that differ: the number of planes without compression */
+    double *range;        /* [planes][2] mm, the values of planes for which the bound holds; NULL: any */
+    double bound;         /* stated bound of the error by fewer nodes and planes; 0: every bin is used */
+    int64_t verified;     /* points of the range of lengths on which the bound was verified */
 } skg_model;
 
-/* options: quantity, response, world, bands, tolerance, noise (variances, too; weights are those of
- * photons in a pixel, not of a ratio). view, and options->views: whose lengths a compression has to hold for.
- */
+/* Makes the model (create.c).
+ *
+ * view      a compression holds for the lengths of this view and of options->views
+ * options   quantity, response, world, bands, tolerance; with noise there are variances, and the weights are those of
+ *           photons in a pixel, not of a ratio */
 skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model);
 void skg_model_release(skg_model *model);

@@ -1,9 +1,11 @@
 #include "spectral/nnls.h"
 
+#include "core/vector.h"
+
 #include <math.h>
 #include <string.h>
 
-/* A diagonal below this share of its column's length is rounding. */
+/* A diagonal below this share of the length of its column is rounding: some 50 times the epsilon of a double. */
 static const double DEPENDENT = 1e-14;
 
 skg_status skg_least_squares_create(int64_t rows, int32_t columns, skg_least_squares *system) {
@@ -25,25 +27,18 @@ void skg_least_squares_release(skg_least_squares *system) {
     skg_free(&system->list);
 }
 
-static double dot(const double *a, const double *b, int64_t from, int64_t to) {
-    double sum = 0;
-    for (int64_t i = from; i < to; i++) sum += a[i] * b[i];
-    return sum;
-}
-
-/* Householder reflections that make the first `count` of `all` columns of q ([all][rows]) upper triangular.
- */
+/* Makes the first `count` of `all` columns of q ([all][rows]) upper triangular by Householder reflections. */
 static void reflect(double *q, int64_t rows, int32_t count, int32_t all) {
     for (int32_t k = 0; k < count && k + 1 < rows; k++) {
         double *v = q + k * rows;
-        const double length = sqrt(dot(v, v, k, rows));
+        const double length = sqrt(skg_dot_long(rows - k, v + k, v + k));
         if (!(length > 0)) continue;
         const double diagonal = v[k] > 0 ? -length : length;
         v[k] -= diagonal;
-        const double square = dot(v, v, k, rows);
+        const double square = skg_dot_long(rows - k, v + k, v + k);
         for (int32_t j = k + 1; j < all; j++) {
             double *column = q + j * rows;
-            const double share = 2 * dot(v, column, k, rows) / square;
+            const double share = 2 * skg_dot_long(rows - k, v + k, column + k) / square;
             for (int64_t i = k; i < rows; i++) column[i] -= share * v[i];
         }
         v[k] = diagonal;
@@ -64,13 +59,14 @@ skg_status skg_least_squares_reduce(const skg_least_squares *system, skg_least_s
     return SKG_OK;
 }
 
-/* Diagonal of (R^T R)^-1: squared lengths of the rows of R^-1, column by column of the inverse. */
+/* The diagonal of (R^T R)^-1, which are the squared lengths of the rows of R^-1. The inverse is made column by
+ * column. */
 static void find_spread(const double *r, int64_t rows, int32_t count, const int32_t *in,
                         const skg_least_squares *system, double *inverse, double *spread) {
     memset(spread, 0, (size_t)count * sizeof *spread);
     for (int32_t j = 0; j < count; j++) {
         if (fabs(r[j * rows + j]) <=
-            DEPENDENT * sqrt(dot(system->a + in[j] * rows, system->a + in[j] * rows, 0, rows))) {
+            DEPENDENT * sqrt(skg_dot_long(rows, system->a + in[j] * rows, system->a + in[j] * rows))) {
             spread[j] = HUGE_VAL;
             continue;
         }
@@ -95,15 +91,17 @@ double skg_least_squares_solve(const skg_least_squares *system, int32_t count, c
         const double *column = system->a + in[i] * rows;
         double sum = i < rows ? right[i] : 0;
         x[i] = 0;
-        if (i >= rows || fabs(r[i * rows + i]) <= DEPENDENT * sqrt(dot(column, column, 0, rows))) continue;
+        if (i >= rows || fabs(r[i * rows + i]) <= DEPENDENT * sqrt(skg_dot_long(rows, column, column)))
+            continue;
         for (int32_t k = i + 1; k < count; k++) sum -= r[k * rows + i] * x[k];
         x[i] = sum / r[i * rows + i];
     }
     if (spread) find_spread(r, rows, count, in, system, system->gradient, spread);
-    return dot(right, right, count < rows ? count : rows, rows);
+    const int64_t solved = count < rows ? count : rows;
+    return skg_dot_long(rows - solved, right + solved, right + solved);
 }
 
-/* Into system->gradient, of the `count` columns: A^T (b - A x). */
+/* Sets system->gradient to A^T (b - A x) for the `count` columns. */
 static void find_gradient(const skg_least_squares *system, int32_t count, const int32_t *in,
                           const double *x) {
     const int64_t rows = system->rows;
@@ -112,10 +110,11 @@ static void find_gradient(const skg_least_squares *system, int32_t count, const 
     for (int32_t j = 0; j < count; j++)
         if (x[j] > 0)
             for (int64_t i = 0; i < rows; i++) rest[i] -= x[j] * system->a[in[j] * rows + i];
-    for (int32_t j = 0; j < count; j++) system->gradient[j] = dot(system->a + in[j] * rows, rest, 0, rows);
+    for (int32_t j = 0; j < count; j++)
+        system->gradient[j] = skg_dot_long(rows, system->a + in[j] * rows, rest);
 }
 
-/* Solves with the columns whose x is positive; those that would turn negative are left at 0 on the way. */
+/* Solves with the columns whose x is positive. A column whose x would become negative stops at 0 and leaves. */
 static double settle(const skg_least_squares *system, int32_t count, const int32_t *in, double *x) {
     int32_t *list = system->list;
     for (;;) {
@@ -142,7 +141,7 @@ static double settle(const skg_least_squares *system, int32_t count, const int32
 
 double skg_nnls(const skg_least_squares *system, int32_t count, const int32_t *in, double least, double *x) {
     double rest = settle(system, count, in, x);
-    const int32_t most = 3 * count;
+    const int32_t most = 3 * count; /* the limit of Lawson and Hanson; a few more than `count` are usual */
     for (int32_t step = 0; step < most && rest > least; step++) {
         int32_t best = -1;
         double steepest = 0;
@@ -150,13 +149,13 @@ double skg_nnls(const skg_least_squares *system, int32_t count, const int32_t *i
         for (int32_t j = 0; j < count; j++) {
             const double *column = system->a + in[j] * system->rows;
             if (x[j] > 0 || !(system->gradient[j] > 0)) continue;
-            const double slope = system->gradient[j] / sqrt(dot(column, column, 0, system->rows));
+            const double slope = system->gradient[j] / sqrt(skg_dot_long(system->rows, column, column));
             if (slope > steepest) best = j, steepest = slope;
         }
         if (best < 0) return rest;
-        x[best] = 1e-300; /* in, from where it does not count yet */
+        x[best] = 1e-300; /* positive, so that the column takes part, and too small to count */
         const double now = settle(system, count, in, x);
-        if (!(now < rest) || !(x[best] > 0)) return rest < now ? rest : now; /* rounding */
+        if (!(now < rest) || !(x[best] > 0)) return rest < now ? rest : now; /* no progress but rounding */
         rest = now;
     }
     return rest;

@@ -1,11 +1,12 @@
-/* Least squares with coefficients that are not negative (Lawson and Hanson 1974, chapter 23), in double and
- * in a fixed order: the same numbers whatever libraries are installed. Private. */
+/* Least squares with coefficients that are not negative (C. L. Lawson, R. J. Hanson, Solving Least Squares
+ * Problems, 1974, chapter 23). Double precision and a fixed order give the same bits on every machine, which a
+ * linear algebra library would not. Private. */
 #ifndef SKG_NNLS_H
 #define SKG_NNLS_H
 
 #include "core/core.h"
 
-/* Minimise |A x - b|. */
+/* The problem of minimising |A x - b|. */
 typedef struct {
     int64_t rows;
     int32_t columns, reserved;
@@ -16,21 +17,25 @@ typedef struct {
     int32_t *list;
 } skg_least_squares;
 
-/* Room for a system; a and b are the caller's to fill. */
+/* Allocates a system. The caller fills a and b. */
 skg_status skg_least_squares_create(int64_t rows, int32_t columns, skg_least_squares *system);
 void skg_least_squares_release(skg_least_squares *system);
 
 /* A system of at most columns + 1 rows with the same solutions and the same |A x - b|. */
 skg_status skg_least_squares_reduce(const skg_least_squares *system, skg_least_squares *reduced);
 
-/* Solves with `count` columns, in[count] their numbers; x: [count]. spread: [count], NULL where not wanted:
- * the diagonal of the inverse of A^T A, infinite where a column depends on those before it (its x is 0).
- * Returns |A x - b|^2. */
+/* Solves with some of the columns and returns |A x - b|^2.
+ *
+ * in       [count] the numbers of the columns
+ * x        [count] the solution
+ * spread   [count] the diagonal of the inverse of A^T A, or NULL if it is not wanted; infinite for a column that
+ *          depends on those before it, whose x is 0 */
 double skg_least_squares_solve(const skg_least_squares *system, int32_t count, const int32_t *in, double *x,
                                double *spread);
 
-/* The same with x >= 0. Starts from the columns with x > 0 on entry, those that leave it may come back.
- * least: columns are added only while |A x - b|^2 exceeds it. */
+/* The same with x >= 0. It starts from the columns with x > 0 on entry; columns that leave may come back.
+ *
+ * least   columns are added only while |A x - b|^2 exceeds this */
 double skg_nnls(const skg_least_squares *system, int32_t count, const int32_t *in, double least, double *x);
 
 #endif

@@ -1,20 +1,44 @@
 #include "spectral/nodes.h"
+
 #include "spectral/nnls.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Points that weights are fitted to, and others that they are checked on. */
+/* The numbers below were set by trial, with thorax tissues, iodine and steel: they trade the time of the search against
+ * the number of nodes (bench/results/energies.md). They never decide whether the stated bound holds, because the bound
+ * is verified on points of its own. */
+
+/* Points that the weights are fitted to, and others on which they are checked. */
 enum { FIT_CORNERS = 64, FIT_DRAWS = 320, FIT_GIVEN = 96, CHECK_CORNERS = 1024, CHECK_DRAWS = 2000 };
-/* Reweightings; refits with what a check has found; searches, each aiming lower; sets times nodes up to which
- * nodes are shifted. */
+
+/* Lawson's reweightings of one fit; fits repeated with the points that a check has found; searches with a lower
+ * aim; and the largest product of sets and nodes for which nodes are shifted, which takes long. */
 enum { REWEIGHTINGS = 30, REFITS = 3, SEARCHES = 5, SHIFTED = 64 };
+
+/* Different seeds, so that no point is both fitted to and checked. */
 static const uint64_t fit_seed = 1, check_seed = 2;
+
+/* The aim at the fitted points is AIM of the target, because other points have larger errors; after each search that
+ * fails the check, it is lowered by LOWER. */
+static const double AIM = 0.9, LOWER = 0.7;
+
+/* The first set of bins is searched until the mean squared error is this share of the square of the aim. */
+static const double FIRST_LEFT = 0.01;
+
+/* A shift is kept if it lowers the squared errors to this share; another round follows if a round lowered them so. */
+static const double SHIFT_HELPS = 0.999, ROUND_HELPS = 0.9;
+
+/* Reweighting ends below GOOD times the aim, and above HOPELESS times it. */
+static const double GOOD = 0.5, HOPELESS = 20;
+
+/* Added to each relative error when weights are raised, so that no point loses its weight at once. */
+static const double LEAST_FACTOR = 0.05;
 
 typedef struct {
     const skg_polychromatic *beam;
     const double *mu;
-    double aim; /* greatest error wanted at the points that weights are fitted to */
+    double aim; /* the greatest error that is wanted at the fitted points */
     skg_lengths fit, check;
     skg_least_squares *systems;   /* [sets] over all bins, reduced */
     int32_t *bins, *best, *trial; /* [bins] each */
@@ -23,7 +47,7 @@ typedef struct {
     double *score;             /* [bins] */
     skg_nodes nodes;           /* of the last weights */
     double *row_weight, *rest; /* [fit points] */
-    int64_t row_room;
+    int64_t row_capacity;
 } search;
 
 /* --- systems over the bins --- */
@@ -57,7 +81,7 @@ static void start_even(double *x, int32_t count) {
     for (int32_t j = 0; j < count; j++) x[j] = 1.0 / count;
 }
 
-/* Sum over the sets of the squared errors that these bins leave. */
+/* The sum over the sets of the squared errors with these bins. */
 static double squares_left(search *s, int32_t count, const int32_t *bins) {
     double sum = 0;
     for (int32_t set = 0; set < s->beam->sets; set++) {
@@ -67,10 +91,10 @@ static double squares_left(search *s, int32_t count, const int32_t *bins) {
     return sum;
 }
 
-/* The bins that non-negative least squares takes for any of the sets. */
+/* Finds the bins that non-negative least squares takes for any of the sets. */
 static void find_first(search *s) {
     const int32_t bins = s->beam->bins;
-    const double least = (double)s->fit.count * 0.01 * s->aim * s->aim;
+    const double least = (double)s->fit.count * FIRST_LEFT * s->aim * s->aim;
     for (int32_t b = 0; b < bins; b++) s->trial[b] = b, s->score[b] = 0;
     for (int32_t set = 0; set < s->beam->sets; set++) {
         memset(s->x, 0, (size_t)bins * sizeof *s->x);
@@ -82,7 +106,7 @@ static void find_first(search *s) {
         if (s->score[b] > 0) s->bins[s->count++] = b;
 }
 
-/* Takes away the bin without which the squared errors grow least. */
+/* Removes the bin without which the squared errors grow least. */
 static void take_one_away(search *s) {
     int32_t worst = 0;
     for (int32_t j = 0; j < s->count; j++) s->score[j] = 0;
@@ -92,7 +116,7 @@ static void take_one_away(search *s) {
         skg_nnls(&s->systems[set], s->count, s->bins, 0, s->x);
         for (int32_t j = 0; j < s->count; j++)
             if (s->x[j] > 0) s->trial[used++] = s->bins[j];
-        double *again = s->x + s->beam->bins; /* second half */
+        double *again = s->x + s->beam->bins; /* the second half of the array */
         skg_least_squares_solve(&s->systems[set], used, s->trial, again, s->spread);
         for (int32_t j = 0, k = 0; j < s->count; j++)
             if (s->x[j] > 0) {
@@ -106,7 +130,7 @@ static void take_one_away(search *s) {
     memmove(s->bins + worst, s->bins + worst + 1, (size_t)(s->count - worst) * sizeof *s->bins);
 }
 
-/* Shifts each bin to the neighbour that leaves the smallest errors, while that helps. */
+/* Shifts bins to neighbours while that lowers the squared errors. */
 static void shift(search *s) {
     static const int32_t ways[] = {-1, 1, -2, 2, -4, 4};
     double left = squares_left(s, s->count, s->bins);
@@ -119,19 +143,18 @@ static void shift(search *s) {
                 if (to <= (j > 0 ? s->bins[j - 1] : -1) || to >= above) continue;
                 s->bins[j] = to;
                 const double now = squares_left(s, s->count, s->bins);
-                if (now < 0.999 * left)
+                if (now < SHIFT_HELPS * left)
                     left = now;
                 else
                     s->bins[j] = old;
             }
-        if (!(left < 0.9 * before)) break;
+        if (!(left < ROUND_HELPS * before)) break;
     }
 }
 
 /* --- weights --- */
 
-/* Errors at the points that weights are fitted to, of one set with weights s->x of the nodes in s->trial; the
- * greatest is returned. */
+/* The errors of one set at the fitted points, with weights s->x of the nodes in s->trial. Returns the greatest. */
 static double find_rest(search *s, const double *columns, int32_t set, int32_t used) {
     const int64_t points = s->fit.count;
     double worst = 0;
@@ -150,10 +173,10 @@ static void keep_weights(search *s, int32_t set, int32_t used) {
     for (int32_t j = 0; j < used; j++) s->nodes.shares[s->trial[j] * sets + set] = s->x[j];
 }
 
-/* What weights are fitted with. */
+/* The arrays of a fit of weights. */
 typedef struct {
     skg_least_squares system;
-    double *columns; /* [nodes][points], in units of the errors of a set */
+    double *columns; /* [nodes][points], in the unit of the errors of a set */
     double *passed;  /* [bins] */
 } fitting;
 
@@ -166,8 +189,8 @@ static void find_columns(search *s, int32_t set, fitting *f) {
     }
 }
 
-/* Weights of one set, of the nodes in s->trial, towards the smallest greatest error, into s->nodes; that
- * error is returned. */
+/* Fits the weights of one set for the nodes in s->trial so that the greatest error becomes small, keeps them in
+ * s->nodes, and returns that error. */
 static double fit_set(search *s, int32_t set, int32_t used, fitting *f) {
     const int64_t points = s->fit.count;
     double best = HUGE_VAL;
@@ -187,13 +210,13 @@ static double fit_set(search *s, int32_t set, int32_t used, fitting *f) {
             best = worst;
             keep_weights(s, set, used);
         }
-        if (best < 0.5 * s->aim || best > 20 * s->aim) break; /* good enough, or hopeless */
-        for (int64_t p = 0; p < points; p++) s->row_weight[p] *= s->rest[p] / worst + 0.05;
+        if (best < GOOD * s->aim || best > HOPELESS * s->aim) break;
+        for (int64_t p = 0; p < points; p++) s->row_weight[p] *= s->rest[p] / worst + LEAST_FACTOR;
     }
     return best;
 }
 
-/* Leaves the nodes in s->trial that both sets of a pair have taken. */
+/* Keeps the nodes in s->trial that both sets of a pair use. Returns their number. */
 static int32_t keep_common(search *s, int32_t set, int32_t used) {
     const int32_t sets = s->beam->sets;
     int32_t common = 0;
@@ -204,7 +227,7 @@ static int32_t keep_common(search *s, int32_t set, int32_t used) {
     return common;
 }
 
-/* A set, or a pair of them: fitted anew with the nodes that both take until they take the same. */
+/* Fits a set, or a pair of sets, which is fitted again with the nodes that both use until both use the same. */
 static double fit_sets(search *s, int32_t set, fitting *f) {
     for (int32_t j = 0; j < s->count; j++) s->trial[j] = j;
     if (!s->beam->paired) return fit_set(s, set, s->count, f);
@@ -216,16 +239,16 @@ static double fit_sets(search *s, int32_t set, fitting *f) {
     }
 }
 
-/* Weights of all sets for s->bins; *error: the greatest at the points fitted to. */
+/* Fits the weights of all sets for s->bins. *error is the greatest error at the fitted points. */
 static skg_status fit_weights(search *s, double *error) {
     const int64_t points = s->fit.count;
     const int32_t heads = s->beam->paired ? s->beam->sets / 2 : s->beam->sets;
     fitting f = {.columns = NULL};
     skg_status status = SKG_OK;
-    if (s->row_room < points) {
-        s->row_room = 2 * points;
-        SKG_TRY(skg_realloc(s->row_room, sizeof *s->row_weight, "nodes", &s->row_weight));
-        SKG_TRY(skg_realloc(s->row_room, sizeof *s->rest, "nodes", &s->rest));
+    if (s->row_capacity < points) {
+        s->row_capacity = 2 * points;
+        SKG_TRY(skg_realloc(s->row_capacity, sizeof *s->row_weight, "nodes", &s->row_weight));
+        SKG_TRY(skg_realloc(s->row_capacity, sizeof *s->rest, "nodes", &s->rest));
     }
     SKG_TRY_CLEANUP(skg_least_squares_create(points, s->count, &f.system));
     SKG_TRY_CLEANUP(skg_alloc(points * s->count, sizeof *f.columns, "nodes", &f.columns));
@@ -243,8 +266,8 @@ cleanup:
 
 /* --- the search --- */
 
-/* From the first bins downwards: s->best becomes the fewest bins that reach the aim, best_count 0 where none
- * do. */
+/* Removes bins one by one from the first set. s->best becomes the smallest set that reaches the aim; best_count
+ * is 0 if there is none. The search ends after two misses in a row, since a smaller set is seldom better. */
 static skg_status find_fewest(search *s) {
     for (int32_t set = 0; set < s->beam->sets; set++) {
         skg_least_squares_release(&s->systems[set]);
@@ -271,7 +294,8 @@ static skg_status find_fewest(search *s) {
     return SKG_OK;
 }
 
-/* Weights for s->bins that hold at all points; *error the greatest found. */
+/* Fits weights for s->bins and checks them on the other points; the worst of those join the fit. *error is the
+ * greatest error of the last check. */
 static skg_status check(search *s, double target, double *error, int64_t *checked) {
     for (int refit = 0; refit <= REFITS; refit++) {
         double fitted = 0;
@@ -322,11 +346,11 @@ static void close_search(search *s) {
 skg_status skg_nodes_find(const skg_polychromatic *beam, const double *mu, double tolerance, int64_t count,
                           const double *given, skg_compression *compression) {
     const double target = 0.5 * tolerance;
-    search s = {.beam = beam, .mu = mu, .aim = 0.9 * target};
+    search s = {.beam = beam, .mu = mu, .aim = AIM * target};
     skg_status status = SKG_OK;
     *compression = (skg_compression){0};
     SKG_TRY_CLEANUP(open_search(&s, count, given));
-    for (int k = 0; k < SEARCHES; k++, s.aim *= 0.7) {
+    for (int k = 0; k < SEARCHES; k++, s.aim *= LOWER) {
         double error = 0;
         int64_t checked = 0;
         SKG_TRY_CLEANUP(find_fewest(&s));

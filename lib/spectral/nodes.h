@@ -1,11 +1,15 @@
-/* Few energies with positive weights for many. Private.
+/* Few energies with positive weights instead of many. Private.
  *
- * Transmission is a sum of exponentials over the bins; a few bins with weights of their own reproduce it over
- * the range of lengths met. Method: non-negative least squares over points of the range, relative errors,
- * finds a first set of bins; those whose absence costs least are taken away one by one, the rest is shifted
- * to neighbouring bins while that helps; weights are then fitted towards the smallest greatest error
- * (Lawson's reweighting), and the whole is checked on other points. Several sets of weights (channels,
- * variances) share the bins. */
+ * Transmission is a sum of exponentials over the bins. A few bins with weights of their own reproduce it over the
+ * range of lengths that rays meet. Method:
+ *
+ * 1. Non-negative least squares on relative errors at points of the range finds a first set of bins.
+ * 2. Bins are removed one by one, each time the one whose absence costs least; the others are shifted to neighbouring
+ *    bins while that lowers the errors.
+ * 3. Weights are fitted so that the greatest error becomes small (Lawson's reweighting).
+ * 4. The result is checked on other points.
+ *
+ * Several sets of weights (channels, variances) share the bins. */
 #ifndef SKG_NODES_H
 #define SKG_NODES_H
 
@@ -13,13 +17,14 @@
 
 typedef struct {
     skg_nodes nodes;
-    double bound;     /* stated: twice the worst error found */
-    int64_t verified; /* on so many points */
+    double bound;     /* the stated bound: twice the worst error found */
+    int64_t verified; /* points on which it was verified */
 } skg_compression;
 
-/* The fewest nodes found whose bound is at most `tolerance`. mu: [materials][bins], as planes give it (the
- * beam's own where they are exact). given: [count][materials] mm, lengths that are met. nodes.count is 0
- * where no fewer than all bins meet it. */
+/* Finds few nodes whose bound is at most `tolerance`. nodes.count is 0 if only all bins meet it.
+ *
+ * mu      [materials][bins] 1/mm, as the planes give it; that of the beam if they are exact
+ * given   [count][materials] mm, lengths that rays meet */
 skg_status skg_nodes_find(const skg_polychromatic *beam, const double *mu, double tolerance, int64_t count,
                           const double *given, skg_compression *compression);
 

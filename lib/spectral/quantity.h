@@ -1,10 +1,10 @@
-/* What kind of quantity a plan's images hold. Private. */
+/* The kind of quantity that the images of a plan hold. Private. */
 #ifndef SKG_QUANTITY_H
 #define SKG_QUANTITY_H
 
 #include <skiagraph/plan.h>
 
-/* Whether values have to be those of keV or photons in a pixel until noise has been added. */
+/* Whether values have to be keV or photons in a pixel until noise has been added. */
 int skg_quantity_is_absolute(const skg_plan_options *options);
 
 /* Whether the quantity is a ratio to the flat field. */

@@ -6,17 +6,19 @@
 #include <math.h>
 #include <string.h>
 
-/* Rays along a side of the detector, of that of each further view, and of a part's own rectangle: there more
- * for a thin one (ducts, a needle), which so few rays meet in fewer hits than enough for its longest chord.
- */
+/* Rays along each side of the detector of the view, of those of further views, and of a part's own rectangle. A
+ * thin part (a duct, a needle) gets more rays of its own until it is hit ENOUGH_HITS times, because its longest
+ * chord may be missed otherwise. */
 enum { SIDE = 64, MORE_SIDE = 24, OWN_SIDE = 16, ENOUGH_HITS = 128 };
-/* Views, meshes and poses to come may differ a little. */
+
+/* The factor on lengths that leaves a margin for later views, meshes and poses, which may differ a little. */
 static const double MARGIN = 1.25;
-/* Share of a plane's range that it may fall below: a closed mesh that folds over itself has lengths below
- * nothing in a few pixels, which rays as coarse as these seldom meet (a rib of the generated thorax: 0.5 mm,
- * where the range is 180 mm). */
+/* The share of its range by which a plane may fall below it. A closed mesh that folds over itself has negative
+ * lengths in a few pixels, which rays as coarse as these seldom meet. A rib of the generated thorax has -0.5 mm
+ * where the range is 180 mm. */
 static const double FOLDS = 0.02;
-/* Rays stand off the middle of their cell by an irrational part of it: shared edges are not met exactly. */
+/* Rays are off the corner of their cell by an irrational part of it (square roots of 3 and 2), so that they do
+ * not meet shared edges exactly. */
 static const double OFF_COLUMN = 0.5732050807568877, OFF_ROW = 0.4142135623730951;
 
 typedef struct {
@@ -48,8 +50,8 @@ static double unit_of(const skg_camera *camera, double i, double j) {
     return skg_length(ray);
 }
 
-/* One triangle, corners h with the path parameter in h[.][3], against the ray to (i, j). The ray is a line
- * through the origin of (x, y, w): the signs of three determinants tell whether it meets the triangle. */
+/* Whether the ray to (i, j) meets a triangle with corners h, whose path parameters are h[.][3]. The ray is a
+ * line through the origin of (x, y, w), so the signs of three determinants decide it. */
 static int meets(const double h[3][4], double i, double j, double *t, int *sign) {
     double edge[3], sum = 0, depth = 0;
     for (int k = 0; k < 3; k++) {
@@ -65,7 +67,7 @@ static int meets(const double h[3][4], double i, double j, double *t, int *sign)
     return 1;
 }
 
-/* Which rays of an axis can meet x[3]: from *first to below *end. */
+/* The rays along an axis that can meet x[3]: from *first to *end - 1. */
 static void span(const double x[3], double start, double step, int64_t count, int64_t *first, int64_t *end) {
     const double low = (fmin(x[0], fmin(x[1], x[2])) - start) / step;
     const double high = (fmax(x[0], fmax(x[1], x[2])) - start) / step;
@@ -96,15 +98,14 @@ static void add_triangle(const skg_camera *camera, const double h[3][4], ray_gri
         }
 }
 
-/* 1, or -1 where a part is seen inside out: most of what is in a mesh is so once. */
+/* -1 if the signed lengths of a part are mostly negative because it is seen inside out; otherwise 1. */
 static double orientation_of(const ray_grid *grid) {
     double sum = 0;
     for (int64_t r = 0; r < grid->columns * grid->rows; r++) sum += grid->length[r];
     return sum < 0 ? -1 : 1;
 }
 
-/* mm of the part along every ray of the grid, in grid->length. Where signed hits do not cancel (open meshes)
- * 0. */
+/* Sets grid->length to the mm of the part along every ray; 0 where the signed hits of a leaky mesh do not cancel. */
 static skg_status measure(const skg_camera *camera, const skg_scene_part_data *part, int near_source,
                           ray_grid *grid) {
     const skg_mesh *mesh = part->mesh;
@@ -146,7 +147,7 @@ static void widen(skg_ranges *ranges, int64_t plane, double length) {
     ranges->high[plane] = fmax(ranges->high[plane], MARGIN * length);
 }
 
-/* A length of one part alone. */
+/* Widens the ranges by a length of one part alone. */
 static void widen_by_part(skg_ranges *ranges, const skg_model *model, int64_t part, double length) {
     for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
         if (model->contributions[w].weight > 0)
@@ -188,7 +189,7 @@ static skg_status add_own_rays(const skg_scene_part_data *part, int64_t number, 
 typedef struct {
     skg_camera camera;
     int64_t side, rays;
-    double *lengths; /* [rays][planes] where in those of all views they go */
+    double *lengths; /* [rays][planes] the place of this view in those of all views */
 } looking;
 
 static void lay_over_detector(ray_grid *grid, looking *look) {
@@ -225,7 +226,7 @@ static skg_status add_part(const skg_scene *scene, int64_t part, looking *look, 
     return SKG_OK;
 }
 
-/* hits: [parts], of this view. */
+/* Adds the rays of one view. hits: [parts] mean per ray. */
 static skg_status add_view(const skg_scene *scene, looking *look, const skg_model *model, ray_grid *grid,
                            skg_ranges *ranges, double *hits) {
     lay_over_detector(grid, look);
@@ -237,8 +238,8 @@ static skg_status add_view(const skg_scene *scene, looking *look, const skg_mode
     return SKG_OK;
 }
 
-static skg_status make_room(const skg_scene *scene, int64_t more, const skg_model *model, ray_grid *grid,
-                            skg_ranges *ranges) {
+static skg_status allocate(const skg_scene *scene, int64_t more, const skg_model *model, ray_grid *grid,
+                           skg_ranges *ranges) {
     static const char what[] = "ranges of lengths";
     const int64_t rays = SIDE * SIDE + more * MORE_SIDE * MORE_SIDE;
     SKG_TRY(skg_alloc(SIDE * SIDE, sizeof *grid->length, what, &grid->length));
@@ -254,7 +255,7 @@ skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t
     ray_grid grid = {0};
     skg_status status = SKG_OK;
     *ranges = (skg_ranges){.planes = model->planes};
-    SKG_TRY_CLEANUP(make_room(scene, more, model, &grid, ranges));
+    SKG_TRY_CLEANUP(allocate(scene, more, model, &grid, ranges));
     for (int64_t v = 0; v <= more; v++) {
         looking look = {.side = v ? MORE_SIDE : SIDE,
                         .lengths = ranges->lengths + ranges->rays * model->planes};

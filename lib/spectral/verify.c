@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+/* The worst points, from which the search goes uphill. */
 enum { STARTS = 10 };
 
 void skg_nodes_release(skg_nodes *nodes) {
@@ -14,7 +15,7 @@ void skg_nodes_release(skg_nodes *nodes) {
 void skg_lengths_release(skg_lengths *points) {
     skg_free(&points->lengths);
     skg_free(&points->exact);
-    points->count = points->room = 0;
+    points->count = points->capacity = 0;
 }
 
 static double exponent_at(const skg_polychromatic *beam, const double *mu, const double *lengths,
@@ -38,7 +39,7 @@ void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, do
 
 /* --- points --- */
 
-/* Thins lengths out until the energy that passes best has no more than the greatest exponent. */
+/* Scales lengths down until the energy that passes best has at most the largest exponent. */
 static void cap(const skg_polychromatic *beam, double *lengths) {
     double least = HUGE_VAL;
     for (int32_t b = 0; b < beam->bins; b++) least = fmin(least, exponent_at(beam, beam->mu, lengths, b));
@@ -47,11 +48,11 @@ static void cap(const skg_polychromatic *beam, double *lengths) {
 }
 
 skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths, skg_lengths *points) {
-    if (points->count == points->room) {
-        const int64_t room = 2 * points->room + 64;
-        SKG_TRY(skg_realloc(room * beam->materials, sizeof *lengths, "lengths", &points->lengths));
-        SKG_TRY(skg_realloc(room * beam->sets, sizeof *lengths, "lengths", &points->exact));
-        points->room = room;
+    if (points->count == points->capacity) {
+        const int64_t capacity = 2 * points->capacity + 64;
+        SKG_TRY(skg_realloc(capacity * beam->materials, sizeof *lengths, "lengths", &points->lengths));
+        SKG_TRY(skg_realloc(capacity * beam->sets, sizeof *lengths, "lengths", &points->exact));
+        points->capacity = capacity;
     }
     double *at = points->lengths + points->count * beam->materials;
     memmove(at, lengths, (size_t)beam->materials * sizeof *at);
@@ -61,7 +62,7 @@ skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths,
     return SKG_OK;
 }
 
-/* From 0 to below 1 (splitmix64: Steele, Lea and Flood 2014). */
+/* A random number from 0 to below 1: splitmix64 of Steele, Lea and Flood (2014). */
 static double draw(uint64_t *state) {
     uint64_t z = *state += 0x9E3779B97F4A7C15u;
     z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
@@ -74,7 +75,8 @@ static void draw_corner(const skg_polychromatic *beam, uint64_t which, double *l
         lengths[m] = m < 64 && which >> m & 1 ? beam->high[m] : beam->low[m];
 }
 
-/* Thin: all lengths together by a power of ten down to a thousandth, each by its square. */
+/* thin: all lengths together are scaled by 1 to a thousandth, and each is a square, so that thin objects are
+ * frequent. */
 static void draw_point(const skg_polychromatic *beam, int thin, uint64_t *state, double *lengths) {
     const double all = thin ? pow(10, -3 * draw(state)) : 1;
     for (int32_t m = 0; m < beam->materials; m++) {
@@ -92,7 +94,7 @@ skg_status skg_lengths_fill(const skg_polychromatic *beam, int64_t most, int64_t
     SKG_TRY(skg_alloc(beam->materials, sizeof *lengths, "lengths", &lengths));
     const int all = beam->materials < 30 && (int64_t)1 << beam->materials <= most;
     const int64_t corners = all ? (int64_t)1 << beam->materials : most;
-    SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points)); /* nothing in the way */
+    SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points)); /* no matter at all */
     for (int64_t c = 0; c < corners; c++) {
         draw_corner(beam, all || c == 0 ? (uint64_t)c : (uint64_t)(draw(&state) * 0x1p53), lengths);
         SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points));
@@ -112,7 +114,7 @@ cleanup:
 
 double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
                        const double *lengths, const double *exact) {
-    double worst = 0, found[64] = {0}; /* a few sets at a time: the exponentials are shared */
+    double worst = 0, found[64] = {0}; /* up to 64 sets at a time share the exponentials */
     for (int32_t first = 0; first < beam->sets; first += 64) {
         const int32_t sets = beam->sets - first < 64 ? beam->sets - first : 64;
         for (int32_t s = 0; s < sets; s++) found[s] = 0;
@@ -142,7 +144,8 @@ static double look(climb *c, const double *lengths) {
     return skg_nodes_error(c->beam, c->mu, c->nodes, lengths, c->exact);
 }
 
-/* Coordinate by coordinate, with steps that shrink where none leads up. */
+/* Climbs along one coordinate after the other, with steps that are halved if none leads up: from a fifth of the
+ * range to a 250th. */
 static double ascend(climb *c, double error) {
     const skg_polychromatic *beam = c->beam;
     for (double step = 0.2; step > 0.004; step /= 2) {
@@ -166,7 +169,7 @@ static double ascend(climb *c, double error) {
     return error;
 }
 
-/* Keeps the worst few, in falling order; of equal ones the first. */
+/* Keeps the worst points in falling order; of equal ones the first. */
 static void rank_point(int64_t index, double error, int64_t *worst, double *errors, int32_t *count) {
     int32_t at = *count;
     while (at > 0 && errors[at - 1] < error) at--;

@@ -1,19 +1,22 @@
-/* The transmission of a beam of several energies through lengths of materials, what it becomes with fewer
- * energies and planes, and where that is worst. Private.
+/* The transmission of a beam of several energies through lengths of materials, its error with fewer energies and
+ * planes, and the search for the worst error. Private.
  *
- * Errors are relative where a transmission exceeds 1e-6 of the open beam's, and shares of that below. */
+ * Errors are relative for transmissions above 1e-6; below, they are relative to 1e-6. */
 #ifndef SKG_VERIFY_H
 #define SKG_VERIFY_H
 
 #include "core/core.h"
 
-#define SKG_RELATIVE_FROM 1e-6 /* of the transmission of the open beam */
-#define SKG_MOST_EXPONENT 80   /* of the energy that passes best */
+/* The transmission from which on errors are relative. Smaller ones are lost in the noise of real images. */
+#define SKG_RELATIVE_FROM 1e-6
 
-/* Exact: every bin. A set is what one channel counts of a bin's photons, as a share of its open beam. */
+/* The largest exponent of the energy that passes best. Single precision ends at exp(-87). */
+#define SKG_MOST_EXPONENT 80
+
+/* The exact beam, with every bin. A set is the weight of each bin in one channel, as a share of the flat field. */
 typedef struct {
     int32_t bins, materials, sets;
-    int32_t paired;       /* 1: sets k and sets/2 + k have positive weights at the same energies, or none */
+    int32_t paired;       /* 1: sets k and sets/2 + k must use the same nodes */
     const double *mu;     /* [materials][bins] 1/mm */
     const double *shares; /* [bins][sets], each set sums to 1 */
     const double *low;    /* [materials] mm: range of the lengths */
@@ -21,43 +24,46 @@ typedef struct {
     double floor; /* transmission from which on errors are relative */
 } skg_polychromatic;
 
-/* Few energies: bins, each with a weight per set. */
+/* Few energies: some of the bins, each with a weight in every set. */
 typedef struct {
     int32_t count, reserved;
     int32_t *bin;   /* [count] rising */
     double *shares; /* [count][sets], >= 0 */
 } skg_nodes;
 
-/* Lengths, [count][materials] mm, with the exact transmission of each, [count][sets]. */
+/* Points: lengths [count][materials] in mm, with the exact transmission of each [count][sets]. */
 typedef struct {
-    int64_t count, room;
+    int64_t count, capacity;
     double *lengths, *exact;
 } skg_lengths;
 
 void skg_nodes_release(skg_nodes *nodes);
 void skg_lengths_release(skg_lengths *points);
 
-/* Transmission of each set through lengths [materials]: exact [sets]. */
+/* Sets exact [sets] to the transmission of each set through lengths [materials]. */
 void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact);
 
-/* exp(-sum of lengths times mu), [bins]; mu: [materials][bins]. */
+/* Sets passed [bins] to exp(-sum of lengths times mu). mu: [materials][bins] 1/mm. */
 void skg_transmit(const skg_polychromatic *beam, const double *mu, const double *lengths, double *passed);
 
-/* Adds a point, its exponent capped, with its exact transmission. */
+/* Adds a point with its exact transmission. Its lengths are scaled down to the largest exponent. */
 skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths, skg_lengths *points);
 
 /* Adds the corners of the range (all, or `most` of them), `draws` random points of the sequence that `seed`
- * starts (half of them evenly over the range, half with more thin ones), and `count` given ones. */
+ * starts, and `count` given points. Half of the random points are even over the range, half have more thin
+ * lengths. */
 skg_status skg_lengths_fill(const skg_polychromatic *beam, int64_t most, int64_t draws, uint64_t seed,
                             int64_t count, const double *given, skg_lengths *points);
 
-/* Worst error over the sets at lengths, of nodes whose materials attenuate as mu ([materials][bins]) says.
- * exact: [sets] there. */
+/* The worst error over the sets, at one point, of nodes whose materials attenuate by mu ([materials][bins]).
+ * exact: [sets] at that point. */
 double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
                        const double *lengths, const double *exact);
 
-/* Worst error over points, then uphill from the worst ten within the range. checked: counts what was looked
- * at. Where worst is given, the points that ascents have ended at are added to it. */
+/* The worst error over the points, and uphill from the worst ten of them within the range.
+ *
+ * checked   the number of points that were compared
+ * worst     NULL, or the list to which the ends of the ascents are added */
 skg_status skg_nodes_verify(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
                             const skg_lengths *points, double *error, int64_t *checked, skg_lengths *worst);
 

@@ -1,5 +1,4 @@
 #include "stage/attenuate.h"
-
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>
@@ -8,11 +7,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Kernels of one context's plan: by precision of sums, of the output, planes, channels and what is shown. */
+/* How many kernels an attenuator keeps. */
 enum { MOST_KERNELS = 16 };
 
-/* Vectors of a work-item. One energy at 512 x 512 on two cores: 0.25 ms with 1, 0.18 ms with 4. */
+/* Vectors of a work-item. One energy at 512 x 512 pixels on two cores takes 0.25 ms with 1 and 0.18 ms with 4. */
 enum { RUNS = 4 };
+
+/* log2 of e, to the precision of a double. */
+static const double LOG2_E = 1.4426950408889634;
 
 typedef struct {
     skg_kernel_options options;
@@ -46,9 +48,9 @@ skg_status skg_attenuation_create(skg_context *context, int32_t precision, const
     const int64_t count = (int64_t)shape->nodes * shape->planes;
     double *scaled = NULL;
     SKG_TRY(skg_alloc(count, sizeof *scaled, "attenuation", &scaled));
-    /* exp(-x) = 2^(-x log2 e) */
+    /* The kernel takes powers of two: exp(-x) = 2^(-x log2 e). */
     for (int64_t i = 0; i < count; i++)
-        scaled[i] = tables->coefficients[i] * (shape->shown == SKG_SHOWN_EXPONENT ? 1 : -1.4426950408889634);
+        scaled[i] = tables->coefficients[i] * (shape->shown == SKG_SHOWN_EXPONENT ? 1 : -LOG2_E);
     *attenuation = *shape;
     skg_status status = upload(context, is_double, count, scaled, &attenuation->coefficients);
     skg_free(&scaled);
@@ -66,6 +68,11 @@ void skg_attenuation_release(skg_attenuation *attenuation) {
     skg_buffer_release(&attenuation->weights);
     skg_buffer_release(&attenuation->variances);
     skg_buffer_release(&attenuation->range);
+}
+
+int64_t skg_attenuation_bytes(const skg_attenuation *attenuation) {
+    return attenuation->coefficients.bytes + attenuation->weights.bytes + attenuation->variances.bytes +
+           attenuation->range.bytes;
 }
 
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator) {
@@ -104,7 +111,7 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
         }
     SKG_TRY(get_program(attenuator, key, &program));
     SKG_TRY(skg_kernel_create(program, "skg_attenuate", kernel));
-    /* Full: the oldest goes; its program stays with the context. */
+    /* When all places are taken the oldest kernel goes; its program stays with the context. */
     const int32_t slot = attenuator->count < MOST_KERNELS ? attenuator->count++ : attenuator->next;
     if (attenuator->kernels[slot]) clReleaseKernel(attenuator->kernels[slot]);
     attenuator->next = (slot + 1) % MOST_KERNELS;
@@ -117,53 +124,50 @@ static size_t padded(int64_t items, int64_t group) {
     return (size_t)((items + group - 1) / group * group);
 }
 
-/* Arguments that do not depend on the precision, from `output` on. */
-static skg_status set_place(cl_kernel kernel, const skg_image_place *place) {
-    const cl_long offset = place->offset, row = place->row_stride, channel = place->channel_stride;
-    SKG_TRY(skg_kernel_set(kernel, 10, sizeof place->memory, &place->memory));
-    SKG_TRY(skg_kernel_set(kernel, 11, sizeof offset, &offset));
-    SKG_TRY(skg_kernel_set(kernel, 12, sizeof row, &row));
-    return skg_kernel_set(kernel, 13, sizeof channel, &channel);
+/* Whether a kernel compiled for this key has an argument. */
+static int has_argument(const kernel_key *key, int argument) {
+    switch (argument) {
+    case SKG_ATTENUATE_lists:
+        return key->mixed;
+    case SKG_ATTENUATE_world_plane:
+    case SKG_ATTENUATE_world:
+        return key->world;
+    case SKG_ATTENUATE_nearest:
+        return key->falloff;
+    case SKG_ATTENUATE_variances:
+    case SKG_ATTENUATE_key:
+    case SKG_ATTENUATE_photons:
+        return key->noise;
+    case SKG_ATTENUATE_range:
+        return key->ranged;
+    default:
+        return 1;
+    }
 }
 
-/* Arguments from `first` on of effects that are there: world, falloff, noise, range. */
-static skg_status set_effects(cl_kernel kernel, cl_uint first, const kernel_key *key,
-                              const skg_camera *camera, const skg_attenuation *attenuation,
-                              const skg_noise_args *noise, double photons) {
-    const int single = key->options.precision == SKG_PRECISION_SINGLE;
-    if (key->world) {
-        /* |ray| times path: the whole ray of a point source; with a parallel beam, whose |ray| is 1 mm, from
-         * the start. */
-        const double way[4] = {attenuation->world_weight, camera->parallel ? 1 - camera->start[0] : 1,
-                               -camera->start[1], -camera->start[2]};
-        const cl_int plane = attenuation->world_plane;
-        cl_float4 way_single;
-        for (int k = 0; k < 4; k++) way_single.s[k] = (float)way[k];
-        SKG_TRY(skg_kernel_set(kernel, first++, sizeof plane, &plane));
-        SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof way_single : sizeof way,
-                               single ? (const void *)&way_single : (const void *)way));
-    }
-    if (key->falloff) {
-        const double nearest = skg_camera_nearest_ray(camera);
-        const float nearest_single = (float)nearest;
-        SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof nearest_single : sizeof nearest,
-                               single ? (const void *)&nearest_single : (const void *)&nearest));
-    }
-    if (key->noise) {
-        const float photons_single = (float)photons;
-        SKG_TRY(skg_kernel_set_memory(kernel, first++, 1, &attenuation->variances.memory));
-        SKG_TRY(skg_kernel_set(kernel, first++, sizeof *noise, noise));
-        SKG_TRY(skg_kernel_set(kernel, first++, single ? sizeof photons_single : sizeof photons,
-                               single ? (const void *)&photons_single : (const void *)&photons));
-    }
-    if (key->ranged)
-        return skg_kernel_set(kernel, first, sizeof attenuation->range.memory, &attenuation->range.memory);
+/* Sets the arguments that the kernel has. Behind an absent one they move up. */
+static skg_status set_arguments(cl_kernel kernel, const kernel_key *key, const skg_argument *arguments) {
+    cl_uint position = 0;
+    for (int a = 0; a < SKG_ATTENUATE_ARGUMENTS; a++)
+        if (has_argument(key, a))
+            SKG_TRY(skg_kernel_set(kernel, position++, arguments[a].size, arguments[a].value));
     return SKG_OK;
+}
+
+/* What |ray| is multiplied by to give the length of the ray's path through the world, behind the weight of the world's
+ * plane: 1 for a point source; for a parallel beam, whose |ray| is 1 mm, what lies behind the start. */
+static void find_world(const skg_camera *camera, const skg_attenuation *attenuation, double twice[4],
+                       float single[4]) {
+    twice[0] = attenuation->world_weight;
+    twice[1] = camera->parallel ? 1 - camera->start[0] : 1;
+    twice[2] = -camera->start[1];
+    twice[3] = -camera->start[2];
+    for (int k = 0; k < 4; k++) single[k] = (float)twice[k];
 }
 
 static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                          const skg_attenuation *attenuation, const skg_image_place *place, int32_t mixed) {
-    /* Of the raster's abilities only the type of its sums is of interest here. */
+    /* Of the raster's abilities only the type of its sums matters here. */
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
                                     .half = raster->options.kernels.half},
@@ -186,32 +190,50 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
     const kernel_key key = key_of(raster, camera, attenuation, place, sums->mixed);
-    const int single = key.options.precision == SKG_PRECISION_SINGLE;
-    /* As the kernel counts: powers of two above a limit. */
-    const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : 1.4426950408889634);
-    const float factor_single = (float)factor, limit_single = (float)limit;
+    const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
+    /* The kernel counts powers of two above a limit, or exponents if these are shown. */
+    const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
+    skg_real_argument reals[4]; /* factor, limit, nearest, photons */
+    double world[4];
+    float world_single[4];
     cl_kernel kernel = NULL;
     skg_ray_double ray;
     skg_ray_float ray_single;
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
     skg_camera_rays(camera, sums->scale, &ray);
     skg_rays_round(&ray, &ray_single);
-    SKG_TRY(skg_kernel_set(kernel, 0, sizeof raster->frame, &raster->frame));
-    SKG_TRY(skg_kernel_set(kernel, 1, single ? sizeof ray_single : sizeof ray,
-                           single ? (const void *)&ray_single : (const void *)&ray));
-    SKG_TRY(skg_kernel_set_memory(kernel, 2, 2, (cl_mem[]){raster->sums.memory, raster->used.memory}));
-    SKG_TRY(skg_kernel_set(kernel, 4, sizeof attenuation->nodes, &attenuation->nodes));
-    SKG_TRY(skg_kernel_set_memory(kernel, 5, 2,
-                                  (cl_mem[]){attenuation->coefficients.memory, attenuation->weights.memory}));
-    SKG_TRY(skg_kernel_set(kernel, 7, single ? sizeof factor_single : sizeof factor,
-                           single ? (const void *)&factor_single : (const void *)&factor));
-    SKG_TRY(skg_kernel_set(kernel, 8, single ? sizeof limit_single : sizeof limit,
-                           single ? (const void *)&limit_single : (const void *)&limit));
-    SKG_TRY(skg_kernel_set(kernel, 9, sizeof negative, &negative));
-    SKG_TRY(set_place(kernel, place));
-    if (sums->mixed) SKG_TRY(skg_kernel_set(kernel, 14, sizeof sums->lists, &sums->lists));
-    SKG_TRY(set_effects(kernel, sums->mixed ? 15 : 14, &key, camera, attenuation, noise,
-                        SKG_FEW_PHOTONS * factor));
+    find_world(camera, attenuation, world, world_single);
+    skg_real_argument_set(&reals[0], is_double, factor);
+    skg_real_argument_set(&reals[1], is_double, limit);
+    skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_nearest_ray(camera) : 0);
+    skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * factor);
+    const skg_argument arguments[SKG_ATTENUATE_ARGUMENTS] = {
+        SKG_ARGUMENT(ATTENUATE, frame, raster->frame),
+        {SKG_ATTENUATE_ray, is_double ? sizeof ray : sizeof ray_single,
+         is_double ? (const void *)&ray : (const void *)&ray_single},
+        SKG_ARGUMENT(ATTENUATE, copies, raster->sums.memory),
+        SKG_ARGUMENT(ATTENUATE, used, raster->used.memory),
+        SKG_ARGUMENT(ATTENUATE, nodes, attenuation->nodes),
+        SKG_ARGUMENT(ATTENUATE, coefficients, attenuation->coefficients.memory),
+        SKG_ARGUMENT(ATTENUATE, weights, attenuation->weights.memory),
+        {SKG_ATTENUATE_factor, reals[0].size, reals[0].value},
+        {SKG_ATTENUATE_limit, reals[1].size, reals[1].value},
+        SKG_ARGUMENT(ATTENUATE, negative, negative),
+        SKG_ARGUMENT(ATTENUATE, output, place->memory),
+        SKG_ARGUMENT(ATTENUATE, offset, place->offset),
+        SKG_ARGUMENT(ATTENUATE, row_stride, place->row_stride),
+        SKG_ARGUMENT(ATTENUATE, channel_stride, place->channel_stride),
+        SKG_ARGUMENT(ATTENUATE, lists, sums->lists),
+        SKG_ARGUMENT(ATTENUATE, world_plane, attenuation->world_plane),
+        {SKG_ATTENUATE_world, is_double ? sizeof world : sizeof world_single,
+         is_double ? (const void *)world : (const void *)world_single},
+        {SKG_ATTENUATE_nearest, reals[2].size, reals[2].value},
+        SKG_ARGUMENT(ATTENUATE, variances, attenuation->variances.memory),
+        SKG_ARGUMENT(ATTENUATE, key, *noise),
+        {SKG_ATTENUATE_photons, reals[3].size, reals[3].value},
+        SKG_ARGUMENT(ATTENUATE, range, attenuation->range.memory),
+    };
+    SKG_TRY(set_arguments(kernel, &key, arguments));
     const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision) * RUNS;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
     const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
@@ -219,7 +241,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
 }
 
-skg_status skg_attenuate_open(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                               const skg_attenuation *attenuation, double factor, cl_mem negative,
                               const skg_image_place *place, skg_stage_log *log) {
     skg_raster nothing = *sums->raster;
@@ -235,8 +257,15 @@ skg_status skg_attenuate_open(skg_attenuator *attenuator, const skg_sums *sums, 
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
-    const cl_int size[3] = {raster->frame.columns, raster->frame.rows, attenuation->channels};
-    const cl_long offset = place->offset, row = place->row_stride, channel = place->channel_stride;
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(LOGARITHM, columns, raster->frame.columns),
+        SKG_ARGUMENT(LOGARITHM, rows, raster->frame.rows),
+        SKG_ARGUMENT(LOGARITHM, channels, attenuation->channels),
+        SKG_ARGUMENT(LOGARITHM, output, place->memory),
+        SKG_ARGUMENT(LOGARITHM, offset, place->offset),
+        SKG_ARGUMENT(LOGARITHM, row_stride, place->row_stride),
+        SKG_ARGUMENT(LOGARITHM, channel_stride, place->channel_stride),
+    };
     const skg_camera no_camera = {0};
     const kernel_key key = key_of(raster, &no_camera, attenuation, place, 0);
     cl_program program = NULL;
@@ -244,14 +273,11 @@ skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster 
     skg_status status = SKG_OK;
     SKG_TRY(get_program(attenuator, &key, &program));
     SKG_TRY(skg_kernel_create(program, "skg_logarithm", &kernel));
-    for (cl_uint k = 0; k < 3; k++) SKG_TRY_CLEANUP(skg_kernel_set(kernel, k, sizeof size[k], &size[k]));
-    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 3, sizeof place->memory, &place->memory));
-    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 4, sizeof offset, &offset));
-    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 5, sizeof row, &row));
-    SKG_TRY_CLEANUP(skg_kernel_set(kernel, 6, sizeof channel, &channel));
+    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
     const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision);
     const size_t local[2] = {8, 16};
-    const size_t global[2] = {padded((size[0] + lanes - 1) / lanes, 8), padded(size[1], 16)};
+    const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
+                              padded(raster->frame.rows, 16)};
     status = skg_kernel_run(raster->context, kernel, "logarithm", 2, global, local, log);
 cleanup:
     clReleaseKernel(kernel);

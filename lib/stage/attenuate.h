@@ -4,31 +4,31 @@
 
 #include "stage/raster.h"
 
-/* As SKG_SHOW_... of config.clh. */
+/* The same numbers as SKG_SHOW_... of config.clh. */
 enum { SKG_SHOWN_INTENSITY = 0, SKG_SHOWN_LOGARITHM = 1, SKG_SHOWN_EXPONENT = 2 };
 
-/* Exponent of node n: sum over planes of coefficient[n][p] times mm of plane p; a channel shows the sum over
- * nodes of weight[n][c] exp(-exponent). On the device. */
+/* How planes become what is shown. The exponent of node n is the sum over planes of coefficient[n][p] times the mm of
+ * plane p; a channel shows the sum over nodes of weight[n][c] exp(-exponent). The tables are on the device. */
 typedef struct {
     int32_t planes, nodes, channels;
     int32_t shown;       /* SKG_SHOWN_... */
     int32_t world_plane; /* that the world's path adds to; -1: vacuum */
-    int32_t ratio;       /* 1: over what the world alone lets pass */
+    int32_t ratio;       /* 1: divided by what the world alone transmits */
     int32_t falloff;     /* 1: intensities fall with the distance */
-    int32_t energies;    /* 1: shows keV, which half precision keeps in MeV */
-    int32_t noise;       /* 1: quantum noise, of intensities that are no ratio */
+    int32_t energies;    /* 1: shows keV, which half precision stores in MeV */
+    int32_t noise;       /* 1: quantum noise is drawn; then intensities are no ratio */
+    int32_t reserved;
     double world_weight; /* of a mm of the world's path in its plane */
     skg_buffer coefficients, weights, variances;
-    skg_buffer
-        range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not looked at */
+    skg_buffer range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
 } skg_attenuation;
 
-/* What a host gives. */
+/* The tables as the host gives them. */
 typedef struct {
     const double *coefficients; /* [nodes][planes] */
     const double *weights;      /* [nodes][channels] */
     const double *variances;    /* [nodes][channels] with noise; else NULL */
-    const double *range;        /* [planes][2]; NULL: not looked at */
+    const double *range;        /* [planes][2]; NULL: not checked */
 } skg_attenuation_tables;
 
 /* shape: planes, nodes, channels and what is shown. The tables are copied. */
@@ -36,11 +36,14 @@ skg_status skg_attenuation_create(skg_context *context, int32_t precision, const
                                   const skg_attenuation_tables *tables, skg_attenuation *attenuation);
 void skg_attenuation_release(skg_attenuation *attenuation);
 
+/* Bytes on the device. */
+int64_t skg_attenuation_bytes(const skg_attenuation *attenuation);
+
 typedef struct skg_attenuator skg_attenuator; /* the kernels, made on demand */
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator);
 void skg_attenuator_release(skg_attenuator **attenuator);
 
-/* Where an image goes, in elements of float, or double where output_double. */
+/* Where an image goes, in elements of float, or of double if output_double is 1. */
 typedef struct {
     cl_mem memory;
     int32_t output_double;
@@ -51,29 +54,30 @@ typedef struct {
 /* The sums that a frame has left, and how they become planes. */
 typedef struct {
     const skg_raster *raster;
-    double scale; /* of the sums */
-    int32_t
-        mixed; /* accumulators that planes are mixed from (mix.h); 0: planes are accumulators themselves */
+    double scale;  /* of the sums */
+    int32_t mixed; /* accumulators that planes are mixed from (spectral/mix.h); 0: accumulators are planes */
     int32_t reserved;
     cl_mem lists; /* [mixed][planes] in the precision of the raster */
 } skg_sums;
 
-/* Below so many detected photons in a pixel, quantum noise is drawn photon by photon. */
+/* In a pixel that detects fewer photons than this, quantum noise is drawn photon by photon. */
 #define SKG_FEW_PHOTONS 50.0
 
-/* Enqueues one image. factor: of intensities; with noise, of photons: the share of a
- * sample of the source, whose draws add up to one of all photons; least: exponents below it are counted into
- * negative[0], pixels outside the attenuation's range into negative[1]. noise: its key, where there is noise.
- */
+/* Enqueues one image.
+ *
+ * factor    of intensities; with noise, of photons: the share of one sample of the source. The draws of all samples
+ *           add up to one draw of all photons.
+ * least     exponents below it are counted in negative[0]; pixels outside the attenuation's range in negative[1]
+ * noise     the key of the noise; NULL without noise */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
 
-/* Enqueues the open field: what would be shown without parts and noise. sums: of a frame of the same shape;
- * they are not read. */
-skg_status skg_attenuate_open(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                              const skg_attenuation *attenuation, double factor, cl_mem negative,
-                              const skg_image_place *place, skg_stage_log *log);
+/* Enqueues the flat field: what is shown without parts and noise. sums: of a frame of the same shape; they are not
+ * read. */
+skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+                                    const skg_attenuation *attenuation, double factor, cl_mem negative,
+                                    const skg_image_place *place, skg_stage_log *log);
 
 /* Enqueues -ln of a finished mean, in place. */
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* As in blur.cl. */
+/* The same numbers as in blur.cl. */
 enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
 
 /* Longest function along either direction, samples. */
@@ -61,7 +61,7 @@ static skg_status copy_turned(const char *what, int64_t count, const double *sam
         sum += samples[i];
         magnitude += fabs(samples[i]);
     }
-    /* What rounding may leave of a sum of 0. */
+    /* A sum of 0 may be left as this by rounding. */
     if (!(sum > 1e-12 * magnitude) || !isfinite(magnitude))
         return skg_fail(SKG_ERR_ARGUMENT, "the samples of the %s sum to %g; the sum has to be above 0", what,
                         sum);
@@ -86,7 +86,7 @@ static skg_status read_shape(const skg_detector_blur *shape, skg_blur *blur) {
         separable ? "line spread function along the columns" : "point spread function's column", ours.rows));
     if (!separable) {
         SKG_TRY(copy_turned("point spread function", ours.columns * ours.rows, ours.point, &blur->across));
-        return copy_turned("copy", 1, &one, &blur->down);
+        return copy_turned("point spread function's column", 1, &one, &blur->down);
     }
     SKG_TRY(copy_turned("line spread function along the rows", ours.columns, ours.along_row, &blur->across));
     return copy_turned("line spread function along the columns", ours.rows, ours.along_column, &blur->down);
@@ -132,7 +132,7 @@ int64_t skg_blur_bytes(const skg_blur *blur) {
     return bytes;
 }
 
-/* Weights in the type of the image, with `zeros` about them. */
+/* Uploads weights in the type of the image, with `zeros` zeros before and behind them. */
 static skg_status upload(const skg_blur *blur, int is_double, int64_t count, const double *weights,
                          int64_t zeros, skg_buffer *buffer) {
     const size_t element = is_double ? sizeof(double) : sizeof(float);
@@ -169,20 +169,11 @@ static int64_t rounded_up(int64_t count, int64_t unit) {
     return (count + unit - 1) / unit * unit;
 }
 
-/* Sets arguments first, first + 1, ... to these numbers. */
-static skg_status set_ints(cl_kernel kernel, cl_uint first, int32_t count, const cl_int *values) {
-    for (int32_t i = 0; i < count; i++)
-        SKG_TRY(skg_kernel_set(kernel, first + (cl_uint)i, sizeof *values, &values[i]));
-    return SKG_OK;
-}
-
-static skg_status set_image(cl_kernel kernel, cl_uint first, const skg_image_place *image) {
-    const cl_long strides[3] = {image->offset, image->row_stride, image->channel_stride};
-    SKG_TRY(skg_kernel_set(kernel, first, sizeof image->memory, &image->memory));
-    for (cl_uint i = 0; i < 3; i++)
-        SKG_TRY(skg_kernel_set(kernel, first + 1 + i, sizeof *strides, &strides[i]));
-    return SKG_OK;
-}
+/* The arguments that say where an image is. */
+#define IMAGE_ARGUMENTS(kernel, place)                                                                       \
+    SKG_ARGUMENT(kernel, image, (place)->memory), SKG_ARGUMENT(kernel, offset, (place)->offset),             \
+        SKG_ARGUMENT(kernel, row_stride, (place)->row_stride),                                               \
+        SKG_ARGUMENT(kernel, channel_stride, (place)->channel_stride)
 
 /* Enqueues a kernel over `across` x `down` work-items of each channel. */
 static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, int64_t down, int64_t channels,
@@ -192,36 +183,80 @@ static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, in
     return skg_kernel_run(blur->context, kernel, "blur", 3, global, local, log);
 }
 
-skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
-                        int64_t channels, skg_stage_log *log) {
-    const int is_double = image->output_double != 0;
+/* Sizes of both passes. */
+typedef struct {
+    cl_int columns, rows;           /* of the image */
+    cl_int stride, high;            /* of the workspace */
+    cl_int left, above;             /* pixels of the workspace before the image's first */
+    cl_int taps, down, across;      /* samples of the first pass; of the second, down and across */
+    int64_t lanes;
+} blur_layout;
+
+static blur_layout lay_out(const skg_blur *blur, int is_double, int64_t columns, int64_t rows) {
     const int64_t lanes =
         skg_kernel_lanes(blur->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
     const int64_t left = blur->columns / 2, above = blur->separable ? 0 : blur->rows / 2;
     /* Runs of the second pass may end past the image, and read as far to the right as any. */
     const int64_t stride = rounded_up(rounded_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);
-    const int64_t high = rows + 2 * above;
-    const cl_int taps = blur->separable ? (cl_int)blur->rows : 1;
+    return (blur_layout){.columns = (cl_int)columns,
+                         .rows = (cl_int)rows,
+                         .stride = (cl_int)stride,
+                         .high = (cl_int)(rows + 2 * above),
+                         .left = (cl_int)left,
+                         .above = (cl_int)above,
+                         .taps = blur->separable ? (cl_int)blur->rows : 1,
+                         .down = blur->separable ? 1 : (cl_int)blur->rows,
+                         .across = (cl_int)blur->columns,
+                         .lanes = lanes};
+}
+
+static skg_status run_down(const skg_blur *blur, const blur_type *type, const blur_layout *at,
+                           const skg_image_place *image, int64_t channels, skg_stage_log *log) {
+    const skg_argument arguments[] = {
+        IMAGE_ARGUMENTS(BLUR_DOWN, image),
+        SKG_ARGUMENT(BLUR_DOWN, columns, at->columns),
+        SKG_ARGUMENT(BLUR_DOWN, rows, at->rows),
+        SKG_ARGUMENT(BLUR_DOWN, taps, at->taps),
+        SKG_ARGUMENT(BLUR_DOWN, weights, type->down.memory),
+        SKG_ARGUMENT(BLUR_DOWN, workspace, blur->workspace.memory),
+        SKG_ARGUMENT(BLUR_DOWN, stride, at->stride),
+        SKG_ARGUMENT(BLUR_DOWN, high, at->high),
+        SKG_ARGUMENT(BLUR_DOWN, left, at->left),
+        SKG_ARGUMENT(BLUR_DOWN, above, at->above),
+    };
+    SKG_TRY(SKG_SET_ARGUMENTS(type->down_kernel, arguments));
+    return run(blur, type->down_kernel, at->stride / (BLUR_VECTORS * at->lanes),
+               ((int64_t)at->high + BLUR_ROWS - 1) / BLUR_ROWS, channels, log);
+}
+
+static skg_status run_across(const skg_blur *blur, const blur_type *type, const blur_layout *at,
+                             const skg_image_place *image, int64_t channels, skg_stage_log *log) {
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(BLUR_ACROSS, workspace, blur->workspace.memory),
+        SKG_ARGUMENT(BLUR_ACROSS, stride, at->stride),
+        SKG_ARGUMENT(BLUR_ACROSS, high, at->high),
+        SKG_ARGUMENT(BLUR_ACROSS, down, at->down),
+        SKG_ARGUMENT(BLUR_ACROSS, across, at->across),
+        SKG_ARGUMENT(BLUR_ACROSS, weights, type->across.memory),
+        IMAGE_ARGUMENTS(BLUR_ACROSS, image),
+        SKG_ARGUMENT(BLUR_ACROSS, columns, at->columns),
+        SKG_ARGUMENT(BLUR_ACROSS, rows, at->rows),
+    };
+    SKG_TRY(SKG_SET_ARGUMENTS(type->across_kernel, arguments));
+    return run(blur, type->across_kernel, (at->columns + BLUR_RUN * at->lanes - 1) / (BLUR_RUN * at->lanes),
+               at->rows, channels, log);
+}
+
+skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
+                        int64_t channels, skg_stage_log *log) {
+    const int is_double = image->output_double != 0;
+    const blur_layout layout = lay_out(blur, is_double, columns, rows);
     blur_type *type = NULL;
     SKG_TRY(get_type(blur, is_double, &type));
     SKG_TRY(skg_buffer_reserve(blur->context, &blur->workspace,
-                               stride * high * channels *
+                               (int64_t)layout.stride * layout.high * channels *
                                    (int64_t)(is_double ? sizeof(cl_double) : sizeof(cl_float)),
                                CL_MEM_READ_WRITE, "blur"));
-    cl_kernel kernel = type->down_kernel;
-    SKG_TRY(set_image(kernel, 0, image));
-    SKG_TRY(set_ints(kernel, 4, 3, (cl_int[]){(cl_int)columns, (cl_int)rows, taps}));
-    SKG_TRY(skg_kernel_set_memory(kernel, 7, 2, (cl_mem[]){type->down.memory, blur->workspace.memory}));
-    SKG_TRY(set_ints(kernel, 9, 4, (cl_int[]){(cl_int)stride, (cl_int)high, (cl_int)left, (cl_int)above}));
-    SKG_TRY(run(blur, kernel, stride / (BLUR_VECTORS * lanes), (high + BLUR_ROWS - 1) / BLUR_ROWS, channels,
-                log));
-    kernel = type->across_kernel;
-    SKG_TRY(skg_kernel_set_memory(kernel, 0, 1, &blur->workspace.memory));
-    SKG_TRY(set_ints(kernel, 1, 4,
-                     (cl_int[]){(cl_int)stride, (cl_int)high, blur->separable ? 1 : (cl_int)blur->rows,
-                                (cl_int)blur->columns}));
-    SKG_TRY(skg_kernel_set_memory(kernel, 5, 1, &type->across.memory));
-    SKG_TRY(set_image(kernel, 6, image));
-    SKG_TRY(set_ints(kernel, 10, 2, (cl_int[]){(cl_int)columns, (cl_int)rows}));
-    return run(blur, kernel, (columns + BLUR_RUN * lanes - 1) / (BLUR_RUN * lanes), rows, channels, log);
+    SKG_TRY(run_down(blur, type, &layout, image, channels, log));
+    return run_across(blur, type, &layout, image, channels, log);
 }

@@ -1,8 +1,7 @@
-/* Stage `blur`: an image convolved with the detector's line spread functions or its point spread function.
- * Private.
+/* Stage `blur`: an image convolved with the detector's line spread functions or its point spread function. Private.
  *
- * Beyond its border the image goes on as at the border: where the open field reaches the border, it
- * continues, and the blur leaves it as it is. */
+ * A pixel beyond the border takes the value of the nearest pixel on it. So a flat field that reaches the border continues
+ * beyond it, and the blur leaves it unchanged. */
 #ifndef SKG_BLUR_H
 #define SKG_BLUR_H
 
@@ -10,23 +9,22 @@
 
 typedef struct skg_blur skg_blur;
 
-/* Checks and copies the functions, scaled to sum 1. SKG_ERR_ARGUMENT: an even or no number of samples, a
- * sample that is not finite, no positive sum. */
+/* Checks and copies the functions, scaled to sum 1. SKG_ERR_ARGUMENT: an even or no number of samples, a sample that is
+ * not finite, no positive sum. */
 skg_status skg_blur_create(skg_context *context, const skg_detector_blur *shape, skg_blur **blur);
 void skg_blur_release(skg_blur **blur);
 
-/* Enqueues the blur of `channels` images of columns x rows, in place. The workspace is allocated at the first
- * call. */
+/* Enqueues the blur of `channels` images of columns x rows, in place. The workspace is allocated at the first call. */
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
                         int64_t channels, skg_stage_log *log);
 
-/* Samples that a pixel is summed from. */
+/* From how many samples a pixel is summed. */
 int64_t skg_blur_samples(const skg_blur *blur);
 
-/* What was given: "a point spread function of 5 x 5 samples"; valid as long as the blur. */
+/* The functions in words: "a point spread function of 5 x 5 samples"; valid as long as the blur. */
 const char *skg_blur_kind(const skg_blur *blur);
 
-/* Bytes that it has on the device. */
+/* Bytes on the device. */
 int64_t skg_blur_bytes(const skg_blur *blur);
 
 #endif

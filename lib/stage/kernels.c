@@ -23,50 +23,25 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
     for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];
     snprintf(text, sizeof text,
              "-D SKG_DOUBLE=%d -D SKG_BITS=%d -D SKG_WIDE=%d -D SKG_PARALLEL=%d -D SKG_SOURCE_PLANE=%d "
-             "-D SKG_WRITES=%d -D SKG_HALF=%d %s",
+             "-D SKG_LISTED=%d -D SKG_HALF=%d %s",
              options->precision == SKG_PRECISION_DOUBLE, options->bits,
              skg_kernel_lanes(context, options->precision), options->parallel != 0,
-             options->source_plane != 0, options->listed_writes ? 0 : 1, options->half != 0,
+             options->source_plane != 0, options->listed != 0, options->half != 0,
              more_options ? more_options : "");
     return skg_program_get(context, HEADERS + files, all, text, program);
 }
 
-skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count, const cl_mem *memory) {
+skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments) {
     for (int32_t i = 0; i < count; i++)
-        SKG_TRY(skg_kernel_set(kernel, first + (cl_uint)i, sizeof *memory, &memory[i]));
+        SKG_TRY(skg_kernel_set(kernel, arguments[i].position, arguments[i].size, arguments[i].value));
     return SKG_OK;
 }
 
-void skg_stage_log_clear(skg_stage_log *log) {
-    for (int64_t i = 0; i < log->count; i++) clReleaseEvent(log->events[i]);
-    skg_free(&log->names);
-    skg_free(&log->events);
-    log->count = log->room = 0;
-}
-
-cl_event *skg_stage_event(const skg_stage_log *log, cl_event *event) {
-    return log && log->on ? event : NULL;
-}
-
-static skg_status make_room(skg_stage_log *log) {
-    const int64_t room = 2 * log->room + 16;
-    if (log->count < log->room) return SKG_OK;
-    SKG_TRY(skg_realloc(room, sizeof *log->names, "stage log", &log->names));
-    SKG_TRY(skg_realloc(room, sizeof *log->events, "stage log", &log->events));
-    log->room = room;
-    return SKG_OK;
-}
-
-skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event event) {
-    if (!event) return SKG_OK;
-    skg_status status = log && log->on ? make_room(log) : SKG_STALE;
-    if (status != SKG_OK) {
-        clReleaseEvent(event);
-        return status == SKG_STALE ? SKG_OK : status;
-    }
-    log->names[log->count] = stage;
-    log->events[log->count++] = event;
-    return SKG_OK;
+void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, double value) {
+    argument->single = (float)value;
+    argument->twice = value;
+    argument->size = is_double ? sizeof argument->twice : sizeof argument->single;
+    argument->value = is_double ? (const void *)&argument->twice : (const void *)&argument->single;
 }
 
 skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,

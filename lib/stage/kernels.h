@@ -1,50 +1,59 @@
-/* Which kernels with which -D: the one place that writes option strings for the stages that project and
- * rasterise. Private. */
+/* Programs and kernels for the stages: the one place that writes -D options, sets arguments and enqueues. Private. */
 #ifndef SKG_KERNELS_H
 #define SKG_KERNELS_H
 
-#include "device/device.h"
+#include "arguments.h"
+#include "stage/stage_log.h"
 
+/* What the kernels that project and rasterise are compiled for. */
 typedef struct {
-    int32_t precision;     /* SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE */
-    int32_t bits;          /* of the accumulators: 32 or 64 */
-    int32_t parallel;      /* parallel beam */
-    int32_t source_plane;  /* some part may reach the source, or the plane where parallel paths start */
-    int32_t half;          /* distances are rounded to 16 bits; precision is single */
-    int32_t listed_writes; /* 0: every part adds to one plane, without bias; 1: as its list says */
+    int32_t precision;    /* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE */
+    int32_t bits;         /* of an accumulator: 32 or 64 */
+    int32_t parallel;     /* 1: parallel beam */
+    int32_t source_plane; /* 1: some part may reach the source, or the plane where parallel paths start */
+    int32_t half;         /* 1: distances are rounded to 16 bits; precision is single */
+    int32_t listed; /* 1: parts contribute as their lists say; 0: to one plane each, without bias */
 } skg_kernel_options;
 
-/* Lanes that kernels with wide vectors use on this device. */
+/* How many lanes kernels with wide vectors use on this device. */
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 
-/* The program of these kernel files (after the headers that all need), from the context's cache or built. */
+/* The program of these kernel files, behind the headers that all need, from the context's cache or built. */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const char *more_options, cl_program *program);
 
-/* Sets arguments `first`, first + 1, ... to these buffers. */
-skg_status skg_kernel_set_memory(cl_kernel kernel, cl_uint first, int32_t count, const cl_mem *memory);
-
-/* Events of what was enqueued, by stage, where stages are timed. All zero and on = 1 to begin. */
+/* One argument of a kernel: its position, by the name that kernels/arguments.h gives it, and its value. */
 typedef struct {
-    int32_t on, reserved;
-    int64_t count, room;
-    const char **names; /* [count] static storage */
-    cl_event *events;   /* [count] */
-} skg_stage_log;
+    cl_uint position;
+    size_t size;
+    const void *value;
+} skg_argument;
+#define SKG_ARGUMENT(kernel, name, object)                                                                   \
+    {                                                                                                        \
+        SKG_##kernel##_##name, sizeof(object), &(object)                                                     \
+    }
 
-/* Takes an event over; keeps it where the log is on. log or event may be NULL. */
-skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event event);
-void skg_stage_log_clear(skg_stage_log *log);
+skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments);
 
-/* Where the log wants an event put; NULL where it wants none. */
-cl_event *skg_stage_event(const skg_stage_log *log, cl_event *event);
+/* Sets an array of skg_argument. */
+#define SKG_SET_ARGUMENTS(kernel, arguments)                                                                 \
+    skg_kernel_arguments(kernel, (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments)
 
-/* Enqueues a kernel. global and local: sizes in `dimensions` dimensions; local may be NULL. stage: for the
- * log, which may be NULL, and for messages. */
+/* A real number in the precision of a kernel, to be passed as an argument of `size` bytes from `value`. */
+typedef struct {
+    float single;
+    double twice;
+    size_t size;
+    const void *value;
+} skg_real_argument;
+void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, double value);
+
+/* Enqueues a kernel. global and local: sizes in `dimensions` dimensions; local may be NULL. stage: for messages and
+ * for the log, which may be NULL. */
 skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
                           const size_t *global, const size_t *local, skg_stage_log *log);
 
-/* Enqueues a write that reads `bytes` of data when its turn comes: the data must stay. */
+/* Enqueues a write of `bytes` of data. The data must stay until the device has read them. */
 skg_status skg_stage_write(skg_context *context, const char *stage, cl_mem buffer, int64_t offset,
                            int64_t bytes, const void *data, skg_stage_log *log);
 

@@ -21,8 +21,8 @@ static size_t entry_size(const skg_geometry *geometry) {
     return is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
 }
 
-static size_t write_size(const skg_geometry *geometry) {
-    return is_double(geometry) ? sizeof(skg_write_double) : sizeof(skg_write_float);
+static size_t contribution_size(const skg_geometry *geometry) {
+    return is_double(geometry) ? sizeof(skg_contribution_double) : sizeof(skg_contribution_float);
 }
 
 static skg_status reset_bad(skg_context *context, skg_geometry *geometry) {
@@ -120,6 +120,7 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
         skg_alloc(meshes + 1, sizeof *geometry->mesh_vertex, "mesh table", &geometry->mesh_vertex));
     SKG_TRY_CLEANUP(
         skg_alloc(parts + 1, sizeof *geometry->first_vertex, "part table", &geometry->first_vertex));
+    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *geometry->versions, "mesh table", &geometry->versions));
     SKG_TRY_CLEANUP(number(geometry, mesh, mesh_of_part, mesh_triangle, first_triangle));
     for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
         skg_table_slot *slot = &geometry->slots[i];
@@ -160,16 +161,17 @@ static skg_status wait_for(skg_table_slot *slot) {
 
 void skg_geometry_release(skg_geometry *geometry) {
     skg_buffer *const buffers[] = {
-        &geometry->offsets,       &geometry->corners,         &geometry->part_table, &geometry->write_table,
+        &geometry->offsets,       &geometry->corners,         &geometry->part_table, &geometry->contribution_table,
         &geometry->vertex_blocks, &geometry->triangle_blocks, &geometry->projected,  &geometry->bad};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&geometry->mesh_vertex);
+    skg_free(&geometry->versions);
     skg_free(&geometry->first_vertex);
     for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
         skg_table_slot *slot = &geometry->slots[i];
         if (wait_for(slot) != SKG_OK) clReleaseEvent(slot->read);
         skg_free(&slot->entries);
-        skg_free(&slot->writes);
+        skg_free(&slot->contributions);
     }
     if (geometry->kernel) clReleaseKernel(geometry->kernel);
     geometry->kernel = NULL;
@@ -183,6 +185,31 @@ skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int
     SKG_TRY(
         skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets, log));
     return reset_bad(context, geometry);
+}
+
+/* The vertices of a mesh as the device wants them: offsets from its origin, [vertices][3]. */
+static void read_offsets(const skg_geometry *geometry, const skg_mesh *mesh, void *offsets) {
+    if (!is_double(geometry)) {
+        memcpy(offsets, mesh->offsets, (size_t)mesh->vertices * 3 * sizeof *mesh->offsets);
+        return;
+    }
+    double *to = offsets;
+    for (int64_t v = 0; v < mesh->vertices; v++) {
+        skg_mesh_vertex(mesh, v, to + 3 * v);
+        for (int k = 0; k < 3; k++) to[3 * v + k] -= mesh->origin[k];
+    }
+}
+
+skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging) {
+    for (int64_t m = 0; m < geometry->meshes; m++) {
+        void *offsets = NULL;
+        if (geometry->versions[m] == meshes[m]->version) continue;
+        SKG_TRY(skg_staging_take(staging, 3 * meshes[m]->vertices, real_size(geometry), "vertices", &offsets));
+        read_offsets(geometry, meshes[m], offsets);
+        SKG_TRY(skg_geometry_upload(staging->context, geometry, m, offsets, &staging->log));
+        geometry->versions[m] = meshes[m]->version;
+    }
+    return SKG_OK;
 }
 
 /* What changes from frame to frame in single precision is double's, rounded once. */
@@ -203,49 +230,50 @@ static void round_entry(const skg_part_double *from, skg_part_float *to) {
     to->pixel_i = from->pixel_i;
     to->pixel_j = from->pixel_j;
     to->turned = from->turned;
-    to->first_write = from->first_write;
-    to->writes = from->writes;
+    to->first_contribution = from->first_contribution;
+    to->contributions = from->contributions;
 }
 
-static void set_write(const skg_geometry *geometry, void *writes, int64_t index,
-                      const skg_contribution *weight, double factor) {
+static void set_contribution(const skg_geometry *geometry, void *contributions, int64_t index,
+                             const skg_contribution *from, double factor) {
     if (is_double(geometry))
-        ((skg_write_double *)writes)[index] = (skg_write_double){
-            .weight = weight->weight * factor, .bias = weight->bias, .plane = (SKG_INT)weight->plane};
+        ((skg_contribution_double *)contributions)[index] = (skg_contribution_double){
+            .weight = from->weight * factor, .bias = from->bias, .plane = (SKG_INT)from->plane};
     else
-        ((skg_write_float *)writes)[index] = (skg_write_float){.weight = (float)(weight->weight * factor),
-                                                               .bias = (float)weight->bias,
-                                                               .plane = (SKG_INT)weight->plane};
+        ((skg_contribution_float *)contributions)[index] =
+            (skg_contribution_float){.weight = (float)(from->weight * factor),
+                                     .bias = (float)from->bias,
+                                     .plane = (SKG_INT)from->plane};
 }
 
 static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *camera,
                               const skg_geometry_part *part, double scale, skg_table_slot *slot) {
     int64_t total = 0;
-    for (int64_t p = 0; p < geometry->parts; p++) total += part[p].weights;
-    if (total > slot->write_room) {
-        SKG_TRY(skg_realloc(total, write_size(geometry), "write table", &slot->writes));
-        slot->write_room = total;
+    for (int64_t p = 0; p < geometry->parts; p++) total += part[p].contributions;
+    if (total > slot->capacity) {
+        SKG_TRY(skg_realloc(total, contribution_size(geometry), "contribution table", &slot->contributions));
+        slot->capacity = total;
     }
-    slot->write_count = 0;
+    slot->contribution_count = 0;
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
         skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
-        entry->first_write = (SKG_INT)slot->write_count;
-        entry->writes = (SKG_INT)part[p].weights;
+        entry->first_contribution = (SKG_INT)slot->contribution_count;
+        entry->contributions = (SKG_INT)part[p].contributions;
         if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);
         /* Kernels weigh q = r / reference; a parallel beam's q is r itself. */
         const double factor = camera->parallel ? scale : scale * entry->reference;
-        for (int32_t w = 0; w < part[p].weights; w++)
-            set_write(geometry, slot->writes, slot->write_count++, &part[p].weight[w], factor);
+        for (int32_t w = 0; w < part[p].contributions; w++)
+            set_contribution(geometry, slot->contributions, slot->contribution_count++, &part[p].contribution[w], factor);
     }
     return SKG_OK;
 }
 
 static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, const skg_table_slot *b) {
-    return a->write_count == b->write_count &&
+    return a->contribution_count == b->contribution_count &&
            memcmp(a->entries, b->entries, (size_t)geometry->parts * entry_size(geometry)) == 0 &&
-           (a->write_count == 0 ||
-            memcmp(a->writes, b->writes, (size_t)a->write_count * write_size(geometry)) == 0);
+           (a->contribution_count == 0 ||
+            memcmp(a->contributions, b->contributions, (size_t)a->contribution_count * contribution_size(geometry)) == 0);
 }
 
 /* Brings the frame's tables to the device where they differ from those it has. */
@@ -257,13 +285,13 @@ skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, cons
     SKG_TRY(wait_for(slot));
     SKG_TRY(fill_tables(geometry, camera, part, scale, slot));
     if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
-    const size_t bytes = (size_t)slot->write_count * write_size(geometry);
+    const size_t bytes = (size_t)slot->contribution_count * contribution_size(geometry);
     geometry->uploaded =
-        0; /* should one of the two writes fail, the device has neither the old nor the new */
+        0; /* if one of the two writes fails, the device has neither table */
     SKG_TRY(
-        skg_buffer_reserve(context, &geometry->write_table, (int64_t)bytes, CL_MEM_READ_ONLY, "write table"));
+        skg_buffer_reserve(context, &geometry->contribution_table, (int64_t)bytes, CL_MEM_READ_ONLY, "contribution table"));
     if (bytes > 0)
-        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->write_table.memory, CL_FALSE, 0, bytes, slot->writes,
+        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->contribution_table.memory, CL_FALSE, 0, bytes, slot->contributions,
                                         0, NULL, NULL));
     SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->part_table.memory, CL_FALSE, 0,
                                     (size_t)geometry->parts * entry_size(geometry), slot->entries, 0, NULL,
@@ -294,19 +322,24 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
     SKG_TRY(skg_geometry_weigh(context, geometry, camera, part, scale));
     SKG_TRY(get_kernel(context, geometry, options));
     const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
-    const cl_mem memory[] = {geometry->part_table.memory, geometry->vertex_blocks.memory,
-                             geometry->offsets.memory, geometry->projected.memory, geometry->bad.memory};
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(PROJECT, frame, frame),
+        SKG_ARGUMENT(PROJECT, parts, geometry->part_table.memory),
+        SKG_ARGUMENT(PROJECT, blocks, geometry->vertex_blocks.memory),
+        SKG_ARGUMENT(PROJECT, vertices, geometry->offsets.memory),
+        SKG_ARGUMENT(PROJECT, projected, geometry->projected.memory),
+        SKG_ARGUMENT(PROJECT, bad_vertex, geometry->bad.memory),
+    };
     const int on_gpu = context->device->info.is_gpu;
     const size_t local = on_gpu ? 64 : 1, run = on_gpu ? 1 : RUN;
     const size_t global = ((size_t)geometry->vertices + local * run - 1) / (local * run) * local;
-    SKG_TRY(skg_kernel_set(geometry->kernel, 0, sizeof frame, &frame));
-    SKG_TRY(skg_kernel_set_memory(geometry->kernel, 1, 5, memory));
+    SKG_TRY(SKG_SET_ARGUMENTS(geometry->kernel, arguments));
     return skg_kernel_run(context, geometry->kernel, "project", 1, &global, &local, log);
 }
 
 int64_t skg_geometry_bytes(const skg_geometry *geometry) {
     return geometry->offsets.bytes + geometry->corners.bytes + geometry->part_table.bytes +
-           geometry->write_table.bytes + geometry->vertex_blocks.bytes + geometry->triangle_blocks.bytes +
+           geometry->contribution_table.bytes + geometry->vertex_blocks.bytes + geometry->triangle_blocks.bytes +
            geometry->projected.bytes + geometry->bad.bytes;
 }
 

@@ -1,12 +1,16 @@
-/* Stage `project`: the meshes of a scene on the device, the tables of its parts, and the projected vertices
- * of a frame. One vertex, index and part table for everything: launches do not grow with the number of parts,
- * and a mesh in many parts is stored once. Private. */
+/* Stage `project`: the meshes of a scene on the device, the tables of its parts, and the projected vertices of a frame.
+ * Private.
+ *
+ * All parts share one vertex buffer, one index buffer and one part table, so that the number of launches does not grow
+ * with the number of parts, and a mesh that many parts use is stored once. */
 #ifndef SKG_PROJECT_H
 #define SKG_PROJECT_H
 
 #include "geometry/camera.h"
+#include "mesh/mesh.h"
 #include "spectral/contribution.h"
 #include "stage/kernels.h"
+#include "stage/staging.h"
 
 typedef struct {
     int64_t vertices, triangles;
@@ -17,41 +21,50 @@ typedef struct {
 typedef struct {
     const double *pose;   /* 4x4, row by row */
     const double *origin; /* of its mesh's offsets, mm */
-    int32_t flipped;      /* its mesh is drawn with triangles turned round */
-    double reference;     /* path parameter that its depths are measured from: the middle of those that lie on
-                        paths, so     that no term is larger than their extent. Above 0 with a point source */
-    int32_t weights;      /* how many planes; 0: the part is not drawn, but keeps its place */
-    const skg_contribution *weight;
+    int32_t flipped;      /* 1: the mesh is drawn with its triangles turned round */
+    /* The path parameter that the part's depths are measured from: the middle of those that lie on paths, so that no
+     * term is larger than the part's extent. Above 0 with a point source. */
+    double reference;
+    int32_t contributions; /* how many; 0: the part is not drawn, but keeps its place in the tables */
+    const skg_contribution *contribution;
 } skg_geometry_part;
 
-/* Host copies of the part and write tables, kept until the device has read them: writes do not wait for
- * frames in flight. */
+/* Host copies of the part and contribution tables. Each stays until the device has read it, so that writing a frame's
+ * tables does not wait for the frames before it. */
 enum { SKG_TABLE_SLOTS = 4 };
 typedef struct {
-    void *entries; /* skg_part_float or _double [parts] */
-    void *writes;  /* skg_write_float or _double [write_count] */
-    int64_t write_count, write_room;
-    cl_event read; /* of the last write from here; NULL: none */
+    void *entries;       /* skg_part_float or skg_part_double [parts] */
+    void *contributions; /* skg_contribution_float or skg_contribution_double [contribution_count] */
+    int64_t contribution_count, capacity;
+    cl_event read; /* of the last write from this slot; NULL: none */
 } skg_table_slot;
 
 typedef struct {
     int64_t meshes, parts;
     int64_t vertices, triangles; /* over all parts */
     int64_t mesh_vertices;       /* over all meshes */
-    int32_t precision;           /* SKG_PRECISION_SINGLE: offsets and tables in float; SKG_PRECISION_DOUBLE */
+    int32_t precision;           /* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE: of offsets and tables */
     int32_t reserved;
     int64_t *mesh_vertex;  /* [meshes + 1] first vertex of each mesh in the vertex buffer */
+    int64_t *versions;     /* [meshes] of the vertices as the device has them; 0: it has none */
     int64_t *first_vertex; /* [parts + 1] in the numbering over all parts */
-    int32_t slot;          /* of the tables that the device has */
-    int32_t uploaded;      /* it has any */
+    int32_t slot;          /* that holds the tables as the device has them */
+    int32_t uploaded;      /* 1: the device has tables */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     cl_kernel kernel;
     skg_kernel_options kernel_options;
-    skg_buffer offsets, corners, part_table, write_table, vertex_blocks, triangle_blocks;
+    skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
     skg_buffer projected; /* x, y, z, t of each vertex over all parts */
-    skg_buffer bad;       /* int: the lowest vertex over all parts that was not finite since the last upload;
-                          INT32_MAX: none */
+    /* int: the lowest vertex over all parts that was not finite since the last upload; INT32_MAX: none */
+    skg_buffer bad;
 } skg_geometry;
+
+/* The arguments that kernels which take triangles have in common. */
+#define SKG_TRIANGLE_ARGUMENTS(kernel, frame_args, geometry)                                                 \
+    SKG_ARGUMENT(kernel, frame, frame_args), SKG_ARGUMENT(kernel, corners, (geometry)->corners.memory),      \
+        SKG_ARGUMENT(kernel, projected, (geometry)->projected.memory),                                       \
+        SKG_ARGUMENT(kernel, parts, (geometry)->part_table.memory),                                          \
+        SKG_ARGUMENT(kernel, blocks, (geometry)->triangle_blocks.memory)
 
 /* Allocates everything and uploads what does not move. mesh_of_part: [parts]. */
 skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t meshes,
@@ -59,25 +72,27 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
                                skg_geometry *geometry);
 void skg_geometry_release(skg_geometry *geometry);
 
-/* Uploads the vertices of a mesh: offsets from its origin, [vertices][3], float or double as the precision
- * is. Nothing is waited for: the offsets must stay until they are read. */
+/* Enqueues the upload of a mesh's vertices: offsets from its origin, [vertices][3], float or double by the precision.
+ * The offsets must stay until the device has read them. */
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
                                const void *offsets, skg_stage_log *log);
 
-/* Enqueues one frame's part table and projection. part: [parts]; scale: of the accumulators (multiplies
- * weights). */
+/* Enqueues the upload of all meshes whose vertices have changed since they were last uploaded. meshes: [meshes]. */
+skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging);
+
+/* Enqueues one frame's part table and projection. part: [parts]; scale: of the accumulators (multiplies weights). */
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
                                 const skg_kernel_options *options, const skg_camera *camera,
                                 const skg_geometry_part *part, double scale, skg_stage_log *log);
 
-/* Enqueues another part table for a frame that is projected: the same parts with other weights. */
+/* Enqueues another part table for a frame that is projected: the same parts with other contributions. */
 skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
                               const skg_geometry_part *part, double scale);
 
 /* Bytes on the device. */
 int64_t skg_geometry_bytes(const skg_geometry *geometry);
 
-/* Which part and which vertex of its mesh a number in `bad` means. */
+/* Which part, and which vertex of its mesh, a number in `bad` means. */
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex);
 
 #endif

@@ -1,5 +1,7 @@
-/* What is read from count planes: pixels whose signed hits do not cancel. */
+/* What is read from a raster: pixels whose signed hits do not cancel, and how full the tiles are. */
 #include "stage/raster_private.h"
+
+#include <skiagraph/plan.h>
 
 static size_t padded(int64_t items, int64_t group) {
     return (size_t)((items + group - 1) / group * group);
@@ -11,7 +13,7 @@ static skg_status get_bad_kernels(skg_raster *raster) {
     if (raster->bad) return SKG_OK;
     SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, 1, files, NULL, &program));
     if (!raster->bad_rows) SKG_TRY(skg_kernel_create(program, "skg_count_bad_rows", &raster->bad_rows));
-    return skg_kernel_create(program, "skg_count_bad", &raster->bad); /* last: it says that all is there */
+    return skg_kernel_create(program, "skg_count_bad", &raster->bad); /* last: its presence means that both are made */
 }
 
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem planes, int64_t first,
@@ -21,16 +23,37 @@ skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem plane
     SKG_TRY(get_bad_kernels(raster));
     SKG_TRY(skg_buffer_reserve(raster->context, &raster->rows_bad, count * row_bytes, CL_MEM_READ_WRITE,
                                "bad pixels of the rows"));
-    const cl_kernel kernels[2] = {raster->bad_rows, raster->bad};
-    const cl_mem memory[] = {raster->sums.memory, raster->used.memory, planes, raster->rows_bad.memory};
-    for (int k = 0; k < 2; k++) {
-        SKG_TRY(skg_kernel_set(kernels[k], 0, sizeof raster->frame, &raster->frame));
-        SKG_TRY(skg_kernel_set_memory(kernels[k], 1, 4, memory));
-    }
-    SKG_TRY(skg_kernel_set(raster->bad, 5, sizeof first_verdict, &first_verdict));
-    SKG_TRY(skg_kernel_set_memory(raster->bad, 6, 1, &verdicts));
+    const skg_argument rows_arguments[] = {
+        SKG_ARGUMENT(COUNT_BAD_ROWS, frame, raster->frame),
+        SKG_ARGUMENT(COUNT_BAD_ROWS, copies, raster->sums.memory),
+        SKG_ARGUMENT(COUNT_BAD_ROWS, used, raster->used.memory),
+        SKG_ARGUMENT(COUNT_BAD_ROWS, planes, planes),
+        SKG_ARGUMENT(COUNT_BAD_ROWS, rows_bad, raster->rows_bad.memory),
+    };
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(COUNT_BAD, frame, raster->frame),
+        SKG_ARGUMENT(COUNT_BAD, copies, raster->sums.memory),
+        SKG_ARGUMENT(COUNT_BAD, used, raster->used.memory),
+        SKG_ARGUMENT(COUNT_BAD, planes, planes),
+        SKG_ARGUMENT(COUNT_BAD, rows_bad, raster->rows_bad.memory),
+        SKG_ARGUMENT(COUNT_BAD, first, first_verdict),
+        SKG_ARGUMENT(COUNT_BAD, verdicts, verdicts),
+    };
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->bad_rows, rows_arguments));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->bad, arguments));
     const size_t group[2] = {16, 1}, rows[2] = {padded(raster->frame.rows, 16), (size_t)count};
     const size_t one = 1;
     SKG_TRY(skg_kernel_run(raster->context, raster->bad_rows, "bad pixels", 2, rows, group, log));
     return skg_kernel_run(raster->context, raster->bad, "bad pixels", 1, &rows[1], &one, log);
+}
+
+skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {
+    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
+    const int64_t tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
+    const skg_buffer *from = skg_raster_has_squares(raster) ? &raster->starts : &raster->counts;
+    const size_t first =
+        skg_raster_has_squares(raster) ? (size_t)tiles : 1; /* as the kernels of tiles.cl and bands.cl leave it */
+    SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, from->memory, CL_FALSE,
+                                   first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL, NULL));
+    return SKG_OK;
 }

@@ -1,5 +1,7 @@
 /* Bodies: ribs against the literature, the generated thorax over a breath. */
-#include "body/body.h"
+#include "body/follow.h"
+#include "body/ribs.h"
+#include "body/types.h"
 #include "body/inside.h"
 #include "suite.h"
 

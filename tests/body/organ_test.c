@@ -1,6 +1,8 @@
 /* What a caller may say of an organ: kinds, axes, links; boxes that turn; drivers that contradict each other.
  */
-#include "body/body.h"
+#include "body/follow.h"
+#include "body/ribs.h"
+#include "body/types.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -403,7 +405,7 @@ START_TEST(what_does_not_fit_is_refused) {
         ck_skg_fails(skg_body_add(body, &organ, NULL), SKG_ERR_BREATHING, text);                             \
     } while (0)
     REFUSED(organ.kind = 7, "bag: kind 7");
-    REFUSED(organ.kind = SKG_ORGAN_RIGID, "say how it turns");
+    REFUSED(organ.kind = SKG_ORGAN_RIGID, "give it a rotation");
     REFUSED(organ.gamma_rad = 0.1, "not rigid");
     REFUSED((organ.kind = SKG_ORGAN_RIGID, organ.turn_rad[1] = 4), "half a turn");
     REFUSED((organ.kind = SKG_ORGAN_RIGID, organ.lambda_rad = (double)NAN), "not finite");

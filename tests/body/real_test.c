@@ -1,5 +1,6 @@
 /* Sixty-one organs of a real man breathe: needs the data. */
-#include "body/body.h"
+#include "body/axes.h"
+#include "body/types.h"
 #include "data.h"
 #include "suite.h"
 

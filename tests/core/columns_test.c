@@ -46,7 +46,7 @@ END_TEST
 static const struct {
     const char *text, *says;
 } bad[] = {
-    {"1 2\n3\n", "line 2: two numbers"},      {"1 2\n3 4 5\n", "line 2: there is more"},
+    {"1 2\n3\n", "line 2: two numbers"},      {"1 2\n3 4 5\n", "line 2: there are more"},
     {"# only\n", "no line with two numbers"}, {"1 2\nEnergy 3\n", "line 2: two numbers"},
     {"12\n", "line 1: two numbers"},          {"1 nan\n", "line 1: two numbers"},
 };

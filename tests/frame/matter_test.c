@@ -148,7 +148,7 @@ START_TEST(matter_that_cannot_be) {
     skg_material *water = dense("Water", 1), *bone = dense("Bone", 1.92);
     skg_plan *plan = make_plan(water, bone, bone, NULL);
     ck_skg_fails(submit(plan, 1, NULL, &number, NULL, image), SKG_ERR_ARGUMENT, "no ids");
-    ck_skg_fails(submit(plan, 1, &id, NULL, &number, image), SKG_ERR_ARGUMENT, "inner: a share of 2");
+    ck_skg_fails(submit(plan, 1, &id, NULL, &number, image), SKG_ERR_ARGUMENT, "inner: a fill fraction of 2");
     number = (double)NAN;
     ck_skg_fails(submit(plan, 1, &id, &number, NULL, image), SKG_ERR_ARGUMENT, "inner");
     id = 0, number = 0.5;

@@ -396,14 +396,14 @@ static char told[2000];
 
 static void keep_warning(int32_t level, const char *message, void *user) {
     (void)user;
-    if (level == SKG_LOG_WARNING && strstr(message, "is open")) snprintf(told, sizeof told, "%s", message);
+    if (level == SKG_LOG_WARNING && strstr(message, "is leaky")) snprintf(told, sizeof told, "%s", message);
 }
 
 /* The warning names the part, how many pixels, where, and what was done. */
 START_TEST(what_is_told) {
     static soup broken;
     static picture image, left_out;
-    static const char *const done[] = {"left out", "mean of its nearest valid pixels", "cast anew"};
+    static const char *const done[] = {"left out", "mean of its nearest valid pixels", "traced again"};
     char expected[100];
     int row = -1, column = -1;
     fill_sphere(&broken);
@@ -416,7 +416,7 @@ START_TEST(what_is_told) {
             for (int k = SIDE * SIDE; k-- > 0;)
                 if (fabs(left_out.mm[k / SIDE][k % SIDE] - image.mm[k / SIDE][k % SIDE]) > 1e-6)
                     row = k / SIDE, column = k % SIDE;
-        snprintf(expected, sizeof expected, "part first is open: at %d pixels",
+        snprintf(expected, sizeof expected, "part first is leaky: at %d pixels",
                  (int)left_out.report.bad_pixels);
         ck_assert_msg(strstr(told, expected) != NULL, "%s", told);
         snprintf(expected, sizeof expected, "first at (column, row) (%d, %d), (", column, row);
@@ -430,7 +430,7 @@ static int warnings;
 
 static void count_warnings(int32_t level, const char *message, void *user) {
     (void)user;
-    warnings += level == SKG_LOG_WARNING && strstr(message, "is open") != NULL;
+    warnings += level == SKG_LOG_WARNING && strstr(message, "is leaky") != NULL;
 }
 
 /* Once for a part; again where it is ten times as bad as it was, not where it is better. */

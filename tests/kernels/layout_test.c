@@ -17,12 +17,12 @@ static void close_context(void) {
 
 /* What the device's compiler makes of skg_shared.h: sizes, and places of the last fields. */
 static const char layout_kernel[] =
-    "__kernel void layout(__global int *out, __global const skg_part_entry *p, __global const skg_write *w,\n"
+    "__kernel void layout(__global int *out, __global const skg_part_entry *p, __global const skg_contribution *w,\n"
     "                     __global const skg_ray_args *r, __global const skg_frame_args *f) {\n"
-    "    out[0] = sizeof(skg_part_entry); out[1] = sizeof(skg_write); out[2] = sizeof(skg_ray_args);\n"
+    "    out[0] = sizeof(skg_part_entry); out[1] = sizeof(skg_contribution); out[2] = sizeof(skg_ray_args);\n"
     "    out[3] = sizeof(skg_frame_args);\n"
     "    out[4] = (int)((__global const char *)&p->pixel_i - (__global const char *)p);\n"
-    "    out[5] = (int)((__global const char *)&p->writes - (__global const char *)p);\n"
+    "    out[5] = (int)((__global const char *)&p->contributions - (__global const char *)p);\n"
     "    out[6] = (int)((__global const char *)&w->plane - (__global const char *)w);\n"
     "    out[7] = (int)((__global const char *)&r->unit - (__global const char *)r);\n"
     "    out[8] = (int)((__global const char *)&f->queue - (__global const char *)f);\n"
@@ -48,7 +48,7 @@ static void device_layout(const char *options, int32_t out[9]) {
     ck_skg(skg_buffer_reserve(context, &buffer, 4096, CL_MEM_READ_WRITE, "layout"));
     const cl_mem memory[5] = {buffer.memory, buffer.memory, buffer.memory, buffer.memory, buffer.memory};
     const size_t one = 1;
-    ck_skg(skg_kernel_set_memory(kernel, 0, 5, memory));
+    for (cl_uint k = 0; k < 5; k++) ck_skg(skg_kernel_set(kernel, k, sizeof memory[k], &memory[k]));
     ck_skg(skg_kernel_run(context, kernel, "layout", 1, &one, &one, &log));
     ck_assert_int_eq(
         clEnqueueReadBuffer(device->queue, buffer.memory, CL_TRUE, 0, 9 * sizeof *out, out, 0, NULL, NULL),
@@ -62,16 +62,16 @@ static void device_layout(const char *options, int32_t out[9]) {
 
 START_TEST(structs_are_laid_out_alike) {
     const int32_t single[9] = {
-        sizeof(skg_part_float),           sizeof(skg_write_float),           sizeof(skg_ray_float),
-        sizeof(skg_frame_args),           offsetof(skg_part_float, pixel_i), offsetof(skg_part_float, writes),
-        offsetof(skg_write_float, plane), offsetof(skg_ray_float, unit),     offsetof(skg_frame_args, queue)};
+        sizeof(skg_part_float),           sizeof(skg_contribution_float),           sizeof(skg_ray_float),
+        sizeof(skg_frame_args),           offsetof(skg_part_float, pixel_i), offsetof(skg_part_float, contributions),
+        offsetof(skg_contribution_float, plane), offsetof(skg_ray_float, unit),     offsetof(skg_frame_args, queue)};
     const int32_t twice[9] = {sizeof(skg_part_double),
-                              sizeof(skg_write_double),
+                              sizeof(skg_contribution_double),
                               sizeof(skg_ray_double),
                               sizeof(skg_frame_args),
                               offsetof(skg_part_double, pixel_i),
-                              offsetof(skg_part_double, writes),
-                              offsetof(skg_write_double, plane),
+                              offsetof(skg_part_double, contributions),
+                              offsetof(skg_contribution_double, plane),
                               offsetof(skg_ray_double, unit),
                               offsetof(skg_frame_args, queue)};
     int32_t out[9];

@@ -109,7 +109,7 @@ START_TEST(planes_are_apart) {
     three_bodies(&sphere, &box, bodies);
     skg_view view = view_make(75, 49, 1.7);
     skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES), one = options;
-    options.kernels.listed_writes = 1;
+    options.kernels.listed = 1;
     options.planes = THREE;
     for (int b = 0; b < THREE; b++) bodies[b].plane = b;
     check_variants(&options, &view, THREE, bodies);
@@ -165,7 +165,7 @@ static void check_cancels(const char *what, const skg_view *view, const shape *s
         if (precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
         for (int v = 0; v < 2; v++) {
             skg_raster_options options = options_of(precision, 0);
-            options.kernels.listed_writes = 1;
+            options.kernels.listed = 1;
             options.kernels.source_plane = source;
             options.kernels.parallel = view->projection != SKG_PROJECTION_POINT;
             options = variant(&options, v);
@@ -360,7 +360,7 @@ START_TEST(pixels_of_an_open_mesh) {
     b.bias = 1;
     skg_view view = view_make(64, 64, 2);
     skg_raster_options options = options_of(SKG_PRECISION_SINGLE, SKG_STRATEGY_COPIES);
-    options.kernels.listed_writes = 1;
+    options.kernels.listed = 1;
     picture result;
     ck_skg(picture_take(context, &options, &view, 1, &b, 0x1p28, &result));
     int expected[1 + SKG_FIRST_BAD] = {0};

@@ -1,5 +1,6 @@
 /* A set-up that breathes: what its key Breathing says. */
 #include "motion/motion_files.h"
+#include "setup/organs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -150,7 +151,7 @@ START_TEST(what_the_key_cannot_say) {
         {"{\"Events\": [{\"Hold\": [2, 1]}]}", "hold 0"},
         {"{\"Events\": [{\"Hold\": [1, 2], \"Needle\": [[0, 0]]}]}", "is no event"},
         {"{\"Events\": [{\"Contrast\": \"inside\"}]}", "is no event"},
-        {"{\"Events\": [{\"Needle\": [[1, 0], [1, 2]]}]}", "times rise"},
+        {"{\"Events\": [{\"Needle\": [[1, 0], [1, 2]]}]}", "times have to rise"},
         {"{\"Events\": [{\"Contrast\": \"inside\", \"Share\": [[1, 2]]}]}", "0 to 1"},
         {"{\"Hysteresis\": 1, \"Events\": [{\"Weight\": [[1, 2]]}]}", "Hysteresis 0"},
     };

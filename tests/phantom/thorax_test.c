@@ -1,7 +1,7 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "body/inside.h"
 #include "geometry/overlap.h"
-#include "phantom/thorax.h"
+#include "phantom/cage.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -218,7 +218,7 @@ START_TEST(bad_arguments) {
     skg_thorax_options_init(&options);
     options.triangles = 9999;
     ck_skg_fails(skg_thorax_create(&options, &thorax), SKG_ERR_ARGUMENT, "10000");
-    ck_skg_fails(skg_thorax_create(&options, NULL), SKG_ERR_ARGUMENT, "place");
+    ck_skg_fails(skg_thorax_create(&options, NULL), SKG_ERR_ARGUMENT, "result is NULL");
     make(10000);
     ck_skg_fails(skg_thorax_part_get(thorax, parts, part), SKG_ERR_ARGUMENT, "no part");
     skg_thorax_release(&thorax);

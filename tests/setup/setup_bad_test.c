@@ -232,8 +232,8 @@ START_TEST(files_that_are_none) {
     write_file("scene.json", "[1, 2]");
     ck_skg_fails(load(), SKG_ERR_FORMAT, "one JSON object");
     ck_skg_fails(skg_setup_load(NULL, folder, 0, NULL, &setup), SKG_ERR_FILE, "cannot be read");
-    ck_skg_fails(skg_setup_load(NULL, NULL, 0, NULL, &setup), SKG_ERR_ARGUMENT, "no path");
-    ck_skg_fails(skg_setup_load(NULL, path, 0, NULL, NULL), SKG_ERR_ARGUMENT, "no place");
+    ck_skg_fails(skg_setup_load(NULL, NULL, 0, NULL, &setup), SKG_ERR_ARGUMENT, "path is NULL");
+    ck_skg_fails(skg_setup_load(NULL, path, 0, NULL, NULL), SKG_ERR_ARGUMENT, "setup is NULL");
     char marked[sizeof good + 3];
     snprintf(marked, sizeof marked, "\xEF\xBB\xBF%s", good);
     write_file("scene.json", marked);

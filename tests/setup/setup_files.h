@@ -2,7 +2,7 @@
 #ifndef SKG_TESTS_SETUP_FILES_H
 #define SKG_TESTS_SETUP_FILES_H
 
-#include "setup/setup.h"
+#include "setup/types.h"
 #include "suite.h"
 
 #include <stdio.h>

@@ -1,0 +1,95 @@
+/* What a body holds. Private. */
+#ifndef SKG_BODY_TYPES_H
+#define SKG_BODY_TYPES_H
+
+#include "body/rigid.h"
+#include "body/roles.h"
+#include "chainmail/chainmail.h"
+#include "core/context.h"
+#include "mesh/mesh.h"
+
+/* Values of skg_link.organ that are no organ: the point stays at rest, or moves with the diaphragm's tendon. */
+enum { LINK_STAYS = -1, LINK_TENDON = -2 };
+
+/* A point that follows another organ: a point of one of its triangles or, where fixed, a point that moves with a
+ * rigid organ as a whole. */
+typedef struct {
+    int32_t organ, corner[3]; /* corner: vertices of that organ */
+    double weight[3];
+    double fraction; /* of that displacement, 0 to 1 */
+    int32_t fixed, reserved;
+    double point[3]; /* at rest, where fixed */
+} skg_link;
+
+/* CARRIERS: vertices that together carry a vertex of another organ. BLOCK: triangles with common bounds, so that a
+ * search skips most of them. LOOP_STEPS: states of a breath that are stored for hysteresis. All three are choices. */
+enum { CARRIERS = 12, BLOCK = 32, LOOP_STEPS = 24 };
+
+typedef struct {
+    skg_mesh *mesh;
+    char *label;
+    int64_t inside;
+    skg_tissue tissue;
+    skg_role role;
+    int kind;   /* SKG_ORGAN_ of the caller */
+    int warned; /* of a conflict */
+    int64_t vertices, triangles;
+    double *rest;     /* rows of x, y, z, mm */
+    double bounds[6]; /* of rest: low, high */
+    int32_t *corner;
+    double *block;    /* bounds of BLOCK triangles each: low, high */
+    int32_t *node_of; /* per vertex: the first vertex at the same place */
+    double *moved;    /* displacements, rows of x, y, z, mm */
+    int changed;      /* 1: the mesh is not at rest */
+    int number, side; /* as skg_role_of gives them */
+
+    /* Rigid organs. */
+    int turned;      /* 1: axis is the caller's, at weight 1 */
+    int centred;     /* 1: head is the caller's */
+    double head[3];  /* the point about which the organ turns */
+    double axis[3];  /* rotation vector, rad: at weight 1 where turned, else at full inspiration */
+    skg_rigid rigid; /* as posed */
+
+    /* Deformable organs. links[d] moves driver d. */
+    skg_chain *chain; /* of the vertices, and of the far ends of links that are not rigid */
+    int64_t links;
+    skg_link *link;
+    double *anchor;        /* per driver: its place at rest */
+    skg_organ_link *given; /* links of the caller, instead of the label's rule */
+    int64_t given_count;
+    int stage;      /* posed after organs of lower stages */
+    int corotates;  /* 1: boxes turn with the drivers */
+    double *target; /* per driver: displacement */
+    double *state;  /* displacements of the chain's nodes, axis by axis */
+    double *memory; /* the same with hysteresis: the state before, as moved on */
+    skg_chain_report report;
+
+    /* Carried organs. Of a cartilage, near holds the two organs that it lies between. */
+    int32_t carrier;
+    int32_t *near;       /* per vertex: CARRIERS vertices of the carrier */
+    double *near_weight; /* their weights */
+    double *
+        fraction; /* per vertex: how much of the carrier's motion, 0 to 1; of a cartilage: of the second organ's */
+
+    /* The needle. */
+    double tip[3], pivot[3]; /* its end in the tissue, and where it enters the skin */
+    skg_link skin;           /* that place */
+
+    double volume; /* at rest, mm3 */
+} skg_body_organ;
+
+struct skg_body {
+    skg_context *context;
+    skg_body_options options;
+    int64_t organs, capacity;
+    skg_body_organ *organ;
+    int tried, linked;  /* 1: skg_body_link was called; it succeeded */
+    int large;          /* 1: deformable organs have so many vertices that threads pay */
+    double tendon[3];   /* displacement as posed, mm */
+    double withdrawn;   /* by how much the needle is drawn back, mm */
+    int loop;           /* states stored for hysteresis: 0 or LOOP_STEPS */
+    int64_t loop_size;  /* doubles of one of them */
+    double *loop_state; /* every chain's memory after each step */
+};
+
+#endif

@@ -1,0 +1,35 @@
+/* A JSON file, its values, and the lines where they stand. Private. */
+#ifndef SKG_JSON_FILE_H
+#define SKG_JSON_FILE_H
+
+#include "core/core.h"
+
+#include <jansson.h>
+
+typedef struct {
+    const char *path;
+    char *text;   /* the file's contents, for line numbers; ends with a 0 */
+    json_t *root; /* an object */
+    json_t *set;  /* array of the values that settings put in; they have no line */
+} skg_json_file;
+
+/* Reads and parses a file whose top level is an object. SKG_ERR_FILE, SKG_ERR_FORMAT with line and column.
+ * path is not copied. Close also after a failure. */
+skg_status skg_json_open(const char *path, skg_json_file *file);
+void skg_json_close(skg_json_file *file);
+
+/* A value and the path to it. Lives on the stack; `up` has to outlive it. */
+typedef struct skg_json_node {
+    const skg_json_file *file;
+    const struct skg_json_node *up; /* NULL: the root */
+    const char *key;                /* NULL: element `index` of an array */
+    int64_t index;
+    json_t *value; /* NULL: absent */
+} skg_json_node;
+
+skg_json_node skg_json_root(const skg_json_file *file);
+
+/* The line of a node in the file's text, from 1; 0 where it has none. */
+int64_t skg_json_line(const skg_json_node *node);
+
+#endif

@@ -1,0 +1,23 @@
+/* What the readers of a scene file's sections share. Private. */
+#ifndef SKG_READER_H
+#define SKG_READER_H
+
+#include "scene/scene.h"
+#include "setup/json.h"
+#include "setup/types.h"
+
+typedef struct {
+    skg_context *context;
+    skg_json_file file;
+    char *folder; /* of the scene file, with its last slash; "" for the current folder */
+    skg_setup *setup;
+} skg_setup_reader;
+
+/* A path relative to the scene file's folder; the caller frees it. */
+skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved);
+
+/* The number of the sample with this label. node: where the label stands, for the message. */
+skg_status skg_setup_find_part(const skg_setup_reader *reader, const skg_json_node *node, const char *label,
+                               int64_t *part);
+
+#endif

@@ -1,0 +1,74 @@
+/* The readers of a scene file's sections. Private.
+ *
+ * The schema is that of gVXR's scene files; docs/scene-files.md lists every key. What the schema leaves open is read as
+ * gVXR does:
+ *   - Shapes take their arguments in the order of its calls: Cube [edge, unit], Cuboid [x, y, z, unit], Cylinder
+ *     [sectors, height, radius, unit] with the axis along y, and StepWedge an object. It has no Sphere; ours is Sphere
+ *     [sectors, radius, unit].
+ *   - Without RightVector, columns grow along UpVector x (source - detector).
+ *   - MoveToCentre of a sample is applied before its Transform; as a bare string among the samples it moves all of them
+ *     together, after all else.
+ *   - The first projection of a Scan turns the samples by StartAngle about RotationAxis. */
+#ifndef SKG_SECTIONS_H
+#define SKG_SECTIONS_H
+
+#include "setup/reader.h"
+
+/* Each reads one section into reader->setup. Source comes before Detector, which needs to know where the beam comes
+ * from, and both before Scan. */
+skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
+
+/* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
+skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);
+void skg_breathing_section_free(skg_breathing_section *section);
+
+/* The key Organs of that section. */
+skg_status skg_setup_read_organs(skg_setup_reader *reader, const skg_json_node *node);
+void skg_setup_organs_free(skg_breathing_section *section);
+
+/* Shape of a source and how it is sampled. */
+skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
+                                       int32_t *parallel);
+
+/* The key Beam. With mAs, photons are counted per mm2 at 1 m until the detector is known and skg_setup_place_beam
+ * makes them photons per pixel. node: of the beam or what it lies in, for messages. */
+skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node);
+
+/* EnergyResponse or Scintillator of a detector. */
+skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
+
+/* LSF or PSF of a detector, and the key Noise of the file (value NULL: none). */
+skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *detector);
+skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);
+
+/* A material: its name, or an array that begins with its kind. density: in g/cm3; value NULL: not given. label: the
+ * name of a material that has none of its own; may be NULL. The caller releases the material. */
+skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,
+                                   const skg_json_node *density, const char *label, skg_material **material);
+
+/* The meshes loaded so far: a file that several samples use is loaded once. */
+typedef struct {
+    struct skg_loaded_mesh {
+        char *path;
+        double unit_mm;
+        int32_t flip;
+        skg_mesh *mesh;
+    } * loaded;
+    int64_t count;
+} skg_mesh_cache;
+
+void skg_mesh_cache_clear(skg_mesh_cache *cache);
+
+/* The mesh of a sample: from its Path, or generated. flip: turn a leaky mesh inside out (the normals of a closed one
+ * point outward anyway). The caller releases the mesh. own: pose of the generated mesh in the axes of the schema. */
+skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
+                                skg_mesh_cache *cache, skg_mesh **mesh, double *own);
+
+/* pose <- pose T for each entry T of a Transform: the last entry acts on the vertices first. */
+skg_status skg_setup_read_transform(const skg_json_node *node, double *pose);
+
+#endif

@@ -1,0 +1,82 @@
+/* What a set-up holds: the sections of its scene file as they were read. Private. */
+#ifndef SKG_SETUP_TYPES_H
+#define SKG_SETUP_TYPES_H
+
+#include "core/core.h"
+
+#include <skiagraph/breathing.h>
+#include <skiagraph/setup.h>
+
+/* The section Scan, as given. Angles are in degrees. */
+typedef struct {
+    int32_t present; /* 1: the file has it; otherwise all is 0 */
+    double start, step, final;
+    int32_t has_step, has_final, include_last, flat_field;
+    int64_t projections; /* 0: not given */
+    int64_t white_images;
+    double centre[3]; /* mm, of the rotation */
+    double axis[3];   /* of the rotation, length 1 */
+    char *folder;     /* OutFolder relative to the scene file's own, or NULL */
+    int64_t view_count;
+    skg_view *views; /* [view_count] some of the projections after the first */
+} skg_scan_section;
+
+/* A value over time: linear between its points (s, value), constant beyond them. */
+typedef struct {
+    double *points; /* [count][2], times rising */
+    int64_t count;  /* 0: not given */
+} skg_curve;
+
+/* The section Breathing; without it the defaults. */
+typedef struct {
+    skg_breath breath; /* its samples and holds point to those below */
+    skg_body_options body;
+    double *samples;
+    skg_breath_hold *holds;
+    int32_t lung_density; /* 1: the lungs keep their mass */
+    int32_t is_given;     /* 1: the file has it */
+    int64_t organ_count;
+    struct skg_breathing_organ {
+        int64_t part;
+        char *as;        /* label whose rule the organ follows; NULL: its own */
+        skg_organ organ; /* kind, tissue, rotation and links; no mesh */
+        char **to;       /* labels to which the links point */
+        skg_organ_link *links;
+    } * organs;
+    skg_curve weight; /* factor on the weights of both channels */
+    skg_curve needle; /* depth below the skin, mm */
+    int64_t contrast_count;
+    struct skg_breathing_contrast {
+        int64_t part;
+        skg_curve fill_fraction;
+    } * contrasts;
+} skg_breathing_section;
+
+/* The key Noise. None: all is 0 but swank, which is 1. */
+typedef struct {
+    int32_t quantum, reserved;
+    double electronic_kev, step_kev, swank;
+    int64_t seed;
+} skg_setup_noise;
+
+struct skg_setup {
+    skg_scene *scene;
+    skg_spectrum *spectrum;
+    int32_t absolute;       /* 1: photons come from mAs */
+    int32_t falloff;        /* 1: the beam falls off with distance */
+    skg_response *response; /* NULL: ideal */
+    skg_material *world;    /* around the parts; NULL: vacuum */
+    skg_detector_blur blur; /* columns 0: none */
+    double *blur_samples;   /* to which blur points */
+    skg_setup_noise noise;
+    skg_spot spot;
+    int32_t supersampling; /* rays along a side of a pixel */
+    skg_view view;         /* of the first projection */
+    skg_scan_section scan;
+    skg_breathing_section breathing;
+    int32_t precision, has_precision;
+    int32_t repair, has_repair, clip;
+    double tolerance; /* negative: not given */
+};
+
+#endif

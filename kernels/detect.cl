@@ -1,0 +1,47 @@
+/* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
+ * shown. In place, in the type of skg_real. */
+/* electronic: standard deviation in keV; step in keV; factor of the channel times `all`: from keV or photons per pixel to
+ * what is shown. flat_field: [channels][rows][columns] that values are divided by. One work-item SKG_WIDE pixels of a row of a
+ * channel. */
+__kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
+                         int rows, skg_noise_args key, skg_real electronic, skg_real step,
+                         __constant const skg_real *factor, skg_real all
+#if SKG_FLAT_FIELD
+                         ,
+                         __global const skg_real *flat_field
+#endif
+) {
+    const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
+    const int channel = (int)get_global_id(2), pixels = columns - column;
+    if (pixels <= 0 || row >= rows) return;
+    skg_real rest[SKG_WIDE];
+    skg_realv value;
+    image += offset + channel * channel_stride + row * row_stride + column;
+    if (pixels >= SKG_WIDE)
+        value = SKG_LOAD_V(0, image);
+    else {
+        for (int k = 0; k < SKG_WIDE; k++) rest[k] = image[min(k, pixels - 1)];
+        value = SKG_LOAD_V(0, rest);
+    }
+#if SKG_ELECTRONIC
+    skg_uintv draw[4];
+    skg_draw_v(&key, row * columns + column, SKG_DRAW_WORD(SKG_DRAW_ELECTRONIC, channel, 0), draw);
+    value = fma((skg_realv)(electronic), SKG_TO_REAL_V(skg_normal_v(draw[0])), value);
+#endif
+#if SKG_QUANTISED
+    value = rint(value / step) * step;
+#endif
+    value *= factor[channel] * all;
+#if SKG_FLAT_FIELD
+    skg_real flat[SKG_WIDE];
+    flat_field += ((long)channel * rows + row) * columns + column;
+    for (int k = 0; k < SKG_WIDE; k++) flat[k] = flat_field[min(k, pixels - 1)];
+    value /= SKG_LOAD_V(0, flat);
+#endif
+    if (pixels >= SKG_WIDE) {
+        SKG_STORE_V(value, 0, image);
+        return;
+    }
+    SKG_STORE_V(value, 0, rest);
+    for (int k = 0; k < pixels; k++) image[k] = rest[k];
+}

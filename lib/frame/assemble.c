@@ -1,0 +1,79 @@
+#include "frame/assemble.h"
+#include "plan/decide.h"
+
+static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) {
+    const skg_plan_meshes *meshes = &recipe->meshes;
+    skg_geometry_mesh *list = NULL;
+    int32_t **sorted = NULL; /* [meshes] corners in an order for the device */
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(meshes->count, sizeof *list, "meshes", &list));
+    SKG_TRY_CLEANUP(skg_alloc(meshes->count, sizeof *sorted, "meshes", &sorted));
+    for (int64_t i = 0; i < meshes->count; i++) {
+        const skg_mesh *mesh = meshes->meshes[i];
+        int32_t reordered = 0;
+        SKG_TRY_CLEANUP(skg_alloc(3 * mesh->triangles, sizeof **sorted, "corners", &sorted[i]));
+        SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, sorted[i], &reordered));
+        list[i] = (skg_geometry_mesh){mesh->vertices, mesh->triangles, sorted[i]};
+    }
+    status = skg_geometry_create(machine->context, skg_recipe_kernel_precision(recipe), meshes->count, list,
+                                 recipe->scene->count, meshes->of_part, &machine->geometry);
+cleanup:
+    for (int64_t i = 0; sorted && i < meshes->count; i++) skg_free(&sorted[i]);
+    skg_free(&sorted);
+    skg_free(&list);
+    return status;
+}
+
+static skg_status make_detector(const skg_recipe *recipe, const skg_detector_blur *blur, skg_machine *machine) {
+    skg_detection detection;
+    double factors[SKG_CHANNELS_MAX];
+    int32_t wanted = 0;
+    if (blur) SKG_TRY(skg_blur_create(machine->context, blur, &machine->blur));
+    SKG_TRY(skg_decide_detection(recipe, &detection, factors, &wanted));
+    return wanted ? skg_detector_create(machine->context, &detection, factors, &machine->detector) : SKG_OK;
+}
+
+static skg_status make_attenuation(const skg_recipe *recipe, skg_context *context, skg_attenuation *images) {
+    const skg_model *model = &recipe->model;
+    const skg_attenuation_tables tables = {model->coefficients, model->weights, model->variances,
+                                           model->range};
+    skg_attenuation shape;
+    skg_decide_attenuation(recipe, &shape);
+    return skg_attenuation_create(context, recipe->options.precision, &shape, &tables, images);
+}
+
+static skg_status make_lengths(const skg_recipe *recipe, skg_machine *machine) {
+    const double one = 1;
+    const skg_attenuation_tables tables = {.coefficients = &one, .weights = &one};
+    const skg_attenuation length = {
+        .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
+    return skg_attenuation_create(machine->context, recipe->options.precision, &length, &tables,
+                                  &machine->lengths);
+}
+
+skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe, const skg_detector_blur *blur,
+                                skg_machine *machine) {
+    machine->context = machine->rasters.context = context;
+    SKG_TRY(make_geometry(recipe, machine));
+    SKG_TRY(make_detector(recipe, blur, machine));
+    SKG_TRY(make_attenuation(recipe, context, &machine->images));
+    SKG_TRY(make_lengths(recipe, machine));
+    SKG_TRY(skg_attenuator_create(context, &machine->attenuator));
+    SKG_TRY(skg_buffer_reserve(context, &machine->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+    SKG_TRY(skg_leaky_memory_create(context, recipe->leaky_count, &machine->leaky));
+    return skg_pass_memory_create(recipe->scene->count, recipe->view.columns, recipe->view.rows, &machine->pass);
+}
+
+skg_status skg_machine_renew(const skg_recipe *recipe, skg_machine *machine) {
+    skg_attenuation images = {0};
+    const skg_status status = make_attenuation(recipe, machine->context, &images);
+    if (status != SKG_OK) {
+        skg_attenuation_release(&images);
+        return status;
+    }
+    /* OpenCL keeps the old tables until what is enqueued is done. */
+    skg_attenuation_release(&machine->images);
+    machine->images = images;
+    machine->flat_field.known = 0;
+    return SKG_OK;
+}

@@ -1,0 +1,133 @@
+#include "frame/parts.h"
+#include "frame/overrides.h"
+
+#include <math.h>
+
+/* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
+static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *work, skg_pass *pass) {
+    SKG_TRY(skg_alloc(scene->count, sizeof *pass->own_contributions, "parts of a frame", &pass->own_contributions));
+    SKG_TRY(skg_alloc(scene->count + 1, sizeof *pass->own_first, "parts of a frame", &pass->own_first));
+    int64_t count = 0;
+    for (int64_t p = 0; p < scene->count; p++) {
+        const int is_child = work->kind == SKG_LENGTHS_NET && scene->parts[p].inside == work->lengths_of;
+        pass->own_first[p] = count;
+        if (p == work->lengths_of || is_child)
+            pass->own_contributions[count++] = (skg_contribution){.weight = is_child ? -1 : 1};
+    }
+    pass->own_first[scene->count] = count;
+    return SKG_OK;
+}
+
+static skg_status list_contributions(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
+    const int is_length = work->lengths_of >= 0;
+    pass->planes = is_length ? 1 : recipe->model.planes;
+    if (is_length)
+        SKG_TRY(list_lengths(recipe->scene, work, pass));
+    else if (work->frame && work->frame->override_count != 0)
+        SKG_TRY(skg_overrides_apply(recipe, work->frame, &pass->own_contributions, &pass->own_first));
+    pass->contributions = pass->own_first ? pass->own_contributions : recipe->model.contributions;
+    pass->first = pass->own_first ? pass->own_first : recipe->model.first_contribution;
+    return SKG_OK;
+}
+
+/* Parts that contribute alike share an accumulator, if that pays and there are not more kinds than planned. */
+static skg_status mix_planes(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
+    if (work->lengths_of >= 0 || !recipe->mixed) return SKG_OK;
+    SKG_TRY(skg_mix_find(recipe->scene->count, recipe->model.planes, pass->contributions, pass->first,
+                         recipe->mixed, &pass->mix));
+    if (!pass->mix.sums) return SKG_OK; /* the overrides of this frame make more kinds of parts */
+    pass->contributions = pass->mix.contributions;
+    pass->first = pass->mix.first_contribution;
+    pass->planes = recipe->mixed;
+    return SKG_OK;
+}
+
+/* Whether some part contributes to more than one plane. */
+static int has_lists(const skg_pass *pass, int64_t parts) {
+    for (int64_t p = 0; p < parts; p++)
+        if (pass->first[p + 1] - pass->first[p] > 1) return 1;
+    return 0;
+}
+
+static double largest_weight(const skg_pass *pass, int64_t part) {
+    double largest = 0;
+    for (int64_t c = pass->first[part]; c < pass->first[part + 1]; c++)
+        largest = fmax(largest, fabs(pass->contributions[c].weight));
+    return largest;
+}
+
+/* Where the parts lie, what they may contribute, and the scale that follows from both. */
+static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
+                        skg_pass *pass) {
+    const skg_scene *scene = recipe->scene;
+    int64_t contributing = 0;
+    pass->parts = memory->parts;
+    pass->extents = memory->extents;
+    for (int64_t p = 0; p < scene->count; p++) {
+        const skg_mesh *mesh = scene->parts[p].mesh;
+        const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
+        const int64_t count = pass->first[p + 1] - pass->first[p];
+        skg_extent *extent = &pass->extents[p];
+        skg_extent_find(&pass->camera, mesh, pose, extent);
+        pass->parts[p] =
+            (skg_geometry_part){.pose = pose,
+                                .origin = mesh->origin,
+                                .flipped = mesh->orientation < 0,
+                                .reference = 0.5 * (extent->scale.low_depth + extent->scale.high_depth),
+                                .contributions = mesh->closed ? (int32_t)count : 0,
+                                .contribution = pass->contributions + pass->first[p]};
+        if (count == 0) continue;
+        extent->scale.weight = largest_weight(pass, p);
+        memory->scales[contributing++] = extent->scale;
+        pass->kernels.source_plane |= extent->near_source && extent->on_detector;
+    }
+    skg_scale_find(&memory->grid, contributing, memory->scales,
+                   recipe->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32, &pass->scale);
+}
+
+/* Which parts compete for intervals in this frame. The lengths of a mesh's surface do not depend on other parts. */
+static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
+    pass->clip = recipe->options.clip;
+    if (!recipe->priority_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
+        return SKG_OK;
+    SKG_TRY(skg_priority_find(recipe->scene, pass->clip, pass->extents, &pass->priority));
+    for (int64_t s = 0; s < pass->priority.count; s++)
+        pass->kernels.source_plane |= pass->extents[pass->priority.parts[s]].near_source;
+    return SKG_OK;
+}
+
+skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t sample,
+                         const skg_pass_memory *memory, skg_pass *pass) {
+    skg_kernel_options *kernels = &pass->kernels;
+    double source[3], shift[2] = {0, 0};
+    *pass = (skg_pass){.scene = recipe->scene};
+    if (sample >= 0) skg_samples_at(&recipe->samples, work->view, sample, source, shift);
+    SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &pass->camera));
+    SKG_TRY(list_contributions(recipe, work, pass));
+    SKG_TRY(mix_planes(recipe, work, pass));
+    place_parts(recipe, work, memory, pass);
+    SKG_TRY(find_priorities(recipe, work, pass));
+    kernels->precision = skg_recipe_kernel_precision(recipe);
+    kernels->half = recipe->options.precision == SKG_PRECISION_HALF;
+    kernels->bits = kernels->half ? 32 : pass->scale.bits; /* half: units of 2^-24 m, whatever the scene */
+    kernels->parallel = pass->camera.parallel;
+    kernels->listed = kernels->half || has_lists(pass, recipe->scene->count);
+    return SKG_OK;
+}
+
+skg_status skg_pass_extents(const skg_pass *pass, skg_staging *staging, cl_int **extents) {
+    SKG_TRY(skg_staging_take(staging, 4 * pass->planes, sizeof **extents, "extents", extents));
+    for (int64_t p = 0; p < pass->scene->count; p++) {
+        cl_int own[4];
+        skg_extent_pixels(&pass->camera, &pass->extents[p], own);
+        for (int64_t c = pass->first[p]; c < pass->first[p + 1]; c++) {
+            cl_int *extent = *extents + 4 * pass->contributions[c].plane;
+            const int known = extent[1] > 0;
+            for (int k = 0; k < 4; k += 2) {
+                extent[k] = known && extent[k] < own[k] ? extent[k] : own[k];
+                extent[k + 1] = known && extent[k + 1] > own[k + 1] ? extent[k + 1] : own[k + 1];
+            }
+        }
+    }
+    return SKG_OK;
+}

@@ -1,0 +1,17 @@
+/* What the parts of one pass contribute and where they lie. Private. */
+#ifndef SKG_FRAME_PARTS_H
+#define SKG_FRAME_PARTS_H
+
+#include "frame/work.h"
+#include "plan/recipe.h"
+#include "stage/pass.h"
+
+/* Fills a pass, but for its raster. sample: of source and pixel; below 0: the point source and the pixels' centres. The
+ * pass borrows memory; release it with skg_pass_release, also after a failure. */
+skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t sample,
+                         const skg_pass_memory *memory, skg_pass *pass);
+
+/* The extents of the raster's planes: what those of their parts cover. Staged, [planes][4]. */
+skg_status skg_pass_extents(const skg_pass *pass, skg_staging *staging, cl_int **extents);
+
+#endif

@@ -1,0 +1,129 @@
+/* What a plan answers about itself. */
+#include "frame/plan.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* SKG_ERR_ARGUMENT for an index that does not exist. */
+static skg_status check_index(const char *call, const char *what, int64_t index, int64_t count) {
+    if (index >= 0 && index < count) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "%s: %s %" PRId64 " of %" PRId64, call, what, index, count);
+}
+
+void skg_plan_report_init(skg_plan_report *report) {
+    if (report) *report = (skg_plan_report){.size = (int32_t)sizeof *report};
+}
+
+skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
+    SKG_NEEDS(plan);
+    skg_plan_report ours = plan->outcome.report;
+    ours.device_bytes = skg_machine_bytes(&plan->machine);
+    return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
+}
+
+void skg_channel_init(skg_channel *channel) {
+    if (channel) *channel = (skg_channel){.size = (int32_t)sizeof *channel};
+}
+
+skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *channels) {
+    SKG_NEEDS(plan);
+    SKG_NEEDS(channels);
+    *channels = plan->recipe->model.channels;
+    return SKG_OK;
+}
+
+skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel *channel) {
+    SKG_NEEDS(plan);
+    const skg_recipe *recipe = plan->recipe;
+    SKG_TRY(check_index(__func__, "channel", index, recipe->model.channels));
+    const skg_channel ours = {
+        .size = sizeof ours,
+        .name = recipe->channel_names[index].text,
+        .unit = skg_channel_unit(recipe->options.quantity),
+        .flat_field = skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view, index)};
+    return skg_struct_write(&ours, sizeof ours, "skg_channel", channel);
+}
+
+skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                             double *weights) {
+    SKG_NEEDS(plan);
+    const skg_model *model = &plan->recipe->model;
+    SKG_TRY(check_index(__func__, "node", index, model->nodes));
+    if (energy_kev) *energy_kev = model->node_kev[index];
+    if (photons) *photons = model->node_photons[index];
+    if (weights)
+        memcpy(weights, model->weights + index * model->channels, (size_t)model->channels * sizeof *weights);
+    return SKG_OK;
+}
+
+void skg_effect_init(skg_effect *effect) {
+    if (effect) *effect = (skg_effect){.size = (int32_t)sizeof *effect};
+}
+
+skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count) {
+    SKG_NEEDS(plan);
+    SKG_NEEDS(count);
+    *count = SKG_EFFECTS;
+    return SKG_OK;
+}
+
+skg_status skg_plan_effect_get(const skg_plan *plan, int64_t index, skg_effect *effect) {
+    static const char *const names[] = {
+#define SKG_EFFECT_TEXT(name, text) text,
+        SKG_EFFECT_LIST(SKG_EFFECT_TEXT)
+#undef SKG_EFFECT_TEXT
+    };
+    SKG_NEEDS(plan);
+    SKG_TRY(check_index(__func__, "effect", index, SKG_EFFECTS));
+    const skg_effect_state *state = &plan->outcome.effects[index];
+    const skg_effect ours = {.size = sizeof ours,
+                             .on = state->on,
+                             .name = names[index],
+                             .cost = state->cost,
+                             .reason = state->reason};
+    return skg_struct_write(&ours, sizeof ours, "skg_effect", effect);
+}
+
+void skg_overlap_init(skg_overlap *overlap) {
+    if (overlap) *overlap = (skg_overlap){.size = (int32_t)sizeof *overlap};
+}
+
+skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count) {
+    SKG_NEEDS(plan);
+    SKG_NEEDS(count);
+    *count = plan->outcome.overlap_count;
+    return SKG_OK;
+}
+
+skg_status skg_plan_overlap_get(const skg_plan *plan, int64_t index, skg_overlap *overlap) {
+    SKG_NEEDS(plan);
+    SKG_TRY(check_index(__func__, "pair", index, plan->outcome.overlap_count));
+    const skg_overlap_pair *pair = &plan->outcome.overlaps[index];
+    skg_overlap ours = {.size = sizeof ours,
+                        .protrudes = pair->kind == SKG_OVERLAP_PROTRUDES,
+                        .part = pair->part,
+                        .other = pair->other,
+                        .volume = pair->volume,
+                        .longest = pair->longest};
+    memcpy(ours.place, pair->place, sizeof ours.place);
+    return skg_struct_write(&ours, sizeof ours, "skg_overlap", overlap);
+}
+
+void skg_stage_init(skg_stage *stage) {
+    if (stage) *stage = (skg_stage){.size = (int32_t)sizeof *stage};
+}
+
+skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count) {
+    SKG_NEEDS(plan);
+    SKG_NEEDS(count);
+    *count = plan->outcome.stage_count;
+    return SKG_OK;
+}
+
+skg_status skg_plan_stage_get(const skg_plan *plan, int64_t index, skg_stage *stage) {
+    SKG_NEEDS(plan);
+    SKG_TRY(check_index(__func__, "stage", index, plan->outcome.stage_count));
+    const skg_stage_time *time = &plan->outcome.stages[index];
+    const skg_stage ours = {.size = sizeof ours, .name = time->name, .ns = time->ns};
+    return skg_struct_write(&ours, sizeof ours, "skg_stage", stage);
+}

@@ -1,0 +1,18 @@
+/* What a frame is to show. Private. */
+#ifndef SKG_WORK_H
+#define SKG_WORK_H
+
+#include "stage/attenuate.h"
+
+typedef struct {
+    const skg_view *view;
+    const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
+    const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
+    int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
+    int32_t kind;               /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE */
+    int32_t reserved;
+    skg_noise_args noise; /* its key */
+    skg_image_place place;
+} skg_frame_work;
+
+#endif

@@ -1,0 +1,13 @@
+/* What effects cost, estimated from counts of operations per pixel, in units of a frame without any effect. Private. */
+#ifndef SKG_COSTS_H
+#define SKG_COSTS_H
+
+#include "geometry/extent.h"
+#include "plan/outcome.h"
+#include "stage/blur.h"
+
+/* Fills the costs of the outcome's effects. blur: NULL for none; extents: [parts] at the recipe's view. */
+void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
+                        skg_outcome *outcome);
+
+#endif

@@ -1,0 +1,11 @@
+/* The effects of a plan: which are on, and why. Private. */
+#ifndef SKG_EFFECTS_H
+#define SKG_EFFECTS_H
+
+#include "plan/outcome.h"
+#include "stage/blur.h"
+
+/* Fills the effects of an outcome whose overlaps and samples are known. blur: NULL for none. */
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_blur *blur, skg_outcome *outcome);
+
+#endif

@@ -1,0 +1,70 @@
+#include "plan/options.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+void skg_plan_options_init(skg_plan_options *options) {
+    if (options)
+        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
+                                      .precision = SKG_PRECISION_SINGLE,
+                                      .overlaps = 1,
+                                      .supersampling = 1,
+                                      .swank = 1,
+                                      .repair = SKG_REPAIR_NEIGHBOURS};
+}
+
+static skg_status check_kev(const char *what, double kev) {
+    if (kev >= 0 && isfinite(kev)) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "%s is %g keV; 0 or more", what, kev);
+}
+
+static skg_status check_detector(const skg_plan_options *options) {
+    const int kev = options->electronic_kev > 0 || options->quantum_step_kev > 0;
+    if (options->noise != 0 && options->noise != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "noise is %d; 1 or 0", (int)options->noise);
+    SKG_TRY(check_kev("electronic noise", options->electronic_kev));
+    SKG_TRY(check_kev("the quantisation's step", options->quantum_step_kev));
+    if (!(options->swank > 0 && options->swank <= 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "the Swank factor is %g; above 0, at most 1", options->swank);
+    if (kev && options->quantity == SKG_QUANTITY_PHOTONS)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "electronic noise and quantisation are in keV, but photons are counted; take "
+                        "another quantity or leave them out");
+    return SKG_OK;
+}
+
+skg_status skg_plan_options_check(const skg_plan_options *options, const skg_device_info *device) {
+    if (options->precision < SKG_PRECISION_SINGLE || options->precision > SKG_PRECISION_HALF)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "precision %" PRId32
+                        " is unknown; SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE or SKG_PRECISION_HALF",
+                        options->precision);
+    if (options->precision == SKG_PRECISION_DOUBLE && !device->has_double)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s has no fp64, so precision double does not work there; take single",
+                        device->name);
+    if (options->strategy < SKG_STRATEGY_AUTO || options->strategy > SKG_STRATEGY_ATOMICS)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "strategy %" PRId32 " is unknown; SKG_STRATEGY_AUTO, _COPIES, _TILES or "
+                        "_ATOMICS",
+                        options->strategy);
+    if (options->quantity < SKG_QUANTITY_ENERGY || options->quantity > SKG_QUANTITY_ATTENUATION)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "quantity %" PRId32 " is unknown; SKG_QUANTITY_ENERGY to SKG_QUANTITY_ATTENUATION",
+                        options->quantity);
+    if (options->falloff != 0 && options->falloff != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
+    if (!(options->tolerance >= 0 && options->tolerance < 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
+                        options->tolerance);
+    if (options->repair < SKG_REPAIR_NONE || options->repair > SKG_REPAIR_EXACT)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
+                        options->repair);
+    if (options->clip != 0 && options->clip != 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "clip is %" PRId32 "; 1 or 0", options->clip);
+    if (options->tile < 0 || options->tile > 32768)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);
+    return check_detector(options);
+}

@@ -1,0 +1,71 @@
+/* The recipe of a plan: what its frames are made from and how, decided once. Private.
+ *
+ * A recipe is constant once made, so that work under way can keep the one that it was submitted with. A change of
+ * materials, of the view or of the samples makes another recipe, which borrows from the first what it has in common. */
+#ifndef SKG_RECIPE_H
+#define SKG_RECIPE_H
+
+#include "core/context.h"
+#include "geometry/samples.h"
+#include "plan/channel.h"
+#include "plan/meshes.h"
+#include "spectral/mix.h"
+#include "spectral/model.h"
+
+typedef struct skg_recipe skg_recipe;
+struct skg_recipe {
+    skg_refs refs;
+    skg_recipe *origin; /* retained: it owns what this recipe borrows; NULL: this recipe borrows nothing */
+    int32_t owns_model; /* 1: the model is this recipe's own */
+    int32_t linear; /* 1: mean intensities alone, without noise, the stage `detect` and logarithms */
+
+    skg_scene *scene;         /* retained */
+    skg_spectrum *spectrum;   /* retained */
+    skg_plan_options options; /* its handles retained, its arrays copied; spot and blur are NULL: see below */
+    skg_view view;            /* of frames without a view of their own */
+    int64_t structure;        /* of the scene; if it has another one the plan is stale */
+    int64_t materials;        /* of the scene when the model was made */
+    double *band_kev;         /* [bands + 1] or NULL; options has it, too */
+    skg_view *views;          /* [view_count] or NULL; options has it, too */
+
+    skg_plan_meshes meshes;
+    skg_model model;
+    skg_channel_name *channel_names; /* [channels] */
+    skg_samples samples;             /* of source and pixel */
+    int32_t is_blurred;
+    int32_t mixed;            /* accumulators that the planes of images are mixed from; 0: they are not mixed */
+    int32_t priority_possible; /* 1: priorities differ, or children are clipped */
+    int32_t strategy;          /* SKG_STRATEGY_..., never AUTO */
+    int32_t leaky_strategy;    /* of the rasters of leaky parts */
+    int32_t reserved;
+    const char *strategy_reason; /* static storage */
+    int64_t leaky_count;
+    int64_t *leaky; /* [leaky_count] numbers of the parts whose meshes are not closed */
+};
+
+/* Checks everything and decides. context: the device that frames will run on. options may be NULL. */
+skg_status skg_recipe_create(const skg_context *context, skg_scene *scene, const skg_view *view,
+                             skg_spectrum *spectrum, const skg_plan_options *options, skg_recipe **recipe);
+skg_recipe *skg_recipe_retain(const skg_recipe *recipe);
+void skg_recipe_release(skg_recipe **recipe);
+
+/* Another recipe that borrows everything. The caller may change view, samples and linear before anyone else sees it. */
+skg_status skg_recipe_copy(const skg_recipe *recipe, skg_recipe **copy);
+
+/* Another recipe, for the scene's materials as they are now. SKG_STALE if the model's energies were chosen for the old
+ * ones. */
+skg_status skg_recipe_renew(const skg_recipe *recipe, skg_recipe **renewed);
+
+/* Whether images are means over several passes: of samples of the source, or of a pixel. */
+int skg_recipe_averages(const skg_recipe *recipe);
+
+/* How many accumulator planes the raster of an image has. */
+int64_t skg_recipe_accumulators(const skg_recipe *recipe);
+
+/* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE: of vertices, tables and kernels. Half precision computes in single. */
+int32_t skg_recipe_kernel_precision(const skg_recipe *recipe);
+
+/* SKG_STALE if a view has another size than the recipe's. */
+skg_status skg_recipe_check_size(const skg_recipe *recipe, const skg_view *view);
+
+#endif

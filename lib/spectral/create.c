@@ -1,0 +1,256 @@
+#include "spectral/model.h"
+
+#include "beam/spectrum.h"
+#include "spectral/compress.h"
+#include "spectral/quantity.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* Attenuations that differ from proportional ones by less than this share are proportional: tables and sums are
+ * rounded. */
+static const double PROPORTIONAL = 1e-13;
+
+/* The state of making a model. */
+typedef struct {
+    const skg_scene *scene;
+    const skg_spectrum *spectrum;
+    const skg_plan_options *options;
+    int64_t bodies; /* the parts, then the world */
+    int64_t *bins;  /* [nodes] bins of the spectrum that have photons */
+    double *mu;     /* [bodies][nodes] 1/mm */
+    double *bases;  /* [planes][nodes] 1/mm, the attenuation of a mm of a plane */
+    int64_t *plane; /* [bodies] -1: the body attenuates nothing */
+    double *factor; /* [bodies] by which a mm of the body adds to its plane */
+} making;
+
+static skg_status choose_nodes(making *m, skg_model *model) {
+    SKG_TRY(skg_alloc(m->spectrum->count, sizeof *m->bins, "nodes", &m->bins));
+    for (int64_t i = 0; i < m->spectrum->count; i++)
+        if (m->spectrum->photons[i] > 0) m->bins[model->nodes++] = i;
+    model->bins = model->nodes;
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_kev, "nodes", &model->node_kev));
+    SKG_TRY(skg_alloc(model->nodes, sizeof *model->node_photons, "nodes", &model->node_photons));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        model->node_kev[n] = m->spectrum->energy_kev[m->bins[n]];
+        model->node_photons[n] = m->spectrum->photons[m->bins[n]];
+    }
+    return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
+}
+
+static const skg_material *material_of(const making *m, int64_t body) {
+    return body < m->scene->count ? m->scene->parts[body].material : m->options->world;
+}
+
+static skg_status look_up(making *m, const skg_model *model) {
+    SKG_TRY(skg_alloc(m->bodies * model->nodes, sizeof *m->mu, "attenuation of the parts", &m->mu));
+    for (int64_t p = 0; p < m->bodies; p++) {
+        double *mu = m->mu + p * model->nodes;
+        const skg_material *material = material_of(m, p);
+        if (!material) continue;                          /* vacuum */
+        if (p > 0 && material_of(m, p - 1) == material) { /* neighbours often share a material */
+            memcpy(mu, mu - model->nodes, (size_t)model->nodes * sizeof *mu);
+            continue;
+        }
+        for (int32_t n = 0; n < model->nodes; n++) {
+            SKG_TRY(skg_material_attenuation_get(material, m->spectrum->energy_kev[m->bins[n]], &mu[n]));
+            mu[n] *= 0.1; /* 1/cm to 1/mm */
+        }
+    }
+    return SKG_OK;
+}
+
+/* Half precision sums distances without weights: each material has a plane, to which parts add 1 or -1 times
+ * theirs. */
+static int is_unweighted(const making *m) {
+    return m->options->precision == SKG_PRECISION_HALF;
+}
+
+/* The factor between mu and a basis; 0 if they are not proportional. */
+static double factor_of(const making *m, const double *mu, const double *basis, int32_t nodes) {
+    const double factor = mu[0] / basis[0];
+    if (is_unweighted(m) && memcmp(mu, basis, (size_t)nodes * sizeof *mu) != 0) return 0;
+    for (int32_t n = 1; n < nodes; n++)
+        if (!(fabs(mu[n] - factor * basis[n]) <= PROPORTIONAL * mu[n])) return 0;
+    return factor;
+}
+
+/* A new basis is the attenuation of the material. With one energy it is 1/mm, so that the plane is the exponent. */
+static void start_basis(const making *m, const double *mu, int32_t nodes, double *basis) {
+    memcpy(basis, mu, (size_t)nodes * sizeof *basis);
+    if (nodes == 1 && !is_unweighted(m)) basis[0] = 1;
+}
+
+static skg_status choose_planes(making *m, skg_model *model) {
+    const int32_t nodes = model->nodes;
+    int64_t capacity = 0;
+    SKG_TRY(skg_alloc(m->bodies, sizeof *m->plane, "planes of the parts", &m->plane));
+    SKG_TRY(skg_alloc(m->bodies, sizeof *m->factor, "planes of the parts", &m->factor));
+    for (int64_t p = 0; p < m->bodies; p++) {
+        const double *mu = m->mu + p * nodes;
+        m->plane[p] = -1;
+        if (!(mu[0] > 0)) continue; /* no attenuation at one energy means none at any */
+        for (int32_t k = 0; k < model->planes && m->plane[p] < 0; k++) {
+            m->factor[p] = factor_of(m, mu, m->bases + (int64_t)k * nodes, nodes);
+            if (m->factor[p] > 0) m->plane[p] = k;
+        }
+        if (m->plane[p] >= 0) continue;
+        if (model->planes == capacity) {
+            capacity = 2 * capacity + 8;
+            SKG_TRY(skg_realloc(capacity * nodes, sizeof *m->bases, "planes", &m->bases));
+        }
+        start_basis(m, mu, nodes, m->bases + (int64_t)model->planes * nodes);
+        m->factor[p] = mu[0] / m->bases[(int64_t)model->planes * nodes];
+        m->plane[p] = model->planes++;
+    }
+    return SKG_OK;
+}
+
+static void add_contribution(skg_model *model, int64_t first, int64_t *count, int64_t plane, double weight) {
+    for (int64_t w = first; w < *count; w++)
+        if (model->contributions[w].plane == plane) {
+            model->contributions[w].weight += weight;
+            return;
+        }
+    model->contributions[(*count)++] = (skg_contribution){.plane = plane, .weight = weight};
+}
+
+static skg_status list_contributions(const making *m, skg_model *model) {
+    const int64_t parts = m->scene->count;
+    int64_t count = 0;
+    SKG_TRY(skg_alloc(parts + 1, sizeof *model->first_contribution, "planes of the parts",
+                      &model->first_contribution));
+    SKG_TRY(skg_alloc(2 * parts, sizeof *model->contributions, "planes of the parts", &model->contributions));
+    for (int64_t p = 0; p < parts; p++) {
+        const int64_t inside = m->scene->parts[p].inside, parent = inside >= 0 ? inside : parts;
+        const int64_t first = count;
+        model->first_contribution[p] = first;
+        if (m->plane[p] >= 0) add_contribution(model, first, &count, m->plane[p], m->factor[p]);
+        if (m->plane[parent] >= 0)
+            add_contribution(model, first, &count, m->plane[parent], -m->factor[parent]);
+        if (count > first && model->contributions[first].weight == 0)
+            count = first; /* the material of its parent: it is not seen */
+    }
+    model->first_contribution[parts] = count;
+    return SKG_OK;
+}
+
+/* What a photon of an energy adds to the image: the recorded energy, or 1 if photons are counted. */
+static skg_status worth_of(const making *m, double energy, double *worth) {
+    const int counts = m->options->quantity == SKG_QUANTITY_PHOTONS;
+    *worth = counts ? 1 : energy;
+    if (!m->options->response) return SKG_OK;
+    return skg_response_get(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
+}
+
+/* The variance that a photon which arrives adds (docs/physics.md, Noise). It is recorded with the probability
+ * `efficiency` and then adds worth / efficiency on average; the distribution of the scintillator's pulse heights
+ * divides by the Swank factor. */
+static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
+    double efficiency = 1;
+    if (m->options->response) SKG_TRY(skg_response_get(m->options->response, energy, 1, NULL, &efficiency));
+    const double swank = m->options->quantity == SKG_QUANTITY_PHOTONS ? 1 : m->options->swank;
+    *variance = efficiency > 0 ? worth * worth / (efficiency * swank) : 0;
+    return SKG_OK;
+}
+
+static int in_band(const making *m, int64_t channel, double energy) {
+    const double *edges = m->options->band_kev;
+    return m->options->bands == 0 || (energy >= edges[channel] && energy < edges[channel + 1]);
+}
+
+static skg_status check_bands(const making *m) {
+    const skg_plan_options *options = m->options;
+    for (int64_t c = 0; c < options->bands; c++)
+        if (!(options->band_kev[c] < options->band_kev[c + 1]))
+            return skg_fail(SKG_ERR_BEAM, "band %" PRId64 " runs from %g to %g keV; edges have to rise", c,
+                            options->band_kev[c], options->band_kev[c + 1]);
+    return SKG_OK;
+}
+
+static int shows_ratio(const making *m) {
+    return skg_quantity_is_ratio(m->options) && !skg_quantity_is_absolute(m->options);
+}
+
+static skg_status weigh(const making *m, skg_model *model) {
+    const int noise = m->options->noise;
+    const int is_ratio = shows_ratio(m);
+    SKG_TRY(check_bands(m));
+    model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
+    const int32_t channels = model->channels;
+    SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->weights, "nodes", &model->weights));
+    SKG_TRY(skg_alloc(channels, sizeof *model->flat_field, "nodes", &model->flat_field));
+    if (noise)
+        SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->variances, "nodes",
+                          &model->variances));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        const int64_t bin = m->bins[n];
+        const double energy = m->spectrum->energy_kev[bin];
+        double worth = 0, variance = 0;
+        SKG_TRY(worth_of(m, energy, &worth));
+        if (noise) SKG_TRY(variance_of(m, energy, worth, &variance));
+        for (int32_t c = 0; c < channels; c++)
+            if (in_band(m, c, energy)) {
+                model->weights[n * channels + c] = m->spectrum->photons[bin] * worth;
+                model->flat_field[c] += m->spectrum->photons[bin] * worth;
+                if (noise) model->variances[n * channels + c] = m->spectrum->photons[bin] * variance;
+            }
+    }
+    for (int32_t c = 0; c < channels && is_ratio; c++) {
+        if (!(model->flat_field[c] > 0))
+            return skg_fail(
+                SKG_ERR_BEAM,
+                "channel %" PRId32 " records nothing of the flat field, so there is no ratio to it", c);
+        for (int32_t n = 0; n < model->nodes; n++) model->weights[n * channels + c] /= model->flat_field[c];
+    }
+    return SKG_OK;
+}
+
+static skg_status list_coefficients(const making *m, skg_model *model) {
+    const int32_t planes = model->planes > 0 ? model->planes : 1; /* an empty plane if nothing attenuates */
+    SKG_TRY(skg_alloc((int64_t)model->nodes * planes, sizeof *model->coefficients, "nodes",
+                      &model->coefficients));
+    for (int32_t n = 0; n < model->nodes; n++)
+        for (int32_t k = 0; k < model->planes; k++)
+            model->coefficients[n * planes + k] = m->bases[(int64_t)k * model->nodes + n];
+    model->materials = model->planes;
+    model->planes = planes;
+    model->world_plane = m->plane[m->scene->count];
+    model->world_weight = m->factor[m->scene->count];
+    return SKG_OK;
+}
+
+skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
+                            const skg_plan_options *options, skg_model *model) {
+    making m = {.scene = scene, .spectrum = spectrum, .options = options, .bodies = scene->count + 1};
+    skg_status status = SKG_OK;
+    *model = (skg_model){0};
+    SKG_TRY_CLEANUP(choose_nodes(&m, model));
+    SKG_TRY_CLEANUP(look_up(&m, model));
+    SKG_TRY_CLEANUP(choose_planes(&m, model));
+    SKG_TRY_CLEANUP(list_contributions(&m, model));
+    SKG_TRY_CLEANUP(list_coefficients(&m, model));
+    SKG_TRY_CLEANUP(weigh(&m, model));
+    if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
+        SKG_TRY_CLEANUP(skg_compress(scene, view, options, m.bases, model));
+cleanup:
+    skg_free(&m.bins);
+    skg_free(&m.mu);
+    skg_free(&m.bases);
+    skg_free(&m.plane);
+    skg_free(&m.factor);
+    return status;
+}
+
+void skg_model_release(skg_model *model) {
+    skg_free(&model->first_contribution);
+    skg_free(&model->contributions);
+    skg_free(&model->coefficients);
+    skg_free(&model->weights);
+    skg_free(&model->variances);
+    skg_free(&model->flat_field);
+    skg_free(&model->node_kev);
+    skg_free(&model->range);
+    skg_free(&model->node_photons);
+}

@@ -1,0 +1,110 @@
+#include "stage/detect.h"
+
+#include <stdio.h>
+
+/* What one type of image needs. */
+typedef struct {
+    cl_kernel kernel;
+    skg_buffer factor;
+} detector_type;
+
+struct skg_detector {
+    skg_context *context;
+    skg_detection detection;
+    double *factor;        /* [channels] */
+    detector_type type[2]; /* of float, of double; made on demand */
+};
+
+skg_status skg_detector_create(skg_context *context, const skg_detection *detection, const double *factors,
+                               skg_detector **detector) {
+    SKG_TRY(skg_alloc(1, sizeof **detector, "detector", detector));
+    (*detector)->context = context;
+    (*detector)->detection = *detection;
+    skg_status status = skg_alloc(detection->channels, sizeof *factors, "detector", &(*detector)->factor);
+    for (int32_t c = 0; c < detection->channels && status == SKG_OK; c++) (*detector)->factor[c] = factors[c];
+    if (status != SKG_OK) skg_detector_release(detector);
+    return status;
+}
+
+void skg_detector_release(skg_detector **detector) {
+    if (!*detector) return;
+    for (int32_t i = 0; i < 2; i++) {
+        if ((*detector)->type[i].kernel) clReleaseKernel((*detector)->type[i].kernel);
+        skg_buffer_release(&(*detector)->type[i].factor);
+    }
+    skg_free(&(*detector)->factor);
+    skg_free(detector);
+}
+
+int64_t skg_detector_bytes(const skg_detector *detector) {
+    return detector->type[0].factor.bytes + detector->type[1].factor.bytes;
+}
+
+int skg_detector_wants_flat_field(const skg_detector *detector) {
+    return detector->detection.over_flat_field;
+}
+
+skg_noise_args skg_noise_key(int64_t seed, int64_t index) {
+    const uint64_t words[2] = {(uint64_t)seed, (uint64_t)index};
+    skg_noise_args key = {.sample = 0};
+    for (int k = 0; k < 2; k++) {
+        key.seed[k] = (cl_int)(uint32_t)(words[0] >> 32 * k);
+        key.frame[k] = (cl_int)(uint32_t)(words[1] >> 32 * k);
+    }
+    return key;
+}
+
+static skg_status get_type(skg_detector *detector, int is_double, detector_type **got) {
+    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "detect.cl"};
+    const skg_detection *detection = &detector->detection;
+    const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                                        .bits = 32};
+    const size_t element = is_double ? sizeof(double) : sizeof(float);
+    detector_type *type = *got = &detector->type[is_double];
+    cl_program program = NULL;
+    float rounded[SKG_CHANNELS_MAX];
+    char more[96];
+    if (type->kernel) return SKG_OK;
+    for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
+    SKG_TRY(skg_buffer_write(detector->context, &type->factor, detection->channels * (int64_t)element,
+                             is_double ? (const void *)detector->factor : rounded, "detector"));
+    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d -D SKG_FLAT_FIELD=%d",
+             detection->electronic > 0, detection->step > 0, (int)detection->over_flat_field);
+    SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, more, &program));
+    return skg_kernel_create(program, "skg_detect", &type->kernel);
+}
+
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor, cl_mem flat_field,
+                            const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log) {
+    const skg_detection *detection = &detector->detection;
+    const int is_double = image->output_double != 0;
+    const cl_int size[2] = {(cl_int)columns, (cl_int)rows};
+    detector_type *type = NULL;
+    skg_real_argument electronic, step, all;
+    SKG_TRY(get_type(detector, is_double, &type));
+    skg_real_argument_set(&electronic, is_double, detection->electronic);
+    skg_real_argument_set(&step, is_double, detection->step);
+    skg_real_argument_set(&all, is_double, factor);
+    const skg_argument arguments[SKG_DETECT_ARGUMENTS] = {
+        SKG_ARGUMENT(DETECT, image, image->memory),
+        SKG_ARGUMENT(DETECT, offset, image->offset),
+        SKG_ARGUMENT(DETECT, row_stride, image->row_stride),
+        SKG_ARGUMENT(DETECT, channel_stride, image->channel_stride),
+        SKG_ARGUMENT(DETECT, columns, size[0]),
+        SKG_ARGUMENT(DETECT, rows, size[1]),
+        SKG_ARGUMENT(DETECT, key, *key),
+        {SKG_DETECT_electronic, electronic.size, electronic.value},
+        {SKG_DETECT_step, step.size, step.value},
+        SKG_ARGUMENT(DETECT, factor, type->factor.memory),
+        {SKG_DETECT_all, all.size, all.value},
+        SKG_ARGUMENT(DETECT, flat_field, flat_field),
+    };
+    /* The kernel has its last argument only if values are divided by a flat field. */
+    SKG_TRY(skg_kernel_arguments(type->kernel, SKG_DETECT_ARGUMENTS - !detection->over_flat_field, arguments));
+    const int64_t lanes =
+        skg_kernel_lanes(detector->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
+    const size_t local[3] = {8, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
+    const size_t global[3] = {(size_t)((columns + 8 * lanes - 1) / (8 * lanes) * 8),
+                              (size_t)((rows + 15) / 16 * 16), (size_t)detection->channels};
+    return skg_kernel_run(detector->context, type->kernel, "detect", 3, global, local, log);
+}

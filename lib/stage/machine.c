@@ -1,0 +1,28 @@
+#include "stage/machine.h"
+
+void skg_machine_release(skg_machine *machine) {
+    skg_raster_cache_release(&machine->rasters);
+    skg_geometry_release(&machine->geometry);
+    skg_attenuation_release(&machine->images);
+    skg_attenuation_release(&machine->lengths);
+    skg_attenuator_release(&machine->attenuator);
+    skg_blur_release(&machine->blur);
+    skg_detector_release(&machine->detector);
+    skg_buffer_release(&machine->flat_field.image);
+    skg_mix_lists_release(&machine->mix_lists);
+    skg_leaky_memory_release(&machine->leaky);
+    skg_hits_memory_release(&machine->hits);
+    skg_buffer_release(&machine->image);
+    skg_buffer_release(&machine->negative);
+    skg_pass_memory_release(&machine->pass);
+}
+
+int64_t skg_machine_bytes(const skg_machine *machine) {
+    int64_t bytes = skg_geometry_bytes(&machine->geometry) + machine->image.bytes + machine->negative.bytes +
+                    skg_leaky_memory_bytes(&machine->leaky) + machine->flat_field.image.bytes +
+                    skg_hits_memory_bytes(&machine->hits) + skg_attenuation_bytes(&machine->images) +
+                    skg_attenuation_bytes(&machine->lengths) + skg_raster_cache_bytes(&machine->rasters);
+    if (machine->blur) bytes += skg_blur_bytes(machine->blur);
+    if (machine->detector) bytes += skg_detector_bytes(machine->detector);
+    return bytes;
+}

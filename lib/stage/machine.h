@@ -1,0 +1,38 @@
+/* What a plan has on the device: memory, kernels and stages that its frames share. Private.
+ *
+ * It is filled by lib/frame, which gives each stage the members that it needs. */
+#ifndef SKG_MACHINE_H
+#define SKG_MACHINE_H
+
+#include "stage/attenuate.h"
+#include "stage/blur.h"
+#include "stage/detect.h"
+#include "stage/flat_field.h"
+#include "stage/hits.h"
+#include "stage/leaky.h"
+#include "stage/mix_lists.h"
+
+typedef struct {
+    skg_context *context;
+    skg_geometry geometry;
+    skg_attenuation images;  /* planes to images */
+    skg_attenuation lengths; /* one plane to path lengths: the plane itself */
+    skg_attenuator *attenuator;
+    skg_blur *blur;         /* NULL: none */
+    skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
+    skg_flat_field flat_field;
+    skg_mix_lists mix_lists;
+    skg_leaky_memory leaky;
+    skg_hits_memory hits;
+    skg_buffer image;    /* on its way to the host */
+    skg_buffer negative; /* int[2]: pixels with a negative exponent; pixels outside the verified range */
+    skg_pass_memory pass;
+    skg_raster_cache rasters;
+} skg_machine;
+
+void skg_machine_release(skg_machine *machine);
+
+/* Bytes on the device, but for small tables. */
+int64_t skg_machine_bytes(const skg_machine *machine);
+
+#endif

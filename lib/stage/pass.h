@@ -1,0 +1,47 @@
+/* One pass of a frame: from the vertices to the sums of one sample of source and pixel. What the stages need to know of
+ * it, filled by lib/frame. Private. */
+#ifndef SKG_PASS_H
+#define SKG_PASS_H
+
+#include "geometry/extent.h"
+#include "geometry/priority.h"
+#include "spectral/mix.h"
+#include "stage/raster_cache.h"
+
+/* Host memory for what a pass knows of its parts, kept from pass to pass: a million parts take as long to allocate as to
+ * fill. All NULL: not allocated. */
+typedef struct {
+    skg_geometry_part *parts; /* [parts] */
+    skg_extent *extents;      /* [parts] */
+    skg_scale_part *scales;   /* [parts] of those that contribute */
+    skg_scale_grid grid;      /* workspace of the scale */
+} skg_pass_memory;
+
+skg_status skg_pass_memory_create(int64_t parts, int64_t columns, int64_t rows, skg_pass_memory *memory);
+void skg_pass_memory_release(skg_pass_memory *memory);
+
+typedef struct {
+    const skg_scene *scene; /* borrowed, as the frame's caller keeps it */
+    skg_camera camera;
+    skg_kernel_options kernels;
+    int64_t planes; /* of the raster: accumulators if planes are mixed from them */
+    skg_mix mix;    /* of an image's planes; mix.sums 0: accumulators are planes */
+    /* What every part adds to the planes, leaky parts included: part p has contributions[first[p]] to
+     * contributions[first[p + 1] - 1]. */
+    const skg_contribution *contributions;
+    const int64_t *first;               /* [parts + 1] */
+    skg_contribution *own_contributions; /* those of this pass alone, to be freed; NULL: borrowed */
+    int64_t *own_first;
+    skg_geometry_part *parts; /* [parts] borrowed; leaky ones without contributions */
+    skg_extent *extents;      /* [parts] borrowed */
+    skg_scale scale;
+    skg_priority priority; /* closed parts that compete for intervals */
+    int32_t clip;          /* 1: children are clipped to their parents */
+    int32_t reserved;
+    skg_raster_pin main; /* the raster of the closed parts */
+} skg_pass;
+
+/* Releases what the pass owns, and its pin. */
+void skg_pass_release(skg_pass *pass);
+
+#endif

@@ -1,0 +1,213 @@
+/* One frame of a raster: which kernels run, with which arguments. */
+#include "stage/raster_private.h"
+
+#include <skiagraph/plan.h>
+
+#include <string.h>
+
+enum {
+    QUEUE_GROUPS_PER_UNIT = 8,
+    GROUP = 64 /* local size where a work-item takes a triangle */
+};
+
+static skg_status send_extents(skg_raster *raster, const cl_int *extents, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const size_t bytes = 4 * (size_t)frame->planes * sizeof *extents;
+    if (!extents) extents = raster->whole;
+    if (memcmp(extents, raster->sent, bytes) == 0) return SKG_OK;
+    SKG_TRY(skg_stage_write(raster->context, "upload", raster->used.memory,
+                            SKG_EXTENT(frame->copies, 0) * (int64_t)sizeof *extents, (int64_t)bytes, extents,
+                            log));
+    memcpy(raster->sent, extents, bytes);
+    return SKG_OK;
+}
+
+/* How many triangles a work-group claims at once: few enough that the last claims even out, and that a thousand
+ * triangles still use every worker. */
+static SKG_INT claim_size(int64_t triangles, int32_t workers) {
+    const int64_t claim = triangles / (16 * (int64_t)workers);
+    return (SKG_INT)(claim < 32 ? 32 : claim > 1024 ? 1024 : claim);
+}
+
+/* Enqueues a kernel whose arguments are set, with `groups` work-groups of `local` work-items. */
+static skg_status run(skg_raster *raster, int which, const char *stage, size_t groups, size_t local,
+                      skg_stage_log *log) {
+    const size_t global = groups * local;
+    return skg_kernel_run(raster->context, raster->kernels[which], stage, 1, &global, &local, log);
+}
+
+static size_t triangle_groups(const skg_raster *raster) {
+    return ((size_t)raster->frame.triangles + GROUP - 1) / GROUP;
+}
+
+static int64_t plane_bytes(const skg_raster *raster) {
+    return (int64_t)raster->frame.planes * raster->frame.plane * skg_raster_sum_bytes(raster);
+}
+
+static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const int64_t of_int = sizeof(cl_int);
+    const skg_argument arguments[] = {
+        SKG_TRIANGLE_ARGUMENTS(RASTER_COPIES, *frame, g),
+        SKG_ARGUMENT(RASTER_COPIES, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_COPIES, copies, raster->sums.memory),
+        SKG_ARGUMENT(RASTER_COPIES, used, raster->used.memory),
+    };
+    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
+    if (raster->kernels[SKG_RASTER_SOURCE] || raster->options.more_sums) { /* the first copy is added to */
+        SKG_TRY(skg_raster_fill(raster, &raster->sums, 0, 0, plane_bytes(raster)));
+        SKG_TRY(skg_raster_fill(raster, &raster->used, 1, 0, of_int));
+    }
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
+    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
+}
+
+static skg_status run_atomics(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_argument arguments[] = {
+        SKG_TRIANGLE_ARGUMENTS(RASTER_ATOMICS, raster->frame, g),
+        SKG_ARGUMENT(RASTER_ATOMICS, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_ATOMICS, sums, raster->sums.memory),
+        SKG_ARGUMENT(RASTER_ATOMICS, queue, raster->queue.memory),
+    };
+    const skg_argument large[] = {
+        SKG_TRIANGLE_ARGUMENTS(RASTER_QUEUE, raster->frame, g),
+        SKG_ARGUMENT(RASTER_QUEUE, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_QUEUE, sums, raster->sums.memory),
+        SKG_ARGUMENT(RASTER_QUEUE, queue, raster->queue.memory),
+    };
+    const size_t groups = (size_t)(QUEUE_GROUPS_PER_UNIT * raster->context->device->info.compute_units);
+    SKG_TRY(skg_raster_fill(raster, &raster->sums, 0, 0, plane_bytes(raster)));
+    SKG_TRY(skg_raster_fill(raster, &raster->queue, 0, 0, 2 * (int64_t)sizeof(cl_int)));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
+    SKG_TRY(run(raster, SKG_RASTER_DRAW, "raster", triangle_groups(raster), GROUP, log));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_LARGE], large));
+    return run(raster, SKG_RASTER_LARGE, "large triangles", groups, GROUP, log);
+}
+
+/* Lists the triangles of each square: counts them, gives each list its place, and fills it. */
+static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const skg_argument count[] = {
+        SKG_TRIANGLE_ARGUMENTS(TILES_COUNT, *frame, g),
+        SKG_ARGUMENT(TILES_COUNT, counts, raster->counts.memory),
+    };
+    const skg_argument scan[] = {
+        SKG_ARGUMENT(TILES_SCAN, frame, *frame),
+        SKG_ARGUMENT(TILES_SCAN, counts, raster->counts.memory),
+        SKG_ARGUMENT(TILES_SCAN, starts, raster->starts.memory),
+    };
+    const skg_argument fill[] = {
+        SKG_TRIANGLE_ARGUMENTS(TILES_FILL, *frame, g),
+        SKG_ARGUMENT(TILES_FILL, counts, raster->counts.memory),
+        SKG_ARGUMENT(TILES_FILL, starts, raster->starts.memory),
+        SKG_ARGUMENT(TILES_FILL, list, raster->list.memory),
+        SKG_ARGUMENT(TILES_FILL, for_all, raster->for_all.memory),
+    };
+    SKG_TRY(skg_raster_fill(raster, &raster->counts, 0, 0,
+                            ((int64_t)frame->tiles_across * frame->tiles_down + 1) * (int64_t)sizeof(cl_int)));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_COUNT], count));
+    SKG_TRY(run(raster, SKG_RASTER_COUNT, "tiles: count", triangle_groups(raster), GROUP, log));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_SCAN], scan));
+    SKG_TRY(run(raster, SKG_RASTER_SCAN, "tiles: scan", 1, GROUP, log));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_FILL], fill));
+    return run(raster, SKG_RASTER_FILL, "tiles: fill", triangle_groups(raster), GROUP, log);
+}
+
+static skg_status run_squares(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_frame_args *frame = &raster->frame;
+    const skg_argument arguments[] = {
+        SKG_TRIANGLE_ARGUMENTS(RASTER_SQUARES, *frame, g),
+        SKG_ARGUMENT(RASTER_SQUARES, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_SQUARES, starts, raster->starts.memory),
+        SKG_ARGUMENT(RASTER_SQUARES, list, raster->list.memory),
+        SKG_ARGUMENT(RASTER_SQUARES, for_all, raster->for_all.memory),
+        SKG_ARGUMENT(RASTER_SQUARES, sums, raster->sums.memory),
+        {SKG_RASTER_SQUARES_local_sums,
+         (size_t)(frame->tile_columns * frame->tile_rows * frame->planes * skg_raster_sum_bytes(raster)), NULL},
+    };
+    SKG_TRY(run_binning(raster, g, log));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
+    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)(frame->tiles_across * frame->tiles_down), GROUP, log);
+}
+
+static skg_status run_bands(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_argument sort[] = {
+        SKG_TRIANGLE_ARGUMENTS(BANDS_SORT, raster->frame, g),
+        SKG_ARGUMENT(BANDS_SORT, counters, raster->counts.memory),
+        SKG_ARGUMENT(BANDS_SORT, pieces, raster->starts.memory),
+        SKG_ARGUMENT(BANDS_SORT, pool, raster->list.memory),
+        SKG_ARGUMENT(BANDS_SORT, for_all, raster->for_all.memory),
+    };
+    const skg_argument arguments[] = {
+        SKG_TRIANGLE_ARGUMENTS(RASTER_BANDS, raster->frame, g),
+        SKG_ARGUMENT(RASTER_BANDS, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_BANDS, counters, raster->counts.memory),
+        SKG_ARGUMENT(RASTER_BANDS, pieces, raster->starts.memory),
+        SKG_ARGUMENT(RASTER_BANDS, pool, raster->list.memory),
+        SKG_ARGUMENT(RASTER_BANDS, for_all, raster->for_all.memory),
+        SKG_ARGUMENT(RASTER_BANDS, sums, raster->sums.memory),
+        SKG_ARGUMENT(RASTER_BANDS, scratch, raster->scratch.memory),
+        SKG_ARGUMENT(RASTER_BANDS, used, raster->used.memory),
+    };
+    SKG_TRY(skg_raster_fill(raster, &raster->counts, 0, 0, 3 * (int64_t)sizeof(cl_int)));
+    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_FILL], sort));
+    SKG_TRY(run(raster, SKG_RASTER_FILL, "tiles", (size_t)raster->workers, 1, log));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
+    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
+}
+
+void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera) {
+    skg_ray_double rays;
+    skg_camera_rays(camera, 1, &rays);
+    skg_rays_round(&rays, &raster->rays);
+}
+
+static skg_status run_half(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    const skg_argument arguments[] = {
+        SKG_TRIANGLE_ARGUMENTS(RASTER_HALF, raster->frame, g),
+        SKG_ARGUMENT(RASTER_HALF, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_HALF, sums, raster->sums.memory),
+        SKG_ARGUMENT(RASTER_HALF, ray, raster->rays),
+    };
+    SKG_TRY(skg_raster_fill(raster, &raster->sums, 0, 0, plane_bytes(raster)));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
+    return run(raster, SKG_RASTER_DRAW, "raster", triangle_groups(raster), GROUP, log);
+}
+
+static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
+    cl_kernel kernel = raster->kernels[SKG_RASTER_SOURCE];
+    const skg_argument arguments[] = {
+        SKG_TRIANGLE_ARGUMENTS(SOURCE_PLANE, raster->frame, g),
+        SKG_ARGUMENT(SOURCE_PLANE, vertices, g->offsets.memory),
+        SKG_ARGUMENT(SOURCE_PLANE, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(SOURCE_PLANE, sums, raster->sums.memory),
+    };
+    const size_t local[2] = {GROUP, 1};
+    const size_t global[2] = {triangle_groups(raster) * GROUP,
+                              ((size_t)raster->frame.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS};
+    SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
+    return skg_kernel_run(raster->context, kernel, "source plane", 2, global, local, log);
+}
+
+skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
+                          skg_stage_log *log) {
+    skg_frame_args *frame = &raster->frame;
+    frame->parts = (SKG_INT)geometry->parts;
+    frame->vertices = (SKG_INT)geometry->vertices;
+    frame->triangles = (SKG_INT)geometry->triangles;
+    frame->claim = claim_size(geometry->triangles, raster->workers - 1);
+    if (geometry->triangles > raster->options.triangles)
+        return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
+    SKG_TRY(send_extents(raster, extents, log));
+    if (raster->options.kernels.half) return run_half(raster, geometry, log);
+    if (raster->options.strategy == SKG_STRATEGY_COPIES)
+        SKG_TRY(run_copies(raster, geometry, log));
+    else if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
+        SKG_TRY(run_atomics(raster, geometry, log));
+    else if (skg_raster_has_squares(raster))
+        SKG_TRY(run_squares(raster, geometry, log));
+    else
+        SKG_TRY(run_bands(raster, geometry, log));
+    return raster->kernels[SKG_RASTER_SOURCE] ? run_source(raster, geometry, log) : SKG_OK;
+}
