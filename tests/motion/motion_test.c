@@ -1,6 +1,5 @@
 /* A set-up that breathes: what its key Breathing says. */
 #include "motion/motion_files.h"
-#include "setup/organs.h"
 
 #include <math.h>
 #include <stdio.h>
