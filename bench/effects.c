@@ -1,19 +1,20 @@
-/* What each effect costs by itself: a scene with it against the same scene without, by turns. */
+/* What each effect costs by itself: a scene with it against the same scene without it, alternately. */
 #include "common/bench.h"
 #include "common/scenes.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <stdlib.h>
 
 static const char usage[] = "[--quick] [--size N] [--repeats N] [--device CONFIG] [--affinity] [--csv FILE]";
 
-/* One thing that differs from the base: flat, closed, single, chosen by the plan. */
+/* One difference from the base, in which no part has a parent, all meshes are closed, the precision is single
+ * and the strategy is the plan's choice. */
 typedef struct {
     const char *name, *what;
     scene_changes changes;
     int precision, strategy, quantity, type, profile;
-    void (*ask)(skg_plan_options *options); /* for what the options have more of; NULL: nothing */
+    void (*ask)(skg_plan_options *options); /* sets further options; may be NULL */
 } effect;
 
 static void ask_spot(skg_plan_options *options) {
@@ -53,16 +54,8 @@ static void ask_steps(skg_plan_options *options) {
 static const effect effects[] = {
     {"base", "61 closed parts without parents, one energy", {.flat = 1}, 0, 0, 0, 0, 0, NULL},
     {"nesting", "60 parts displace their parent", {.flat = 0}, 0, 0, 0, 0, 0, NULL},
-    {"open part", "one of 61 parts has a hole", {.flat = 1, .open = 1}, 0, 0, 0, 0, 0, NULL},
-    {"source plane",
-     "one small part more, about the source",
-     {.flat = 1, .round_source = 1},
-     0,
-     0,
-     0,
-     0,
-     0,
-     NULL},
+    {"open part", "one of 61 parts has a hole", {.flat = 1, .leaky = 1}, 0, 0, 0, 0, 0, NULL},
+    {"source plane", "a small part encloses the source", {.flat = 1, .round_source = 1}, 0, 0, 0, 0, 0, NULL},
     {"double", "precision double", {.flat = 1}, SKG_PRECISION_DOUBLE, 0, 0, 0, 0, NULL},
     {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_QUANTITY_ATTENUATION, 0, 0, NULL},
     {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_TYPE_FLOAT64, 0, NULL},
@@ -87,7 +80,7 @@ typedef struct {
 } settings;
 
 typedef struct {
-    skg_plan *plan; /* NULL: the device cannot do it */
+    skg_plan *plan; /* NULL: the device lacks what it needs */
     double plan_ms;
     skg_output output;
 } contender;
@@ -119,7 +112,7 @@ static void frame(void *who) {
 static void make_plan(skg_context *context, const effect *kind, long size, contender *out) {
     bench_scene scene;
     scene_generate(context, &kind->changes, size, &scene);
-    scene.options.overlaps = 0; /* the parts of the flat scenes overlap on purpose */
+    scene.options.overlaps = 0; /* without parents the organs overlap the envelope, on purpose */
     scene.options.precision = kind->precision;
     scene.options.strategy = kind->strategy;
     scene.options.quantity = kind->quantity;
@@ -172,8 +165,8 @@ int main(int count, char **words) {
     make_plan(context, &effects[0], set.size, base);
     if (csv) fprintf(csv, "effect,plan_ms,base_min_ms,base_median_ms,with_min_ms,with_median_ms,ratio\n");
     printf(
-        "Detector %ld x %ld. Times of a warm frame in ms, minimum / median, and of planning once; price and ratio by "
-        "minima.\nThe first row is the base against itself: what differs there is noise.\n\n"
+        "Detector %ld x %ld. Times in ms: of a warm frame, minimum / median, and of planning once. Price and ratio are of "
+        "minima.\nThe first row compares the base with itself: its difference is noise.\n\n"
         "| effect | what | planning | base | with | price | ratio |\n|---|---|---:|---:|---:|---:|---:|\n",
         set.size, set.size);
     for (int k = 0; k < EFFECTS; k++) measure(&set, context, base, k, csv);

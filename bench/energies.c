@@ -1,9 +1,9 @@
-/* What energies cost: 5 materials at 1024 x 1024 pixels. The library's attenuation of 90 energies against a
- * plain kernel of the same sum with OpenCL's own exp, by turns; and images of 150 energies, all of them and
- * compressed. */
+/* What energies cost, with 5 materials at 1024 x 1024 pixels: the library's attenuation of 90 energies
+ * against a plain kernel of the same sum with OpenCL's exp; and images of 150 energies against images of the
+ * compressed spectrum. */
 #include "common/bench.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <skiagraph/opencl.h>
 
@@ -19,7 +19,7 @@ typedef struct {
     const char *device, *csv;
 } settings;
 
-/* The rival: the same loops, eight pixels an item. */
+/* The rival: the same loops with eight pixels in a work-item. */
 static const char rival_source[] =
     "__kernel void attenuate(int materials, int energies, __global const float8 *lengths, __constant float *mu,\n"
     "                        __constant float *weight, __global float8 *image) {\n"
@@ -56,7 +56,7 @@ static cl_mem buffer_of(const rival *r, size_t bytes) {
     return memory;
 }
 
-/* On the first device of the first platform that the library lists, as the library's default. */
+/* On the first device of the first platform. */
 static void open_rival(rival *r, size_t pixels) {
     static const char *const source = rival_source;
     const cl_int counts[2] = {MATERIALS, ENERGIES};
@@ -99,7 +99,7 @@ static void run_rival(void *contender) {
     check(clFinish(r->queue), "clFinish");
 }
 
-/* Five boxes in each other, each of its own matter, that fill the detector. */
+/* Five nested boxes of different materials that fill the detector. */
 static skg_scene *nested_boxes(skg_context *context) {
     static const char *const matter[MATERIALS] = {"water", "Bone, Cortical (ICRU-44)",
                                                   "Adipose Tissue (ICRU-44)", "Al", "Tissue, Soft (ICRU-44)"};
@@ -134,7 +134,7 @@ static skg_spectrum *even_spectrum(int64_t bins) {
 typedef struct {
     skg_plan *plan;
     skg_output output;
-    double attenuate_ms; /* of the last frame, where stages are timed */
+    double attenuate_ms; /* of the last frame, if stages are timed */
 } frames;
 
 static frames plan_of(skg_context *context, skg_scene *scene, const settings *s, int64_t bins,
@@ -197,7 +197,7 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-/* Own against OpenCL's exponentials, in turns of one. */
+/* The library's exponentials against OpenCL's, in turns of one frame. */
 static void compare_exponentials(skg_context *context, skg_scene *scene, const settings *s, FILE *csv) {
     const size_t pixels = (size_t)(s->size * s->size);
     const double exponentials = (double)pixels * ENERGIES;
@@ -220,7 +220,7 @@ static void compare_exponentials(skg_context *context, skg_scene *scene, const s
            exponentials / bench_least(&ours) * 1e-6);
     printf("| OpenCL's exp of eight pixels | %.2f | %.2f | %.2f |\n", bench_least(&theirs),
            bench_median(&theirs), exponentials / bench_least(&theirs) * 1e-6);
-    printf("\nlibrary over OpenCL's exp: %.2f (asked: 1.5)\n\n", bench_least(&theirs) / bench_least(&ours));
+    printf("\nlibrary over OpenCL's exp: %.2f (target: 1.5)\n\n", bench_least(&theirs) / bench_least(&ours));
     if (csv)
         fprintf(csv, "attenuate,library,%g,%g\nattenuate,opencl_exp,%g,%g\n", bench_least(&ours),
                 bench_median(&ours), bench_least(&theirs), bench_median(&theirs));
@@ -228,7 +228,7 @@ static void compare_exponentials(skg_context *context, skg_scene *scene, const s
     close_frames(&own);
 }
 
-/* Whole frames: every energy, and fewer within a tolerance. */
+/* Whole frames with every energy and with the nodes of several tolerances. */
 static void compare_tolerances(skg_context *context, skg_scene *scene, const settings *s, FILE *csv) {
     static const double tolerances[] = {0, 1e-6, 1e-4, 1e-2};
     enum { CASES = sizeof tolerances / sizeof *tolerances };
@@ -271,6 +271,6 @@ int main(int count, char **words) {
     compare_tolerances(context, scene, &s, csv);
     skg_scene_release(&scene);
     skg_context_release(&context);
-    if (csv && fclose(csv) != 0) bench_die("%s could not be written to its end", s.csv);
+    if (csv && fclose(csv) != 0) bench_die("%s could not be written", s.csv);
     return 0;
 }

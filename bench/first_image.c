@@ -1,9 +1,9 @@
-/* From nothing to the first image, and the most memory used on the way: each time in a new process, as a user
- * meets it. */
+/* Time from the start of a process to its first image, and the largest memory that it used. Every sample is a
+ * new process, as a user experiences it. */
 #include "common/bench.h"
 #include "common/scenes.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static const char *const stages[STAGES] = {
 typedef struct {
     double ms[STAGES];
     int64_t parts, triangles;
-} story;
+} sample;
 
 static void read_settings(int count, char **words, settings *out) {
     bench_arguments arguments = {count, words, 1};
@@ -49,7 +49,7 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-static void live(const settings *set, story *out) {
+static void run_stages(const settings *set, sample *out) {
     bench_scene scene;
     skg_plan *plan = NULL;
     skg_plan_report report;
@@ -78,42 +78,42 @@ static void live(const settings *set, story *out) {
     out->triangles = report.triangles;
 }
 
-/* A process of its own; the most memory that it held, MiB. */
-static double live_once(const settings *set, story *out) {
+/* Takes a sample in a new process. Returns the largest memory of any process so far, MiB. */
+static double run_process(const settings *set, sample *out) {
     int ends[2], status = 0;
     struct rusage children;
-    if (pipe(ends) != 0) bench_die("no pipe");
+    if (pipe(ends) != 0) bench_die("a pipe cannot be made");
     const pid_t child = fork();
-    if (child < 0) bench_die("no process");
+    if (child < 0) bench_die("a process cannot be made");
     if (child == 0) {
-        live(set, out);
+        run_stages(set, out);
         _exit(write(ends[1], out, sizeof *out) == (ssize_t)sizeof *out ? 0 : 1);
     }
     close(ends[1]);
     const ssize_t got = read(ends[0], out, sizeof *out);
     close(ends[0]);
     waitpid(child, &status, 0);
-    if (got != (ssize_t)sizeof *out || status != 0) bench_die("a process did not end well");
+    if (got != (ssize_t)sizeof *out || status != 0) bench_die("a process failed");
     getrusage(RUSAGE_CHILDREN, &children);
-    return (double)children.ru_maxrss / 1024; /* of the largest child so far */
+    return (double)children.ru_maxrss / 1024;
 }
 
 int main(int count, char **words) {
     settings set;
-    story once = {0};
+    sample once = {0};
     static bench_times times[STAGES];
     double cold[STAGES], memory = 0;
     read_settings(count, words, &set);
     if (set.affinity) host_pin_threads();
-    live_once(&set, &once); /* may compile kernels */
+    run_process(&set, &once); /* may compile the kernels */
     memcpy(cold, once.ms, sizeof cold);
     for (long k = 0; k < set.repeats; k++) {
-        memory = live_once(&set, &once);
+        memory = run_process(&set, &once);
         for (int stage = 0; stage < STAGES; stage++) bench_add(&times[stage], once.ms[stage]);
     }
     printf(
-        "%lld parts, %lld triangles; %ld processes after a first one, which compiled what the cache lacked. Most memory "
-        "held: %.0f MiB. Times in ms.\nTarget: a thorax of 61 organs below 2000 in all; 4 million triangles below "
+        "%lld parts, %lld triangles; %ld processes after a first one, which compiled the kernels that were not cached. Largest "
+        "memory: %.0f MiB. Times in ms.\nTarget: a thorax of 61 organs below 2000 in total; 4 million triangles below "
         "1024 MiB.\n\n| stage | first process | minimum | median |\n|---|---:|---:|---:|\n",
         (long long)once.parts, (long long)once.triangles, set.repeats, memory);
     FILE *csv = set.csv ? bench_open(set.csv) : NULL;

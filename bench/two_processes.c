@@ -1,6 +1,6 @@
-/* Two processes at once, each with half of the cores, against one of them alone; and each with all cores.
- * PoCL's threads are not pinned here: pinned, those of both would share the first cores (contracts of the
- * library). */
+/* Two processes at once against one of them alone, each with half of the cores and then each with all cores.
+ * PoCL's threads are not pinned here, because the pinned threads of both processes would share the first
+ * cores. */
 #include "common/bench.h"
 #include "common/scenes.h"
 
@@ -44,8 +44,8 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-/* Makes a plan and a first image, says so, then times `frames` images each time it is asked; ends with the
- * pipe. */
+/* Makes a plan and a first image and reports it; then, for each byte that comes through the pipe, times
+ * `frames` images. Ends when the pipe is closed. */
 static _Noreturn void work(const settings *set, const char *config, int ask, int answer) {
     bench_scene scene;
     skg_plan *plan = NULL;
@@ -66,12 +66,12 @@ static _Noreturn void work(const settings *set, const char *config, int ask, int
     _exit(0);
 }
 
-/* other: its ends of pipes must not stay open in the new process. */
-static worker hire(const settings *set, const char *config, const worker *other) {
+/* other: the worker whose ends of pipes the new process must close; may be NULL. */
+static worker start(const settings *set, const char *config, const worker *other) {
     int ask[2], answer[2];
-    if (pipe(ask) != 0 || pipe(answer) != 0) bench_die("no pipe");
+    if (pipe(ask) != 0 || pipe(answer) != 0) bench_die("a pipe cannot be made");
     const pid_t process = fork();
-    if (process < 0) bench_die("no process");
+    if (process < 0) bench_die("a process cannot be made");
     if (process == 0) {
         close(ask[1]), close(answer[0]);
         if (other) close(other->ask), close(other->answer);
@@ -91,7 +91,7 @@ static double answer(const worker *one) {
     return ms;
 }
 
-static void dismiss(worker *one) {
+static void stop(worker *one) {
     close(one->ask), close(one->answer);
     waitpid(one->process, NULL, 0);
 }
@@ -101,8 +101,8 @@ static void measure(const settings *set, const char *name, long threads, FILE *c
     worker two[2];
     bench_times alone = {0}, together = {0};
     snprintf(config, sizeof config, "%s threads=%ld", set->device, threads);
-    two[0] = hire(set, config, NULL);
-    two[1] = hire(set, config, &two[0]);
+    two[0] = start(set, config, NULL);
+    two[1] = start(set, config, &two[0]);
     answer(&two[0]), answer(&two[1]); /* ready */
     for (long k = 0; k < set->repeats; k++) {
         for (int who = 0; who < 2; who++) {
@@ -112,7 +112,7 @@ static void measure(const settings *set, const char *name, long threads, FILE *c
         ask(&two[0]), ask(&two[1]);
         bench_add(&together, answer(&two[0])), bench_add(&together, answer(&two[1]));
     }
-    dismiss(&two[0]), dismiss(&two[1]);
+    stop(&two[0]), stop(&two[1]);
     const double ratio = bench_median(&together) / bench_median(&alone);
     printf("| %s | %ld | %.4g / %.4g | %.4g / %.4g | %.2f |\n", name, threads, bench_least(&alone),
            bench_median(&alone), bench_least(&together), bench_median(&together), ratio);
@@ -134,7 +134,7 @@ int main(int count, char **words) {
         "each: 1.3.\nWith all cores each, two fair shares of the machine would be 2.\n\n"
         "| each has | threads | one at a time | two at once | ratio |\n|---|---:|---:|---:|---:|\n",
         set.frames);
-    fflush(stdout); /* before processes are made, which would write it again */
+    fflush(stdout); /* before processes are made, which would print it again */
     measure(&set, "half of the cores", cores > 1 ? cores / 2 : 1, csv);
     if (cores > 1) measure(&set, "all cores", cores, csv);
     if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);

@@ -1,8 +1,8 @@
-/* Many views of one scene: in one batch, and one by one. */
+/* Many views of one scene, in one batch against one by one. */
 #include "common/bench.h"
 #include "common/scenes.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -94,7 +94,7 @@ static void close_series(series *self) {
     free(self->output.data);
 }
 
-/* A batch gives the bits of single frames, or nothing is timed. */
+/* Ends the program unless a batch gives the same bits as single frames. */
 static void check(series *self) {
     const size_t bytes = (size_t)(self->views * self->pixels) * sizeof(float);
     one_by_one(self);

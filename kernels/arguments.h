@@ -129,7 +129,7 @@
 
 #define SKG_ARGUMENTS_DETECT(X) \
     X(DETECT, image) X(DETECT, offset) X(DETECT, row_stride) X(DETECT, channel_stride) X(DETECT, columns) \
-    X(DETECT, rows) X(DETECT, key) X(DETECT, electronic) X(DETECT, step) X(DETECT, factor) X(DETECT, all) \
+    X(DETECT, rows) X(DETECT, key) X(DETECT, electronic) X(DETECT, spacing) X(DETECT, factor) X(DETECT, scale) \
     X(DETECT, flat_field) /* SKG_FLAT_FIELD */
 
 /* X(KERNEL, function) for each kernel. */

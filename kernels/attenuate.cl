@@ -1,8 +1,8 @@
-/* From sums of path parameters to what a pixel shows. The exponent of node n is the sum over planes of
- * coefficient[n][p] * x_p, x_p = sum / scale * |ray| in mm times the plane's weights; channel c shows
- * sum over nodes of weight[n][c] * exp(-exponent_n). Coefficients come times -log2(e): powers of two are at hand. */
+/* From sums of path parameters to what a pixel shows. Plane p of a pixel is x_p = sum / scale * |ray|, in mm times the
+ * plane's weights. The exponent of node n is the sum over planes of coefficient[n][p] * x_p, and channel c shows the sum over
+ * nodes of weight[n][c] * exp(-exponent_n). The host multiplies coefficients by -log2(e), because powers of two are computed. */
 
-/* Compilers that do not know the pragma skip it; bits do not depend on it. */
+/* Compilers that do not know the pragma ignore it. Results do not depend on it. */
 #define SKG_UNROLL _Pragma("unroll")
 #ifndef SKG_HALF_UNIT
 #define SKG_HALF_UNIT 1.0f
@@ -48,7 +48,7 @@ static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row)
 
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
 #if SKG_HALF
-    /* The image, too, is kept in binary16; energies in MeV. */
+    /* The image is rounded to binary16, too; energies are in MeV. */
     float lanes[SKG_WIDE];
     SKG_STORE_V(value, 0, lanes);
     for (int k = 0; k < min(pixels, SKG_WIDE); k++) {
@@ -70,7 +70,7 @@ static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
     for (int k = 0; k < pixels; k++) place[k] = SKG_ADD ? place[k] + rest[k] : rest[k];
 }
 
-/* What a pass is given; the kernel's arguments of the same names. */
+/* The arguments of the kernel, by the same names. */
 typedef struct {
     const skg_frame_args *frame;
     const skg_ray_args *ray;
@@ -97,7 +97,7 @@ typedef struct {
 /* What a work-item knows of its pixels, a vector a run. */
 typedef struct {
     skg_realv x[SKG_PLANES][SKG_RUNS];       /* mm of the planes, world included */
-    skg_realv highest[SKG_RUNS];             /* the greatest power of two, or the first node's; see the modes */
+    skg_realv highest[SKG_RUNS];             /* the greatest power of two (logarithm), or that of the first node */
     skg_realv shown[SKG_CHANNELS][SKG_RUNS]; /* sums over nodes, then what is shown */
 #if SKG_WORLD
     skg_realv world[SKG_RUNS]; /* mm that the world adds to its plane */
@@ -111,7 +111,7 @@ typedef struct {
 #define SKG_EACH_CHANNEL SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
 #define SKG_EACH_PLANE(first) SKG_UNROLL for (int p = first; p < SKG_PLANES; p++)
 
-/* mm of the planes of run r, from the sums; scaled: mm of a unit. */
+/* Reads the planes of run r in mm from the sums. scaled: mm of a unit of the sums. */
 static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, __global const int *used, int at,
                          skg_realv scaled, skg_pixels *pixels, int r) {
 #if SKG_SUMS
@@ -144,7 +144,7 @@ static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies
     }
 }
 
-/* Sums of coefficient times mm over the planes, for each run. */
+/* The exponent of one node for each run: the sum over planes of coefficient times mm. */
 static void skg_exponents(__constant const skg_real *coefficient, const skg_pixels *pixels, skg_realv *exponent) {
     SKG_EACH_RUN exponent[r] = coefficient[0] * pixels->x[0][r];
     SKG_EACH_PLANE(1) SKG_EACH_RUN exponent[r] = fma((skg_realv)(coefficient[p]), pixels->x[p][r], exponent[r]);
@@ -177,7 +177,7 @@ static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels, __
 }
 #endif
 
-/* shown = sum over nodes of weight * 2^power; of the logarithm, over 2^highest, so that nothing underflows. */
+/* shown = sum over nodes of weight * 2^power. For the logarithm it is divided by 2^highest, so that nothing underflows. */
 static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
     skg_realv power[SKG_RUNS];
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->shown[c][r] = (skg_realv)(0);
@@ -209,7 +209,7 @@ static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
 }
 
 #if SKG_RATIO
-/* The greatest power of two of the flat beam, in which there is the world alone. */
+/* The greatest power of two of the flat field, in which there is the world alone. */
 static skg_realv skg_highest_flat_field(const skg_pass *pass, skg_realv world) {
     skg_realv highest = (skg_realv)(pass->coefficients[pass->world_plane]) * world;
     for (int n = 1; n < pass->nodes; n++) {
@@ -219,7 +219,7 @@ static skg_realv skg_highest_flat_field(const skg_pass *pass, skg_realv world) {
     return highest;
 }
 
-/* Sum over nodes of weight * 2^(power - base) of one channel of the flat beam. */
+/* The sum over nodes of weight * 2^(power - base) for one channel of the flat field. */
 static skg_realv skg_flat_field(const skg_pass *pass, int channel, skg_realv world, skg_realv base) {
     skg_realv flat = (skg_realv)(0);
     for (int n = 0; n < pass->nodes; n++) {
@@ -232,7 +232,7 @@ static skg_realv skg_flat_field(const skg_pass *pass, int channel, skg_realv wor
 #endif
 
 #if SKG_NOISE
-/* A draw for the pixels of run r that are `few`; each node by itself. */
+/* Draws the photons of each node separately, for the pixels of run r in which there are few. */
 static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, int r, skg_realv all, skg_intv few,
                                int pixel, int channel) {
     skg_realv value = (skg_realv)(0);
@@ -254,7 +254,7 @@ static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, i
     return value;
 }
 
-/* Quantum noise on one channel of run r: a normal deviate where photons are many, else photon by photon. */
+/* Adds quantum noise to one channel of run r: a normal deviate in pixels with many photons, else photon by photon. */
 static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int r, int channel, skg_realv all) {
     const skg_realv mean = pixels->shown[channel][r], variance = pixels->spread[channel][r] * all;
     const int pixel = pass->row * pass->frame->columns + pass->column + r * SKG_WIDE;
@@ -298,18 +298,25 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
 #endif
     }
 #if SKG_WORLD
-    /* What the parts alone subtract is told. */
+    /* Only what the parts subtract is counted as negative. */
     pixels->highest[r] -= pass->coefficients[pass->world_plane] * pixels->world[r];
 #endif
 }
 
-/* One work-item SKG_RUNS runs of SKG_WIDE pixels of a row. coefficients: of -exponent * log2(e), or of the exponent
- * where that is shown. Strides and offset of the output in elements. factor: of intensities. negative: counts the pixels
- * that exceed `limit` by the power of two of their first node (fall below -limit by its exponent), where more was
- * subtracted for children than their parent has. World: a plane gets `world` for each mm of path, which is |ray| times
- * path[0] + path[1] i + path[2] j. Falloff: cube of nearest / |ray|. Noise: variances of the nodes as weights; by photons
- * where fewer than `photons` of them are detected, as far as mean and variance tell: mean^2 / variance is never more.
- * Sums: a unit of accumulator s adds lists[s][p] to plane p. Ranged: negative[1] counts the pixels that have a plane outside range[plane], lowest and highest in mm. */
+/* One work-item takes SKG_RUNS runs of SKG_WIDE pixels of a row.
+ *
+ * coefficients   of -exponent * log2(e), or of the exponent if that is shown
+ * factor         of intensities
+ * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `limit` (the exponent is
+ *                below -limit): more was subtracted for children than their parent has there
+ * output         strides and offset in elements
+ * lists          a unit of accumulator s adds lists[s][p] to plane p
+ * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
+ * nearest        intensities are multiplied by the cube of nearest / |ray|
+ * variances      of the nodes, as weights
+ * photons        if fewer are detected in a pixel they are drawn one by one; mean^2 / variance, which is never more than
+ *                their number, decides
+ * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
                             __constant const skg_real *weights, skg_real factor, skg_real limit,
@@ -385,7 +392,8 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     }
 }
 
-/* Means of several passes as attenuation: -ln, of at least the smallest normal float. One work-item a run. */
+/* Turns means of several passes into attenuations: -ln of the mean, or of the smallest normal float if that is greater. One
+ * work-item per run. */
 __kernel void skg_logarithm(int columns, int rows, int channels, __global skg_out *output, long offset,
                             long row_stride, long channel_stride) {
     const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);

@@ -1,9 +1,9 @@
-/* Strategy `tiles` on a CPU, first half: which triangles meet which band of rows. One pass: each work-group (one
- * work-item) claims chunks of triangles, sorts a chunk by band in its own memory, and appends it to the pool in one
- * piece; pieces[chunk * bands + band] says where. Triangles that meet more than SKG_MOST_TILES bands are in one list
- * for all. */
+/* Strategy `tiles` on a CPU, first half: lists the triangles that meet each band of rows, in one pass. Each work-group (one
+ * work-item) claims chunks of triangles, sorts a chunk by band in its own memory, and appends it to the pool in one piece;
+ * pieces[chunk * bands + band] is where the band's triangles of that chunk are, and how many. Triangles that meet more than
+ * SKG_MOST_TILES bands are in one list for all. */
 
-/* counters[0]: the next chunk; [1]: pool in use; [2]: triangles in the list for all. */
+/* counters: the next chunk; entries of the pool in use; triangles in the list for all. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_bands_sort(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                __global const skg_part_entry *parts, __global const int *blocks, __global int *counters,

@@ -1,11 +1,11 @@
-/* Blur by line spread functions or a point spread function, in two passes over an image in the type of skg_real. The
- * first works down the columns, from the image into a workspace that is wider (and for a point spread function higher)
- * than the image by half the function on either side; the second works along the rows, from there into the image. Beyond
- * its border the image goes on as at the border. Every pixel's terms are added in one order on all devices. */
+/* Blur with line spread functions or a point spread function, in two passes over an image in the type of skg_real. The first
+ * pass works down the columns, from the image into a workspace that is wider (and for a point spread function higher) than the
+ * image by half the function on either side. The second works along the rows, from the workspace into the image. A pixel beyond
+ * the border has the value of the nearest pixel on it. The terms of a pixel are added in the same order on all devices. */
 
 #define SKG_UNROLL _Pragma("unroll")
 
-/* Rows and vectors of a work-item of the first pass: a row that is read serves SKG_BLUR_ROWS rows that are written. */
+/* Rows and vectors of a work-item of the first pass: each row that is read is used for SKG_BLUR_ROWS rows that are written. */
 #define SKG_BLUR_ROWS 4
 #define SKG_BLUR_VECTORS 2
 /* Vectors of a work-item of the second pass. */
@@ -18,8 +18,9 @@ static skg_realv skg_border_v(__global const skg_real *row, int column, int colu
     return SKG_LOAD_V(0, lanes);
 }
 
-/* taps: odd; weights: [SKG_BLUR_ROWS - 1 + taps + SKG_BLUR_ROWS - 1], zeros about the taps. stride and high: elements
- * of a row and rows of the workspace, whose pixel (0, 0) is the image's (-left, -above). */
+/* First pass. taps: how many weights, odd; weights: [SKG_BLUR_ROWS - 1 + taps + SKG_BLUR_ROWS - 1], with zeros before and
+ * behind the taps; stride, high: elements of a row, and rows, of the workspace. Its pixel (0, 0) is pixel (-left, -above) of
+ * the image. */
 __kernel void skg_blur_down(__global const skg_real *image, long offset, long row_stride, long channel_stride,
                             int columns, int rows, int taps, __global const skg_real *weights,
                             __global skg_real *workspace, int stride, int high, int left, int above) {
@@ -41,12 +42,13 @@ __kernel void skg_blur_down(__global const skg_real *image, long offset, long ro
     }
     SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++) {
         __global skg_real *place = workspace + ((long)channel * high + row + r) * stride + to;
-        if (row + r < high) /* no break: it would keep the loop from being unrolled, which PoCL tells the user */
+        if (row + r < high) /* not a break, which would keep the loop from being unrolled; PoCL would warn the user */
             SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) SKG_STORE_V(sum[r][v], v, place);
     }
 }
 
-/* weights: [down][across]; the sum over them, from the workspace's pixel (row, column) on, is the image's there. */
+/* Second pass. weights: [down][across]. Pixel (row, column) of the image is the sum over the weights times the workspace from
+ * its pixel (row, column) on. */
 __kernel void skg_blur_across(__global const skg_real *workspace, int stride, int high, int down, int across,
                               __global const skg_real *weights, __global skg_real *image, long offset,
                               long row_stride, long channel_stride, int columns, int rows) {

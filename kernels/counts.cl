@@ -1,7 +1,7 @@
-/* Count planes of open meshes: a pixel is bad where the signed hits do not cancel. Planes: numbers of `count` of them. */
+/* Count planes of leaky meshes: a pixel whose signed hits do not cancel is bad. planes: the numbers of the count planes. */
 
-/* rows_bad[count][rows][3]: bad pixels of each row, and columns from, to outside which none is. One item a row of a
- * plane. */
+/* Finds the bad pixels of each row. rows_bad: [count planes][rows][3] how many there are, and the first and the end column
+ * between which they lie. One work-item per row and plane. */
 __kernel void skg_count_bad_rows(skg_frame_args frame, __global const skg_sum *copies, __global const int *used,
                                  __global const int *planes, __global int *rows_bad) {
     const int row = (int)get_global_id(0), k = (int)get_global_id(1);
@@ -9,7 +9,7 @@ __kernel void skg_count_bad_rows(skg_frame_args frame, __global const skg_sum *c
     const int4 extent = vload4(0, used + SKG_EXTENT(frame.copies, planes[k]));
     skg_sumv bad = (skg_sumv)(0);
     int from = 0, to = 0;
-    if (row >= extent.x && row < extent.y) /* columns of the row's end that are none are 0 */
+    if (row >= extent.x && row < extent.y) /* the spare columns at the end of a row are 0 */
         for (int column = extent.z; column < extent.w; column += SKG_WIDE) {
             const skg_sumv hits = skg_extent_sums_v(&frame, copies, used, planes[k], row, column);
             if (!skg_any(SKG_TO_INT_V(hits != (skg_sumv)(0)))) continue;
@@ -24,8 +24,8 @@ __kernel void skg_count_bad_rows(skg_frame_args frame, __global const skg_sum *c
     vstore3((int3)(total, from, to), (size_t)(k * frame.rows + row), rows_bad);
 }
 
-/* verdicts[first...][1 + SKG_FIRST_BAD]: bad pixels; then the first of them, row * columns + column, in this order. One
- * item a plane. */
+/* Adds up the rows. verdicts: [first...][1 + SKG_FIRST_BAD] how many pixels are bad, then the first of them as
+ * row * columns + column, ascending. One work-item per plane. */
 __kernel void skg_count_bad(skg_frame_args frame, __global const skg_sum *copies, __global const int *used,
                             __global const int *planes, __global const int *rows_bad, int first,
                             __global int *verdicts) {

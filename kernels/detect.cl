@@ -1,11 +1,13 @@
 /* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
- * shown. In place, in the type of skg_real. */
-/* electronic: standard deviation in keV; step in keV; factor of the channel times `all`: from keV or photons per pixel to
- * what is shown. flat_field: [channels][rows][columns] that values are divided by. One work-item SKG_WIDE pixels of a row of a
- * channel. */
+ * shown. The image is changed in place, in the type of skg_real. One work-item per SKG_WIDE pixels of a row of a channel.
+ *
+ * electronic   standard deviation of the electronic noise, keV per pixel
+ * spacing      of the levels of quantisation, keV per pixel
+ * factor       [channels] times `scale`: from keV or photons per pixel to what is shown
+ * flat_field   [channels][rows][columns] that values are divided by */
 __kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
-                         int rows, skg_noise_args key, skg_real electronic, skg_real step,
-                         __constant const skg_real *factor, skg_real all
+                         int rows, skg_noise_args key, skg_real electronic, skg_real spacing,
+                         __constant const skg_real *factor, skg_real scale
 #if SKG_FLAT_FIELD
                          ,
                          __global const skg_real *flat_field
@@ -29,9 +31,9 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     value = fma((skg_realv)(electronic), SKG_TO_REAL_V(skg_normal_v(draw[0])), value);
 #endif
 #if SKG_QUANTISED
-    value = rint(value / step) * step;
+    value = rint(value / spacing) * spacing;
 #endif
-    value *= factor[channel] * all;
+    value *= factor[channel] * scale;
 #if SKG_FLAT_FIELD
     skg_real flat[SKG_WIDE];
     flat_field += ((long)channel * rows + row) * columns + column;

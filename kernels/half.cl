@@ -1,6 +1,6 @@
-/* Precision `half`, kept to show what it costs (Vidal and Villard 2016, sections 3.2.3 and 4.3): the distance from the
- * source to each hit, in metres, is rounded once to binary16; its exact value, a multiple of 2^-24 m, is summed. One
- * work-item a triangle, planes without weights: of a contribution only the sign and the plane count. */
+/* Precision `half`, for comparison with Vidal and Villard 2016, sections 3.2.3 and 4.3. The distance from the source to each
+ * hit, in metres, is rounded once to binary16; its exact value, a multiple of 2^-24 m, is summed. One work-item per triangle.
+ * Planes have no weights: of a contribution only the plane and the sign matter. */
 
 /* metres as a multiple of 2^-24, after rounding to binary16. */
 static int skg_half_units(float metres) {

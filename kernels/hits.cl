@@ -1,29 +1,29 @@
-/* Parts that compete for intervals along a ray. Hits of these parts alone are listed per pixel (counted, given room,
- * filled in), sorted and swept; what losers had added is taken off the sums again, as integers. Coverage and depths
- * are the rasterisers' own (triangle.clh), so that what is taken off is what was added. */
+/* Parts that compete for intervals along a ray. The hits of these parts are listed per pixel: counted, given their place,
+ * and written. Then they are sorted and swept, and what the losers had added is subtracted from the sums as integers.
+ * Coverage and depths are those of the rasterisers (triangle.clh), so that exactly what was added is subtracted. */
 
 #define SKG_WORDS (SKG_SLOTS / 32)
 
-/* Entry of a slot: number of its part; slot of the parent that it is clipped to, or -1; then two sets of slots, a bit
- * each: those that win over it, and those that it falls with. */
+/* Ints of the entry of a slot: the number of its part; the slot of the parent that it is clipped to, or -1; then two sets of
+ * slots, one bit each: those that win over it, and those whose loss it shares. */
 #define SKG_ENTRY (2 + 2 * SKG_WORDS)
 
-/* depth: r relative to what all competitors are measured from; code: 2 slot + 1 where the ray enters. */
+/* depth: r, measured from the common reference of all competitors; code: 2 slot + 1 if the ray enters, 2 slot if it leaves. */
 typedef struct {
     skg_real depth;
     int code;
 } skg_listed;
 
 typedef struct {
-    __global const int *slots;       /* [parts] -1: does not compete */
-    __global const skg_real *shifts; /* [slots] the part's reference less the common one */
+    __global const int *slots;       /* [parts] -1: the part does not compete */
+    __global const skg_real *shifts; /* [slots] the part's reference minus the common one */
     __global int *counts;            /* [rows][columns] */
     __global const uint *starts;
     __global skg_listed *hits;
-    int fill; /* 0: hits are counted */
+    int fill; /* 0: hits are only counted */
 } skg_lists;
 
-/* q: depth of the hit as skg_depth has it. */
+/* Counts or lists one hit. q: its depth as skg_depth returns it. */
 static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, skg_real reference, int enters) {
     const int place = atomic_inc(&lists->counts[pixel]);
     if (!lists->fill) return;
@@ -39,7 +39,7 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
     __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
         __global skg_listed *hits, int fill
 
-/* One work-item every get_global_size(1)-th row of a triangle. */
+/* Each work-item takes every get_global_size(1)-th row of one triangle. */
 __kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                             __global const skg_part_entry *parts, __global const int *blocks, SKG_LIST_ARGUMENTS) {
     const skg_lists lists = {slots, shifts, counts, starts, hits, fill};
@@ -102,7 +102,7 @@ static int skg_is_in(const uint *set, int slot) {
     return (int)(set[slot / 32] >> (slot % 32) & 1);
 }
 
-/* Whether an active slot loses the interval. dropped: those that lose it, as far as parents of this slot go. */
+/* Whether an active slot loses the interval. dropped: the slots found to lose it so far; all parents of this one are judged. */
 static int skg_loses(__global const int *entry, const uint *active, const uint *dropped) {
     int loses = entry[1] >= 0 && !skg_is_in(active, entry[1]);
     for (int w = 0; w < SKG_WORDS; w++)
@@ -110,17 +110,18 @@ static int skg_loses(__global const int *entry, const uint *active, const uint *
     return loses;
 }
 
-/* Takes off what a part has added to a pixel's sums over an interval. */
+/* Subtracts what a part has added to the sums of a pixel over an interval. */
 static void skg_take_off(__global const skg_part_entry *part, __global const skg_contribution *contributions, int plane,
                          skg_real length, __global skg_sum *sums) {
 #if !SKG_PARALLEL
-    length /= part->reference; /* as contributions weigh it */
+    length /= part->reference; /* the unit of the contributions */
 #endif
     for (int w = part->first_contribution; w < part->first_contribution + part->contributions; w++)
         sums[contributions[w].plane * plane] -= (skg_sum)skg_round(length * contributions[w].weight);
 }
 
-/* One work-item a pixel. table: [slots][SKG_ENTRY], parents before their children. sums: the first copy. */
+/* Decides every interval of a pixel; one work-item per pixel. table: [slots][SKG_ENTRY], parents before their children. sums:
+ * the first copy. */
 __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entry *parts,
                               __global const skg_contribution *contributions, __global const int *counts,
                               __global const uint *starts, __global skg_listed *hits, __global const int *table,
@@ -157,7 +158,7 @@ __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entr
     }
 }
 
-/* Triangles at the source's plane, too (source_plane.cl). */
+/* Makes the kernel of source_plane.cl list hits, too. */
 #define SKG_SOURCE_KERNEL skg_hits_source_plane
 #define SKG_SOURCE_ARGUMENTS SKG_LIST_ARGUMENTS
 #define SKG_SOURCE_BEGIN(range)                                                                                       \

@@ -1,11 +1,11 @@
-/* Open meshes have planes and a count of their own; where the count is 0 their signed hits cancel, and their sums go
- * into the planes that all parts share. Elsewhere they are left out, or repaired.
+/* Leaky meshes have planes and a count plane of their own. In a pixel whose count is 0 the signed hits cancel, and the sums
+ * are added to the planes that all parts share. In other pixels they are left out, or repaired.
  *
- * A batch is `parts` open parts in one raster. table: [parts] the count plane of each, which stands after the planes of
- * its sums, parts one after another; then for each plane of the raster the shared plane that it joins. shared: first
- * copy of the other raster, whose planes have the same layout. */
+ * A batch is `parts` leaky parts in one raster. The planes of a part's sums stand before its count plane, and parts stand
+ * one after another. table: [parts] the count plane of each part; then for each plane of the raster the shared plane that
+ * its sums are added to. shared: the first copy of the other raster, whose planes have the same layout. */
 
-/* The first plane of a part's sums. */
+/* The first plane of the sums of a part. */
 static int skg_first_plane(__global const int *table, int part) {
     return part > 0 ? table[part - 1] + 1 : 0;
 }
@@ -14,12 +14,13 @@ static size_t skg_place(const skg_frame_args *frame, int plane, int row, int col
     return (size_t)plane * (size_t)frame->plane + (size_t)row * (size_t)frame->stride + (size_t)column;
 }
 
-/* The first of own, own + step, ... that is not left of a column. */
+/* The first of own, own + step, own + 2 step, ... that is not before a column. */
 static int skg_first_column(int column, int own, int step) {
     return own + max(column - own + step - 1, 0) / step * step;
 }
 
-/* Items along a row take vectors by turns, and each takes the parts one after another: no two add to one pixel. */
+/* Adds the sums of valid pixels to the shared planes. The work-items of a row take its vectors alternately, and each takes the
+ * parts one after another, so that no two add to one pixel at the same time. */
 __kernel void skg_leaky_add(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                            __global const int *table, __global skg_sum *shared) {
     const int row = (int)get_global_id(1), step = SKG_WIDE * (int)get_global_size(0);
@@ -34,7 +35,7 @@ __kernel void skg_leaky_add(skg_frame_args frame, __global const skg_sum *copies
             const skg_sumv valid = SKG_AS_SUM_V(hits == (skg_sumv)(0));
             for (int plane = first; plane < counts; plane++) {
                 const skg_sumv sums = skg_extent_sums_v(&frame, copies, used, plane, row, column);
-                if (!skg_any(SKG_TO_INT_V((sums & valid) != (skg_sumv)(0)))) continue; /* most of a rectangle */
+                if (!skg_any(SKG_TO_INT_V((sums & valid) != (skg_sumv)(0)))) continue; /* true of most of an extent */
                 __global skg_sum *place = shared + skg_place(&frame, table[parts + plane], row, column);
                 SKG_STORE_V(SKG_LOAD_V(0, place) + (sums & valid), 0, place);
             }
@@ -42,18 +43,18 @@ __kernel void skg_leaky_add(skg_frame_args frame, __global const skg_sum *copies
     }
 }
 
-/* No valid pixel: far from any. */
+/* The distance if there is no valid pixel. */
 #define SKG_FAR 0x40000000
 
-/* gaps[part][row][column]: pixels to the nearest valid one of the row, 0 where the pixel itself is; only in the columns
- * of a row that rows_bad (as skg_count_bad_rows leaves it) names. One item a row of a part. */
+/* gaps: [part][row][column] distance in pixels to the nearest valid pixel of the row, 0 for a valid pixel. It is written only
+ * in the columns of a row that rows_bad (counts.cl) names. One work-item per row and part. */
 __kernel void skg_leaky_gaps(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                             __global const int *table, __global const int *rows_bad, __global int *gaps) {
     const int row = (int)get_global_id(0), part = (int)get_global_id(1);
     if (row >= frame.rows || part >= parts) return;
     const int3 bad = vload3((size_t)(part * frame.rows + row), rows_bad);
     __global int *gap = gaps + ((size_t)part * (size_t)frame.rows + (size_t)row) * (size_t)frame.columns;
-    int near = bad.y > 0 ? 0 : SKG_FAR; /* beside the bad ones all are valid */
+    int near = bad.y > 0 ? 0 : SKG_FAR; /* all pixels beside the bad ones are valid */
     for (int column = bad.y; column < bad.z; column++) {
         near = skg_sum_of(&frame, copies, used, table[part], row, column) != 0 ? min(near + 1, SKG_FAR) : 0;
         gap[column] = near;
@@ -65,7 +66,7 @@ __kernel void skg_leaky_gaps(skg_frame_args frame, __global const skg_sum *copie
     }
 }
 
-/* Of one part: as above. */
+/* rows_bad and gaps of one part. */
 typedef struct {
     __global const int *rows_bad, *gaps;
 } skg_marks;
@@ -76,7 +77,8 @@ static int skg_gap(const skg_frame_args *frame, const skg_marks *marks, int row,
     return marks->gaps[(size_t)row * (size_t)frame->columns + (size_t)column];
 }
 
-/* Side steps to the nearest valid pixel: half the side of the smallest square about the pixel that holds one. */
+/* The distance to the nearest valid pixel in steps along rows or columns: half the side of the smallest square about the
+ * pixel that holds a valid one. */
 static int skg_reach(const skg_frame_args *frame, const skg_marks *marks, int row, int column) {
     int reach = skg_gap(frame, marks, row, column);
     for (int d = 1; d < reach && d < frame->rows; d++) {
@@ -86,8 +88,8 @@ static int skg_reach(const skg_frame_args *frame, const skg_marks *marks, int ro
     return reach;
 }
 
-/* Mean over the valid pixels of a square's border, rounded to nearest; inside it none is valid. Quotients and
- * remainders are summed each for themselves, so that nothing overflows. */
+/* The mean over the valid pixels on the border of a square, rounded to nearest. Inside it no pixel is valid. Quotients and
+ * remainders are summed separately, so that nothing overflows. */
 static skg_sum skg_border_mean(const skg_frame_args *frame, __global const skg_sum *copies, __global const int *used,
                                const skg_marks *marks, int plane, int row, int column, int reach) {
     long valid = 0, whole = 0, rest = 0;
@@ -109,8 +111,8 @@ static skg_sum skg_border_mean(const skg_frame_args *frame, __global const skg_s
     return (skg_sum)(whole + twice / (2 * valid) - (twice % (2 * valid) < 0));
 }
 
-/* Bad pixels of each part get the mean of their neighbourhood, which is grown until it holds valid ones (Vidal and
- * Villard 2016, 3.2.7). Items as those of skg_leaky_add, pixels instead of vectors. */
+/* Gives the bad pixels of each part the mean over their neighbourhood, which is grown until it holds valid pixels (Vidal and
+ * Villard 2016, 3.2.7). Work-items are those of skg_leaky_add, with pixels instead of vectors. */
 __kernel void skg_leaky_repair(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                               __global const int *table, __global const int *rows_bad, __global const int *gaps,
                               __global skg_sum *shared) {
@@ -132,8 +134,8 @@ __kernel void skg_leaky_repair(skg_frame_args frame, __global const skg_sum *cop
     }
 }
 
-/* Gives `count` pixels of a part new sums: pixels[item] = row * columns + column, none twice; values[item][planes of
- * the part]. What skg_leaky_add has added for them is taken off. */
+/* Gives `count` pixels of a part new sums, instead of those that skg_leaky_add has added. pixels: [item] row * columns +
+ * column, none twice; values: [item][planes of the part]. */
 __kernel void skg_leaky_put(skg_frame_args frame, __global const skg_sum *copies, __global const int *used, int parts,
                            __global const int *table, int part, int count, __global const int *pixels,
                            __global const long *values, __global skg_sum *shared) {

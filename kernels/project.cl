@@ -1,10 +1,11 @@
-/* Projects every vertex of every part: x, y in pixels relative to the part's pixel, z = r / t, t. A work-item takes
- * SKG_RUN vertices: one on a GPU; on a CPU a run, whose loop over the vertices of a part compilers turn into vectors. */
+/* Projects every vertex of every part to (x, y, z, t): x, y in pixels relative to the part's pixel, z = r / t, t. A work-item
+ * takes SKG_RUN vertices: one on a GPU; on a CPU a run, so that compilers can turn the loop over the vertices of a part into
+ * vectors. */
 
-/* Rows of this little height are none: then no slope of an edge overflows. */
+/* Heights below this are set to 0, so that the slope of no edge overflows. */
 #define SKG_FLAT 0x1p-40f
 
-/* One vertex; *finite is cleared where it is not. */
+/* Projects one vertex. *finite: 0 if it is not finite. */
 static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_part_entry *p, int *finite) {
     const skg_real r = p->offset_r + fma(p->row2[0], x, fma(p->row2[1], y, p->row2[2] * z));
     const skg_real across = p->offset_x + fma(p->row0[0], x, fma(p->row0[1], y, p->row0[2] * z));
@@ -15,7 +16,7 @@ static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_p
 #else
     const skg_real4 seen = (skg_real4)(p->anchor_x + across / t, p->anchor_y + down / t, r / t, t);
 #endif
-    /* 0 * x is 0 for finite x only. A vertex that is not gets out of the way. */
+    /* 0 * x is 0 only for finite x. A vertex that is not finite is put where it does no harm. */
     const skg_real zero = 0 * (across + down + r) + 0 * (x + y + z);
     *finite = zero == 0;
     const skg_real high = fabs(seen.y) < (skg_real)SKG_FLAT ? 0 : seen.y;
@@ -41,7 +42,7 @@ __kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *p
             out[k] = skg_project_one(v[3 * k], v[3 * k + 1], v[3 * k + 2], &p, &finite);
             all &= finite;
         }
-        for (int k = 0; k < count && !all; k++) { /* rare: which one */
+        for (int k = 0; k < count && !all; k++) { /* rare: find which one */
             int finite;
             skg_project_one(v[3 * k], v[3 * k + 1], v[3 * k + 2], &p, &finite);
             if (!finite) atomic_min(bad_vertex, number + k);

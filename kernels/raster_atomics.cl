@@ -1,14 +1,15 @@
-/* Strategy `atomics`: a work-item draws a triangle into the one image. Boxes of many pixels go to a queue as strips
- * of rows, which a second launch draws with a work-group each. */
+/* Strategy `atomics`: each work-item draws a triangle into the only image. Boxes of many pixels are put into a queue as
+ * strips of rows; a second launch draws each strip with a work-group. */
 
-/* Pixels of a box, or of a strip, that one work-item or work-group takes on. */
+/* The most pixels of a box that one work-item draws, and of a strip that one work-group draws. */
 #define SKG_LARGE 512
 
 static int skg_strip_rows(const skg_box *box) {
     return max(1, SKG_LARGE / (box->i1 - box->i0));
 }
 
-/* queue[0]: strips asked for; then pairs (triangle, strip). Strips that find no room are drawn here. */
+/* queue: the number of strips, an unused int, then pairs (triangle, strip). Strips that do not fit into the queue are drawn
+ * here. */
 __kernel void skg_raster_atomics(skg_frame_args frame, __global const int *corners,
                                  __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                  __global const skg_contribution *contributions, __global const int *blocks,

@@ -1,5 +1,5 @@
 /* Strategy `tiles` on a CPU: tiles are bands of rows. Each work-group (one work-item, wide vectors) claims bands,
- * accumulates them in a small image of its own that stays in its cache, and writes them out. */
+ * accumulates each in a small image of its own, which stays in the cache, and writes it out. */
 
 static void skg_draw_list(const skg_target *target, skg_batch *batch, __global const int *blocks,
                           __global const int *list, int count, skg_range *range) {
@@ -11,8 +11,8 @@ static void skg_draw_list(const skg_target *target, skg_batch *batch, __global c
     }
 }
 
-/* scratch: an image of tile_rows + SKG_SPARE_ROWS rows for each plane of each work-group. used[copies]: the band that
- * is claimed next; then extents. */
+/* scratch: an image of tile_rows + SKG_SPARE_ROWS rows for each plane of each work-group. used[copies]: the band that is
+ * claimed next; then the extents (skg_shared.h). */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_bands(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                  __global const skg_part_entry *parts, __global const skg_contribution *contributions, __global const int *blocks,

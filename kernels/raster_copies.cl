@@ -1,6 +1,6 @@
-/* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and
- * claims runs of triangles until none are left. used[copy]: the copy has been zeroed and counts; used[copies]: the
- * triangle that the next claim begins with; then extents (skg_shared.h). */
+/* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and claims runs
+ * of triangles until none are left. used[copy]: 1 if the copy has been zeroed and counts; used[copies]: the triangle that the
+ * next claim begins with; then the extents (skg_shared.h). */
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_copies(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,

@@ -1,4 +1,4 @@
-/* Strategy `tiles` on a GPU: a work-group accumulates one square tile in local memory and writes it out. */
+/* Strategy `tiles` on a GPU: each work-group accumulates one square tile in local memory and writes it out. */
 
 /* local_sums: [planes][tile_rows][tile_columns] */
 __kernel __attribute__((reqd_work_group_size(64, 1, 1))) void

@@ -14,31 +14,30 @@
 /* Items (triangles or projected vertices) per entry of a block table. */
 #define SKG_BLOCK 64
 
-/* Vertices whose path parameter is not above this take the path for triangles at the source's plane. */
+/* Triangles with a vertex whose path parameter is not above this are drawn by the kernel for the source's plane. */
 #define SKG_NEAR 0x1p-10f
 
-/* Accumulators have spare columns and rows where blocks of lanes may add zeros. */
+/* Accumulators have spare columns and rows, to which blocks of lanes may add zeros. */
 #define SKG_SPARE_COLUMNS 16
 #define SKG_SPARE_ROWS 4
 
-/* Most tiles that a triangle may meet and still be listed in each; wider ones are in one list for all tiles.
- */
+/* The most tiles that a triangle may meet and be listed in each. Triangles that meet more are in one list for all tiles. */
 #define SKG_MOST_TILES 8
 
-/* Bands of a CPU: most of them, and triangles that are sorted at once. */
+/* Bands of a CPU: the most of them, and how many triangles are sorted at once. */
 #define SKG_MOST_BANDS 512
 #define SKG_CHUNK 1024
 
-/* Rows that a work-item of the source plane's kernel draws. */
+/* How many rows a work-item of the source plane's kernel draws. */
 #define SKG_SOURCE_ROWS 32
 
-/* The table of what sums there are: for each copy whether it counts; the counter of claims; then of each
- * plane the extent that has any: rows from, to, columns from, to, the latter multiples of SKG_EXTENT_COLUMNS or
- * the row's end. Outside it sums are 0, and neither zeroed nor read. */
+/* The table `used` of a raster: for each copy whether it counts; the counter of claims; then for each plane the extent
+ * that has sums: first row, end row, first column, end column, the columns multiples of SKG_EXTENT_COLUMNS or the row's
+ * end. Outside its extent the sums of a plane are 0, and memory is neither zeroed nor read. */
 #define SKG_EXTENT(copies, plane) ((copies) + 1 + 4 * (plane))
 #define SKG_EXTENT_COLUMNS 32
 
-/* How many bad pixels of an open mesh are listed. */
+/* How many bad pixels of a leaky mesh are listed. */
 #define SKG_FIRST_BAD 8
 
 /* One part in one frame. Pixels are relative to the part's own pixel (pixel_i, pixel_j), depths to
@@ -46,7 +45,7 @@
  * row2.V is the path parameter (0 at the source, 1 at the pixel) less `reference`, t = reference + r, and the
  * vertex is seen at x = anchor_x + (offset_x + row0.V) / t, y alike; with a parallel beam without the
  * division. */
-#define SKG_PART_MEMBERS(real)                                                                                \
+#define SKG_PART_MEMBERS(real)                                                                               \
     real row0[3], offset_x;                                                                                  \
     real row1[3], offset_y;                                                                                  \
     real row2[3], offset_r;                                                                                  \
@@ -62,17 +61,17 @@
     SKG_INT first_triangle; /* of the part, in the numbering over all parts */                               \
     SKG_INT triangles;                                                                                       \
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
-    SKG_INT first_contribution, contributions;                                                                             \
+    SKG_INT first_contribution, contributions;                                                               \
     SKG_INT reserved;
 
-/* One plane that a part's hits add to: round(q * weight + bias), q = r / reference (parallel: r). A count
+/* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
  * plane has weight 0 and bias 1. */
-#define SKG_CONTRIBUTION_MEMBERS(real)                                                                               \
+#define SKG_CONTRIBUTION_MEMBERS(real)                                                                       \
     real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
 
-/* What one frame's launches need to know. Accumulator of pixel (row, column) of a plane of a copy:
- * [copy * planes * plane + number * plane + row * stride + column]. */
+/* What the launches of a frame need to know. The accumulator of pixel (row, column) of a plane of a copy is number
+ * copy * planes * plane + (number of the plane) * plane + row * stride + column. */
 typedef struct {
     SKG_INT parts, vertices, triangles;
     SKG_INT columns, rows;
@@ -84,7 +83,7 @@ typedef struct {
     SKG_INT reserved;
 } skg_frame_args;
 
-/* The key of a frame's noise (random.clh); sample: of the source, each with draws of its own. */
+/* The key of a frame's noise (random.clh). sample: of the source; each sample has draws of its own. */
 typedef struct {
     SKG_INT seed[2], frame[2]; /* low word first */
     SKG_INT sample;
@@ -98,8 +97,9 @@ typedef struct {
 } skg_hit_count;
 #define SKG_MOST_HITS 0xffffffffu
 
-/* Length of the ray to pixel (i, j): |centre + i column + j row|, mm; parallel: |centre|. */
-#define SKG_RAY_MEMBERS(real)                                                                                 \
+/* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
+ * the pixel of `centre`. */
+#define SKG_RAY_MEMBERS(real)                                                                                \
     real centre[3], column[3], row[3];                                                                       \
     real middle_i, middle_j; /* the pixel of `centre` */                                                     \
     real unit;               /* 1 / scale of the plane */
@@ -135,7 +135,8 @@ typedef struct {
 } skg_ray_double;
 _Static_assert(sizeof(skg_part_float) == 20 * 4 + 12 * 4, "layout of a part, single");
 _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, double");
-_Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24, "layout of a contribution");
+_Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
+               "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");

@@ -1,11 +1,12 @@
-/* Triangles that reach the source's plane, or lie behind it: their projection is no triangle. A row j of pixels and
- * the source span a plane; it parts the corners in two classes and cuts two edges, at points P. A line from the
- * source through pixel (i, j) passes an edge's point on one side or the other: it hits the triangle where the two
- * sides differ. Hits on both sides of the source are counted, and depths clamped to the path, so that signed counts
- * still cancel. A corner in front has the class, and an edge between two such corners the crossing, that triangle.clh
- * gives it: neighbours that are drawn there fit without a seam. */
+/* Triangles that reach the source's plane or lie behind it, whose projection is no triangle.
+ *
+ * The source and a row j of pixels span a plane. It divides the corners of a triangle into two classes and cuts two edges,
+ * each at a point P. The line from the source through pixel (i, j) passes each P on one side or the other, and hits the
+ * triangle if the two sides differ. Hits on both sides of the source are counted, and depths are clamped to the path, so that
+ * signed counts still cancel. A corner in front of the source gets the class that triangle.clh gives it, and an edge between
+ * two such corners the same crossing: neighbours that are drawn there fit without a seam. */
 
-/* A corner: projected x, y where in front, and h = (t i, t j, t) relative to the part's own pixel. */
+/* A corner: x, y of its projection if it is in front of the source, and h = (t i, t j, t) relative to the part's own pixel. */
 typedef struct {
     skg_real x, y, hx, hy, t, r;
     int front;
@@ -29,10 +30,10 @@ static int skg_below(const skg_corner *k, skg_real j) {
     return k->front ? k->y <= j : fma(-j, k->t, k->hy) <= 0;
 }
 
-/* Where the row's plane cuts an edge. */
+/* The point where the row's plane cuts an edge. */
 typedef struct {
-    skg_real x;          /* column, where both ends are in front */
-    skg_real px, pt, pr; /* the point, as hx, t, r */
+    skg_real x;          /* its column, if both ends are in front */
+    skg_real px, pt, pr; /* hx, t and r of the point */
     int front;
 } skg_cut;
 
@@ -58,7 +59,7 @@ static int skg_passed(const skg_cut *cut, skg_real i) {
     return cut->front ? i >= cut->x : skg_beside(cut, i) >= 0;
 }
 
-/* Columns [x, y) outside of which both cuts are on the same side of every line; the whole row where in doubt. */
+/* Columns x to y - 1, outside which every line passes both cuts on the same side; the whole row if in doubt. */
 static int2 skg_columns_between(const skg_cut *a, const skg_cut *b, int left, int right) {
     const skg_real first = (skg_real)left, end = (skg_real)right;
     if (!(a->pt * b->pt > 0)) return (int2)(left, right);
@@ -74,7 +75,7 @@ static int2 skg_columns_between(const skg_cut *a, const skg_cut *b, int left, in
     return (int2)((int)low, (int)high == right ? right : (int)high + 1);
 }
 
-/* r of the hit between the cuts, within the path. */
+/* r of the hit between the cuts, clamped to the path. */
 static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i, skg_real reference) {
     const skg_real s = skg_beside(a, i), e = skg_beside(b, i);
     skg_real part = s / (s - e);
@@ -85,7 +86,7 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
     return r < -reference ? -reference : r > end ? end : r;
 }
 
-/* What is done with a hit: added to the sums, where no file before this one says otherwise. */
+/* What is done with a hit. It is added to the sums, unless a file before this one (hits.cl) says otherwise. */
 #ifndef SKG_SOURCE_HIT
 #define SKG_SOURCE_KERNEL skg_source_plane
 #define SKG_SOURCE_ARGUMENTS __global const skg_contribution *contributions, __global skg_sum *sums
@@ -94,7 +95,7 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
     skg_deposit_global(sums + ((row) * frame.stride + (column)), frame.plane, contributions, &range, q, factor)
 #endif
 
-/* One work-item SKG_SOURCE_ROWS rows of one triangle. */
+/* Each work-item takes SKG_SOURCE_ROWS rows of one triangle. */
 __kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corners,
                                __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                __global const int *blocks, __global const skg_real *vertices,
@@ -118,7 +119,7 @@ __kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corner
         const skg_real j = (skg_real)(row - range.pixel_j);
         const int below[3] = {skg_below(&k[0], j), skg_below(&k[1], j), skg_below(&k[2], j)};
         if (below[0] == below[1] && below[1] == below[2]) continue;
-        skg_cut up, down; /* edges that go from below to above, and back, in the triangle's own direction */
+        skg_cut up, down; /* the edges that go up and down, in the order of the corners */
         for (int e = 0; e < 3; e++) {
             const int next = e == 2 ? 0 : e + 1;
             if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, &up);

@@ -1,7 +1,8 @@
-/* Strategy `tiles` on a GPU, first half: which triangles meet which square. Count, scan, fill; the order within a tile's list
- * is any, since sums do not depend on it. Triangles that meet more than SKG_MOST_TILES are in one list for all. */
+/* Strategy `tiles` on a GPU, first half: lists the triangles that meet each square, by counting, adding up and filling. The
+ * order within a list is arbitrary, since sums do not depend on it. Triangles that meet more than SKG_MOST_TILES squares are in
+ * one list for all. */
 
-/* Tiles that a triangle's box meets: x, y from; z, w to (exclusive). */
+/* How many tiles the box of a triangle meets, and which: columns x to z - 1 and rows y to w - 1 of tiles. */
 static int skg_tiles_of(const skg_frame_args *frame, __global const int *corners,
                         __global const skg_real4 *projected, __global const skg_part_entry *parts,
                         __global const int *blocks, int triangle, int4 *tiles) {
@@ -19,7 +20,7 @@ static int skg_tiles_of(const skg_frame_args *frame, __global const int *corners
     return (tiles->z - tiles->x) * (tiles->w - tiles->y);
 }
 
-/* counts[tile]; counts[tiles]: triangles in the list for all. */
+/* counts: [tile] triangles of each tile; [tiles] those in the list for all. */
 __kernel void skg_tiles_count(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                               __global const skg_part_entry *parts, __global const int *blocks,
                               __global int *counts) {

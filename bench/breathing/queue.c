@@ -18,7 +18,7 @@ void queue_free(queue *q) {
     free(q->visited);
 }
 
-/* Moves node j into the box of its link with i; 1 when it had to move by more than rounding. */
+/* Moves node j into the box of its link with i. Returns 1 if it moved by more than rounding. */
 static int clamp(const skg_chain *chain, int64_t e, int32_t i, int32_t j, double *u) {
     int moved = 0;
     for (int k = 0; k < 3; k++) {
@@ -32,7 +32,8 @@ static int clamp(const skg_chain *chain, int64_t e, int32_t i, int32_t j, double
 
 int64_t queue_move(const skg_chain *chain, int32_t driver, const double target[3], int64_t most, queue *q,
                    double *u) {
-    int64_t room = chain->nodes + 1, head = 0, tail = 0, updates = 0, links = chain->first[chain->nodes] / 2;
+    int64_t capacity = chain->nodes + 1, head = 0, tail = 0, updates = 0,
+            links = chain->first[chain->nodes] / 2;
     memset(q->queued, 0, (size_t)chain->nodes);
     memset(q->visited, 0, (size_t)chain->nodes);
     for (int k = 0; k < 3; k++) u[k * chain->nodes + driver] = target[k];
@@ -40,7 +41,7 @@ int64_t queue_move(const skg_chain *chain, int32_t driver, const double target[3
     q->visited[driver] = 1;
     while (head != tail && updates < most * links) {
         int32_t i = q->waiting[head];
-        head = (head + 1) % room;
+        head = (head + 1) % capacity;
         q->queued[i] = 0;
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
             int32_t j = chain->node[e];
@@ -51,7 +52,7 @@ int64_t queue_move(const skg_chain *chain, int32_t driver, const double target[3
             if (q->queued[j]) continue;
             q->queued[j] = 1;
             q->waiting[tail] = j;
-            tail = (tail + 1) % room;
+            tail = (tail + 1) % capacity;
         }
     }
     return updates;

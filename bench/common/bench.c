@@ -48,7 +48,7 @@ skg_context *bench_context(const char *config) {
 void *bench_alloc(size_t count, size_t size) {
     const size_t line = 64, bytes = (count * size + line - 1) / line * line;
     void *memory = aligned_alloc(line, bytes ? bytes : line);
-    if (!memory) bench_die("no memory for %zu elements of %zu bytes", count, size);
+    if (!memory) bench_die("memory is exhausted: %zu elements of %zu bytes", count, size);
     return memset(memory, 0, bytes);
 }
 
@@ -115,7 +115,7 @@ int bench_numbers(const char *text, long low, long high, int most, long *numbers
         errno = 0;
         const long number = strtol(at, &end, 10);
         if (end == at || errno || number < low || number > high)
-            bench_die("\"%s\" is no list of whole numbers from %ld to %ld, parted by commas", text, low,
+            bench_die("\"%s\" is not a list of whole numbers from %ld to %ld, separated by commas", text, low,
                       high);
         numbers[count++] = number;
         if (!*end) return count;

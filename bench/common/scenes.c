@@ -34,11 +34,11 @@ static int64_t add_part(bench_scene *out, skg_mesh *mesh, double per_cm, int64_t
     return id;
 }
 
-static skg_mesh *make_mesh(skg_context *context, int kind, double radius, int64_t triangles, int open) {
+static skg_mesh *make_mesh(skg_context *context, int kind, double radius, int64_t triangles, int leaky) {
     bench_shape shape;
     skg_mesh *mesh = NULL;
     shape_make(kind, radius, triangles, &shape);
-    if (open) shape_open(&shape);
+    if (leaky) shape_cut(&shape);
     bench_try(skg_mesh_create_float(context, shape_name(kind), shape.vertices, shape.positions, 0,
                                     shape.triangles, shape.corners, 0, 1, &mesh),
               "mesh");
@@ -46,7 +46,8 @@ static skg_mesh *make_mesh(skg_context *context, int kind, double radius, int64_
     return mesh;
 }
 
-/* Source 1200 mm before the middle, detector 100 mm behind the box and as large as its shadow. */
+/* The source stands 1200 mm before the middle; the detector stands 100 mm behind the box and covers its
+ * shadow. */
 static void view_box(const box *all, long size, skg_view *view) {
     double half[3], middle[3];
     for (int k = 0; k < 3; k++) {
@@ -84,7 +85,7 @@ void scene_generate(skg_context *context, const scene_changes *changes, long siz
     for (int k = 0; k < ORGANS; k++) { /* five layers of three by four */
         const double place[3] = {(k % 4 - 1.5) * 56, (k / 4 % 3 - 1) * 46, (k / 12 - 2) * 58};
         const double radius = 18 + k % 3, per_cm = k % 5 == 0 ? bone : k % 5 == 1 ? lung : soft;
-        skg_mesh *organ = make_mesh(context, SHAPE_BLOB, radius, 648, changes->open && k == ORGANS / 2);
+        skg_mesh *organ = make_mesh(context, SHAPE_BLOB, radius, 648, changes->leaky && k == ORGANS / 2);
         add_part(out, organ, per_cm, changes->flat ? NO_PARENT : outer, place, unscaled);
         skg_mesh_release(&organ);
     }
@@ -112,18 +113,19 @@ static int by_name(const void *a, const void *b) {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Paths of the folder's meshes, in the order of their names; the caller frees them. */
+/* Paths of the folder's meshes, in the order of their names, which the caller frees. */
 static int list_meshes(const char *folder, char **paths) {
-    DIR *open = opendir(folder);
-    if (!open) bench_die("%s: %s", folder, strerror(errno));
+    DIR *directory = opendir(folder);
+    if (!directory) bench_die("%s: %s", folder, strerror(errno));
     int count = 0;
-    for (const struct dirent *entry = readdir(open); entry && count < FILES; entry = readdir(open)) {
+    for (const struct dirent *entry = readdir(directory); entry && count < FILES;
+         entry = readdir(directory)) {
         if (!is_mesh(entry->d_name)) continue;
         const size_t length = strlen(folder) + strlen(entry->d_name) + 2;
         paths[count] = bench_alloc(length, 1);
         snprintf(paths[count++], length, "%s/%s", folder, entry->d_name);
     }
-    closedir(open);
+    closedir(directory);
     if (!count) bench_die("%s holds no .obj, .stl or .ply file", folder);
     qsort(paths, (size_t)count, sizeof *paths, by_name);
     return count;
@@ -206,7 +208,7 @@ void scene_close(bench_scene *scene) {
     skg_setup_release(&scene->setup);
 }
 
-/* Middle of the box about the middles of all parts. */
+/* The middle of the box that holds the middles of all parts. */
 static void find_middle(const skg_scene *scene, double *middle) {
     int64_t parts = 0;
     box all = nothing;
@@ -237,7 +239,7 @@ static void turn(const double *from, const double *middle, double angle, double 
 
 void scene_turn(const bench_scene *scene, double degrees, skg_view *out) {
     const skg_view *view = &scene->view;
-    const double angle = degrees * 3.14159265358979323846 / 180;
+    const double angle = degrees * BENCH_PI / 180;
     double middle[3];
     find_middle(scene->scene, middle);
     *out = *view;

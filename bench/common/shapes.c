@@ -5,13 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
-
 const char *shape_name(int kind) {
     return kind == SHAPE_BLOB ? "blob" : "sphere";
 }
 
-/* Relative radius in a direction: smooth bumps whose sum stays within 1/6. */
+/* Bumps in a direction, relative to the radius: a smooth sum that stays within 1/6. */
 static double bumps(double x, double y, double z) {
     return (sin(7 * x + 2 * y) + sin(5 * y - 3 * z + 1) + sin(6 * z + 4 * x * y + 2)) / 18;
 }
@@ -22,12 +20,12 @@ static void put_vertex(int kind, double radius, double latitude, double longitud
     out[0] = (float)(r * x), out[1] = (float)(r * y), out[2] = (float)(r * z);
 }
 
-/* Segments of a quarter of ring k of 2n. */
+/* The number of segments of a quarter of ring k of 2n. */
 static int64_t quarter(int64_t n, int64_t k) {
     return k < n ? k : 2 * n - k;
 }
 
-/* Vertices before ring k; ring 0 and ring 2n are poles of one vertex. */
+/* The number of vertices before ring k. Rings 0 and 2n are poles of one vertex. */
 static int64_t ring_start(int64_t n, int64_t k) {
     if (k == 0) return 0;
     if (k <= n) return 1 + 2 * k * (k - 1);
@@ -76,15 +74,15 @@ void shape_make(int kind, double radius, int64_t triangles, bench_shape *shape) 
     for (int64_t k = 0; k <= 2 * n; k++) {
         const int64_t around = quarter(n, k) ? 4 * quarter(n, k) : 1;
         for (int64_t s = 0; s < around; s++, vertex += 3)
-            put_vertex(kind, radius, pi * (double)k / (double)(2 * n), 2 * pi * (double)s / (double)around,
-                       vertex);
+            put_vertex(kind, radius, BENCH_PI * (double)k / (double)(2 * n),
+                       2 * BENCH_PI * (double)s / (double)around, vertex);
     }
     int32_t *out = shape->corners;
     for (int64_t k = 0; k < 2 * n; k++) out = put_band(n, k, out);
 }
 
-void shape_open(bench_shape *shape) {
-    shape->triangles -= 4; /* those of the last pole */
+void shape_cut(bench_shape *shape) {
+    shape->triangles -= 4; /* at the last pole */
 }
 
 void shape_free(bench_shape *shape) {

@@ -1,4 +1,4 @@
-/* Closed triangle meshes of any fineness. */
+/* Closed meshes with any number of triangles. */
 #ifndef BENCH_SHAPES_H
 #define BENCH_SHAPES_H
 
@@ -14,12 +14,12 @@ typedef struct {
 
 const char *shape_name(int kind);
 
-/* Rings between two poles, as many vertices on a ring as its distance to the next pole calls for: nearly even
- * triangles, 8 n^2 of them for the n that comes nearest to `triangles`. A blob has bumps of a sixth of its
+/* Rings between two poles. Ring k from a pole has 4 k vertices, which makes the triangles nearly equal; there
+ * are 8 n^2 of them, for the n that comes nearest to `triangles`. A blob has bumps of up to a sixth of its
  * radius. */
 void shape_make(int kind, double radius, int64_t triangles, bench_shape *shape);
-/* Without the triangles of one cap of the pole: an open mesh. */
-void shape_open(bench_shape *shape);
+/* Removes the four triangles at one pole, which makes the mesh leaky. */
+void shape_cut(bench_shape *shape);
 void shape_free(bench_shape *shape);
 
 #endif

@@ -1,5 +1,7 @@
 #include "thorax.h"
 
+#include "holes.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,24 +12,7 @@ static void get_part(const bench_thorax *thorax, int64_t number, skg_thorax_part
     bench_try(skg_thorax_part_get(thorax->thorax, number, part), "thorax");
 }
 
-static skg_mesh *with_holes(const skg_mesh *mesh, const char *label) {
-    int64_t vertices, triangles;
-    skg_mesh *open = NULL;
-    bench_try(skg_mesh_count(mesh, &vertices, &triangles), label);
-    double *positions = bench_alloc((size_t)vertices * 3, sizeof *positions);
-    int32_t *corners = bench_alloc((size_t)triangles * 3, sizeof *corners);
-    bench_try(skg_mesh_positions_get(mesh, positions, 0), label);
-    bench_try(skg_mesh_triangles_get(mesh, corners, 0), label);
-    int64_t kept = 0;
-    for (int64_t i = 0; i < triangles; i++)
-        if (i % HOLES != HOLES / 2) memmove(corners + 3 * kept++, corners + 3 * i, 3 * sizeof *corners);
-    bench_try(skg_mesh_create(NULL, label, vertices, positions, 0, kept, corners, 0, 1, &open), label);
-    free(corners);
-    free(positions);
-    return open;
-}
-
-void thorax_make(long triangles, int open, bench_thorax *out) {
+void thorax_make(long triangles, int leaky, bench_thorax *out) {
     skg_thorax_options options;
     skg_thorax_options_init(&options);
     options.triangles = triangles;
@@ -39,8 +24,8 @@ void thorax_make(long triangles, int open, bench_thorax *out) {
         skg_thorax_part part;
         int64_t vertices, its;
         get_part(out, i, &part);
-        if (open == THORAX_ALL_OPEN || (open == THORAX_LIVER_OPEN && !strcmp(part.label, "liver")))
-            out->meshes[i] = with_holes(part.mesh, part.label);
+        if (leaky == THORAX_ALL_LEAKY || (leaky == THORAX_LEAKY_LIVER && !strcmp(part.label, "liver")))
+            out->meshes[i] = bench_mesh_with_holes(NULL, part.mesh, HOLES, part.label);
         else
             bench_try(skg_mesh_retain(out->meshes[i] = part.mesh), part.label);
         bench_try(skg_mesh_count(out->meshes[i], &vertices, &its), part.label);
@@ -70,7 +55,7 @@ skg_body *thorax_body(const bench_thorax *thorax) {
     return body;
 }
 
-/* Which of the materials below. */
+/* An index of the materials of thorax_scene. */
 static int material_of(const skg_thorax_part *part) {
     if (!strcmp(part->label, "skin")) return 0;
     if (!strncmp(part->label, "lung", 4)) return 1;

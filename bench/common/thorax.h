@@ -1,4 +1,4 @@
-/* The generated thorax before a detector, as scene and as body. */
+/* The generated thorax in front of a detector, as a scene and as a body. */
 #ifndef BENCH_THORAX_H
 #define BENCH_THORAX_H
 
@@ -11,19 +11,19 @@ typedef struct {
 } bench_thorax;
 
 /* Which meshes lack every hundredth triangle. */
-enum { THORAX_CLOSED = 0, THORAX_LIVER_OPEN = 1, THORAX_ALL_OPEN = 2 };
+enum { THORAX_CLOSED = 0, THORAX_LEAKY_LIVER = 1, THORAX_ALL_LEAKY = 2 };
 
-/* About `triangles` in all. */
-void thorax_make(long triangles, int open, bench_thorax *out);
+/* triangles: the approximate number in total; leaky: THORAX_... */
+void thorax_make(long triangles, int leaky, bench_thorax *out);
 void thorax_free(bench_thorax *thorax);
 
-/* The caller releases what these return. */
+/* The caller releases the results. */
 skg_body *thorax_body(const bench_thorax *thorax);
 /* Of five materials. */
 skg_scene *thorax_scene(skg_context *context, const bench_thorax *thorax);
 /* Ten energies from 30 to 75 keV, a thousand photons each. */
 skg_spectrum *thorax_beam(void);
-/* A detector of 480 mm behind the back, size x size pixels, the source 1 m before it. */
+/* A detector of 480 mm and size x size pixels behind the back, with the source 1 m in front of it. */
 void thorax_view(long size, skg_view *view);
 
 #endif

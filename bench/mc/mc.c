@@ -1,4 +1,5 @@
-/* Images against a Monte Carlo reference: what the law of attenuation gives, and what scatter adds to it. */
+/* Images against a Monte Carlo reference: the primary, which the library computes, and what scatter adds to
+ * it. */
 #include "common/bench.h"
 #include "mc/reference.h"
 
@@ -11,7 +12,7 @@ static const char usage[] = "--scene FILE.json --reference PREFIX [--into PREFIX
 
 typedef struct {
     const char *scene, *reference, *into, *csv, *device;
-    long rays; /* n x n a pixel; the reference's own points */
+    long rays; /* n x n rays in a pixel; the reference has 8 x 8 */
 } settings;
 
 typedef struct {
@@ -52,7 +53,7 @@ static void open_job(const settings *set, job *j) {
     j->count = j->view.columns * j->view.rows;
 }
 
-/* The image in floats or doubles, as the precision is. */
+/* An image in double, computed in `precision`. */
 static double *take(const job *j, int32_t precision, int32_t quantity, int32_t falloff, long rays) {
     skg_plan_options options;
     skg_plan *plan = NULL;
@@ -75,15 +76,14 @@ static double *take(const job *j, int32_t precision, int32_t quantity, int32_t f
     return image;
 }
 
-/* --- comparing -------------------------------------------------------------------------------------------
- */
+/* --- comparison --- */
 
 typedef struct {
     double ncc, mean, worst; /* mean and largest |ours / reference - 1| */
 } comparison;
 
-/* One row of both tables. Bars: of ncc from below and of the mean error; 0: none. Returns 1 where one is
- * missed. */
+/* Prints a row and writes it to the CSV. least_ncc, most: the targets of the NCC and of the mean error; 0:
+ * none. Returns 1 if a target is missed. */
 static int compare(const char *what, const double *ours, const double *reference, int64_t count,
                    double least_ncc, double most, FILE *csv) {
     comparison c = {.ncc = reference_ncc(ours, reference, count)};
@@ -116,7 +116,7 @@ static void print_scatter(const double *scatter, const double *primary, const do
     double most = 0, mean = 0;
     int64_t pixels = 0;
     for (int64_t p = 0; p < count; p++) {
-        if (!(behind[p] < 0.99)) continue; /* the object's shadow */
+        if (!(behind[p] < 0.99)) continue; /* outside the object's shadow */
         mean += scatter[p] / (scatter[p] + primary[p]);
         most = fmax(most, scatter[p] / (scatter[p] + primary[p]));
         pixels++;
@@ -126,8 +126,7 @@ static void print_scatter(const double *scatter, const double *primary, const do
            100 * mean / (double)pixels, 100 * most, pixels);
 }
 
-/* --- for the drawing -------------------------------------------------------------------------------------
- */
+/* --- drawing --- */
 
 static void write_drawing(const char *prefix, const job *j, const double *ours, const double *total) {
     double *error = bench_alloc((size_t)j->count, sizeof *error);
@@ -150,11 +149,11 @@ static void write_drawing(const char *prefix, const job *j, const double *ours, 
 static int run(const settings *set, const job *j, FILE *csv) {
     const int64_t n = j->count, middle = j->view.rows / 2 * j->view.columns + j->view.columns / 2;
     const int64_t columns = j->view.columns, rows = j->view.rows;
-    double *open = reference_read(set->reference, "open", columns, rows, 1);
+    double *flat = reference_read(set->reference, "open", columns, rows, 1);
     double *primary = reference_read(set->reference, "primary", columns, rows, 1);
     double *scatter = reference_read(set->reference, "scatter", columns, rows, 1);
     double *total = reference_read(set->reference, "total", columns, rows, 1);
-    double *primary_share = divide(primary, open, n), *total_share = divide(total, open, n);
+    double *primary_share = divide(primary, flat, n), *total_share = divide(total, flat, n);
     int missed = 0;
     skg_device_info info;
     skg_device_info_init(&info);
@@ -174,8 +173,8 @@ static int run(const settings *set, const job *j, FILE *csv) {
         double *ours = take(j, SKG_PRECISION_SINGLE, SKG_QUANTITY_ENERGY, falloff, set->rays), kev = 0,
                photons = 0;
         bench_try(skg_spectrum_bin_get(j->spectrum, 0, &kev, &photons), "beam");
-        /* To the reference's unit: the open beams are equal in the middle of the detector. */
-        scale_to(ours, open[middle] / (kev * photons), n);
+        /* Scaled to the reference's unit: the flat fields are equal in the middle of the detector. */
+        scale_to(ours, flat[middle] / (kev * photons), n);
         compare(falloff ? "energy with falloff, against the primary"
                         : "energy without falloff, against the primary",
                 ours, primary, n, 0, 0, csv);
@@ -185,7 +184,7 @@ static int run(const settings *set, const job *j, FILE *csv) {
         free(ours);
     }
     print_scatter(scatter, primary, primary_share, n);
-    double *const all[] = {open, primary, scatter, total, primary_share, total_share};
+    double *const all[] = {flat, primary, scatter, total, primary_share, total_share};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) free(all[k]);
     return missed;
 }

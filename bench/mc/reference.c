@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What of a header is of interest. */
 typedef struct {
     int64_t columns, rows;
     char data[512];
@@ -21,8 +20,9 @@ static int read_header(const char *path, header *h) {
     while (fgets(line, sizeof line, file)) {
         char type[64];
         if (sscanf(line, "ElementType = %63s", type) == 1 && strcmp(type, "MET_FLOAT") != 0)
-            bench_die("%s: elements of %s; MET_FLOAT is read", path, type);
-        if (strncmp(line, "BinaryDataByteOrderMSB = True", 29) == 0) bench_die("%s: big endian", path);
+            bench_die("%s: its elements are %s instead of MET_FLOAT", path, type);
+        if (strncmp(line, "BinaryDataByteOrderMSB = True", 29) == 0)
+            bench_die("%s: its data are big endian", path);
         sscanf(line, "DimSize = %" SCNd64 " %" SCNd64, &h->columns, &h->rows);
         sscanf(line, "ElementDataFile = %511[^\r\n]", h->data);
     }

@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* Reads <prefix><name>.mhd; ends the program where it is not columns x rows floats. NULL where there is no
- * such file and it is not needed. To be freed. */
+/* Reads <prefix><name>.mhd, which the caller frees. Ends the program if it does not hold columns x rows
+ * floats. A file that does not exist gives NULL if it is not needed, and otherwise ends the program. */
 double *reference_read(const char *prefix, const char *name, int64_t columns, int64_t rows, int needed);
 
 /* Writes <prefix><name>.raw, float32 without a header. */

@@ -1,15 +1,16 @@
-/* The cube and cylinder under a point source, one beside the axis and a cubic one: I/I0, drawn by images.gp.
- */
+/* I/I0 of the cube and cylinder under three sources: on the axis, beside it, and cubic. images.gp draws them. */
+#include "paper/images.h"
+
 #include "mc/reference.h"
-#include "paper/paper.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 
 enum { SOURCES = 3 };
 
-/* Off the scene's source, mm; the edge of a cube, mm, 0: a point. That the paper's cubic source is 0.5 cm
- * wide is known; how far its uncentred one stands aside is our choice. */
+/* aside: distance from the scene's source, mm; edge: of a cube, mm, or 0 for a point. The paper states that
+ * its cubic source is 0.5 cm wide; it does not state how far aside its uncentred source stands, which is our
+ * choice. */
 typedef struct {
     const char *name, *file;
     double aside, edge;
@@ -68,7 +69,7 @@ static double *take(const paper_study *study, const scenery *s, const source *fr
     return image;
 }
 
-/* Against the Monte Carlo image, which holds inverse square and obliquity, as it stands: the paper's way. */
+/* As in the paper, the Monte Carlo image is used as it is, with inverse square law and obliquity. */
 static void print_reference(const paper_study *study, const scenery *s, const source *from,
                             const double *image) {
     if (!study->reference || from != sources) {
@@ -100,9 +101,9 @@ void paper_images(const paper_study *study) {
     printf(
         "\n## Sections 4.3.4 to 4.3.6: the cube and cylinder under three sources\n\n"
         "%" PRId64 " x %" PRId64
-        " pixels; the paper's set-up but for the uncentred source, whose place is our choice. The "
-        "cubic source is %ld x %ld x %ld points. Monte Carlo images are at hand for the centred point source only; the "
-        "paper prints NCC of 0.99747 for it and of 0.99656 and 0.99743 for its other two images.\n\n"
+        " pixels. The set-up is the paper's, except for the position of the uncentred source, which is our choice. The "
+        "cubic source has %ld x %ld x %ld points. A Monte Carlo image exists for the centred point source only; the "
+        "paper prints an NCC of 0.99747 for it, and of 0.99656 and 0.99743 for its other two images.\n\n"
         "| source | passes | ms | I/I0 in the middle | NCC with Monte Carlo, as it stands |\n"
         "|---|---:|---:|---:|---:|\n",
         s.view.columns, s.view.rows, study->pieces, study->pieces, study->pieces);

@@ -1,6 +1,6 @@
 /* One ray through a cylinder of bone (20 sectors, 2 cm across) in a cube of soft tissue (3 cm): it meets an
  * edge of the cylinder and the diagonals of the cube's faces. Source and detector are 10 cm away. */
-#include "paper/paper.h"
+#include "paper/numbers.h"
 
 #include <math.h>
 
@@ -10,15 +10,15 @@ static const char *const precision_names[PRECISIONS] = {"half", "single", "doubl
 static const int32_t precisions[PRECISIONS] = {SKG_PRECISION_HALF, SKG_PRECISION_SINGLE,
                                                SKG_PRECISION_DOUBLE};
 static const double kev[ENERGIES] = {80, 100, 200, 300};
-static const double photons[ENERGIES] = {1, 10, 20, 10}; /* Eq. 14: the first; Eq. 15: the others */
+static const double photons[ENERGIES] = {1, 10, 20, 10}; /* Eq. 14 has the first energy, Eq. 15 the others */
 /* The paper's Tables 3 and 4, 1/cm. */
 static const double printed_bone[ENERGIES] = {.3971, .3328, .2369, .2018};
 static const double printed_soft[ENERGIES] = {.1937, .1800, .1445, .1251};
-/* Its Eq. 14 and 15, and what its 16-bit buffers gave, keV. */
+/* The results of its Eq. 14 and 15, and those of its 16-bit buffers, keV. */
 static const double printed_equation[2] = {29.789, 4353.175}, printed_half[2] = {29.831, 4355.469};
 
 typedef struct {
-    int known; /* 0: the device has not this precision */
+    int known; /* 0: the device lacks this precision */
     double lengths[2], kev;
 } ray;
 
@@ -50,9 +50,9 @@ static skg_spectrum *beam_of(int equation) {
     return beam;
 }
 
-/* The middle pixel: keV, and mm in cube and cylinder. */
-static ray cast(const paper_study *study, skg_material *bone, skg_material *soft, int equation,
-                int32_t precision) {
+/* Energy in keV and path lengths in mm of the middle pixel. */
+static ray trace(const paper_study *study, skg_material *bone, skg_material *soft, int equation,
+                 int32_t precision) {
     enum { PIXELS = 301, MIDDLE = PIXELS / 2 };
     static double pixels[PIXELS];
     ray out = {0};
@@ -101,7 +101,7 @@ static double closed_form(const skg_material *bone, const skg_material *soft, in
     return sum;
 }
 
-/* "value (off from truth)" */
+/* Prints a value and its relative difference from the truth. */
 static void print_value(const paper_study *study, const char *what, int precision, int known, double value,
                         double truth, int digits, const char *unit) {
     char name[128];
@@ -143,7 +143,7 @@ static void print_coefficients(const paper_study *study, const skg_material *bon
     const skg_material *const materials[2] = {bone, soft};
     const double *const printed[2] = {printed_bone, printed_soft};
     static const char *const names[2] = {"bone, 1329 HU", "soft tissue, 51 HU"};
-    printf("\nmu in 1/cm, printed (Tables 3 and 4) / ours (off the printed one):\n\n"
+    printf("\nmu in 1/cm, printed (Tables 3 and 4) / ours (difference from the printed one):\n\n"
            "| material | 80 keV | 100 keV | 200 keV | 300 keV |\n|---|---:|---:|---:|---:|\n");
     for (int m = 0; m < 2; m++) {
         printf("| %s |", names[m]);
@@ -159,14 +159,14 @@ static void print_coefficients(const paper_study *study, const skg_material *bon
     }
 }
 
-/* Returns 1 where half does not give what is printed for 16 bits. */
+/* Returns 1 if half does not give the values that are printed for 16 bits. */
 static int print_rays(const paper_study *study, const char *from, skg_material *bone, skg_material *soft,
                       int with_lengths) {
     int differs = 0;
     ray rays[2][PRECISIONS];
     for (int equation = 0; equation < 2; equation++)
         for (int p = 0; p < PRECISIONS; p++)
-            rays[equation][p] = cast(study, bone, soft, equation, precisions[p]);
+            rays[equation][p] = trace(study, bone, soft, equation, precisions[p]);
     if (with_lengths) print_lengths(study, rays[0]);
     for (int equation = 0; equation < 2; equation++) {
         print_equation(study, from, equation, rays[equation], closed_form(bone, soft, equation));
@@ -179,8 +179,8 @@ int paper_numbers(const paper_study *study) {
     skg_material *bone = NULL, *soft = NULL;
     printf(
         "## Sections 4.3.2 and 4.3.3: one ray\n\n"
-        "2 cm of bone in 3 cm of soft tissue. In brackets: off the closed form of the same mu; of what the paper prints for "
-        "its 16-bit buffers, off its own equation.\n\n"
+        "2 cm of bone in 3 cm of soft tissue. In brackets: the difference from the closed form with the same mu; for the "
+        "paper's 16-bit buffers, from the paper's equation.\n\n"
         "| quantity | printed: equation | printed: 16 bits | closed form | half | single | double |\n"
         "|---|---:|---:|---:|---:|---:|---:|\n");
     bench_try(skg_material_create_table("bone", ENERGIES, kev, printed_bone, &bone), "bone");
@@ -192,7 +192,7 @@ int paper_numbers(const paper_study *study) {
     bench_try(skg_material_create_hounsfield(1329, &bone), "bone");
     bench_try(skg_material_create_hounsfield(51, &soft), "soft tissue");
     print_rays(study, "from 1329 and 51 HU", bone, soft, 0);
-    printf("\nFrom the printed mu, half gives what is printed for 16 bits, to its last digit: %s.\n",
+    printf("\nFrom the printed mu, half gives all digits that are printed for 16 bits: %s.\n",
            differs ? "NO" : "yes");
     print_coefficients(study, bone, soft);
     skg_material_release(&bone);

@@ -1,18 +1,12 @@
-#include "paper/paper.h"
-
-#include "cli/affinity.h"
-
-#include <inttypes.h>
+/* The study of Vidal and Villard 2016 (section 4), made again. */
+#include "affinity/affinity.h"
+#include "paper/images.h"
+#include "paper/numbers.h"
+#include "paper/speed.h"
 
 static const char usage[] =
     "[--quick] [--series N] [--iterations N] [--seconds N] [--size N] [--triangles N,...] [--body N] "
     "[--scene FILE.json [--into PREFIX] [--reference PREFIX]] [--device CONFIG] [--affinity] [--csv FILE]";
-
-void paper_row(const paper_study *study, const char *part, const char *what, int64_t at, long series,
-               double value, const char *unit) {
-    if (study->csv)
-        fprintf(study->csv, "%s,%s,%" PRId64 ",%ld,%.9g,%s\n", part, what, at, series, value, unit);
-}
 
 static void read_settings(int count, char **words, paper_study *out, const char **device, const char **csv) {
     static const char standard[] = "10500,21000,42000,84000";
@@ -53,7 +47,7 @@ int main(int count, char **words) {
     paper_study study;
     read_settings(count, words, &study, &device, &csv);
     study.context = bench_context(device);
-    /* A frame of open meshes warns of each. */
+    /* A frame with leaky meshes would warn of each of them. */
     bench_try(skg_context_log_set(study.context, NULL, NULL), "context");
     study.csv = csv ? bench_open(csv) : NULL;
     if (study.csv) fprintf(study.csv, "part,what,triangles,series,value,unit\n");

@@ -1,40 +1,39 @@
-/* Images a second of the generated thorax, still and breathing. */
+#include "paper/speed.h"
 #include "common/thorax.h"
-#include "paper/paper.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A way to make the image. Half takes closed meshes only. */
+/* A way to make the image. Half requires closed meshes. */
 typedef struct {
     const char *name;
-    int32_t precision, open, repair;
+    int32_t precision, leaky, repair;
 } way;
 
 static const way ways[] = {
     {"half; closed", SKG_PRECISION_HALF, THORAX_CLOSED, 0},
     {"single; closed", SKG_PRECISION_SINGLE, THORAX_CLOSED, 0},
     {"double; closed", SKG_PRECISION_DOUBLE, THORAX_CLOSED, 0},
-    {"single; liver open; none", SKG_PRECISION_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_NONE},
-    {"single; liver open; neighbours", SKG_PRECISION_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_NEIGHBOURS},
-    {"single; liver open; exact", SKG_PRECISION_SINGLE, THORAX_LIVER_OPEN, SKG_REPAIR_EXACT},
-    {"single; all open; neighbours", SKG_PRECISION_SINGLE, THORAX_ALL_OPEN, SKG_REPAIR_NEIGHBOURS},
+    {"single; liver open; none", SKG_PRECISION_SINGLE, THORAX_LEAKY_LIVER, SKG_REPAIR_NONE},
+    {"single; liver open; neighbours", SKG_PRECISION_SINGLE, THORAX_LEAKY_LIVER, SKG_REPAIR_NEIGHBOURS},
+    {"single; liver open; exact", SKG_PRECISION_SINGLE, THORAX_LEAKY_LIVER, SKG_REPAIR_EXACT},
+    {"single; all open; neighbours", SKG_PRECISION_SINGLE, THORAX_ALL_LEAKY, SKG_REPAIR_NEIGHBOURS},
 };
-enum { WAYS = sizeof ways / sizeof *ways, WAY_SINGLE = 1, WAY_DOUBLE = 2, WAY_ALL_OPEN = 6, PILOT = 3 };
+enum { WAYS = sizeof ways / sizeof *ways, WAY_SINGLE = 1, WAY_DOUBLE = 2, WAY_ALL_LEAKY = 6, PILOT = 3 };
 
-/* One that takes its turns. */
+/* Something that is timed in turns with others. */
 typedef struct {
     const char *name;
     bench_frame frame;
     void *what;
-    long images;       /* of a value */
-    bench_times rates; /* values: images a second, for all its name */
+    long images;       /* in each value */
+    bench_times rates; /* the values: images per second instead of ms */
 } contender;
 
 typedef struct {
-    skg_plan *plan; /* NULL: the device has not this precision */
+    skg_plan *plan; /* NULL: the device lacks this precision */
     skg_output output;
     double worst, rms; /* (I - I of double; closed) / I0 */
     int64_t bad, repaired;
@@ -45,7 +44,7 @@ static void take(void *what) {
     bench_try(skg_plan_image(p->plan, &p->output), "image");
 }
 
-/* How many images fit into the time of a point, after some untimed ones. */
+/* Chooses the number of images in a value such that the point takes no more than its time. */
 static void allot(const paper_study *study, contender *c) {
     c->frame(c->what);
     const double start = bench_now();
@@ -56,7 +55,7 @@ static void allot(const paper_study *study, contender *c) {
     if (c->images < 1) c->images = 1;
 }
 
-/* By turns, a value each. */
+/* Times the contenders in turn, one value each, until every one has all its values. */
 static void race(const paper_study *study, int count, contender *all) {
     for (int i = 0; i < count; i++) allot(study, &all[i]);
     for (long turn = 0; turn < study->series; turn++) {
@@ -83,8 +82,7 @@ static void write_rates(const paper_study *study, const char *part, const conten
         paper_row(study, part, c->name, triangles, i + 1, c->rates.ms[i], unit);
 }
 
-/* --- still ------------------------------------------------------------------------------------------------
- */
+/* --- still --- */
 
 static skg_plan *plan_of(const paper_study *study, const bench_thorax *thorax, const way *w) {
     skg_scene *scene = thorax_scene(study->context, thorax);
@@ -118,7 +116,7 @@ static void close_picture(picture *p) {
     free(p->output.data);
 }
 
-/* What the picture lacks of the reference's, in shares of the open beam. */
+/* Differences from the reference picture, as fractions of the flat field. */
 static void find_errors(const paper_study *study, const picture *reference, picture *p) {
     const float *ours = p->output.data, *truth = reference->output.data;
     const int64_t count = study->size * study->size;
@@ -138,7 +136,7 @@ static void find_errors(const paper_study *study, const picture *reference, pict
     p->bad = report.bad_pixels, p->repaired = report.repaired_pixels;
 }
 
-/* base: its median is what the others' are parts of. */
+/* base: the contender whose median the others' are divided by. */
 static void print_picture(const paper_study *study, const contender *c, const contender *base,
                           int64_t triangles) {
     const picture *p = c->what;
@@ -157,13 +155,13 @@ static void print_picture(const paper_study *study, const contender *c, const co
 }
 
 static void still(const paper_study *study, long triangles) {
-    bench_thorax thorax[THORAX_ALL_OPEN + 1];
+    bench_thorax thorax[THORAX_ALL_LEAKY + 1];
     picture *pictures = bench_alloc(WAYS, sizeof *pictures);
     contender *all = bench_alloc(WAYS, sizeof *all);
     int count = 0;
-    for (int open = 0; open <= THORAX_ALL_OPEN; open++) thorax_make(triangles, open, &thorax[open]);
+    for (int leaky = 0; leaky <= THORAX_ALL_LEAKY; leaky++) thorax_make(triangles, leaky, &thorax[leaky]);
     for (int k = 0; k < WAYS; k++) {
-        open_picture(study, &thorax[ways[k].open], &ways[k], &pictures[k]);
+        open_picture(study, &thorax[ways[k].leaky], &ways[k], &pictures[k]);
         if (!pictures[k].plan) continue;
         all[count++] = (contender){.name = ways[k].name, .frame = take, .what = &pictures[k]};
     }
@@ -175,22 +173,21 @@ static void still(const paper_study *study, long triangles) {
         print_picture(study, &all[k], &all[WAY_SINGLE], thorax[0].triangles);
     }
     for (int k = 0; k < WAYS; k++) close_picture(&pictures[k]);
-    for (int open = 0; open <= THORAX_ALL_OPEN; open++) thorax_free(&thorax[open]);
+    for (int leaky = 0; leaky <= THORAX_ALL_LEAKY; leaky++) thorax_free(&thorax[leaky]);
     free(all);
     free(pictures);
 }
 
-/* --- breathing --------------------------------------------------------------------------------------------
- */
+/* --- breathing --- */
 
 typedef struct {
-    picture picture; /* without a plan: no image is made */
+    picture picture; /* its plan is NULL if no image is made */
     skg_body *body;
     skg_job *job;
     int64_t step;
 } fluoroscope;
 
-/* The next position, while the device makes the image of the last one. */
+/* Computes the next pose while the device makes the image of the last one. */
 static void breathe(void *what) {
     enum { STEPS = 120 }; /* of a breath */
     fluoroscope *f = what;
@@ -206,21 +203,21 @@ static void breathe(void *what) {
 }
 
 static void breathing(const paper_study *study) {
-    /* Printed: from, to. The images are those with correction, which closed meshes do without. */
+    /* printed: the paper's range. Its images are corrected, which closed meshes do not need. */
     static const struct {
         const char *name, *unit;
         int way; /* -1: no image */
         double printed[2];
     } rows[] = {{"breathing alone", "steps/s", -1, {221, 718}},
                 {"breathing and image; closed", "images/s", WAY_SINGLE, {13, 101}},
-                {"breathing and image; all open; neighbours", "images/s", WAY_ALL_OPEN, {13, 101}}};
+                {"breathing and image; all open; neighbours", "images/s", WAY_ALL_LEAKY, {13, 101}}};
     enum { ROWS = sizeof rows / sizeof *rows };
     bench_thorax thorax[ROWS];
     fluoroscope *f = bench_alloc(ROWS, sizeof *f);
     contender *all = bench_alloc(ROWS, sizeof *all);
     for (int k = 0; k < ROWS; k++) {
         const way *w = rows[k].way < 0 ? NULL : &ways[rows[k].way];
-        thorax_make(study->body, w ? w->open : THORAX_CLOSED, &thorax[k]);
+        thorax_make(study->body, w ? w->leaky : THORAX_CLOSED, &thorax[k]);
         f[k].body = thorax_body(&thorax[k]);
         if (w) open_picture(study, &thorax[k], w, &f[k].picture);
         all[k] = (contender){.name = rows[k].name, .frame = breathe, .what = &f[k]};
@@ -250,10 +247,10 @@ static void breathing(const paper_study *study) {
 void paper_speed(const paper_study *study) {
     printf(
         "\n## Fig. 17, 18 and Table 5: half, single and double, with and without correction\n\n"
-        "The generated thorax, not moving, %ld x %ld pixels, five materials, ten energies; from the submission to the image in "
-        "host memory. Open: every hundredth triangle is missing; half takes closed meshes only. Values: so many rates, each "
-        "over so many images. Errors are off the image of double; closed, in shares of the open beam. The last column: bad "
-        "pixels, of all meshes / how many of them were repaired.\n\n"
+        "The generated thorax, not moving, %ld x %ld pixels, five materials, ten energies. A time runs from the submission to the image "
+        "in host memory. An open mesh lacks every hundredth triangle; half requires closed meshes. The column of values gives their "
+        "number, and the number of images in each. Errors are differences from the image of double; closed, as fractions of the "
+        "flat field. The last column: bad pixels of all meshes / pixels that were repaired.\n\n"
         "| triangles | precision; meshes; correction | values | images/s, median | least to most | of single; closed | worst error | rms error | bad / repaired |\n"
         "|---:|---|---:|---:|---:|---:|---:|---:|---:|\n",
         study->size, study->size);

@@ -1,4 +1,4 @@
-# Images a second against triangles, a box for each way and size: gnuplot -e "csv='paper.csv'; png='paper_speed.png'" speed.gp
+# Images per second against triangles, a box for each way and size: gnuplot -e "csv='paper.csv'; png='paper_speed.png'" speed.gp
 # Boxes: quartiles and median; whiskers: all values
 set terminal pngcairo size 1500,700 font "DejaVu Sans,13" background "white"
 set output png
@@ -9,7 +9,7 @@ array ways[7] = ["half; closed", "single; closed", "double; closed", "single; li
 array label[7] = ["half", "single", "double", "no correction", "mean of neighbours", "cast anew, exact", \
                   "all meshes open, mean of neighbours"]
 array colour[7] = ["#d55e00", "#0072b2", "#009e73", "#999999", "#cc79a7", "#56b4e9", "#806000"]
-# The sizes of the run, rising, as its first way gives them: parted by spaces.
+# The sizes of the run, rising, as its first way gives them: separated by spaces.
 sizes = ""
 stats csv using (strcol(1) eq "images" && strcol(2) eq ways[2] && $4 == 1 ? (sizes = sizes . " " . strcol(3), $3) : NaN) nooutput
 count = words(sizes)
@@ -32,7 +32,7 @@ do for [i = 1:count] { set xtics add (commas(word(sizes, i)) i) }
 set xlabel "triangles"
 set key top right spacing 1.2 samplen 1.5 width -2
 shift(j, m) = (j - (m + 1) / 2.0) * 0.16
-# The paper's images a second, with correction, beside the size that is nearest to its 41,710 triangles.
+# The paper's images per second, with correction, beside the size that is nearest to its 41,710 triangles.
 set multiplot layout 1,2 margins 0.06,0.985,0.11,0.91 spacing 0.05,0
 off(i) = abs(word(sizes, i) - 41710)
 at42 = 1
@@ -42,7 +42,7 @@ if (off(at42) < 5000) {
 }
 paper = "the paper, 41,710 triangles, with correction"
 set title "closed meshes: no bad pixel, nothing to correct"
-set ylabel "images a second" offset 1.5,0
+set ylabel "images per second" offset 1.5,0
 plot for [j = 1:3] for [i = 1:count] csv using (i + shift(j, 3)):(rate(j, i)) lc rgb colour[j] lw 1.5 notitle, \
      for [j = 1:3] NaN with boxes lc rgb colour[j] title label[j], \
      NaN with boxes fillstyle solid noborder lc rgb "#fff2b0" title paper

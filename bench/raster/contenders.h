@@ -1,5 +1,5 @@
-/* Those who compute the same image of path lengths: one closed mesh about the origin, float lengths in mm in
- * host memory, everything that does not depend on the view done beforehand. */
+/* The contenders. All compute the same image: path lengths in mm, floats in host memory, of one closed mesh
+ * around the origin. What does not depend on the view is computed beforehand. */
 #ifndef BENCH_CONTENDERS_H
 #define BENCH_CONTENDERS_H
 
@@ -10,18 +10,17 @@ typedef struct scanline scanline;
 typedef struct embree embree;
 typedef struct library library;
 
-/* Plain C and OpenMP, by scan lines (numerics of the library's own method). */
+/* Plain C with OpenMP, by scan lines: the library's method (docs/numerics.md). */
 scanline *scanline_create(const bench_shape *shape, const skg_view *view, int threads, float *lengths);
 void scanline_frame(void *contender);
 void scanline_free(scanline *contender);
 
-/* Embree 3: every hit of packets of 16 rays, collected by a filter function. Built only where Embree is
- * found. */
+/* Embree 3: every hit of packets of 16 rays, collected by a filter function. Built only if Embree is found. */
 embree *embree_create(const bench_shape *shape, const skg_view *view, int threads, float *lengths);
 void embree_frame(void *contender);
 void embree_free(embree *contender);
 
-/* The library, by its public interface. config: as skg_context_create takes it. One context serves all. */
+/* The library, through its public interface. */
 library *library_create(skg_context *context, const bench_shape *shape, const skg_view *view, float *lengths);
 void library_frame(void *contender);
 void library_free(library *contender);

@@ -1,6 +1,6 @@
-/* Every hit of every ray by Embree 3: packets of 16 coherent rays (4 by 4 pixels), a filter function that
- * adds the signed distance and lets the ray go on. The tree is built beforehand and is not timed; spatial
- * splits (quality high) are not used, for a triangle in two leaves would be met twice. */
+/* Every hit of every ray by Embree 3: packets of 16 coherent rays (4 x 4 pixels) with a filter function that
+ * adds the signed distance and rejects the hit, so that the ray continues. The tree is built beforehand and
+ * is not timed. It has no spatial splits (quality high), because a triangle in two leaves would be hit twice. */
 #include "contenders.h"
 #include "geometry.h"
 
@@ -19,17 +19,17 @@ struct embree {
     float source[3], first[3], column[3], row[3];
 };
 
-/* What the filter adds to: Embree hands the context back. */
+/* The filter finds its sums behind the context, which Embree passes to it. */
 typedef struct {
     struct RTCIntersectContext context;
     float sum[RAYS];
 } collector;
 
-/* Rays and hits come as structures of arrays of `count` elements, one field after the other; the accessors of
- * Embree's header are for C++ only. */
+/* Rays and hits are structures of arrays of `count` elements, one field after the other. These are the
+ * numbers of the fields: the accessors of Embree's header are for C++ only. */
 enum { RAY_DIRECTION = 4, RAY_FAR = 8, RAY_NUMBER = 10, HIT_NORMAL = 0 };
 
-/* One hit a lane. */
+/* Each lane has one hit. */
 static inline void collect_lanes(const float *ray, const float *hit, int *restrict valid, unsigned count,
                                  float *restrict sum) {
     for (unsigned k = 0; k < count; k++) {
@@ -42,8 +42,7 @@ static inline void collect_lanes(const float *ray, const float *hit, int *restri
     }
 }
 
-/* Embree hands over 16 rays at once, or 8 or fewer where that is how it works; `id` is the ray's place in the
- * packet. */
+/* Embree passes 16 rays at once, or 8, or fewer. id: the ray's index in the packet. */
 static void collect(const struct RTCFilterFunctionNArguments *arguments) {
     collector *into = (collector *)(void *)arguments->context;
     const unsigned count = arguments->N, *id = (const unsigned *)arguments->ray + RAY_NUMBER * count;
@@ -60,7 +59,7 @@ static void collect(const struct RTCFilterFunctionNArguments *arguments) {
 
 static void build(embree *self, const bench_shape *shape) {
     self->device = rtcNewDevice(NULL);
-    if (!self->device) bench_die("Embree opens no device");
+    if (!self->device) bench_die("Embree cannot open a device");
     self->scene = rtcNewScene(self->device);
     rtcSetSceneFlags(self->scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry mesh = rtcNewGeometry(self->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -68,7 +67,7 @@ static void build(embree *self, const bench_shape *shape) {
                                                3 * sizeof(float), (size_t)shape->vertices);
     unsigned *corners = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                 3 * sizeof(unsigned), (size_t)shape->triangles);
-    if (!positions || !corners) bench_die("Embree has no memory for the mesh");
+    if (!positions || !corners) bench_die("Embree: memory for the mesh is exhausted");
     for (int64_t k = 0; k < 3 * shape->vertices; k++) positions[k] = shape->positions[k];
     for (int64_t k = 0; k < 3 * shape->triangles; k++) corners[k] = (unsigned)shape->corners[k];
     rtcSetGeometryIntersectFilterFunction(mesh, collect);

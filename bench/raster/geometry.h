@@ -1,4 +1,4 @@
-/* View vectors, in double. */
+/* Vectors of a view, in double. */
 #ifndef BENCH_GEOMETRY_H
 #define BENCH_GEOMETRY_H
 

@@ -1,10 +1,9 @@
-/* Path lengths of one closed mesh: the library against plain C with OpenMP and against Embree, in the same
- * run. */
+/* Path lengths of one closed mesh: the library against plain C with OpenMP and against Embree, in one run. */
 #include "agree.h"
 #include "contenders.h"
 #include "table.h"
 
-#include "cli/affinity.h"
+#include "affinity/affinity.h"
 
 #include <math.h>
 #include <omp.h>
@@ -59,7 +58,8 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-/* Source on the axis 1000 mm before the mesh's centre, detector of 400 mm at 1200 mm. */
+/* The source stands on the axis, 1000 mm before the mesh's centre; the detector of 400 mm stands 1200 mm from
+ * it. */
 static void make_view(long size, skg_view *view) {
     skg_view_init(view);
     view->columns = view->rows = size;
@@ -68,9 +68,9 @@ static void make_view(long size, skg_view *view) {
     view->column_step[0] = view->row_step[1] = 400.0 / (double)size;
 }
 
-/* Ends the program when the images differ: nothing is timed then. The library and plain C round alike, by the
- * bar of contracts.md 3 for each, 3e-7 of the longest path. Embree sums absolute distances in float (rms 1e-4
- * mm of 320), and misses or doubles a hit on an edge now and then: at most one pixel of 10,000. */
+/* Ends the program if the images differ by more than rounding. The library and plain C each have an rms error
+ * of at most 3e-7 of the longest path. Embree sums absolute distances in float (rms 1e-4 mm of 320 mm), and
+ * misses or doubles a hit on an edge in at most one pixel of 10,000. */
 static void check(const char *what, const float *image, const float *reference, long size, double rms_bar,
                   double gross_share) {
     agreement found;
@@ -138,7 +138,7 @@ static void run(const settings *set, skg_context *context, table *rows) {
 int main(int count, char **words) {
     settings set;
     read_settings(count, words, &set);
-    const char *pinned = set.affinity ? host_pin_threads() : "not pinned: not asked for";
+    const char *pinned = set.affinity ? host_pin_threads() : "not pinned (--affinity is not given)";
     skg_context *context = bench_context(set.device);
     skg_device_info device;
     skg_device_info_init(&device);

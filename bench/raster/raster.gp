@@ -1,4 +1,4 @@
-# ms against triangles, one panel a detector, spheres: gnuplot -e "csv='raster.csv'; svg='raster.svg'" raster.gp
+# ms against triangles, one panel for each detector, spheres: gnuplot -e "csv='raster.csv'; svg='raster.svg'" raster.gp
 set datafile separator ","
 set datafile missing NaN
 set terminal svg size 1200,420 font "sans,12" background "white"

@@ -1,6 +1,5 @@
-/* The same maths as the library's, as one would write it in C for a compiler that vectorises: coverage by
- * crossings of scan lines, depth as one affine function and a division, sums of integers in a private image
- * of each thread. */
+/* The library's method in C, written for a compiler that vectorises: coverage by crossings of scan lines,
+ * depth as one affine function and a division, sums of integers in a private image of each thread. */
 #include "contenders.h"
 #include "geometry.h"
 
@@ -8,7 +7,10 @@
 #include <omp.h>
 #include <stdlib.h>
 
-enum { LANES = 8, SPARE = 64 }; /* a run of pixels; columns right of the image that runs may add 0 to */
+enum {
+    LANES = 8,
+    SPARE = 64
+}; /* pixels in a run; columns to the right of the image, to which runs may add 0 */
 
 typedef struct {
     float x, y, z, unused; /* 16 bytes: one load */
@@ -28,7 +30,7 @@ struct scanline {
     int32_t **sums; /* [threads] all 0 between frames */
 };
 
-/* Rows of the inverse of [column row first]: pixel coordinates and depth of a point seen from the source. */
+/* The rows of the inverse of [column row first] give the pixel coordinates and the depth of a point. */
 static void place_camera(scanline *self, const skg_view *view) {
     double x[3], y[3], t[3], from_source[3];
     for (int k = 0; k < 3; k++) {
@@ -57,7 +59,7 @@ static void place_camera(scanline *self, const skg_view *view) {
     }
 }
 
-/* Two bits of headroom: as many as four nested shells, each as deep as the mesh, do not wrap. */
+/* Two bits of headroom: sums of four nested shells, each as deep as the mesh, do not overflow. */
 static void choose_scale(scanline *self) {
     double furthest = 0;
     for (int64_t v = 0; v < self->shape->vertices; v++) {
@@ -122,7 +124,7 @@ static inline float most(float a, float b) {
     return a > b ? a : b;
 }
 
-/* Least whole number >= x, in [low, high]. */
+/* The smallest integer >= x, clamped to [low, high]. */
 static inline int ceiling(float x, int low, int high) {
     if (!(x > (float)low)) return low;
     if (!(x < (float)high)) return high;
@@ -137,7 +139,7 @@ static inline int swap_if(int turn, corner *a, corner *b) {
     return turn;
 }
 
-/* A triangle on its scan lines. */
+/* A triangle, prepared for its scan lines. */
 typedef struct {
     float x0, y0, z0, x1, y1, s02, s01, s12, zi, zj, lowest, highest, factor;
     int sign;
@@ -160,7 +162,7 @@ static inline void set_up(const scanline *self, corner a, corner b, corner c, fa
     f->sign = swaps ? -self->turned : self->turned;
 }
 
-/* One row between its crossings, a whole run of lanes at a time: lanes outside add 0. */
+/* Draws one row between its crossings in whole runs of lanes. Lanes outside the crossings add 0. */
 static inline void draw_row(const face *f, float j, float scale, int left, int right, int offset,
                             int32_t *row) {
     const float above = j - f->y0, a = fmaf(above, f->s02, f->x0);
@@ -188,7 +190,7 @@ static inline void draw(const scanline *self, const int32_t *corners, int32_t *s
     const int j0 = ceiling(least(least(a.y, b.y), c.y), top, bottom);
     const int j1 = ceiling(most(most(a.y, b.y), c.y), top, bottom);
     if (j0 >= j1) return;
-    /* A crossing may be rounded past its edge's end. */
+    /* Rounding may put a crossing beyond the end of its edge. */
     const float low = least(least(a.x, b.x), c.x), high = most(most(a.x, b.x), c.x);
     const float margin = 0x1p-20f * most(-low, high);
     if (ceiling(low - margin, left, right) >= ceiling(high + margin, left, right)) return;
@@ -200,7 +202,7 @@ static inline void draw(const scanline *self, const int32_t *corners, int32_t *s
         draw_row(&f, (float)j, scale, left, right, self->pixel_i, row);
 }
 
-/* Sums of all threads to mm; leaves the sums at 0. */
+/* Adds the sums of all threads, converts them to mm and sets them to 0. */
 static void resolve(scanline *self) {
     const double *first = self->first, *column = self->column, *step = self->row;
     const float a = (float)dot(column, column);

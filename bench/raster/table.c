@@ -8,7 +8,7 @@
 
 table_row *table_add(table *rows) {
     table_row *grown = realloc(rows->rows, (size_t)(rows->count + 1) * sizeof *grown);
-    if (!grown) bench_die("no memory for the table");
+    if (!grown) bench_die("memory is exhausted");
     rows->rows = grown;
     memset(&grown[rows->count], 0, sizeof *grown);
     return &grown[rows->count++];
@@ -19,7 +19,7 @@ void table_free(table *rows) {
     *rows = (table){0};
 }
 
-/* How many times as long contender a takes as b, by their least times. */
+/* The minimum time of contender a over that of contender b. */
 static double ratio(const table_row *row, int a, int b) {
     return bench_least(&row->times[a]) / bench_least(&row->times[b]);
 }
@@ -57,9 +57,9 @@ void table_print(const table_row *row) {
 }
 
 typedef struct {
-    int64_t triangles; /* about */
+    int64_t triangles; /* within 5 % */
     long size;
-    double library_plain, library_embree, plain_embree; /* at least; 0: none */
+    double library_plain, library_embree, plain_embree; /* ratios to reach; 0: no target */
 } target;
 
 static const target targets[] = {{42000, 512, 2.1, 15, 6.5},
@@ -72,7 +72,7 @@ static void print_target(const char *what, double reached, double asked) {
 }
 
 void table_targets(const table *rows) {
-    printf("\nTargets, reached of asked:\n\n");
+    printf("\nTargets, measured of required:\n\n");
     for (size_t t = 0; t < sizeof targets / sizeof *targets; t++) {
         for (int k = 0; k < rows->count; k++) {
             const table_row *row = &rows->rows[k];

@@ -1,4 +1,4 @@
-/* What was measured, as a table in Markdown, as CSV, and against the targets. */
+/* The results as a table in Markdown, as CSV, and compared with the targets. */
 #ifndef BENCH_TABLE_H
 #define BENCH_TABLE_H
 
@@ -25,11 +25,11 @@ typedef struct {
     table_row *rows;
 } table;
 
-/* A new row of zeros, valid until the next. */
+/* Adds a row of zeros, which stays valid until the next row is added. */
 table_row *table_add(table *rows);
 void table_head(void);
 void table_print(const table_row *row);
-/* The ratios that the project asks for, with those reached; none where nothing of the kind was measured. */
+/* Prints the ratios that are targets beside those measured, for the cases that were measured. */
 void table_targets(const table *rows);
 void table_write(const table *rows, const char *path);
 void table_free(table *rows);

@@ -1,54 +1,46 @@
 /* The command skiagraph: finds the verb, parses what follows it, runs it. */
-#include "args.h"
-#include "interrupt.h"
+#include "common/args.h"
+#include "common/interrupt.h"
+#include "common/say.h"
+#include "manual/help.h"
+#include "manual/list.h"
+#include "verb_table.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-static const cli_verb *const verbs[] = {
-    &cli_image,    &cli_lbuffer, &cli_plan,    &cli_cost,   &cli_mesh,
-    &cli_material, &cli_beam,    &cli_devices, &cli_thorax, &cli_breathe,
-};
-enum { VERBS = sizeof verbs / sizeof *verbs };
-
-static void print_overview(FILE *stream) {
-    fprintf(stream,
-            "usage: skiagraph VERB ...\nX-ray images of triangle meshes on any OpenCL device.\n\nverbs:\n");
-    for (int i = 0; i < VERBS; i++)
-        fprintf(stream, "  %-8s %-14s %s\n", verbs[i]->name, verbs[i]->operands, verbs[i]->summary);
-    fprintf(stream, "  %-8s %-14s %s\n", "help", "[VERB]", "this text, or that of a verb");
-    fprintf(stream, "  %-8s %-14s %s\n", "version", "", "the version (also --version)");
-    fprintf(stream, "\nexit status: 0 done, 1 a check failed, 2 usage, 3 bad input, 4 device or memory,\n"
-                    "5 output could not be written\n");
-}
+enum { MOST_VERBS = 32 };
 
 static int find_verb(const char *name, const cli_verb **verb) {
-    const char *names[VERBS + 2] = {"help", "version"};
-    for (int i = 0; i < VERBS; i++) {
-        names[i + 2] = verbs[i]->name;
-        if (strcmp(name, verbs[i]->name) != 0) continue;
-        *verb = verbs[i];
+    const char *names[MOST_VERBS];
+    int count = 0;
+    for (const cli_verb *known = cli_verbs; known->manual && count < MOST_VERBS; known++) {
+        names[count++] = known->manual->name;
+        if (strcmp(name, known->manual->name) != 0) continue;
+        *verb = known;
         return CLI_DONE;
     }
-    return cli_unknown(name[0] == '-' ? "flag" : "verb", name, names, VERBS + 2, "help");
+    for (const cli_item *other = cli_other_verbs; other->name && count < MOST_VERBS; other++)
+        names[count++] = other->name;
+    return cli_unknown(name[0] == '-' ? "flag" : "verb", name, names, count, "help");
 }
 
-/* -o names what is written, whatever the verb. */
+/* In every verb -o names an output. */
 static void guard_outputs(const cli_arguments *arguments) {
     const char *path;
-    for (int f = 0; arguments->verb->flags[f]; f++)
-        for (int i = 0; strcmp(arguments->verb->flags[f]->name, "-o") == 0 &&
-                        (path = cli_nth_value(arguments, arguments->verb->flags[f], i));
+    for (int f = 0; arguments->manual->flags[f]; f++)
+        for (int i = 0; strcmp(arguments->manual->flags[f]->name, "-o") == 0 &&
+                        (path = cli_nth_value(arguments, arguments->manual->flags[f], i));
              i++)
             cli_guard_output(path);
 }
 
 static int run_verb(const cli_verb *verb, int count, char **words) {
     cli_arguments arguments;
-    int exit_status = cli_parse(verb, count, words, &arguments);
+    int exit_status = cli_parse(verb->manual, count, words, &arguments);
     if (exit_status == CLI_DONE && arguments.help) {
-        cli_print_help(verb);
+        cli_help_verb(verb->manual, stdout);
     } else if (exit_status == CLI_DONE) {
         cli_catch_signals();
         guard_outputs(&arguments);
@@ -66,7 +58,7 @@ static int is_one_of(const char *word, const char *a, const char *b, const char 
 static int run(int count, char **words) {
     const cli_verb *verb = NULL;
     if (count < 2) {
-        print_overview(stderr);
+        cli_help_overview(stderr);
         return CLI_USAGE;
     }
     if (is_one_of(words[1], "version", "--version", NULL)) {
@@ -75,13 +67,13 @@ static int run(int count, char **words) {
     }
     int help = is_one_of(words[1], "help", "--help", "-h");
     if (help && count == 2) {
-        print_overview(stdout);
+        cli_help_overview(stdout);
         return CLI_DONE;
     }
     int exit_status = find_verb(words[help ? 2 : 1], &verb);
     if (exit_status != CLI_DONE) return exit_status;
     if (!help) return run_verb(verb, count - 2, words + 2);
-    cli_print_help(verb);
+    cli_help_verb(verb->manual, stdout);
     return CLI_DONE;
 }
 

@@ -30,8 +30,8 @@ static double most_change(const skg_recipe *recipe, const float *before, const f
 
 /* Renders the mean intensities (a ratio before its logarithm, without noise) with `samples` samples of the source and one
  * ray a pixel. */
-static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome, int64_t samples,
-                         float *image) {
+static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
+                         int64_t samples, float *image) {
     skg_recipe *linear = NULL;
     skg_job *job = NULL;
     skg_output output = {.size = sizeof output, .data = image};
@@ -66,10 +66,11 @@ static skg_status double_samples(const skg_recipe *recipe, skg_machine *machine,
     }
     *found = samples < spot->most ? samples : spot->most;
     if (small < 2)
-        skg_log(machine->context, SKG_LOG_WARNING,
-                "%d samples of the source change 0.1 %% of the pixels by more than %.2g of the flat field; %.2g was "
-                "asked for; allow more",
-                (int)*found, *error, spot->tolerance);
+        skg_log(
+            machine->context, SKG_LOG_WARNING,
+            "%d samples of the source change 0.1 %% of the pixels by more than %.2g of the flat field; %.2g was "
+            "asked for; allow more",
+            (int)*found, *error, spot->tolerance);
     return SKG_OK;
 }
 

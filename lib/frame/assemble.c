@@ -24,7 +24,8 @@ cleanup:
     return status;
 }
 
-static skg_status make_detector(const skg_recipe *recipe, const skg_detector_blur *blur, skg_machine *machine) {
+static skg_status make_detector(const skg_recipe *recipe, const skg_detector_blur *blur,
+                                skg_machine *machine) {
     skg_detection detection;
     double factors[SKG_CHANNELS_MAX];
     int32_t wanted = 0;
@@ -59,9 +60,11 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe, 
     SKG_TRY(make_attenuation(recipe, context, &machine->images));
     SKG_TRY(make_lengths(recipe, machine));
     SKG_TRY(skg_attenuator_create(context, &machine->attenuator));
-    SKG_TRY(skg_buffer_reserve(context, &machine->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+    SKG_TRY(
+        skg_buffer_reserve(context, &machine->negative, 2 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
     SKG_TRY(skg_leaky_memory_create(context, recipe->leaky_count, &machine->leaky));
-    return skg_pass_memory_create(recipe->scene->count, recipe->view.columns, recipe->view.rows, &machine->pass);
+    return skg_pass_memory_create(recipe->scene->count, recipe->view.columns, recipe->view.rows,
+                                  &machine->pass);
 }
 
 skg_status skg_machine_renew(const skg_recipe *recipe, skg_machine *machine) {

@@ -52,13 +52,12 @@ static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pas
     cl_int *extents = NULL;
     SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
     SKG_TRY(skg_geometry_update(&machine->geometry, recipe->meshes.meshes, means->staging));
-    SKG_TRY(skg_geometry_project(machine->context, &machine->geometry, &pass->kernels, &pass->camera, pass->parts,
-                                 pass->scale.scale, log));
+    SKG_TRY(skg_geometry_project(machine->context, &machine->geometry, &pass->kernels, &pass->camera,
+                                 pass->parts, pass->scale.scale, log));
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
     SKG_TRY(skg_pass_extents(pass, means->staging, &extents));
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));
-    if (pass->priority.count)
-        SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, means->staging));
+    if (pass->priority.count) SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, means->staging));
     if (leaky.count == 0) return SKG_OK;
     return skg_leaky_run(&leaky, pass, &machine->geometry, &machine->rasters, &machine->leaky,
                          &means->results->leaky, means->staging);
@@ -85,8 +84,8 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
     place.add = sample > 0;
     noise.sample = sample > 0 ? (cl_int)sample : 0;
     if (recipe->linear) attenuation.noise = 0;
-    SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none, sizeof none, 0,
-                                   sizeof none, 0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
+                                   sizeof none, 0, sizeof none, 0, NULL, NULL));
     if (pass->mix.sums)
         SKG_TRY(skg_mix_lists_send(&machine->mix_lists, pass->mix.lists,
                                    (int64_t)recipe->mixed * recipe->model.planes,

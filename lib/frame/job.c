@@ -1,6 +1,7 @@
 #include "frame/job.h"
 
-skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome, skg_job **job) {
+skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
+                          skg_job **job) {
     SKG_TRY(skg_alloc(1, sizeof **job, "job", job));
     skg_job *made = *job;
     skg_results *results = &made->results;
@@ -12,7 +13,8 @@ skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_ou
     made->staging.log.on = recipe->options.profile;
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 2, sizeof *results->negative, "counters", &results->negative));
-    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
+    SKG_TRY_CLEANUP(
+        skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 1, sizeof *results->bad_vertex, "counters", &results->bad_vertex));
     SKG_TRY_CLEANUP(skg_leaky_verdicts_create(recipe->leaky_count, &made->staging, &results->leaky));
@@ -39,10 +41,10 @@ skg_status skg_job_complete(skg_job **job) {
     skg_context *context = done->machine->context;
     const cl_int code = clWaitForEvents(1, &done->last);
     done->finished = code == CL_SUCCESS;
-    const skg_status status =
-        code == CL_SUCCESS ? skg_report_work(done->recipe, context, &done->machine->geometry, &done->results,
-                                             &done->staging.log, done->outcome)
-                           : skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
+    const skg_status status = code == CL_SUCCESS
+                                  ? skg_report_work(done->recipe, context, &done->machine->geometry,
+                                                    &done->results, &done->staging.log, done->outcome)
+                                  : skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     skg_job_release(job);
     return status;
 }

@@ -5,9 +5,9 @@
 
 typedef struct {
     const skg_recipe *recipe;
-    double *density, *fill;     /* [parts] */
-    double *own;                /* [parts + 1][planes] what a mm of each part's material, and of the world's, adds */
-    char *known, *overridden;   /* [parts] whether own is known; whether the frame overrides the part */
+    double *density, *fill; /* [parts] */
+    double *own; /* [parts + 1][planes] what a mm of each part's material, and of the world's, adds */
+    char *known, *overridden; /* [parts] whether own is known; whether the frame overrides the part */
 } overrides;
 
 /* Greatest ratio to the planned density. */
@@ -23,14 +23,13 @@ static skg_status read_one(const skg_frame *given, int64_t k, overrides *o) {
                         scene->count);
     const char *label = scene->parts[part].label;
     if (!(density >= 0 && density <= MOST_DENSITY))
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: a density ratio of %g; 0 to %g", label, density,
-                        MOST_DENSITY);
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: a density ratio of %g; 0 to %g", label, density, MOST_DENSITY);
     if (!(fill >= 0 && fill <= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "%s: a fill fraction of %g; 0 to 1", label, fill);
     for (int64_t p = 0; p < scene->count && fill < 1; p++)
         if (scene->parts[p].inside == part)
-            return skg_fail(SKG_ERR_UNSUPPORTED, "%s: a fill fraction of %g, but %s lies inside it", label, fill,
-                            scene->parts[p].label);
+            return skg_fail(SKG_ERR_UNSUPPORTED, "%s: a fill fraction of %g, but %s lies inside it", label,
+                            fill, scene->parts[p].label);
     o->density[part] = density;
     o->fill[part] = fill;
     o->overridden[part] = 1;
@@ -70,7 +69,7 @@ static int64_t list_part(const overrides *o, int64_t part, skg_contribution *con
     count = 0;
     for (int32_t k = 0; k < model->planes; k++) {
         const double weight = o->fill[part] * (o->density[part] * o->own[part * model->planes + k] -
-                                                around * o->own[parent * model->planes + k]);
+                                               around * o->own[parent * model->planes + k]);
         if (weight != 0) contributions[count++] = (skg_contribution){.plane = k, .weight = weight};
     }
     return count;
@@ -88,8 +87,8 @@ static skg_status list_all(overrides *o, const skg_frame *given, skg_contributio
     return SKG_OK;
 }
 
-skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given, skg_contribution **contributions,
-                               int64_t **first) {
+skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given,
+                               skg_contribution **contributions, int64_t **first) {
     const int64_t parts = recipe->scene->count, planes = recipe->model.planes;
     overrides o = {.recipe = recipe};
     skg_status status = SKG_OK;

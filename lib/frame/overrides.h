@@ -9,7 +9,7 @@
  *
  * contributions   part p has first[p] to first[p + 1] - 1
  * first           [parts + 1] */
-skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given, skg_contribution **contributions,
-                               int64_t **first);
+skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given,
+                               skg_contribution **contributions, int64_t **first);
 
 #endif

@@ -5,7 +5,8 @@
 
 /* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
 static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *work, skg_pass *pass) {
-    SKG_TRY(skg_alloc(scene->count, sizeof *pass->own_contributions, "parts of a frame", &pass->own_contributions));
+    SKG_TRY(skg_alloc(scene->count, sizeof *pass->own_contributions, "parts of a frame",
+                      &pass->own_contributions));
     SKG_TRY(skg_alloc(scene->count + 1, sizeof *pass->own_first, "parts of a frame", &pass->own_first));
     int64_t count = 0;
     for (int64_t p = 0; p < scene->count; p++) {

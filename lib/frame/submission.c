@@ -5,6 +5,14 @@
 #include <limits.h>
 #include <string.h>
 
+void skg_frame_init(skg_frame *frame) {
+    if (frame) *frame = (skg_frame){.size = (int32_t)sizeof *frame};
+}
+
+void skg_output_init(skg_output *output) {
+    if (output) *output = (skg_output){.size = (int32_t)sizeof *output};
+}
+
 int64_t skg_submission_element(const skg_submission *submission) {
     return submission->output.type == SKG_TYPE_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
 }
@@ -112,8 +120,8 @@ static skg_status place_image(const skg_submission *s, int64_t index, skg_image_
                                .channel_stride = output->channel_stride};
     if (s->buffer) return SKG_OK;
     const int64_t size = view->rows * view->columns;
-    SKG_TRY(skg_buffer_reserve(machine->context, &machine->image, s->channels * size * skg_submission_element(s),
-                               CL_MEM_READ_WRITE, "image"));
+    SKG_TRY(skg_buffer_reserve(machine->context, &machine->image,
+                               s->channels * size * skg_submission_element(s), CL_MEM_READ_WRITE, "image"));
     place->memory = machine->image.memory;
     place->offset = 0;
     place->row_stride = view->columns;
@@ -127,13 +135,12 @@ static skg_status read_channel(const skg_submission *s, int64_t channel, char *t
     const skg_view *view = &s->recipe->view;
     skg_machine *machine = s->machine;
     const size_t element = (size_t)skg_submission_element(s), rows = (size_t)view->rows;
-    const size_t columns = (size_t)view->columns * element,
-                 stride = (size_t)s->output.row_stride * element;
+    const size_t columns = (size_t)view->columns * element, stride = (size_t)s->output.row_stride * element;
     const size_t from[3] = {0, (size_t)channel * rows, 0}, at[3] = {0, 0, 0}, region[3] = {columns, rows, 1};
     cl_event event = NULL, *wanted = skg_stage_event(&job->staging.log, &event);
     to += (size_t)(channel * s->output.channel_stride) * element;
-    SKG_CL_TRY(clEnqueueReadBufferRect(machine->context->device->queue, machine->image.memory, CL_FALSE, from, at,
-                                       region, columns, 0, stride, 0, to, 0, NULL, wanted));
+    SKG_CL_TRY(clEnqueueReadBufferRect(machine->context->device->queue, machine->image.memory, CL_FALSE, from,
+                                       at, region, columns, 0, stride, 0, to, 0, NULL, wanted));
     return skg_stage_log_add(&job->staging.log, "read back", event);
 }
 
@@ -175,8 +182,8 @@ static skg_status enqueue_frame(const skg_submission *s, int64_t index, const do
 
 static skg_status clear_counters(const skg_machine *machine) {
     const cl_int none = 0;
-    SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none, sizeof none, 0,
-                                   2 * sizeof none, 0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
+                                   sizeof none, 0, 2 * sizeof none, 0, NULL, NULL));
     return SKG_OK;
 }
 

@@ -4,14 +4,6 @@
 
 #include <inttypes.h>
 
-void skg_frame_init(skg_frame *frame) {
-    if (frame) *frame = (skg_frame){.size = (int32_t)sizeof *frame};
-}
-
-void skg_output_init(skg_output *output) {
-    if (output) *output = (skg_output){.size = (int32_t)sizeof *output};
-}
-
 /* What every submission begins with. */
 static skg_status begin(const char *call, skg_plan *plan, skg_job **job) {
     if (!plan) return skg_fail(SKG_ERR_ARGUMENT, "%s: the argument plan is NULL", call);

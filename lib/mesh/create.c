@@ -148,9 +148,8 @@ static skg_status create(skg_context *context, const char *name, int64_t vertice
     *mesh = NULL;
     if (!name || !*name) name = "mesh";
     if (!isfinite(unit_mm) || unit_mm <= 0)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "%s: unit %g mm is not usable; give one that is finite and above 0", name,
-                        unit_mm);
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
+                        name, unit_mm);
     SKG_TRY(check_stride(name, "position", &position_stride));
     SKG_TRY(check_stride(name, "triangle", &triangle_stride));
     SKG_TRY(check_counts(name, vertices, triangles));

@@ -127,9 +127,8 @@ skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm,
     SKG_NEEDS(path);
     if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
     if (!isfinite(unit_mm) || unit_mm <= 0)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "%s: unit %g mm is not usable; give one that is finite and above 0", path,
-                        unit_mm);
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
+                        path, unit_mm);
     skg_status status = read_file(path, &arrays);
     if (status != SKG_OK) {
         skg_mesh_arrays_free(&arrays);

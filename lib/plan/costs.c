@@ -100,8 +100,7 @@ void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const sk
     const double set_up = TRIANGLE * (double)outcome->report.triangles / c.pixels;
     const double plain = set_up + c.hits * SKG_COST_OF_CONTRIBUTION + attenuation(model, 1, 1);
     const double pass =
-        set_up +
-        c.hits * SKG_COST_OF_CONTRIBUTION * contributions_per_part(model, recipe->scene->count) +
+        set_up + c.hits * SKG_COST_OF_CONTRIBUTION * contributions_per_part(model, recipe->scene->count) +
         attenuation(model, model->nodes, model->planes);
     for (int e = 0; e < SKG_EFFECTS; e++) {
         skg_effect_state *effect = &outcome->effects[e];

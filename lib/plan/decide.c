@@ -53,7 +53,8 @@ skg_status skg_decide_detection(const skg_recipe *recipe, skg_detection *detecti
     for (int32_t c = 0; *wanted && c < model->channels; c++) {
         if (ratio && !(model->flat_field[c] > 0))
             return skg_fail(SKG_ERR_BEAM,
-                            "channel %d records nothing of the flat field, so there is no ratio to it", (int)c);
+                            "channel %d records nothing of the flat field, so there is no ratio to it",
+                            (int)c);
         factors[c] = ratio && !detection->over_flat_field ? 1 / model->flat_field[c] : 1;
     }
     return SKG_OK;

@@ -40,8 +40,7 @@ static void find_detector(const finding *f) {
     else
         set(f, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
     if (options->electronic_kev > 0)
-        set(f, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel",
-            options->electronic_kev);
+        set(f, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel", options->electronic_kev);
     else
         set(f, SKG_EFFECT_ELECTRONIC, 0, "not asked for");
     if (options->quantum_step_kev > 0)
@@ -52,13 +51,12 @@ static void find_detector(const finding *f) {
 
 static void set_priority(const finding *f, int64_t competing) {
     if (!f->recipe->priority_possible)
-        set(f, SKG_EFFECT_PRIORITY, 0,
-            "no two parts of one parent differ in priority, and none is clipped");
+        set(f, SKG_EFFECT_PRIORITY, 0, "no two parts of one parent differ in priority, and none is clipped");
     else if (competing == 0)
         set(f, SKG_EFFECT_PRIORITY, 0, "parts of different priority keep apart in the plan's view");
     else
-        set(f, SKG_EFFECT_PRIORITY, 1, "hits of %" PRId64 " parts are listed: they may compete%s",
-            competing, f->recipe->options.clip ? ", or leave their parents" : "");
+        set(f, SKG_EFFECT_PRIORITY, 1, "hits of %" PRId64 " parts are listed: they may compete%s", competing,
+            f->recipe->options.clip ? ", or leave their parents" : "");
 }
 
 /* Effects that follow from where the parts lie. */
@@ -100,7 +98,7 @@ static void find_samples(const finding *f) {
     if (samples->spot.shape == SKG_SPOT_POINT)
         set(f, SKG_EFFECT_SOURCE, 0, "%s",
             f->recipe->view.projection == SKG_PROJECTION_POINT ? "the source is a point: one pass"
-                                                          : "the beam is parallel: one pass");
+                                                               : "the beam is parallel: one pass");
     else if (error > 0)
         set(f, SKG_EFFECT_SOURCE, 1,
             "%s: %" PRId64
@@ -155,8 +153,7 @@ static void find_compression(const finding *f) {
     else if (options->precision == SKG_PRECISION_HALF)
         set(f, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
     else if (options->tolerance > 0)
-        set(f, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
-            options->tolerance);
+        set(f, effect, 0, "no fewer energies meet a tolerance of %g: every one is used", options->tolerance);
     else
         set(f, effect, 0, "tolerance 0: every energy is used");
 }

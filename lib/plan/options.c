@@ -41,8 +41,7 @@ skg_status skg_plan_options_check(const skg_plan_options *options, const skg_dev
                         options->precision);
     if (options->precision == SKG_PRECISION_DOUBLE && !device->has_double)
         return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "%s has no fp64, so precision double does not work there; take single",
-                        device->name);
+                        "%s has no fp64, so precision double does not work there; take single", device->name);
     if (options->strategy < SKG_STRATEGY_AUTO || options->strategy > SKG_STRATEGY_ATOMICS)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "strategy %" PRId32 " is unknown; SKG_STRATEGY_AUTO, _COPIES, _TILES or "

@@ -54,7 +54,8 @@ typedef struct {
     skg_stage_time stages[SKG_MOST_STAGES];
     int32_t warned_unseen; /* 1: that nothing falls on the detector */
     int32_t reserved;
-    int32_t *warned_bad; /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */
+    int32_t *
+        warned_bad; /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */
 } skg_outcome;
 
 /* Starts an outcome with what the recipe has decided. */

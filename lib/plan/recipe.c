@@ -110,8 +110,8 @@ static skg_status choose_mix(skg_recipe *recipe) {
     const skg_model *model = &recipe->model;
     recipe->mixed = 0;
     if (recipe->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* a plane per material */
-    return skg_mix_choose(recipe->scene->count, model->planes, model->contributions, model->first_contribution,
-                          &recipe->mixed);
+    return skg_mix_choose(recipe->scene->count, model->planes, model->contributions,
+                          model->first_contribution, &recipe->mixed);
 }
 
 static skg_status choose_strategy(skg_recipe *recipe, const skg_device_info *device) {

@@ -17,7 +17,7 @@ struct skg_recipe {
     skg_refs refs;
     skg_recipe *origin; /* retained: it owns what this recipe borrows; NULL: this recipe borrows nothing */
     int32_t owns_model; /* 1: the model is this recipe's own */
-    int32_t linear; /* 1: mean intensities alone, without noise, the stage `detect` and logarithms */
+    int32_t linear;     /* 1: mean intensities alone, without noise, the stage `detect` and logarithms */
 
     skg_scene *scene;         /* retained */
     skg_spectrum *spectrum;   /* retained */
@@ -33,7 +33,7 @@ struct skg_recipe {
     skg_channel_name *channel_names; /* [channels] */
     skg_samples samples;             /* of source and pixel */
     int32_t is_blurred;
-    int32_t mixed;            /* accumulators that the planes of images are mixed from; 0: they are not mixed */
+    int32_t mixed; /* accumulators that the planes of images are mixed from; 0: they are not mixed */
     int32_t priority_possible; /* 1: priorities differ, or children are clipped */
     int32_t strategy;          /* SKG_STRATEGY_..., never AUTO */
     int32_t leaky_strategy;    /* of the rasters of leaky parts */

@@ -53,8 +53,8 @@ static int is_news(skg_outcome *outcome, int64_t index, int32_t bad) {
 }
 
 /* bad: verdict on the leaky part `index`, as skg_raster_bad_pixels leaves it. */
-static void report_bad(const skg_recipe *recipe, const skg_context *context, int64_t index, const int32_t *bad,
-                       skg_outcome *outcome) {
+static void report_bad(const skg_recipe *recipe, const skg_context *context, int64_t index,
+                       const int32_t *bad, skg_outcome *outcome) {
     static const char *const done[] = {
         [SKG_REPAIR_NONE] = "it is left out there",
         [SKG_REPAIR_NEIGHBOURS] = "it has the mean of its nearest valid pixels there",
@@ -98,8 +98,8 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
     SKG_TRY(report_bad_vertex(recipe, geometry, *results->bad_vertex));
     report_negative(context, results->negative[0], outcome);
     const double listings = (double)results->listed[0] + (double)results->listed[1] * (double)report->tiles;
-    report->triangles_per_tile = recipe->strategy == SKG_STRATEGY_TILES ? listings / (double)report->tiles
-                                                                        : (double)report->triangles;
+    report->triangles_per_tile =
+        recipe->strategy == SKG_STRATEGY_TILES ? listings / (double)report->tiles : (double)report->triangles;
     report->bad_pixels = report->repaired_pixels = 0;
     for (int64_t k = 0; k < leaky->count; k++) {
         const int32_t *bad = leaky->pixels + k * (1 + SKG_FIRST_BAD);

@@ -127,7 +127,7 @@ static void take_one_away(search *s) {
     for (int32_t j = 1; j < s->count; j++)
         if (s->score[j] < s->score[worst]) worst = j;
     s->count--;
-    memmove(s->bins + worst, s->bins + worst + 1, (size_t)(s->count - worst) * sizeof *s->bins);
+    for (int32_t j = worst; j < s->count; j++) s->bins[j] = s->bins[j + 1];
 }
 
 /* Shifts bins to neighbours while that lowers the squared errors. */

@@ -241,9 +241,10 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
 }
 
-skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                              const skg_attenuation *attenuation, double factor, cl_mem negative,
-                              const skg_image_place *place, skg_stage_log *log) {
+skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums,
+                                    const skg_camera *camera, const skg_attenuation *attenuation,
+                                    double factor, cl_mem negative, const skg_image_place *place,
+                                    skg_stage_log *log) {
     skg_raster nothing = *sums->raster;
     skg_sums no_sums = *sums;
     skg_attenuation quiet = *attenuation;

@@ -20,7 +20,8 @@ typedef struct {
     int32_t reserved;
     double world_weight; /* of a mm of the world's path in its plane */
     skg_buffer coefficients, weights, variances;
-    skg_buffer range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
+    skg_buffer
+        range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
 } skg_attenuation;
 
 /* The tables as the host gives them. */
@@ -75,9 +76,10 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
 
 /* Enqueues the flat field: what is shown without parts and noise. sums: of a frame of the same shape; they are not
  * read. */
-skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                                    const skg_attenuation *attenuation, double factor, cl_mem negative,
-                                    const skg_image_place *place, skg_stage_log *log);
+skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums,
+                                    const skg_camera *camera, const skg_attenuation *attenuation,
+                                    double factor, cl_mem negative, const skg_image_place *place,
+                                    skg_stage_log *log);
 
 /* Enqueues -ln of a finished mean, in place. */
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,

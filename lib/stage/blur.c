@@ -185,10 +185,10 @@ static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, in
 
 /* Sizes of both passes. */
 typedef struct {
-    cl_int columns, rows;           /* of the image */
-    cl_int stride, high;            /* of the workspace */
-    cl_int left, above;             /* pixels of the workspace before the image's first */
-    cl_int taps, down, across;      /* samples of the first pass; of the second, down and across */
+    cl_int columns, rows;      /* of the image */
+    cl_int stride, high;       /* of the workspace */
+    cl_int left, above;        /* pixels of the workspace before the image's first */
+    cl_int taps, down, across; /* samples of the first pass; of the second, down and across */
     int64_t lanes;
 } blur_layout;
 

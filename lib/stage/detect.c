@@ -74,17 +74,18 @@ static skg_status get_type(skg_detector *detector, int is_double, detector_type 
     return skg_kernel_create(program, "skg_detect", &type->kernel);
 }
 
-skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor, cl_mem flat_field,
-                            const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log) {
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor,
+                            cl_mem flat_field, const skg_image_place *image, int64_t columns, int64_t rows,
+                            skg_stage_log *log) {
     const skg_detection *detection = &detector->detection;
     const int is_double = image->output_double != 0;
     const cl_int size[2] = {(cl_int)columns, (cl_int)rows};
     detector_type *type = NULL;
-    skg_real_argument electronic, step, all;
+    skg_real_argument electronic, spacing, scale;
     SKG_TRY(get_type(detector, is_double, &type));
     skg_real_argument_set(&electronic, is_double, detection->electronic);
-    skg_real_argument_set(&step, is_double, detection->step);
-    skg_real_argument_set(&all, is_double, factor);
+    skg_real_argument_set(&spacing, is_double, detection->step);
+    skg_real_argument_set(&scale, is_double, factor);
     const skg_argument arguments[SKG_DETECT_ARGUMENTS] = {
         SKG_ARGUMENT(DETECT, image, image->memory),
         SKG_ARGUMENT(DETECT, offset, image->offset),
@@ -94,13 +95,14 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
         SKG_ARGUMENT(DETECT, rows, size[1]),
         SKG_ARGUMENT(DETECT, key, *key),
         {SKG_DETECT_electronic, electronic.size, electronic.value},
-        {SKG_DETECT_step, step.size, step.value},
+        {SKG_DETECT_spacing, spacing.size, spacing.value},
         SKG_ARGUMENT(DETECT, factor, type->factor.memory),
-        {SKG_DETECT_all, all.size, all.value},
+        {SKG_DETECT_scale, scale.size, scale.value},
         SKG_ARGUMENT(DETECT, flat_field, flat_field),
     };
     /* The kernel has its last argument only if values are divided by a flat field. */
-    SKG_TRY(skg_kernel_arguments(type->kernel, SKG_DETECT_ARGUMENTS - !detection->over_flat_field, arguments));
+    SKG_TRY(
+        skg_kernel_arguments(type->kernel, SKG_DETECT_ARGUMENTS - !detection->over_flat_field, arguments));
     const int64_t lanes =
         skg_kernel_lanes(detector->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
     const size_t local[3] = {8, 16, 1}; /* large groups: PoCL takes some 20 ns for each */

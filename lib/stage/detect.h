@@ -28,8 +28,9 @@ int skg_detector_wants_flat_field(const skg_detector *detector);
 
 /* Enqueues the stage for an image of columns x rows, in place. factor: of this frame, for all channels. flat_field:
  * [channels][rows][columns] of the image's type, if the detector wants it. */
-skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor, cl_mem flat_field,
-                            const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log);
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor,
+                            cl_mem flat_field, const skg_image_place *image, int64_t columns, int64_t rows,
+                            skg_stage_log *log);
 
 /* Bytes on the device. */
 int64_t skg_detector_bytes(const skg_detector *detector);

@@ -23,11 +23,12 @@ skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t
     const int64_t hits = (int64_t)count->high << 32 | (int64_t)count->low;
     const int64_t hit = is_double ? 16 : 8; /* a depth and an int, as skg_listed */
     if (hits > (int64_t)SKG_MOST_HITS)
-        return skg_fail(SKG_ERR_DEVICE_MEMORY,
-                        "priorities: the rays of this frame hit the surfaces of the parts that compete %" PRId64
-                        " times, and at most %" PRId64
-                        " hits are listed; take fewer pixels, coarser meshes or fewer parts with priorities",
-                        hits, (int64_t)SKG_MOST_HITS);
+        return skg_fail(
+            SKG_ERR_DEVICE_MEMORY,
+            "priorities: the rays of this frame hit the surfaces of the parts that compete %" PRId64
+            " times, and at most %" PRId64
+            " hits are listed; take fewer pixels, coarser meshes or fewer parts with priorities",
+            hits, (int64_t)SKG_MOST_HITS);
     *bytes = (hits > 0 ? hits : 1) * hit;
     return SKG_OK;
 }
@@ -109,10 +110,11 @@ cleanup:
 }
 
 /* The arguments by which both kernels take the lists. */
-#define LIST_ARGUMENTS(kernel, lists, fill)                                                                   \
-    SKG_ARGUMENT(kernel, slots, (lists)->slots.memory), SKG_ARGUMENT(kernel, shifts, (lists)->shifts.memory), \
-        SKG_ARGUMENT(kernel, counts, (lists)->counts.memory),                                               \
-        SKG_ARGUMENT(kernel, starts, (lists)->starts.memory),                                               \
+#define LIST_ARGUMENTS(kernel, lists, fill)                                                                  \
+    SKG_ARGUMENT(kernel, slots, (lists)->slots.memory),                                                      \
+        SKG_ARGUMENT(kernel, shifts, (lists)->shifts.memory),                                                \
+        SKG_ARGUMENT(kernel, counts, (lists)->counts.memory),                                                \
+        SKG_ARGUMENT(kernel, starts, (lists)->starts.memory),                                                \
         SKG_ARGUMENT(kernel, hits, (lists)->hits.memory), SKG_ARGUMENT(kernel, fill, fill)
 
 /* Lists the hits of triangles in front of the source. fill: 0 counts them, 1 lists them. */
@@ -160,8 +162,7 @@ static skg_status place_hits(const hits_run *run) {
                                    sizeof(skg_hit_count), 0, NULL, NULL));
     SKG_TRY(skg_kernel_create(run->program, "skg_hits_place", &kernel));
     SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(
-        skg_kernel_run(run->context, kernel, "priority", 1, &global, &local, &run->staging->log));
+    SKG_TRY_CLEANUP(skg_kernel_run(run->context, kernel, "priority", 1, &global, &local, &run->staging->log));
 cleanup:
     clReleaseKernel(kernel);
     return status;

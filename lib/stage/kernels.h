@@ -12,7 +12,7 @@ typedef struct {
     int32_t parallel;     /* 1: parallel beam */
     int32_t source_plane; /* 1: some part may reach the source, or the plane where parallel paths start */
     int32_t half;         /* 1: distances are rounded to 16 bits; precision is single */
-    int32_t listed; /* 1: parts contribute as their lists say; 0: to one plane each, without bias */
+    int32_t listed;       /* 1: parts contribute as their lists say; 0: to one plane each, without bias */
 } skg_kernel_options;
 
 /* How many lanes kernels with wide vectors use on this device. */
@@ -29,9 +29,7 @@ typedef struct {
     const void *value;
 } skg_argument;
 #define SKG_ARGUMENT(kernel, name, object)                                                                   \
-    {                                                                                                        \
-        SKG_##kernel##_##name, sizeof(object), &(object)                                                     \
-    }
+    { SKG_##kernel##_##name, sizeof(object), &(object) }
 
 skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments);
 

@@ -15,9 +15,9 @@ typedef struct {
     skg_leaky_memory *memory;
     skg_leaky_verdicts *verdicts;
     skg_staging *staging;
-    skg_raster_pin pin;         /* the raster of all batches, made for the one with the most planes */
-    int64_t planes;             /* of that raster */
-    skg_geometry_part *parts;   /* [parts] only the batch's are drawn */
+    skg_raster_pin pin;          /* the raster of all batches, made for the one with the most planes */
+    int64_t planes;              /* of that raster */
+    skg_geometry_part *parts;    /* [parts] only the batch's are drawn */
     skg_contribution *to_planes; /* [planes] */
 } batching;
 
@@ -167,9 +167,9 @@ skg_status skg_leaky_run(const skg_leaky_parts *leaky, const skg_pass *pass, skg
     SKG_TRY_CLEANUP(skg_alloc(b.planes, sizeof *b.to_planes, "leaky parts", &b.to_planes));
     for (int64_t first = 0; first < verdicts->count; first += batch.parts)
         SKG_TRY_CLEANUP(run_batch(&b, first, &batch));
-    SKG_TRY_CLEANUP(skg_staging_read(staging, memory->verdicts.memory,
-                                     verdicts->count * (1 + SKG_FIRST_BAD) * (int64_t)sizeof *verdicts->pixels,
-                                     verdicts->pixels));
+    SKG_TRY_CLEANUP(skg_staging_read(
+        staging, memory->verdicts.memory,
+        verdicts->count * (1 + SKG_FIRST_BAD) * (int64_t)sizeof *verdicts->pixels, verdicts->pixels));
 cleanup:
     skg_raster_pin_release(&b.pin);
     skg_free(&b.parts);

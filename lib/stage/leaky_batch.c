@@ -45,7 +45,8 @@ skg_status skg_leaky_kernel(const skg_leaky_batch *batch, const char *name, cl_k
     return status;
 }
 
-skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh, const skg_caps **caps) {
+skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,
+                          const skg_caps **caps) {
     if (!memory->caps[index].first) SKG_TRY(skg_caps_find(mesh, &memory->caps[index]));
     *caps = &memory->caps[index];
     return SKG_OK;

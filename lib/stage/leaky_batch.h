@@ -27,8 +27,9 @@ typedef struct {
     skg_leaky_memory *memory;
     skg_staging *staging;
     int64_t parts;
-    const int64_t *indices;   /* [parts] into leaky */
-    const skg_raster *raster; /* of their planes: each part's sums in the order of its contributions, then its count */
+    const int64_t *indices; /* [parts] into leaky */
+    const skg_raster
+        *raster; /* of their planes: each part's sums in the order of its contributions, then its count */
     const skg_raster *shared; /* that their sums join */
 } skg_leaky_batch;
 
@@ -41,6 +42,7 @@ static inline int64_t skg_leaky_part(const skg_leaky_batch *batch, int64_t k) {
 skg_status skg_leaky_kernel(const skg_leaky_batch *batch, const char *name, cl_kernel *kernel);
 
 /* The caps of a leaky part, made at the first call. index: into the leaky parts. */
-skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh, const skg_caps **caps);
+skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,
+                          const skg_caps **caps);
 
 #endif

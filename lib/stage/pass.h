@@ -29,7 +29,7 @@ typedef struct {
     /* What every part adds to the planes, leaky parts included: part p has contributions[first[p]] to
      * contributions[first[p + 1] - 1]. */
     const skg_contribution *contributions;
-    const int64_t *first;               /* [parts + 1] */
+    const int64_t *first;                /* [parts + 1] */
     skg_contribution *own_contributions; /* those of this pass alone, to be freed; NULL: borrowed */
     int64_t *own_first;
     skg_geometry_part *parts; /* [parts] borrowed; leaky ones without contributions */

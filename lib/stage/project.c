@@ -160,9 +160,10 @@ static skg_status wait_for(skg_table_slot *slot) {
 }
 
 void skg_geometry_release(skg_geometry *geometry) {
-    skg_buffer *const buffers[] = {
-        &geometry->offsets,       &geometry->corners,         &geometry->part_table, &geometry->contribution_table,
-        &geometry->vertex_blocks, &geometry->triangle_blocks, &geometry->projected,  &geometry->bad};
+    skg_buffer *const buffers[] = {&geometry->offsets,       &geometry->corners,
+                                   &geometry->part_table,    &geometry->contribution_table,
+                                   &geometry->vertex_blocks, &geometry->triangle_blocks,
+                                   &geometry->projected,     &geometry->bad};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&geometry->mesh_vertex);
     skg_free(&geometry->versions);
@@ -204,7 +205,8 @@ skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, 
     for (int64_t m = 0; m < geometry->meshes; m++) {
         void *offsets = NULL;
         if (geometry->versions[m] == meshes[m]->version) continue;
-        SKG_TRY(skg_staging_take(staging, 3 * meshes[m]->vertices, real_size(geometry), "vertices", &offsets));
+        SKG_TRY(
+            skg_staging_take(staging, 3 * meshes[m]->vertices, real_size(geometry), "vertices", &offsets));
         read_offsets(geometry, meshes[m], offsets);
         SKG_TRY(skg_geometry_upload(staging->context, geometry, m, offsets, &staging->log));
         geometry->versions[m] = meshes[m]->version;
@@ -264,7 +266,8 @@ static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *ca
         /* Kernels weigh q = r / reference; a parallel beam's q is r itself. */
         const double factor = camera->parallel ? scale : scale * entry->reference;
         for (int32_t w = 0; w < part[p].contributions; w++)
-            set_contribution(geometry, slot->contributions, slot->contribution_count++, &part[p].contribution[w], factor);
+            set_contribution(geometry, slot->contributions, slot->contribution_count++,
+                             &part[p].contribution[w], factor);
     }
     return SKG_OK;
 }
@@ -273,7 +276,8 @@ static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, co
     return a->contribution_count == b->contribution_count &&
            memcmp(a->entries, b->entries, (size_t)geometry->parts * entry_size(geometry)) == 0 &&
            (a->contribution_count == 0 ||
-            memcmp(a->contributions, b->contributions, (size_t)a->contribution_count * contribution_size(geometry)) == 0);
+            memcmp(a->contributions, b->contributions,
+                   (size_t)a->contribution_count * contribution_size(geometry)) == 0);
 }
 
 /* Brings the frame's tables to the device where they differ from those it has. */
@@ -286,13 +290,12 @@ skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, cons
     SKG_TRY(fill_tables(geometry, camera, part, scale, slot));
     if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
     const size_t bytes = (size_t)slot->contribution_count * contribution_size(geometry);
-    geometry->uploaded =
-        0; /* if one of the two writes fails, the device has neither table */
-    SKG_TRY(
-        skg_buffer_reserve(context, &geometry->contribution_table, (int64_t)bytes, CL_MEM_READ_ONLY, "contribution table"));
+    geometry->uploaded = 0; /* if one of the two writes fails, the device has neither table */
+    SKG_TRY(skg_buffer_reserve(context, &geometry->contribution_table, (int64_t)bytes, CL_MEM_READ_ONLY,
+                               "contribution table"));
     if (bytes > 0)
-        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->contribution_table.memory, CL_FALSE, 0, bytes, slot->contributions,
-                                        0, NULL, NULL));
+        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->contribution_table.memory, CL_FALSE, 0, bytes,
+                                        slot->contributions, 0, NULL, NULL));
     SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->part_table.memory, CL_FALSE, 0,
                                     (size_t)geometry->parts * entry_size(geometry), slot->entries, 0, NULL,
                                     &slot->read));
@@ -339,8 +342,8 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
 
 int64_t skg_geometry_bytes(const skg_geometry *geometry) {
     return geometry->offsets.bytes + geometry->corners.bytes + geometry->part_table.bytes +
-           geometry->contribution_table.bytes + geometry->vertex_blocks.bytes + geometry->triangle_blocks.bytes +
-           geometry->projected.bytes + geometry->bad.bytes;
+           geometry->contribution_table.bytes + geometry->vertex_blocks.bytes +
+           geometry->triangle_blocks.bytes + geometry->projected.bytes + geometry->bad.bytes;
 }
 
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex) {

@@ -20,7 +20,8 @@ typedef struct {
     int64_t planes;        /* of accumulators, >= 1 */
     int64_t triangles;     /* the most of a frame */
 } skg_raster_options;
-_Static_assert(sizeof(skg_raster_options) == sizeof(skg_kernel_options) + 4 * sizeof(int32_t) + 4 * sizeof(int64_t),
+_Static_assert(sizeof(skg_raster_options) ==
+                   sizeof(skg_kernel_options) + 4 * sizeof(int32_t) + 4 * sizeof(int64_t),
                "options have no gaps: they are compared as bytes");
 
 typedef struct skg_raster skg_raster;

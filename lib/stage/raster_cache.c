@@ -23,7 +23,8 @@ static skg_status make(skg_raster_cache *cache, const skg_raster_options *option
     skg_raster *raster = NULL;
     *entry = find_place(cache);
     if (!*entry)
-        return skg_fail(SKG_ERR_INTERNAL, "all %d rasters are in use at once", (int)SKG_RASTER_CACHE_CAPACITY);
+        return skg_fail(SKG_ERR_INTERNAL, "all %d rasters are in use at once",
+                        (int)SKG_RASTER_CACHE_CAPACITY);
     SKG_TRY(skg_raster_create(cache->context, options, &raster));
     if (*entry == &cache->entries[cache->count]) cache->count++;
     skg_raster_release(&(*entry)->raster);

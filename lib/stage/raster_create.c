@@ -7,7 +7,7 @@
 enum {
     CACHE_BYTES = 256 * 1024, /* of a band: half of the level 2 cache of common CPUs */
     MOST_BAND_ROWS = 256,
-    SQUARE = 32, /* side of a tile on a GPU */
+    SQUARE = 32,            /* side of a tile on a GPU */
     QUEUE_ENTRIES = 1 << 20 /* strips of large triangles; more are drawn without the queue */
 };
 
@@ -99,9 +99,10 @@ static skg_status allocate(skg_raster *raster) {
                         "queue of large triangles"));
     if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
     const int64_t chunks = (raster->options.triangles + SKG_CHUNK - 1) / SKG_CHUNK;
-    SKG_TRY(reserve(raster, &raster->counts, (skg_raster_has_squares(raster) ? tiles + 1 : 3) * of_int, "tiles"));
-    SKG_TRY(reserve(raster, &raster->starts, (skg_raster_has_squares(raster) ? tiles + 2 : 2 * chunks * tiles) * of_int,
-                    "tiles"));
+    SKG_TRY(
+        reserve(raster, &raster->counts, (skg_raster_has_squares(raster) ? tiles + 1 : 3) * of_int, "tiles"));
+    SKG_TRY(reserve(raster, &raster->starts,
+                    (skg_raster_has_squares(raster) ? tiles + 2 : 2 * chunks * tiles) * of_int, "tiles"));
     SKG_TRY(reserve(raster, &raster->list, raster->options.triangles * SKG_MOST_TILES * of_int,
                     "lists of the tiles"));
     SKG_TRY(reserve(raster, &raster->for_all, raster->options.triangles * of_int, "list for all tiles"));
@@ -157,9 +158,11 @@ static skg_status compile(skg_raster *raster) {
             SKG_TRY(skg_kernel_create(program, "skg_tiles_count", &raster->kernels[SKG_RASTER_COUNT]));
             SKG_TRY(skg_kernel_create(program, "skg_tiles_scan", &raster->kernels[SKG_RASTER_SCAN]));
         }
-        SKG_TRY(skg_kernel_create(program, skg_raster_has_squares(raster) ? "skg_tiles_fill" : "skg_bands_sort",
+        SKG_TRY(skg_kernel_create(program,
+                                  skg_raster_has_squares(raster) ? "skg_tiles_fill" : "skg_bands_sort",
                                   &raster->kernels[SKG_RASTER_FILL]));
-        SKG_TRY(skg_kernel_create(program, skg_raster_has_squares(raster) ? "skg_raster_squares" : "skg_raster_bands",
+        SKG_TRY(skg_kernel_create(program,
+                                  skg_raster_has_squares(raster) ? "skg_raster_squares" : "skg_raster_bands",
                                   &raster->kernels[SKG_RASTER_DRAW]));
     }
     if (!options->source_plane || options->parallel) return SKG_OK;

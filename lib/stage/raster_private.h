@@ -24,8 +24,9 @@ struct skg_raster {
     skg_buffer used;      /* which copies count, the counter of claims, the extents of the planes */
     cl_int *whole, *sent; /* [planes][4] extents: the whole detector; as the device has them */
     skg_buffer scratch;   /* bands: an image for each worker */
-    skg_buffer counts, starts, list, for_all; /* tiles; for bands: counters, pieces, pool, list for all bands */
-    skg_buffer queue;                         /* atomics: strips of large triangles */
+    skg_buffer counts, starts, list,
+        for_all;         /* tiles; for bands: counters, pieces, pool, list for all bands */
+    skg_buffer queue;    /* atomics: strips of large triangles */
     skg_buffer rows_bad; /* [count planes][rows][3] of the last verdicts, as counts.cl leaves it */
     cl_kernel kernels[SKG_RASTER_KERNELS]; /* NULL: not used by the strategy */
     cl_kernel bad_rows, bad;               /* made on demand */

@@ -13,7 +13,8 @@ static skg_status get_bad_kernels(skg_raster *raster) {
     if (raster->bad) return SKG_OK;
     SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, 1, files, NULL, &program));
     if (!raster->bad_rows) SKG_TRY(skg_kernel_create(program, "skg_count_bad_rows", &raster->bad_rows));
-    return skg_kernel_create(program, "skg_count_bad", &raster->bad); /* last: its presence means that both are made */
+    return skg_kernel_create(program, "skg_count_bad",
+                             &raster->bad); /* last: its presence means that both are made */
 }
 
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem planes, int64_t first,
@@ -51,8 +52,9 @@ skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {
     if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
     const int64_t tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
     const skg_buffer *from = skg_raster_has_squares(raster) ? &raster->starts : &raster->counts;
-    const size_t first =
-        skg_raster_has_squares(raster) ? (size_t)tiles : 1; /* as the kernels of tiles.cl and bands.cl leave it */
+    const size_t first = skg_raster_has_squares(raster)
+                             ? (size_t)tiles
+                             : 1; /* as the kernels of tiles.cl and bands.cl leave it */
     SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, from->memory, CL_FALSE,
                                    first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL, NULL));
     return SKG_OK;

@@ -103,8 +103,9 @@ static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_sta
         SKG_ARGUMENT(TILES_FILL, list, raster->list.memory),
         SKG_ARGUMENT(TILES_FILL, for_all, raster->for_all.memory),
     };
-    SKG_TRY(skg_raster_fill(raster, &raster->counts, 0, 0,
-                            ((int64_t)frame->tiles_across * frame->tiles_down + 1) * (int64_t)sizeof(cl_int)));
+    SKG_TRY(
+        skg_raster_fill(raster, &raster->counts, 0, 0,
+                        ((int64_t)frame->tiles_across * frame->tiles_down + 1) * (int64_t)sizeof(cl_int)));
     SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_COUNT], count));
     SKG_TRY(run(raster, SKG_RASTER_COUNT, "tiles: count", triangle_groups(raster), GROUP, log));
     SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_SCAN], scan));
@@ -123,11 +124,13 @@ static skg_status run_squares(skg_raster *raster, const skg_geometry *g, skg_sta
         SKG_ARGUMENT(RASTER_SQUARES, for_all, raster->for_all.memory),
         SKG_ARGUMENT(RASTER_SQUARES, sums, raster->sums.memory),
         {SKG_RASTER_SQUARES_local_sums,
-         (size_t)(frame->tile_columns * frame->tile_rows * frame->planes * skg_raster_sum_bytes(raster)), NULL},
+         (size_t)(frame->tile_columns * frame->tile_rows * frame->planes * skg_raster_sum_bytes(raster)),
+         NULL},
     };
     SKG_TRY(run_binning(raster, g, log));
     SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)(frame->tiles_across * frame->tiles_down), GROUP, log);
+    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)(frame->tiles_across * frame->tiles_down), GROUP,
+               log);
 }
 
 static skg_status run_bands(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {

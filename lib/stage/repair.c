@@ -82,7 +82,8 @@ static skg_status mark_bad(const tracing *t, int64_t part) {
     if (first == end) return SKG_OK;
     SKG_TRY(read_now(t, t->batch->memory->gaps.memory, (part * layout->rows + first) * columns,
                      (end - first) * columns, t->marks + first * columns));
-    for (int64_t r = first; r < end; r++) /* skg_leaky_gaps leaves the columns without bad pixels as they were */
+    for (int64_t r = first; r < end;
+         r++) /* skg_leaky_gaps leaves the columns without bad pixels as they were */
         for (int64_t k = 0; k < columns; k++)
             if (k < rows_bad[3 * r + 1] || k >= rows_bad[3 * r + 2]) t->marks[r * columns + k] = 0;
     return SKG_OK;
@@ -129,7 +130,8 @@ static skg_status put_sums(const tracing *t, int64_t part, int64_t count, int64_
     SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(t->put, arguments));
     SKG_TRY_CLEANUP(skg_kernel_run(context, t->put, "repair", 1, &global, &local, log));
 cleanup:
-    for (int k = 0; k < 2; k++) skg_buffer_release(&on_device[k]); /* OpenCL keeps them for what is enqueued */
+    for (int k = 0; k < 2; k++)
+        skg_buffer_release(&on_device[k]); /* OpenCL keeps them for what is enqueued */
     return status;
 }
 

@@ -23,8 +23,8 @@ skg_status skg_staging_take(skg_staging *staging, int64_t count, size_t size, co
 }
 
 skg_status skg_staging_read(skg_staging *staging, cl_mem buffer, int64_t bytes, void *staged) {
-    SKG_CL_TRY(clEnqueueReadBuffer(staging->context->device->queue, buffer, CL_FALSE, 0, (size_t)bytes, staged, 0,
-                                   NULL, NULL));
+    SKG_CL_TRY(clEnqueueReadBuffer(staging->context->device->queue, buffer, CL_FALSE, 0, (size_t)bytes,
+                                   staged, 0, NULL, NULL));
     return SKG_OK;
 }
 

@@ -36,12 +36,12 @@ START_TEST(usage) {
     ck_run_fails(2, "--range 3:1 is not two numbers LOW:HIGH", "image scene.json -o a.png --range 3:1");
     ck_run_fails(2, "--range 3 ", "image scene.json -o a.png --range 3");
     ck_run_fails(2, "--tolerance 1 is not a relative error", "image scene.json -o a.mha --tolerance 1");
-    ck_run_fails(2, "nowhere to write to; add -o FILE", "image scene.json");
+    ck_run_fails(2, "no output is named; add -o FILE", "image scene.json");
     ck_run_fails(2, "--set", "image scene.json -o a.mha --set");
     ck_run_fails(2, "Detector", "image scene.json -o a.mha --set Detector");
     ck_run_fails(2, "the extension .jpg is no image format; use .png, .tif or .mha",
                  "image scene.json -o a.jpg");
-    ck_run_fails(2, "what is missing is SCENE", "image -o a.mha");
+    ck_run_fails(2, "SCENE is missing", "image -o a.mha");
 }
 END_TEST
 

@@ -102,7 +102,7 @@ START_TEST(naive_interpolation_is_shown) {
         json_decref(object);
     }
     ck_run(0, "material HU:0 --naive bilinear -o a.png");
-    ck_run_fails(2, "--naive goes with a Hounsfield number", "material Fe --naive bilinear");
+    ck_run_fails(2, "--naive needs a Hounsfield number", "material Fe --naive bilinear");
     ck_run_fails(2, "--naive linear is not known", "material HU:0 --naive linear");
 }
 END_TEST
@@ -135,7 +135,7 @@ START_TEST(files_are_written) {
     ck_assert_int_eq(look_at_folder(0), 4);
     ck_run_fails(5, "none/a.png: cannot be written", "material Fe -o none/a.png");
     ck_run_fails(5, "a.csv: cannot be written", "beam --kvp 60 -o /dev/null/a.csv");
-    ck_run_fails(2, "-o a.tif: its extension is none of .csv, .png and .svg", "material Fe -o a.tif");
+    ck_run_fails(2, "-o a.tif: the extension is none of .csv, .png and .svg", "material Fe -o a.tif");
     ck_run_fails(2, "a plot needs a range of energies", "material Fe --energy 60 -o c.png");
     ck_assert_int_eq(look_at_folder(0), 4);
 }
@@ -221,7 +221,7 @@ START_TEST(spectra_come_from_files) {
     json_decref(object);
     ck_run(0, "beam --file a.txt --unit MeV -o a.png");
     ck_run_fails(3, "none.txt: cannot be read", "beam --file none.txt");
-    ck_run_fails(2, "--kvp is a tube's", "beam --file a.txt --kvp 80");
+    ck_run_fails(2, "--kvp describes a tube", "beam --file a.txt --kvp 80");
     ck_run_fails(2, "--unit GeV is not known", "beam --file a.txt --unit GeV");
 }
 END_TEST
@@ -245,9 +245,9 @@ START_TEST(bad_words_are_named) {
     ck_run_fails(2, "--energy x", "material Fe --energy x");
     ck_run_fails(2, "more than 100000 energies", "material Fe --energy 1:20000:0.001");
     ck_run_fails(2, "--density 0 is not a number", "material Fe --density 0");
-    ck_run_fails(2, "of which material?", "material --json");
+    ck_run_fails(2, "no material is named", "material --json");
     ck_run_fails(2, "one word too many", "material Fe Cu");
-    ck_run_fails(2, "of which tube? give --kvp KV, or --file FILE", "beam --json");
+    ck_run_fails(2, "no beam is named; add --kvp KV or --file FILE", "beam --json");
     ck_run_fails(2, "--kvp 5 is not a number from 10 to 450", "beam --kvp 5");
     ck_run_fails(2, "--filter Cu is not MATERIAL:MM", "beam --kvp 60 --filter Cu");
     ck_run_fails(2, "--filter Cu:-1", "beam --kvp 60 --filter Cu:-1");
@@ -256,7 +256,7 @@ START_TEST(bad_words_are_named) {
     ck_run_fails(3, "the filters let no photon through", "beam --kvp 60 --filter Pb:1000");
     ck_run_fails(2, "--model tasmip is not known", "beam --kvp 60 --model tasmip");
     ck_run_fails(2, "--output 65 is not an output", "beam --kvp 60 --output 65");
-    ck_run_fails(2, "--unit goes with --file", "beam --kvp 60 --unit keV");
+    ck_run_fails(2, "--unit needs --file", "beam --kvp 60 --unit keV");
     ck_assert_int_eq(look_at_folder(0), 0);
 }
 END_TEST

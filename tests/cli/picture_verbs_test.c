@@ -94,8 +94,8 @@ START_TEST(bands_are_channels) {
     ck_run(0, "image scene.json -o a.mha --bands 1,2");
     ck_assert_ptr_nonnull(strstr(said, "energy from 1 to 2 keV 0 to 0 keV per pixel"));
     ck_run_fails(2, "--bands 30: one edge makes no band", "image scene.json -o b.mha --bands 30");
-    ck_run_fails(2, "\"20\" is no energy in keV above", "image scene.json -o b.mha --bands 30,20");
-    ck_run_fails(2, "\"\" is no energy in keV above", "image scene.json -o b.mha --bands 30,");
+    ck_run_fails(2, "\"20\" is not an energy in keV above", "image scene.json -o b.mha --bands 30,20");
+    ck_run_fails(2, "\"\" is not an energy in keV above", "image scene.json -o b.mha --bands 30,");
     ck_run_fails(2, "more than 16 bands",
                  "image scene.json -o b.mha --bands 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18");
     ck_run_fails(3, "channel 0", "image scene.json -o b.mha --bands 1,2 --quantity transmission");
@@ -115,7 +115,7 @@ START_TEST(lengths_are_net_or_of_the_surface) {
     read_mha("a.mha", 0, values);
     ck_assert_double_eq_tol(values[MIDDLE], 8, 1e-4);
     ck_run_fails(3, "no part has the label bon; did you mean bone", "lbuffer scene.json --part bon -o a.mha");
-    ck_run_fails(2, "of which part? add --part LABEL", "lbuffer scene.json -o a.mha");
+    ck_run_fails(2, "no part is named; add --part LABEL", "lbuffer scene.json -o a.mha");
 }
 END_TEST
 
@@ -196,7 +196,7 @@ END_TEST
 
 START_TEST(plan_says_what_and_why) {
     ck_run(0, "plan scene.json");
-    ck_assert_ptr_nonnull(strstr(said, "scene.json: 2 parts (0 open), 24 triangles"));
+    ck_assert_ptr_nonnull(strstr(said, "scene.json: 2 parts (0 leaky), 24 triangles"));
     ck_assert_ptr_null(strstr(said, "1 tiles"));
     ck_assert_ptr_nonnull(strstr(said, "60 keV, 1000 photons per pixel"));
     ck_assert_ptr_nonnull(strstr(said, "\n  on  nesting "));
@@ -217,11 +217,12 @@ START_TEST(warnings_are_told_unless_quiet) {
         "--set 'Samples.1={\"Label\":\"bone\",\"Path\":\"open.obj\",\"Unit\":\"mm\","
         "\"Material\":[\"mu\",0.5]}'";
     ck_run(0, "image scene.json -o a.mha %s", open_part);
-    ck_assert_msg(strstr(complained, "skiagraph: warning: ") && strstr(complained, "open"), "%s", complained);
+    ck_assert_msg(strstr(complained, "skiagraph: warning: ") && strstr(complained, "leaky"), "%s",
+                  complained);
     ck_run(0, "plan scene.json --json --quiet %s", open_part);
     ck_assert_str_eq(complained, "");
     json_t *object = said_json();
-    ck_assert_int_eq(json_integer_value(member(object, "leaky_parts")), 1);
+    ck_assert_int_eq(json_integer_value(member(object, "open_parts")), 1);
     ck_assert_int_gt(json_integer_value(member(object, "bad_pixels")), 0);
     json_decref(object);
     ck_run(0, "image scene.json -o a.mha --set 'Detector.Position=[1000,100,0,\"mm\"]' "

@@ -1,0 +1,253 @@
+#include "breathe/breathe.h"
+
+#include "breathe/fluoroscopy.h"
+#include "breathe/meshes.h"
+#include "breathe/outline.h"
+#include "breathe/sheet.h"
+#include "breathe/table.h"
+#include "common/file.h"
+#include "common/interrupt.h"
+#include "common/json.h"
+#include "common/progress.h"
+#include "common/say.h"
+#include "session/explain.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST_FRAMES = 1000000, RANGE_FRAMES = 16, RANGE_BINS = 4096 };
+static const double RANGE_HIGHEST = 32; /* -ln(I/I0) */
+
+/* The sequence of the flags, and its times. */
+typedef struct {
+    double seconds, fps;
+    double phase, at; /* of one picture; NaN: not given */
+    int64_t frames;
+    const char *place, *meshes;
+    double plan_ms, sequence_ms;
+    double pose_ms; /* of all frames of the sequence */
+} sequence;
+
+static int read_positive(const cli_arguments *arguments, const cli_flag *flag, double *number) {
+    const char *value = cli_value(arguments, flag);
+    char *end = NULL;
+    if (!value) return CLI_DONE;
+    *number = strtod(value, &end);
+    if (end == value || *end || !isfinite(*number) || !(*number > 0))
+        return cli_error(CLI_USAGE, "%s %s is not a number above 0", flag->name, value);
+    return CLI_DONE;
+}
+
+static int is_one(const sequence *s) {
+    return !isnan(s->phase) || !isnan(s->at);
+}
+
+static int read_moment(const cli_arguments *arguments, const cli_flag *flag, double *number) {
+    const char *value = cli_value(arguments, flag);
+    char *end = NULL;
+    *number = (double)NAN;
+    if (!value) return CLI_DONE;
+    *number = strtod(value, &end);
+    if (end == value || *end || !isfinite(*number))
+        return cli_error(CLI_USAGE, "%s %s is not a number", flag->name, value);
+    return CLI_DONE;
+}
+
+static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *s) {
+    *s = (sequence){.fps = 30};
+    s->place = cli_value(arguments, &cli_flag_breathe_output);
+    s->meshes = cli_value(arguments, &cli_flag_breathe_meshes);
+    if (s->meshes) cli_guard_output(s->meshes);
+    if (!s->place) return cli_error(CLI_USAGE, "breathe: no output is named; add -o DIR");
+    int exit_status = read_positive(arguments, &cli_flag_breathe_seconds, &s->seconds);
+    if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &cli_flag_breathe_fps, &s->fps);
+    if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &f->low, &f->high);
+    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_phase, &s->phase);
+    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_at, &s->at);
+    if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
+    if (!isnan(s->phase) && !isnan(s->at))
+        return cli_error(CLI_USAGE, "--phase and --at both choose one picture; give one of them");
+    skg_status status = skg_picture_check_path(s->place);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int make_image(fluoroscopy *f, int which) {
+    skg_job *job = NULL;
+    int exit_status = fluoroscopy_start_image(f, which, &job);
+    return exit_status == CLI_DONE ? fluoroscopy_wait_image(f, &job) : exit_status;
+}
+
+static int pose(fluoroscopy *f, const sequence *s, int64_t frame) {
+    const double time = isnan(s->at) ? (double)frame / s->fps : s->at;
+    skg_status status =
+        isnan(s->phase) ? skg_motion_at_time(f->motion, time) : skg_motion_at_phase(f->motion, s->phase);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+/* One range for all frames, from frames that are spread over the whole time. Of the pixels behind a part, the
+ * least dense 2 % and the densest 0.1 % lie outside the range. */
+static int find_range(fluoroscopy *f, const sequence *s) {
+    int64_t *bin = calloc(RANGE_BINS, sizeof *bin), total = 0, sum = 0;
+    const int64_t looks = s->frames < RANGE_FRAMES ? s->frames : RANGE_FRAMES;
+    int exit_status = bin ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t k = 0; k < looks && exit_status == CLI_DONE; k++) {
+        exit_status = pose(f, s, k * s->frames / looks);
+        if (exit_status == CLI_DONE) exit_status = make_image(f, 0);
+        for (int64_t i = 0; i < f->pixels && exit_status == CLI_DONE; i++) {
+            const double at = (double)f->image[0][i] / RANGE_HIGHEST * RANGE_BINS;
+            if (at < 1) continue; /* behind no part */
+            bin[at < RANGE_BINS ? (int)at : RANGE_BINS - 1]++;
+            total++;
+        }
+    }
+    f->low = 0, f->high = RANGE_HIGHEST;
+    for (int b = 0; b < RANGE_BINS && exit_status == CLI_DONE; b++) {
+        if (sum <= total / 50) f->low = b * RANGE_HIGHEST / RANGE_BINS;
+        if (sum <= total - total / 1000) f->high = (b + 1) * RANGE_HIGHEST / RANGE_BINS;
+        sum += bin[b];
+    }
+    free(bin);
+    return exit_status;
+}
+
+/* Times the sequence without writing: the next pose is computed while the device makes the image. */
+static int run_sequence(fluoroscopy *f, sequence *s) {
+    skg_job *job = NULL;
+    const double start = cli_now_ms();
+    int exit_status = pose(f, s, 0);
+    s->pose_ms = cli_now_ms() - start;
+    for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
+        exit_status = fluoroscopy_start_image(f, (int)(i % 2), &job);
+        if (exit_status != CLI_DONE) break;
+        const double posing = cli_now_ms();
+        if (i + 1 < s->frames) exit_status = pose(f, s, i + 1);
+        s->pose_ms += cli_now_ms() - posing;
+        int waited = fluoroscopy_wait_image(f, &job);
+        if (exit_status == CLI_DONE) exit_status = waited;
+    }
+    s->sequence_ms = cli_now_ms() - start;
+    return exit_status;
+}
+
+/* Computes one frame and writes its files. */
+static int write_frame(fluoroscopy *f, const sequence *s, int64_t i, motion_table *table,
+                       contact_sheet *sheet) {
+    skg_job *job = NULL;
+    char *path = cli_path_in(s->place, "frame-%04" PRId64 ".png", i);
+    int exit_status = path ? pose(f, s, i) : cli_error(CLI_DEVICE, "out of host memory");
+    if (exit_status == CLI_DONE) exit_status = fluoroscopy_start_image(f, 0, &job);
+    if (exit_status == CLI_DONE) exit_status = table_add(f, (double)i / s->fps, table);
+    if (exit_status == CLI_DONE && s->meshes) exit_status = meshes_write(f, s->meshes, i);
+    if (job) {
+        int waited = fluoroscopy_wait_image(f, &job);
+        if (exit_status == CLI_DONE) exit_status = waited;
+    }
+    if (exit_status == CLI_DONE) exit_status = fluoroscopy_write(f, 0, path);
+    if (exit_status == CLI_DONE) sheet_add(f, 0, i, s->frames, sheet);
+    free(path);
+    return exit_status;
+}
+
+static int write_sequence(fluoroscopy *f, const sequence *s) {
+    motion_table table = {0};
+    contact_sheet sheet = {0};
+    char *motion = cli_path_in(s->place, "motion.csv"), *contact = cli_path_in(s->place, "contact.png");
+    const double start = cli_now_ms();
+    int exit_status = motion && contact ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+    if (exit_status == CLI_DONE) exit_status = table_open(motion, &table);
+    if (exit_status == CLI_DONE) exit_status = sheet_create(f, s->frames, &sheet);
+    for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
+        exit_status = write_frame(f, s, i, &table, &sheet);
+        cli_progress("frames", i + 1, s->frames, start);
+    }
+    if (exit_status == CLI_DONE) exit_status = table_close(&table);
+    if (exit_status == CLI_DONE) exit_status = sheet_write(f, &sheet, contact);
+    table_discard(&table);
+    free(sheet.values);
+    free(motion);
+    free(contact);
+    return exit_status;
+}
+
+static int print(const cli_arguments *arguments, const fluoroscopy *f, const sequence *s) {
+    const double rate = 1e3 * (double)s->frames / s->sequence_ms;
+    const double range[2] = {f->low, f->high};
+    if (cli_given(arguments, &cli_flag_json)) {
+        json_t *object = json_object();
+        json_object_set_new(object, "frames", json_integer(s->frames));
+        json_object_set_new(object, "frames_per_s", cli_json_number(rate));
+        json_object_set_new(object, "frame_ms", cli_json_number(s->sequence_ms / (double)s->frames));
+        json_object_set_new(object, "pose_ms", cli_json_number(s->pose_ms / (double)s->frames));
+        json_object_set_new(object, "plan_ms", cli_json_number(s->plan_ms));
+        json_object_set_new(object, "range", cli_json_numbers(range, 2));
+        json_object_set_new(object, "plan", cli_explain_json(f->plan, &f->session));
+        return cli_json_print(object);
+    }
+    if (cli_is_quiet()) return CLI_DONE;
+    if (is_one(s)) {
+        printf("%s %.6g%s; wrote %s\n", isnan(s->at) ? "phase" : "at", isnan(s->at) ? s->phase : s->at,
+               isnan(s->at) ? "" : " s", s->place);
+        return CLI_DONE;
+    }
+    printf("%" PRId64
+           " frames of %g s: %.1f frames/s without writing, %.2f ms a frame; a pose takes %.2f ms of it, "
+           "overlapped\nwith the image; -ln(I/I0) is shown from %.3g to %.3g\n",
+           s->frames, (double)s->frames / s->fps, rate, s->sequence_ms / (double)s->frames,
+           s->pose_ms / (double)s->frames, f->low, f->high);
+    printf("wrote %s/frame-0000.png to frame-%04" PRId64 ".png, contact.png, motion.csv\n", s->place,
+           s->frames - 1);
+    return CLI_DONE;
+}
+
+static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) {
+    const char *outline = cli_value(arguments, &cli_flag_breathe_outline);
+    double period = 0;
+    int exit_status = cli_open_session(arguments, &f->session);
+    if (exit_status != CLI_DONE) return exit_status;
+    f->session.options.quantity = SKG_QUANTITY_ATTENUATION;
+    skg_status status = skg_motion_create(f->session.context, f->session.setup, &f->motion);
+    if (status == SKG_OK) status = skg_motion_period_get(f->motion, &period);
+    if (status != SKG_OK) return cli_fail(status);
+    if (!(s->seconds > 0)) s->seconds = period;
+    const double frames = is_one(s) ? 1 : fmax(1, floor(s->seconds * s->fps + 0.5));
+    if (frames > MOST_FRAMES)
+        return cli_error(CLI_USAGE, "%g frames are too many; %d at most", frames, MOST_FRAMES);
+    s->frames = (int64_t)frames;
+    f->pixels = f->session.view.columns * f->session.view.rows;
+    for (int i = 0; i < 2; i++) f->image[i] = calloc((size_t)f->pixels, sizeof(float));
+    if (!f->image[0] || !f->image[1]) return cli_error(CLI_DEVICE, "out of host memory for the images");
+    exit_status = cli_make_plan(&f->session, &f->plan, &s->plan_ms);
+    if (exit_status == CLI_DONE && outline) exit_status = outline_find(f, outline);
+    return exit_status;
+}
+
+static int work(const cli_arguments *arguments, fluoroscopy *f) {
+    sequence s;
+    int exit_status = read_flags(arguments, f, &s);
+    if (exit_status == CLI_DONE && !is_one(&s)) exit_status = cli_make_folder(s.place);
+    if (exit_status == CLI_DONE && s.meshes) exit_status = cli_make_folder(s.meshes);
+    if (exit_status == CLI_DONE) exit_status = prepare(arguments, f, &s);
+    if (exit_status == CLI_DONE && f->low == 0 && f->high == 0) exit_status = find_range(f, &s);
+    if (exit_status == CLI_DONE) exit_status = run_sequence(f, &s);
+    if (exit_status != CLI_DONE) return exit_status;
+    if (!is_one(&s)) {
+        exit_status = write_sequence(f, &s);
+    } else {
+        if (s.meshes) exit_status = meshes_write(f, s.meshes, 0);
+        if (exit_status == CLI_DONE) exit_status = fluoroscopy_write(f, 0, s.place);
+    }
+    return exit_status == CLI_DONE ? print(arguments, f, &s) : exit_status;
+}
+
+int cli_breathe(const cli_arguments *arguments) {
+    fluoroscopy f = {0};
+    int exit_status = work(arguments, &f);
+    for (int i = 0; i < 2; i++) free(f.image[i]);
+    free(f.outline);
+    skg_plan_release(&f.plan);
+    skg_motion_release(&f.motion);
+    cli_close_session(&f.session);
+    return exit_status;
+}

@@ -1,0 +1,44 @@
+#include "breathe/fluoroscopy.h"
+
+#include "common/say.h"
+#include "session/frames.h"
+
+int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job) {
+    skg_output output;
+    skg_frame frame;
+    skg_output_init(&output);
+    skg_frame_init(&frame);
+    output.data = f->image[which];
+    skg_status status = skg_motion_fill(f->motion, &frame);
+    if (status == SKG_OK) status = skg_plan_submit(f->plan, 1, &frame, &output, job);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+int fluoroscopy_wait_image(fluoroscopy *f, skg_job **job) {
+    return cli_end_image(skg_job_wait(job), &f->range_warned);
+}
+
+void fluoroscopy_picture(const fluoroscopy *f, int64_t columns, int64_t rows, const float *values,
+                         skg_picture *picture) {
+    skg_picture_init(picture);
+    picture->type = SKG_TYPE_FLOAT32;
+    picture->columns = columns;
+    picture->rows = rows;
+    picture->channels = 1;
+    picture->data = values;
+    picture->name = "attenuation";
+    picture->unit = "-ln(I/I0)";
+    picture->quantity = SKG_QUANTITY_ATTENUATION;
+    picture->low = f->low;
+    picture->high = f->high;
+}
+
+int fluoroscopy_write(fluoroscopy *f, int which, const char *path) {
+    skg_picture picture;
+    for (int64_t i = 0; f->outline && i < f->pixels; i++)
+        if (f->outline[i]) f->image[which][i] = (float)f->high;
+    fluoroscopy_picture(f, f->session.view.columns, f->session.view.rows, f->image[which], &picture);
+    picture.view = &f->session.view;
+    skg_status status = skg_picture_write(&picture, path);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}

@@ -1,0 +1,29 @@
+/* Images of a scene that moves. Functions that return int return an exit status and print the error. */
+#ifndef SKG_CLI_FLUOROSCOPY_H
+#define SKG_CLI_FLUOROSCOPY_H
+
+#include "session/session.h"
+
+typedef struct {
+    cli_session session;
+    skg_motion *motion;
+    skg_plan *plan;
+    int64_t pixels;
+    float *image[2];  /* [rows][columns] of -ln(I/I0): one is computed while the other is used */
+    double low, high; /* shown as black and as white: one range for all frames */
+    int range_warned; /* 1: lengths outside the verified range were warned of */
+    char *outline;    /* [rows][columns] 1 where an outline is drawn; NULL: none */
+} fluoroscopy;
+
+/* The image of the motion in its present pose, into image[which]: started, then waited for. */
+int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job);
+int fluoroscopy_wait_image(fluoroscopy *f, skg_job **job);
+
+/* Writes image[which] with the outline drawn into it. */
+int fluoroscopy_write(fluoroscopy *f, int which, const char *path);
+
+/* Fills in a picture of -ln(I/I0) from low to high. */
+void fluoroscopy_picture(const fluoroscopy *f, int64_t columns, int64_t rows, const float *values,
+                         skg_picture *picture);
+
+#endif

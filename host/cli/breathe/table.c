@@ -1,0 +1,80 @@
+#include "breathe/table.h"
+
+#include "common/say.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+int table_open(const char *path, motion_table *table) {
+    *table = (motion_table){0};
+    size_t capacity = strlen(path) + 32;
+    table->path = malloc(capacity);
+    table->temporary = malloc(capacity);
+    if (!table->path || !table->temporary) return cli_error(CLI_DEVICE, "out of host memory");
+    snprintf(table->path, capacity, "%s", path);
+    snprintf(table->temporary, capacity, "%s.part-%ld", path, (long)getpid());
+    table->stream = fopen(table->temporary, "w");
+    if (!table->stream) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
+    fputs("t_s,phase,amplitude,thoracic,diaphragmatic,lung_ml,tidal_ml,lung_hu,diaphragm_left_mm,"
+          "diaphragm_right_mm,liver_x_mm,liver_y_mm,liver_z_mm,liver_volume_ratio,flipped_triangles,"
+          "conflict_mm,broken_links,needle_mm,conflict\n",
+          table->stream);
+    return CLI_DONE;
+}
+
+/* "liver: tendon, rib 8 left" in quotes, with quotes in labels doubled; empty if there is no conflict. */
+static void write_conflict(const skg_body_measure *m, FILE *stream) {
+    static const char *const before[3] = {"", ": ", ", "};
+    if (m->conflict[0]) fputc('"', stream);
+    for (int i = 0; i < 3 && m->conflict[i]; i++) {
+        fputs(before[i], stream);
+        for (const char *c = m->conflict[i]; *c; c++) {
+            if (*c == '"') fputc('"', stream);
+            fputc(*c, stream);
+        }
+    }
+    fputs(m->conflict[0] ? "\"\n" : "\n", stream);
+}
+
+int table_add(const fluoroscopy *f, double time_s, motion_table *table) {
+    skg_motion_state s;
+    skg_body_measure m;
+    skg_body *body = NULL;
+    skg_motion_state_init(&s);
+    skg_body_measure_init(&m);
+    skg_status status = skg_motion_state_get(f->motion, &s);
+    if (status == SKG_OK) status = skg_motion_body_get(f->motion, &body);
+    if (status == SKG_OK) status = skg_body_measure_get(body, &m);
+    if (status != SKG_OK) return cli_fail(status);
+    fprintf(table->stream,
+            "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId64 ",%.9g,%" PRId64
+            ",%.9g,",
+            time_s, s.breath.phase, s.breath.amplitude, s.breath.thoracic, s.breath.diaphragmatic, m.lung_ml,
+            m.tidal_ml, s.lung_hu, m.diaphragm_mm[0], m.diaphragm_mm[1], m.liver_mm[0], m.liver_mm[1],
+            m.liver_mm[2], m.liver_volume_ratio, m.flipped_triangles, m.conflict_mm, m.broken_links,
+            s.needle_mm);
+    write_conflict(&m, table->stream);
+    return CLI_DONE;
+}
+
+int table_close(motion_table *table) {
+    int failed = ferror(table->stream) | fclose(table->stream);
+    table->stream = NULL;
+    if (failed || rename(table->temporary, table->path) != 0)
+        return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", table->path, strerror(errno));
+    return CLI_DONE;
+}
+
+void table_discard(motion_table *table) {
+    if (table->stream) {
+        fclose(table->stream);
+        remove(table->temporary);
+    }
+    free(table->path);
+    free(table->temporary);
+    *table = (motion_table){0};
+}

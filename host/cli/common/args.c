@@ -1,0 +1,180 @@
+#include "common/args.h"
+
+#include "common/say.h"
+#include "core/names.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_NAMES = 64 };
+
+int cli_unknown(const char *what, const char *name, const char *const *known, int count, const char *help) {
+    const char *near = skg_nearest_name(name, known, count);
+    if (near)
+        return cli_error(CLI_USAGE, "unknown %s %s; did you mean %s? `skiagraph %s` lists all", what, name,
+                         near, help);
+    return cli_error(CLI_USAGE, "unknown %s %s; `skiagraph %s` lists all", what, name, help);
+}
+
+static int unknown_flag(const cli_manual *manual, const char *name) {
+    const char *names[MOST_NAMES];
+    char help[64];
+    int count = 0;
+    while (manual->flags[count] && count < MOST_NAMES - 1) {
+        names[count] = manual->flags[count]->name;
+        count++;
+    }
+    names[count++] = cli_flag_help.name;
+    snprintf(help, sizeof help, "help %s", manual->name);
+    return cli_unknown("flag", name, names, count, help);
+}
+
+/* The flag that a word names; "--name=value" names --name. */
+static const cli_flag *find_flag(const cli_manual *manual, const char *word) {
+    size_t length = strcspn(word, "=");
+    for (int i = 0; manual->flags[i]; i++)
+        if (strlen(manual->flags[i]->name) == length && strncmp(manual->flags[i]->name, word, length) == 0)
+            return manual->flags[i];
+    return NULL;
+}
+
+static int parse_flag(const cli_manual *manual, int count, char **words, int *at, cli_arguments *arguments) {
+    char *word = words[*at];
+    if (strcmp(word, cli_flag_help.name) == 0 || strcmp(word, "-h") == 0) {
+        arguments->help = 1;
+        return CLI_DONE;
+    }
+    const cli_flag *flag = find_flag(manual, word);
+    const char *equals = strchr(word, '='), *value = equals ? equals + 1 : NULL;
+    if (!flag) {
+        if (equals) word[equals - word] = '\0'; /* the message shows the name alone */
+        return unknown_flag(manual, word);
+    }
+    if (!cli_flag_has_value(flag) && value) return cli_error(CLI_USAGE, "%s takes no value", flag->name);
+    if (cli_flag_has_value(flag) && !value) {
+        char text[128];
+        cli_flag_argument(flag, text, sizeof text);
+        if (*at + 1 >= count)
+            return cli_error(CLI_USAGE, "%s needs a value: %s %s", flag->name, flag->name, text);
+        value = words[++*at];
+    }
+    arguments->given[arguments->given_count].flag = flag;
+    arguments->given[arguments->given_count++].value = value;
+    return CLI_DONE;
+}
+
+static int check_operands(const cli_arguments *arguments) {
+    const cli_manual *manual = arguments->manual;
+    if (arguments->operand_count < manual->least)
+        return cli_error(CLI_USAGE, "%s: %s is missing; see `skiagraph help %s`", manual->name,
+                         manual->operands, manual->name);
+    if (manual->most >= 0 && arguments->operand_count > manual->most)
+        return cli_error(CLI_USAGE, "%s: \"%s\" is one word too many; see `skiagraph help %s`", manual->name,
+                         arguments->operands[manual->most], manual->name);
+    return CLI_DONE;
+}
+
+int cli_parse(const cli_manual *manual, int count, char **words, cli_arguments *arguments) {
+    *arguments = (cli_arguments){.manual = manual};
+    arguments->operands = calloc((size_t)count + 1, sizeof *arguments->operands);
+    arguments->given = calloc((size_t)count + 1, sizeof *arguments->given);
+    if (!arguments->operands || !arguments->given) return cli_error(CLI_DEVICE, "out of host memory");
+    int only_operands = 0;
+    for (int at = 0; at < count; at++) {
+        if (!only_operands && strcmp(words[at], "--") == 0) {
+            only_operands = 1;
+        } else if (!only_operands && words[at][0] == '-' && words[at][1] != '\0') {
+            int exit_status = parse_flag(manual, count, words, &at, arguments);
+            if (exit_status != CLI_DONE) return exit_status;
+        } else {
+            arguments->operands[arguments->operand_count++] = words[at];
+        }
+    }
+    return arguments->help ? CLI_DONE : check_operands(arguments);
+}
+
+void cli_arguments_free(cli_arguments *arguments) {
+    free(arguments->operands);
+    free(arguments->given);
+    *arguments = (cli_arguments){0};
+}
+
+const char *cli_nth_value(const cli_arguments *arguments, const cli_flag *flag, int index) {
+    for (int i = 0; i < arguments->given_count; i++)
+        if (arguments->given[i].flag == flag && index-- == 0) return arguments->given[i].value;
+    return NULL;
+}
+
+const char *cli_value(const cli_arguments *arguments, const cli_flag *flag) {
+    for (int i = arguments->given_count - 1; i >= 0; i--)
+        if (arguments->given[i].flag == flag) return arguments->given[i].value;
+    return NULL;
+}
+
+int cli_given(const cli_arguments *arguments, const cli_flag *flag) {
+    for (int i = 0; i < arguments->given_count; i++)
+        if (arguments->given[i].flag == flag) return 1;
+    return 0;
+}
+
+int cli_choice(const cli_arguments *arguments, const cli_flag *flag, int32_t *choice) {
+    const char *value = cli_value(arguments, flag), *names[MOST_NAMES];
+    char known[256] = "";
+    int count = 0;
+    if (!value) return CLI_DONE;
+    for (; flag->values[count].name && count < MOST_NAMES; count++) {
+        const size_t used = strlen(known);
+        names[count] = flag->values[count].name;
+        snprintf(known + used, sizeof known - used, "%s%s", count == 0 ? "" : ", ", names[count]);
+        if (!skg_same_name(value, names[count])) continue;
+        *choice = count;
+        return CLI_DONE;
+    }
+    const char *near = skg_nearest_name(value, names, count);
+    return cli_error(CLI_USAGE, "%s %s is not known%s%s; known: %s", flag->name, value,
+                     near ? "; did you mean " : "", near ? near : "", known);
+}
+
+int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t least, int64_t most,
+                int64_t *number) {
+    const char *value = cli_value(arguments, flag);
+    if (!value) return CLI_DONE;
+    char *end = NULL;
+    errno = 0;
+    long long found = strtoll(value, &end, 10);
+    if (end == value || *end || errno || found < least || found > most)
+        return cli_error(CLI_USAGE, "%s %s is not a whole number from %" PRId64 " to %" PRId64, flag->name,
+                         value, least, most);
+    *number = found;
+    return CLI_DONE;
+}
+
+int cli_number(const cli_arguments *arguments, const cli_flag *flag, double least, double most,
+               double *number) {
+    const char *value = cli_value(arguments, flag);
+    if (!value) return CLI_DONE;
+    char *end = NULL;
+    double found = strtod(value, &end);
+    if (end == value || *end || !(found >= least && found <= most))
+        return cli_error(CLI_USAGE, "%s %s is not a number from %g to %g", flag->name, value, least, most);
+    *number = found;
+    return CLI_DONE;
+}
+
+int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high) {
+    const char *value = cli_value(arguments, flag);
+    if (!value) return CLI_DONE;
+    char *colon = NULL, *end = NULL;
+    double a = strtod(value, &colon);
+    double b = *colon == ':' ? strtod(colon + 1, &end) : 0;
+    if (colon == value || *colon != ':' || end == colon + 1 || *end || !isfinite(a) || !isfinite(b) || a >= b)
+        return cli_error(CLI_USAGE, "%s %s is not two numbers LOW:HIGH, the lower number first", flag->name,
+                         value);
+    *low = a;
+    *high = b;
+    return CLI_DONE;
+}

@@ -1,0 +1,78 @@
+/* Removes unfinished outputs when a signal ends the process. The handler makes async-signal-safe calls only:
+ * it reads folders by getdents64 into static memory, because readdir allocates. */
+#define _GNU_SOURCE /* getdents64 */
+#include "common/interrupt.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_FOLDERS = 64, LONGEST_PATH = 4096, ENTRY_BYTES = 16384 };
+
+static pthread_t writer;
+static char folders[MOST_FOLDERS][LONGEST_PATH];
+static volatile sig_atomic_t folder_count;
+static char suffix[32]; /* of unfinished files */
+
+static int is_unfinished(const char *name) {
+    const size_t length = strlen(name), its = strlen(suffix);
+    return length > its && memcmp(name + length - its, suffix, its) == 0;
+}
+
+static void clear_folder(const char *path) {
+    static _Alignas(struct dirent64) char entries[ENTRY_BYTES];
+    const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    ssize_t size;
+    if (folder < 0) return;
+    while ((size = getdents64(folder, entries, sizeof entries)) > 0)
+        for (ssize_t at = 0; at < size;) {
+            const struct dirent64 *entry = (const struct dirent64 *)(const void *)(entries + at);
+            if (is_unfinished(entry->d_name)) unlinkat(folder, entry->d_name, 0);
+            at += entry->d_reclen;
+        }
+    close(folder);
+}
+
+/* Cleans up in the thread that writes, which therefore writes no more. */
+static void end(int number) {
+    if (!pthread_equal(pthread_self(), writer)) {
+        pthread_kill(writer, number);
+        return;
+    }
+    for (int f = 0; f < folder_count; f++) clear_folder(folders[f]);
+    signal(number, SIG_DFL);
+    raise(number); /* is delivered when the handler returns */
+}
+
+void cli_catch_signals(void) {
+    static const int numbers[3] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = end}, before;
+    writer = pthread_self();
+    snprintf(suffix, sizeof suffix, ".part-%ld", (long)getpid());
+    sigemptyset(&action.sa_mask);
+    for (int n = 0; n < 3; n++) sigaddset(&action.sa_mask, numbers[n]);
+    for (int n = 0; n < 3; n++)
+        if (sigaction(numbers[n], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(numbers[n], &action, NULL);
+}
+
+static void guard(const char *path, size_t length) {
+    if (folder_count == MOST_FOLDERS || length >= LONGEST_PATH) return;
+    memcpy(folders[folder_count], path, length);
+    folders[folder_count][length] = '\0';
+    folder_count++;
+}
+
+void cli_guard_output(const char *path) {
+    const char *slash = strrchr(path, '/');
+    guard(path, strlen(path));
+    if (slash)
+        guard(path, (size_t)(slash - path) + 1);
+    else
+        guard(".", 1);
+}

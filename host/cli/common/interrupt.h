@@ -1,0 +1,12 @@
+/* A signal leaves no unfinished output behind. */
+#ifndef SKG_CLI_INTERRUPT_H
+#define SKG_CLI_INTERRUPT_H
+
+/* SIGINT, SIGTERM and SIGHUP, unless they were ignored before, remove the unfinished files (NAME.part-PID) of
+ * guarded outputs and then end the process. Call it once, in the thread that writes. */
+void cli_catch_signals(void);
+
+/* Guards the folder that holds `path`, and `path` itself if it is a folder. */
+void cli_guard_output(const char *path);
+
+#endif

@@ -1,0 +1,27 @@
+/* Sentences on standard error, and the exit status that goes with each. */
+#ifndef SKG_CLI_SAY_H
+#define SKG_CLI_SAY_H
+
+#include <skiagraph/skiagraph.h>
+
+enum { CLI_DONE = 0, CLI_CHECK_FAILED = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_DEVICE = 4, CLI_OUTPUT = 5 };
+
+/* Prints "skiagraph: sentence" and returns the exit status. */
+int cli_error(int exit_status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Prints the last message of the library and returns the exit status that fits. */
+int cli_fail(skg_status status);
+
+/* The exit status for a failure of the library. */
+int cli_exit_status(skg_status status);
+
+/* Prints "skiagraph: warning: sentence", unless --quiet. */
+void cli_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* A skg_log_function that prints warnings and notes, unless --quiet. */
+void cli_log(int32_t level, const char *sentence, void *user);
+
+void cli_set_quiet(int quiet);
+int cli_is_quiet(void);
+
+#endif

@@ -1,0 +1,97 @@
+#include "cost/cost.h"
+
+#include "common/file.h"
+#include "common/json.h"
+#include "common/say.h"
+#include "cost/advice.h"
+#include "cost/data.h"
+#include "cost/open.h"
+#include "cost/page.h"
+#include "cost/print.h"
+#include "cost/sweep.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Checks before the long computation that every -o can be written. */
+static int check_outputs(const cli_arguments *arguments) {
+    const char *path;
+    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_cost_output, i)); i++) {
+        if (!cli_has_extension(path, ".html") && !cli_has_extension(path, ".csv"))
+            return cli_error(CLI_USAGE, "-o %s: its extension is neither .html nor .csv", path);
+        const char *slash = strrchr(path, '/');
+        char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+        if (!folder) return cli_error(CLI_DEVICE, "out of host memory");
+        int can = access(folder, W_OK | X_OK) == 0;
+        free(folder);
+        if (!can) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
+    }
+    return CLI_DONE;
+}
+
+static int write_csv(const cost_study *study, const char *path) {
+    char *text = cost_csv(study);
+    if (!text) return cli_error(CLI_DEVICE, "out of host memory");
+    int exit_status = cli_write_file(path, text, strlen(text));
+    free(text);
+    return exit_status;
+}
+
+/* The path of the table beside a page: "cost.csv" for "cost.html". The caller frees it; NULL if memory is
+ * exhausted. */
+static char *table_beside(const char *path) {
+    const size_t stem = strlen(path) - strlen(".html");
+    char *beside = malloc(stem + sizeof ".csv");
+    if (beside) sprintf(beside, "%.*s.csv", (int)stem, path);
+    return beside;
+}
+
+static int write_output(const cost_study *study, const char *path) {
+    if (cli_has_extension(path, ".csv")) return write_csv(study, path);
+    int exit_status = cost_write_page(study, path);
+    char *beside = table_beside(path);
+    int its = beside ? write_csv(study, beside) : cli_error(CLI_DEVICE, "out of host memory");
+    free(beside);
+    return exit_status == CLI_DONE ? its : exit_status;
+}
+
+static int write_outputs(const cost_study *study) {
+    const char *path;
+    int failure = CLI_DONE;
+    for (int i = 0; (path = cli_nth_value(study->arguments, &cli_flag_cost_output, i)); i++) {
+        int its = write_output(study, path);
+        if (failure == CLI_DONE) failure = its;
+    }
+    return failure;
+}
+
+static int report(const cost_study *study) {
+    const char *path;
+    if (cli_given(study->arguments, &cli_flag_json)) return cli_json_print(cost_json(study));
+    if (cli_is_quiet()) return CLI_DONE;
+    cost_print(study);
+    for (int i = 0; (path = cli_nth_value(study->arguments, &cli_flag_cost_output, i)); i++)
+        printf(cli_has_extension(path, ".csv") ? "wrote %s\n" : "wrote %s, and its table as .csv\n", path);
+    return CLI_DONE;
+}
+
+int cli_cost(const cli_arguments *arguments) {
+    cost_study *study = calloc(1, sizeof *study);
+    if (!study) return cli_error(CLI_DEVICE, "out of host memory");
+    study->arguments = arguments;
+    study->quick = cli_given(arguments, &cli_flag_cost_quick);
+    int exit_status = check_outputs(arguments);
+    if (exit_status == CLI_DONE) {
+        exit_status = cost_open(study);
+        if (exit_status == CLI_DONE) exit_status = cost_sweep(study);
+        if (exit_status == CLI_DONE) exit_status = cost_advise(study);
+        if (exit_status == CLI_DONE) exit_status = write_outputs(study);
+        if (exit_status == CLI_DONE) exit_status = report(study);
+        cost_close(study);
+    }
+    free(study);
+    return exit_status;
+}

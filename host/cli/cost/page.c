@@ -1,0 +1,197 @@
+#include "cost/page.h"
+
+#include "common/file.h"
+#include "common/json.h"
+#include "common/say.h"
+#include "cost/data.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const float LEAST_SHOWN = 1e-12f; /* of the flat field */
+
+extern const char cost_page[]; /* page.html, as built in */
+
+/* Bytes as "data:image/png;base64,..." (RFC 4648), which the caller frees; NULL if memory is exhausted. */
+static char *data_uri(const unsigned char *bytes, size_t count) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char head[] = "data:image/png;base64,";
+    char *text = malloc(sizeof head + 4 * ((count + 2) / 3));
+    if (!text) return NULL;
+    memcpy(text, head, sizeof head - 1);
+    char *at = text + sizeof head - 1;
+    for (size_t i = 0; i < count; i += 3) {
+        unsigned group = (unsigned)bytes[i] << 16;
+        if (i + 1 < count) group |= (unsigned)bytes[i + 1] << 8;
+        if (i + 2 < count) group |= bytes[i + 2];
+        *at++ = digits[group >> 18];
+        *at++ = digits[group >> 12 & 63];
+        *at++ = i + 1 < count ? digits[group >> 6 & 63] : '=';
+        *at++ = i + 2 < count ? digits[group & 63] : '=';
+    }
+    *at = '\0';
+    return text;
+}
+
+/* The bytes of a file, which the caller frees; NULL if it cannot be read. */
+static unsigned char *read_all(const char *path, size_t *count) {
+    FILE *stream = fopen(path, "rb");
+    unsigned char *bytes = NULL;
+    *count = 0;
+    if (!stream) return NULL;
+    if (fseek(stream, 0, SEEK_END) == 0) {
+        long size = ftell(stream);
+        rewind(stream);
+        if (size > 0) bytes = malloc((size_t)size);
+        if (bytes) *count = fread(bytes, 1, (size_t)size, stream);
+    }
+    fclose(stream);
+    return bytes;
+}
+
+/* A picture as a URI, by way of a temporary file: the library writes pictures to files only. */
+static int picture_json(const skg_picture *picture, json_t **uri) {
+    char folder[] = "/tmp/skiagraph-XXXXXX", path[64];
+    if (!mkdtemp(folder)) return cli_error(CLI_OUTPUT, "/tmp: no temporary folder can be made");
+    snprintf(path, sizeof path, "%s/picture.png", folder);
+    size_t count = 0;
+    skg_status status = skg_picture_write(picture, path);
+    unsigned char *bytes = status == SKG_OK ? read_all(path, &count) : NULL;
+    char *text = bytes ? data_uri(bytes, count) : NULL;
+    int exit_status = CLI_DONE;
+    if (status != SKG_OK)
+        exit_status = cli_fail(status);
+    else if (!text)
+        exit_status = cli_error(CLI_OUTPUT, "%s: cannot be read back", path);
+    else
+        *uri = json_string(text);
+    unlink(path);
+    rmdir(folder);
+    free(bytes);
+    free(text);
+    return exit_status;
+}
+
+static void begin_picture(const cost_study *study, const float *data, skg_picture *picture) {
+    skg_picture_init(picture);
+    picture->type = SKG_TYPE_FLOAT32;
+    picture->columns = study->thumb_columns;
+    picture->rows = study->thumb_rows;
+    picture->channels = 1;
+    picture->data = data;
+}
+
+/* Values as 256 levels from low to high, which suffice for a screen and halve the size of the picture. */
+static int levels_json(const cost_study *study, float *values, double low, double high, json_t **uri) {
+    skg_picture picture;
+    begin_picture(study, values, &picture);
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
+    picture.low = low;
+    picture.high = high;
+    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++) {
+        const double level = round(255 * ((double)values[i] - low) / (high - low));
+        values[i] = (float)(low + (high - low) * fmin(fmax(level, 0), 255) / 255);
+    }
+    return picture_json(&picture, uri);
+}
+
+/* -ln(I/I0) of a point's image. low, high: set by the first picture and used for all. */
+static int small_json(const cost_study *study, const cost_point *point, double *low, double *high,
+                      json_t **uri) {
+    const int64_t places = study->thumb_columns * study->thumb_rows;
+    float *dense = calloc((size_t)places, sizeof *dense);
+    skg_picture picture;
+    if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(point->small[i], LEAST_SHOWN));
+    begin_picture(study, dense, &picture);
+    picture.quantity = SKG_QUANTITY_ATTENUATION;
+    skg_status status = *high > *low ? SKG_OK : skg_picture_range(&picture, low, high);
+    if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* all pixels are equal */
+    int exit_status = status == SKG_OK ? levels_json(study, dense, *low, *high, uri) : cli_fail(status);
+    free(dense);
+    return exit_status;
+}
+
+/* The differences: middle grey is none, black and white are the largest finite one of either sign, *range.
+ * Levels between are cube roots, so that eight bits also resolve small differences; the page can undo them. */
+static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
+    const int64_t places = study->thumb_columns * study->thumb_rows;
+    float largest = 0, *roots = calloc((size_t)places, sizeof *roots);
+    if (!roots) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++)
+        if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
+    for (int64_t i = 0; i < places && largest > 0; i++) roots[i] = cbrtf(point->difference[i] / largest);
+    *range = (double)largest;
+    int exit_status = levels_json(study, roots, -1, 1, uri);
+    free(roots);
+    return exit_status;
+}
+
+/* Pictures are kept of the frontier, of the advised settings and of every dial other than the rays'. */
+static int is_pictured(const cost_study *study, int index) {
+    const cost_point *point = &study->points[index];
+    if (point->on_frontier || point->dial == COST_SCENE || point->dial == COST_PRECISION) return 1;
+    if (point->reference != COST_OF_RAYS) return 1;
+    for (int i = 0; i < COST_TOLERANCES; i++)
+        if (study->advice[i].rays == index) return 1;
+    return 0;
+}
+
+static int add_point_pictures(const cost_study *study, const cost_point *point, double *low, double *high,
+                              json_t *object) {
+    json_t *uri = NULL;
+    double range = 0;
+    int exit_status = small_json(study, point, low, high, &uri);
+    if (exit_status != CLI_DONE) return exit_status;
+    json_object_set_new(object, "image", uri);
+    exit_status = difference_json(study, point, &uri, &range);
+    if (exit_status != CLI_DONE) return exit_status;
+    json_object_set_new(object, "difference", uri);
+    json_object_set_new(object, "range", cli_json_number(range));
+    return CLI_DONE;
+}
+
+static int add_pictures(const cost_study *study, json_t *object) {
+    json_t *points = json_object_get(object, "points");
+    int exit_status = CLI_DONE;
+    double low = 0, high = 0;
+    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++)
+        if (is_pictured(study, i))
+            exit_status =
+                add_point_pictures(study, &study->points[i], &low, &high, json_array_get(points, (size_t)i));
+    return exit_status;
+}
+
+/* The page with the data instead of its mark. "/" is escaped so that no text can end the script. */
+static char *fill_page(json_t *object) {
+    static const char mark[] = "\"STUDY\"";
+    const char *place = strstr(cost_page, mark);
+    char *data = json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_ENSURE_ASCII), *text = NULL;
+    size_t size = 0;
+    FILE *stream = data && place ? open_memstream(&text, &size) : NULL;
+    if (stream) {
+        fwrite(cost_page, 1, (size_t)(place - cost_page), stream);
+        fputs(data, stream);
+        fputs(place + sizeof mark - 1, stream);
+        if (fclose(stream) != 0) {
+            free(text);
+            text = NULL;
+        }
+    }
+    free(data);
+    return text;
+}
+
+int cost_write_page(const cost_study *study, const char *path) {
+    json_t *object = cost_json(study);
+    int exit_status = add_pictures(study, object);
+    char *text = exit_status == CLI_DONE ? fill_page(object) : NULL;
+    if (exit_status == CLI_DONE && !text) exit_status = cli_error(CLI_DEVICE, "out of host memory");
+    if (exit_status == CLI_DONE) exit_status = cli_write_file(path, text, strlen(text));
+    free(text);
+    json_decref(object);
+    return exit_status;
+}

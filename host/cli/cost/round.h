@@ -1,0 +1,10 @@
+/* The scene with other numbers of sectors of its spheres and cylinders. */
+#ifndef SKG_CLI_COST_ROUND_H
+#define SKG_CLI_COST_ROUND_H
+
+#include "cost/study.h"
+
+/* Adds meshings, coarser to finer, in which every sphere and cylinder of 8 sectors or more is made again. */
+skg_status cost_find_round(cost_study *study);
+
+#endif

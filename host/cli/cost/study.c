@@ -1,0 +1,120 @@
+#include "cost/study.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const cost_dial_names[COST_DIALS] = {"scene",          "precision",     "tolerance", "bins",
+                                                 "source samples", "supersampling", "repair",    "triangles",
+                                                 "relaxation",     "hysteresis"};
+const char *const cost_repair_names[3] = {
+    [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
+const char *const cost_reference_names[COST_REFERENCES] = {
+    "precision, tolerance, bins", "source samples", "supersampling", "repair", "triangles",
+    "relaxation, hysteresis"};
+const double cost_tolerances[COST_TOLERANCES] = {1e-2, 1e-3, 1e-4, 1e-6};
+
+const char *cost_precision_name(const cost_setting *setting) {
+    return cli_flag_precision.values[setting->precision].name;
+}
+
+void cost_append(char *text, size_t size, const char *format, ...) {
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
+void cost_describe(const cost_study *study, const cost_setting *setting, char *text, size_t size) {
+    *text = '\0';
+    cost_append(text, size, "%s, tolerance %.3g", cost_precision_name(setting), setting->tolerance);
+    if (setting->bins == COST_FINEST_BINS)
+        cost_append(text, size, ", bins of 1 keV");
+    else if (setting->bins > 0)
+        cost_append(text, size, ", %" PRId64 " bins", setting->bins);
+    if (setting->samples > 0) cost_append(text, size, ", %" PRId64 " samples", setting->samples);
+    cost_append(text, size, ", %d x %d rays", (int)setting->supersampling, (int)setting->supersampling);
+    if (setting->repair >= 0) cost_append(text, size, ", repair %s", cost_repair_names[setting->repair]);
+    if (setting->meshing >= 0)
+        cost_append(text, size, ", %" PRId64 " triangles", study->meshings[setting->meshing].triangles);
+    if (setting->relaxation >= 0)
+        cost_append(text, size, ", relaxation %d, hysteresis %g", (int)setting->relaxation,
+                    setting->hysteresis);
+}
+
+void cost_note(cost_study *study, const char *format, ...) {
+    if (study->note_count == COST_MOST_NOTES) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(study->notes[study->note_count++], sizeof study->notes[0], format, arguments);
+    va_end(arguments);
+}
+
+skg_status cost_load(const cost_study *study, int64_t count, const char *const *settings, skg_setup **setup) {
+    const cli_arguments *arguments = study->arguments;
+    const char **all = calloc((size_t)(arguments->given_count + count), sizeof *all);
+    int64_t used = 0;
+    if (!all) return SKG_ERR_MEMORY;
+    for (const char *set; (set = cli_nth_value(arguments, &cli_flag_set, (int)used));) all[used++] = set;
+    for (int64_t i = 0; i < count; i++) all[used++] = settings[i];
+    skg_status status = skg_setup_load(NULL, study->session.path, used, all, setup);
+    free(all);
+    return status;
+}
+
+static skg_status read_spectrum(const cost_study *study, int64_t bins, skg_spectrum **spectrum) {
+    char setting[64];
+    const char *const settings[] = {setting};
+    skg_setup *setup = NULL;
+    snprintf(setting, sizeof setting, "Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)bins);
+    skg_status status = cost_load(study, 1, settings, &setup);
+    if (status == SKG_OK) status = skg_setup_spectrum_get(setup, spectrum);
+    if (status == SKG_OK) status = skg_spectrum_retain(*spectrum);
+    skg_setup_release(&setup);
+    return status;
+}
+
+skg_status cost_spectrum(cost_study *study, int64_t bins, skg_spectrum **spectrum) {
+    *spectrum = study->session.spectrum;
+    if (bins == 0) return SKG_OK;
+    for (int i = 0; i < study->spectrum_count; i++)
+        if (study->spectra[i].bins == bins) {
+            *spectrum = study->spectra[i].spectrum;
+            return SKG_OK;
+        }
+    if (study->spectrum_count == COST_MOST_SPECTRA) return SKG_ERR_INTERNAL;
+    skg_status status = read_spectrum(study, bins, spectrum);
+    if (status != SKG_OK) return status;
+    study->spectra[study->spectrum_count].bins = bins;
+    study->spectra[study->spectrum_count++].spectrum = *spectrum;
+    return SKG_OK;
+}
+
+int cost_has_bins(cost_study *study, int64_t bins) {
+    skg_spectrum *spectrum;
+    return cost_spectrum(study, bins, &spectrum) == SKG_OK;
+}
+
+void cost_meshing_free(cost_meshing *meshing) {
+    skg_scene_release(&meshing->scene);
+    for (int64_t i = 0; i < meshing->setting_count; i++) free(meshing->settings[i]);
+    free(meshing->settings);
+    *meshing = (cost_meshing){0};
+}
+
+skg_status cost_count_triangles(const skg_scene *scene, int64_t *triangles) {
+    int64_t parts = 0, vertices, its;
+    skg_status status = skg_scene_part_count(scene, &parts);
+    *triangles = 0;
+    for (int64_t i = 0; i < parts && status == SKG_OK; i++) {
+        skg_part part;
+        skg_part_init(&part);
+        status = skg_scene_part_get(scene, i, &part);
+        if (status == SKG_OK) status = skg_mesh_count(part.mesh, &vertices, &its);
+        if (status == SKG_OK) *triangles += its;
+    }
+    return status;
+}

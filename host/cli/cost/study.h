@@ -1,0 +1,166 @@
+/* What accuracy costs: the dials of a scene, swept against the best reference that the device can give. In
+ * this folder a function that returns int returns an exit status and prints the error. */
+#ifndef SKG_CLI_COST_STUDY_H
+#define SKG_CLI_COST_STUDY_H
+
+#include "session/session.h"
+
+enum {
+    COST_SCENE,
+    COST_PRECISION,
+    COST_TOLERANCE,
+    COST_BINS,
+    COST_SAMPLES,
+    COST_SUPERSAMPLING,
+    COST_REPAIR,
+    COST_TRIANGLES,
+    COST_RELAXATION,
+    COST_HYSTERESIS,
+    COST_DIALS
+};
+
+/* The references. Each varies one dial, or one kind of dials, and has all others as the scene has them. */
+enum {
+    COST_OF_RAYS, /* precision, tolerance, bins */
+    COST_OF_SAMPLES,
+    COST_OF_AREAS, /* supersampling */
+    COST_OF_REPAIR,
+    COST_OF_TRIANGLES,
+    COST_OF_BREATH,
+    COST_REFERENCES
+};
+
+enum {
+    COST_MOST_POINTS = 112,
+    COST_MOST_NOTES = 24,
+    COST_MOST_SPECTRA = 16,
+    COST_MOST_MESHINGS = 9,
+    COST_TOLERANCES = 4
+};
+enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: gives bins of 1 keV at every voltage */
+
+typedef struct {
+    int32_t precision, supersampling;
+    double tolerance;
+    int64_t bins;    /* MaxNumberOfEnergyBins of a tube; 0: as the scene has it */
+    int64_t samples; /* of an extended source; 0: the source is a point or a grid */
+    /* Negative: as the scene has it. */
+    int32_t repair, meshing; /* SKG_REPAIR_...; number in study->meshings */
+    int32_t relaxation;
+    double hysteresis;
+} cost_setting;
+
+/* The scene in which the round parts, or the parts of the generated thorax, have another number of triangles. */
+typedef struct {
+    skg_scene *scene;
+    int64_t triangles; /* of all parts */
+    int64_t thorax;    /* the N of `skiagraph thorax --triangles N`; 0: round parts */
+    char **settings;   /* [setting_count] "Samples.bone.Sphere.0=128" */
+    int64_t setting_count;
+} cost_meshing;
+
+/* A reference image, keV per pixel in double. */
+typedef struct {
+    cost_setting setting;
+    double *image;     /* [pixels]; for breathing dials [COST_PHASES][pixels] */
+    double *positions; /* for breathing dials: [COST_PHASES][vertices][3] of the parts that move, mm */
+    int64_t vertices;
+} cost_reference;
+
+enum { COST_PHASES = 4 }; /* evenly over the breath, from end-inspiration */
+
+/* A setting that was timed and compared. */
+typedef struct {
+    int dial, reference, on_frontier;
+    cost_setting setting;
+    int64_t nodes, planes, bins, runs;
+    double plan_ms, min_ms, median_ms;
+    /* Errors as fractions: of the flat field, and of the reference's pixel. */
+    double max_flat, rms_flat, max_ref, rms_ref;
+    /* Errors of path lengths, the root mean square over rays that meet a part. For breathing dials: errors of
+     * the vertices' positions. NaN: not measured. */
+    double max_mm, rms_mm;
+    /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels
+     * the difference that is largest in magnitude, and the mean intensity. */
+    float *difference, *small;
+} cost_point;
+
+enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
+
+/* The advice for one tolerance. A dial's field is the index of a point; -1: the scene has no such dial. */
+typedef struct {
+    double tolerance;
+    double bar; /* the larger of the tolerance and a tenth of the noise */
+    int rays;   /* the fastest whose largest error is within the bar, otherwise the most accurate */
+    /* The cheapest whose root mean square error is within the bar, otherwise the most accurate. */
+    int samples, supersampling, triangles;
+    int repair; /* the cheapest whose largest error is within the bar, otherwise the exact one */
+    int rays_met, sampling_met; /* 1 or 0 */
+    int whole_state;            /* COST_WHOLE_... */
+    cost_point whole;           /* all of these together, against the best rays of the same number */
+    char *rays_command, *whole_command;
+} cost_advice;
+
+typedef struct {
+    const cli_arguments *arguments;
+    cli_session session;
+    int quick;
+    int64_t pixels, thumb_columns, thumb_rows, thumb_block;
+    int noisy;         /* 1: images have the scene's noise */
+    double noise;      /* its root mean square, as a fraction of the flat field; 0: the scene has none */
+    double flat_field; /* keV per pixel */
+    cost_setting own;  /* the scene's own setting */
+    int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
+    int has_tube, has_energies, has_spot, has_leaky, has_breath;
+    int64_t triangles;     /* of the scene */
+    skg_body_options body; /* if has_breath */
+    struct {
+        int64_t bins;
+        skg_spectrum *spectrum;
+    } spectra[COST_MOST_SPECTRA]; /* of the tube, each made when it was first needed */
+    int spectrum_count;
+    double pass_ms;                            /* of one ray per pixel at the scene's setting */
+    cost_meshing meshings[COST_MOST_MESHINGS]; /* rising in triangles; the last one is the reference */
+    int meshing_count;
+    cost_reference references[COST_REFERENCES];
+    cost_point points[COST_MOST_POINTS];
+    int count;
+    char notes[COST_MOST_NOTES][512];
+    int note_count;
+    cost_advice advice[COST_TOLERANCES];
+} cost_study;
+
+extern const char *const cost_dial_names[COST_DIALS];
+extern const char *const cost_repair_names[3]; /* by SKG_REPAIR_ value */
+extern const double cost_tolerances[COST_TOLERANCES];
+
+/* The dials that are compared with a reference: "precision, tolerance, bins". */
+extern const char *const cost_reference_names[COST_REFERENCES];
+
+/* The name of a setting's precision. */
+const char *cost_precision_name(const cost_setting *setting);
+
+/* Keeps a sentence for the report, up to COST_MOST_NOTES of them. */
+void cost_note(cost_study *study, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Appends to text, as far as it fits. */
+void cost_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* "single, tolerance 0.0001, 32 bins, 16 samples, 2 x 2 rays" */
+void cost_describe(const cost_study *study, const cost_setting *setting, char *text, size_t size);
+
+/* Reads the scene again with `count` more settings, KEY=VALUE. The caller releases the set-up. */
+skg_status cost_load(const cost_study *study, int64_t count, const char *const *settings, skg_setup **setup);
+
+/* The scene's spectrum with at most `bins` bins (0: as the scene has it). It belongs to the study. */
+skg_status cost_spectrum(cost_study *study, int64_t bins, skg_spectrum **spectrum);
+
+/* Whether the scene's tube can have that few bins. */
+int cost_has_bins(cost_study *study, int64_t bins);
+
+/* Triangles of all parts. */
+skg_status cost_count_triangles(const skg_scene *scene, int64_t *triangles);
+
+void cost_meshing_free(cost_meshing *meshing);
+
+#endif

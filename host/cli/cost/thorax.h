@@ -1,0 +1,13 @@
+/* The scene with the generated thorax of other numbers of triangles. */
+#ifndef SKG_CLI_COST_THORAX_H
+#define SKG_CLI_COST_THORAX_H
+
+#include "cost/study.h"
+
+/* Whether every part of the generated thorax is in the scene, in its place. */
+int cost_is_thorax(const cost_study *study);
+
+/* Adds meshings, coarser to finer, in which these parts are generated again. */
+skg_status cost_find_thorax(cost_study *study);
+
+#endif

@@ -1,0 +1,79 @@
+#include "manual/manual.h"
+
+const cli_flag cli_flag_breathe_output = {
+    "-o", "DIR",
+    "The folder of the frames, made if it does not exist. With --phase or --at the file of the one picture: .png, "
+    ".tif or .mha.",
+    NULL, CLI_NAMES_FILE};
+const cli_flag cli_flag_breathe_seconds = {
+    "--seconds", "T", "The length of the sequence in s. The default is one breath.", NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_breathe_fps = {
+    "--fps", "N", "The number of frames per second of the patient's time. The default is 30.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_breathe_phase = {
+    "--phase", "P",
+    "Makes one picture at this phase of the breath: 0 is end-inspiration, 0.5 is about end-expiration. Events are "
+    "left out: they happen at a time, and a phase comes back in every breath.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_breathe_at = {
+    "--at", "T",
+    "Makes one picture at this time in s, with the events until then. It equals the frame that a sequence has at "
+    "this time.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_breathe_outline = {
+    "--outline", "PARTS@P", "Draws the outlines that parts have at phase P, as ribs,diaphragm@0.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_breathe_meshes = {
+    "--meshes", "DIR",
+    "Writes, for every frame and every part that moves, a binary PLY file with the displacement of each vertex in "
+    "mm to this folder.",
+    NULL, CLI_NAMES_FOLDER};
+
+static const char *const text[] = {
+    "Moves the parts of a scene as its key Breathing says, or by the labels of the parts if it has none, and writes "
+    "an image of each frame. All frames are shown over one range of -ln(I/I0).",
+    "Before writing, the whole sequence is computed once to report the frames per second; the next pose is computed "
+    "while the device makes an image. A frame is the same whether it is made alone or in a sequence.",
+    "--json prints {frames, frames_per_s, frame_ms, pose_ms, plan_ms, range, plan}.", NULL};
+
+static const cli_flag *const flags[] = {&cli_flag_breathe_output,
+                                        &cli_flag_breathe_seconds,
+                                        &cli_flag_breathe_fps,
+                                        &cli_flag_breathe_phase,
+                                        &cli_flag_breathe_at,
+                                        &cli_flag_breathe_outline,
+                                        &cli_flag_breathe_meshes,
+                                        &cli_flag_range,
+                                        &cli_flag_device,
+                                        &cli_flag_precision,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_strategy,
+                                        &cli_flag_set,
+                                        &cli_flag_json,
+                                        &cli_flag_quiet,
+                                        NULL};
+
+static const cli_item files[] = {
+    {"DIR/frame-0000.png, ...", "the frames"},
+    {"DIR/contact.png", "small pictures of up to 16 of them, side by side"},
+    {"DIR/motion.csv", "volumes, displacements and density of the lungs, a line for each frame"},
+    {NULL, NULL}};
+
+static const cli_item examples[] = {
+    {"skiagraph breathe thorax/thorax.json -o frames", "writes the frames of one breath"},
+    {"skiagraph breathe thorax/thorax.json -o inspired.png --phase 0 --outline ribs,diaphragm@0.5",
+     "writes the thorax at end-inspiration with the outlines that it has at expiration"},
+    {NULL, NULL}};
+
+const cli_manual cli_manual_breathe = {.name = "breathe",
+                                       .operands = "SCENE",
+                                       .required = "-o DIR",
+                                       .summary = "a scene that breathes, under fluoroscopy",
+                                       .text = text,
+                                       .least = 1,
+                                       .most = 1,
+                                       .names = CLI_NAMES_SCENE,
+                                       .flags = flags,
+                                       .files = files,
+                                       .examples = examples,
+                                       .has_device = 1};

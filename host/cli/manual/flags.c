@@ -1,0 +1,69 @@
+/* Flags that several verbs take. */
+#include "manual/manual.h"
+
+const cli_flag cli_flag_help = {"--help", NULL, "Prints this text.", NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_device = {
+    "--device", "NAME",
+    "The OpenCL device: cpu, gpu, PLATFORM:DEVICE by numbers, or part of a device's name. \"cpu threads=4\" "
+    "also limits the number of threads. The default is the environment variable SKG_DEVICE, then the best "
+    "device that there is.",
+    NULL, CLI_NAMES_NOTHING};
+
+/* In the order of SKG_PRECISION_. */
+static const cli_item precisions[] = {
+    {"single", "32-bit floating point, exact sums of 32-bit integers"},
+    {"double", "64-bit floating point, for devices that have it"},
+    {"half", "the 16-bit buffers of Vidal and Villard 2016, for comparison"},
+    {NULL, NULL}};
+const cli_flag cli_flag_precision = {
+    "--precision", NULL,
+    "The precision of path lengths and image. The default is the scene's Precision, otherwise single.",
+    precisions, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_tolerance = {
+    "--tolerance", "ERROR",
+    "The relative error that is allowed to the compressed spectrum, from 0 to below 1. The default is the "
+    "scene's Tolerance.",
+    NULL, CLI_NAMES_NOTHING};
+
+/* In the order of SKG_STRATEGY_. */
+static const cli_item strategies[] = {
+    {"auto", "chosen by the plan (the default)"},
+    {"copies", "a private copy of the detector for each work-group"},
+    {"tiles", "one tile of the detector at a time, with the triangles sorted into tiles"},
+    {"atomics", "atomic additions to one detector"},
+    {NULL, NULL}};
+const cli_flag cli_flag_strategy = {
+    "--strategy", NULL, "How the hits of triangles are summed. Every strategy gives the same bits.",
+    strategies, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_set = {
+    "--set", "KEY=VALUE",
+    "Changes a key of the scene file before it is read: Detector.NumberOfPixels=[64,64], "
+    "Samples.liver.Type=inner. May be repeated.",
+    NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_json = {"--json", NULL, "Prints one JSON object on standard output.", NULL,
+                                CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_output = {
+    "-o", "FILE", "The file to write; its extension, .png, .tif or .mha, is its format. May be repeated.",
+    NULL, CLI_NAMES_FILE};
+
+const cli_flag cli_flag_plot = {
+    "-o", "FILE", "The file to write: .csv (the numbers), .png or .svg (a plot). May be repeated.", NULL,
+    CLI_NAMES_FILE};
+
+const cli_flag cli_flag_repeat = {
+    "--repeat", "N",
+    "Computes N more frames and prints the minimum and the median of their times, of the frame and of each "
+    "stage.",
+    NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_range = {
+    "--range", "LOW:HIGH",
+    "The values that a .png shows as black and as white. The default is the picture's own range.", NULL,
+    CLI_NAMES_NOTHING};

@@ -1,0 +1,58 @@
+#include "manual/manual.h"
+
+/* In the order of SKG_QUANTITY_. */
+static const cli_item quantities[] = {{"energy", "keV per pixel (the default)"},
+                                      {"fluence", "energy fluence, keV/mm2"},
+                                      {"photons", "photons per pixel"},
+                                      {"transmission", "I/I0"},
+                                      {"attenuation", "-ln(I/I0)"},
+                                      {NULL, NULL}};
+const cli_flag cli_flag_image_quantity = {"--quantity", "NAME", "The quantity of the image.", quantities,
+                                          CLI_NAMES_NOTHING};
+
+/* In the order of SKG_DISPLAY_. */
+static const cli_item displays[] = {{"radiograph", "-ln(I/I0): dense parts are white (the default)"},
+                                    {"transmission", "I/I0: dense parts are dark"},
+                                    {NULL, NULL}};
+const cli_flag cli_flag_image_display = {"--display", "CURVE", "The curve from quantity to grey of a .png.",
+                                         displays, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_image_bands = {
+    "--bands", "KEV,KEV,...",
+    "The edges of photon-counting bands, rising. Each band from one edge to the next is a channel.", NULL,
+    CLI_NAMES_NOTHING};
+
+static const char *const text[] = {
+    "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
+    "and --range. A .tif or .mha holds floats, or doubles with --precision double; a .mha also holds the "
+    "detector's position.",
+    "With --bands the image has one channel for each band: a .tif has a page for each, a .mha a component; a .png "
+    "shows the first. A file appears whole or not at all.",
+    "--json prints {frame_ms, first_ms, plan_ms, stages, plan}; times are in ms.", NULL};
+
+static const cli_flag *const flags[] = {&cli_flag_output,      &cli_flag_image_quantity,
+                                        &cli_flag_image_bands, &cli_flag_image_display,
+                                        &cli_flag_range,       &cli_flag_repeat,
+                                        &cli_flag_device,      &cli_flag_precision,
+                                        &cli_flag_tolerance,   &cli_flag_strategy,
+                                        &cli_flag_set,         &cli_flag_json,
+                                        &cli_flag_quiet,       NULL};
+
+static const cli_item examples[] = {
+    {"skiagraph image scene.json -o image.png", "writes a radiograph"},
+    {"skiagraph image scene.json -o image.mha --quantity attenuation --precision double",
+     "writes -ln(I/I0) as doubles"},
+    {"skiagraph image scene.json -o bands.tif --bands 20,40,60", "writes two photon-counting channels"},
+    {"skiagraph image scene.json --repeat 100", "measures the times of 100 frames and writes nothing"},
+    {NULL, NULL}};
+
+const cli_manual cli_manual_image = {.name = "image",
+                                     .operands = "SCENE",
+                                     .summary = "one X-ray image of a scene",
+                                     .text = text,
+                                     .least = 1,
+                                     .most = 1,
+                                     .names = CLI_NAMES_SCENE,
+                                     .flags = flags,
+                                     .examples = examples,
+                                     .has_device = 1};

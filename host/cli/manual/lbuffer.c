@@ -1,0 +1,36 @@
+#include "manual/manual.h"
+
+const cli_flag cli_flag_lbuffer_part = {
+    "--part", "LABEL", "The label of the sample whose path lengths are computed.", NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_lbuffer_surface = {
+    "--surface", NULL,
+    "Writes the path lengths inside the part's mesh, the parts inside it included. The default is the net length, "
+    "without the parts inside it.",
+    NULL, CLI_NAMES_NOTHING};
+
+static const char *const text[] = {
+    "Computes, for the ray of each pixel, the length in mm inside one part, and writes it to the file of every -o.",
+    "A .png shows lengths from black (the least) to white (the largest), or over --range. A .tif or .mha holds "
+    "floats, or doubles with --precision double.",
+    "--json prints {frame_ms, first_ms, plan_ms, stages, plan}; times are in ms.", NULL};
+
+static const cli_flag *const flags[] = {&cli_flag_lbuffer_part, &cli_flag_output,   &cli_flag_lbuffer_surface,
+                                        &cli_flag_range,        &cli_flag_repeat,   &cli_flag_device,
+                                        &cli_flag_precision,    &cli_flag_strategy, &cli_flag_set,
+                                        &cli_flag_json,         &cli_flag_quiet,    NULL};
+
+static const cli_item examples[] = {
+    {"skiagraph lbuffer scene.json --part liver -o liver.mha", "writes the path lengths through the liver"},
+    {NULL, NULL}};
+
+const cli_manual cli_manual_lbuffer = {.name = "lbuffer",
+                                       .operands = "SCENE",
+                                       .required = "--part LABEL",
+                                       .summary = "path lengths through one part (the L-buffer)",
+                                       .text = text,
+                                       .least = 1,
+                                       .most = 1,
+                                       .names = CLI_NAMES_SCENE,
+                                       .flags = flags,
+                                       .examples = examples,
+                                       .has_device = 1};

@@ -1,0 +1,14 @@
+#include "manual/manual.h"
+
+#include <stdio.h>
+
+int cli_flag_has_value(const cli_flag *flag) {
+    return flag->argument || flag->values;
+}
+
+void cli_flag_argument(const cli_flag *flag, char *text, size_t size) {
+    int used = snprintf(text, size, "%s", flag->argument ? flag->argument : "");
+    for (const cli_item *value = flag->argument ? NULL : flag->values; value && value->name; value++)
+        used +=
+            snprintf(text + used, size - (size_t)used, "%s%s", value == flag->values ? "" : "|", value->name);
+}

@@ -1,0 +1,68 @@
+/* What is known of a verb's command line: one table for the parser, `help`, the man pages and the completion
+ * of shells. A paragraph is one string without line breaks; who prints it breaks the lines. */
+#ifndef SKG_CLI_MANUAL_H
+#define SKG_CLI_MANUAL_H
+
+#include <stddef.h>
+
+/* What a value or an operand names, for completion. */
+enum { CLI_NAMES_NOTHING, CLI_NAMES_FILE, CLI_NAMES_FOLDER, CLI_NAMES_SCENE };
+
+/* A name or a number and what it means. Lists end with a row whose name is NULL. */
+typedef struct {
+    const char *name, *meaning;
+} cli_item;
+
+typedef struct {
+    const char *name;       /* "--name" or "-o" */
+    const char *argument;   /* what the help calls the value; NULL: its values, or without them, no value */
+    const char *meaning;    /* one paragraph */
+    const cli_item *values; /* the only values, which the parser numbers from 0; NULL: any */
+    int names;              /* CLI_NAMES_... */
+} cli_flag;
+
+typedef struct {
+    const char *name;
+    const char *operands;         /* as the usage line shows them */
+    const char *required;         /* flags that the usage line shows outside of [FLAGS]; NULL: none */
+    const char *summary;          /* begins in lower case, no full stop */
+    const char *const *text;      /* paragraphs, ends with NULL */
+    int least, most;              /* number of operands; most < 0: no limit */
+    int names;                    /* CLI_NAMES_... of the operands */
+    const cli_flag *const *flags; /* ends with NULL */
+    const cli_item *files;        /* what it writes; NULL: nothing but standard output */
+    const cli_item *examples;     /* command line and what it does */
+    const char *check;            /* the check that exit status 1 stands for; NULL: none */
+    int has_device;               /* it opens an OpenCL device */
+} cli_manual;
+
+/* Whether a value follows the flag, and what the help calls it: "FILE", "single|double|half". */
+int cli_flag_has_value(const cli_flag *flag);
+void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
+
+extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
+    cli_manual_image, cli_manual_lbuffer, cli_manual_material, cli_manual_mesh, cli_manual_plan,
+    cli_manual_thorax;
+
+extern const cli_flag cli_flag_help; /* of every verb */
+
+/* Flags that several verbs take. */
+extern const cli_flag cli_flag_device, cli_flag_precision, cli_flag_tolerance, cli_flag_strategy,
+    cli_flag_set, cli_flag_quiet, cli_flag_json, cli_flag_output, cli_flag_plot, cli_flag_repeat,
+    cli_flag_range;
+
+/* Flags of one verb. */
+extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands;
+extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
+extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick;
+extern const cli_flag cli_flag_mesh_unit;
+extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_flag_material_list,
+    cli_flag_material_naive;
+extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_angle, cli_flag_beam_anode,
+    cli_flag_beam_model, cli_flag_beam_bin, cli_flag_beam_mas, cli_flag_beam_distance, cli_flag_beam_output,
+    cli_flag_beam_file, cli_flag_beam_unit;
+extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles;
+extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_flag_breathe_fps,
+    cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
+
+#endif

@@ -1,0 +1,150 @@
+#include "session/render.h"
+
+#include "common/json.h"
+#include "common/say.h"
+#include "session/explain.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST_REPEATS = 1000000 };
+
+static int read_repeats(const cli_arguments *arguments, int64_t *repeats) {
+    *repeats = 0;
+    return cli_integer(arguments, &cli_flag_repeat, 1, MOST_REPEATS, repeats);
+}
+
+int cli_check_outputs(const cli_arguments *arguments) {
+    int64_t repeats;
+    double low, high;
+    int exit_status = read_repeats(arguments, &repeats);
+    if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &low, &high);
+    if (exit_status != CLI_DONE) return exit_status;
+    if (!cli_given(arguments, &cli_flag_output) && !repeats)
+        return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif or .mha)",
+                         arguments->manual->name);
+    const char *path;
+    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++) {
+        skg_status status = skg_picture_check_path(path);
+        if (status != SKG_OK) return cli_fail(status);
+    }
+    return CLI_DONE;
+}
+
+/* Writes every file that can be written. Returns the exit status of the first that cannot. */
+static int write_files(const cli_rendering *rendering) {
+    int failure = CLI_DONE;
+    const char *path;
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
+        skg_status status = skg_picture_write(&rendering->picture, path);
+        if (status == SKG_OK) continue;
+        int its = cli_fail(status);
+        if (failure == CLI_DONE) failure = status == SKG_ERR_UNSUPPORTED ? CLI_OUTPUT : its;
+    }
+    return failure;
+}
+
+/* The least and the largest finite value of a channel; both are 0 if there is none. */
+static void find_range(const skg_picture *picture, int64_t channel, double *low, double *high) {
+    const int64_t pixels = picture->columns * picture->rows;
+    int found = 0;
+    *low = *high = 0;
+    for (int64_t i = channel * pixels; i < (channel + 1) * pixels; i++) {
+        double value = picture->type == SKG_TYPE_FLOAT64 ? ((const double *)picture->data)[i]
+                                                         : (double)((const float *)picture->data)[i];
+        if (!isfinite(value)) continue;
+        if (!found || value < *low) *low = value;
+        if (!found || value > *high) *high = value;
+        found = 1;
+    }
+}
+
+static void print_values(const skg_picture *picture) {
+    printf("%" PRId64 " x %" PRId64 " pixels", picture->columns, picture->rows);
+    for (int64_t c = 0; c < picture->channels; c++) {
+        double low, high;
+        find_range(picture, c, &low, &high);
+        printf(", %s %.6g to %.6g %s", picture->channel_names ? picture->channel_names[c] : picture->name,
+               low, high, picture->unit);
+    }
+    putchar('\n');
+}
+
+static int print_rendering(const cli_rendering *rendering, const skg_plan *plan, const cli_times *times) {
+    const char *path;
+    if (cli_given(rendering->arguments, &cli_flag_json)) {
+        json_t *object = json_object();
+        cli_times_json(times, object);
+        json_object_set_new(object, "plan", cli_explain_json(plan, &rendering->session));
+        return cli_json_print(object);
+    }
+    if (cli_is_quiet()) return CLI_DONE;
+    print_values(&rendering->picture);
+    cli_times_print(times);
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
+        printf("wrote %s\n", path);
+    return CLI_DONE;
+}
+
+/* Takes the channels' names from the plan, and the picture's name, unit and flat field from the first
+ * channel. */
+static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
+    skg_picture *picture = &rendering->picture;
+    if (rendering->lengths) return CLI_DONE;
+    skg_status status = skg_plan_channel_count(plan, &picture->channels);
+    for (int64_t c = 0; status == SKG_OK && c < picture->channels; c++) {
+        skg_channel channel;
+        skg_channel_init(&channel);
+        status = skg_plan_channel_get(plan, c, &channel);
+        if (status != SKG_OK) break;
+        rendering->channel_names[c] = channel.name;
+        if (c > 0) continue;
+        picture->name = channel.name;
+        picture->unit = channel.unit;
+        picture->flat_field = channel.flat_field;
+    }
+    picture->channel_names = rendering->channel_names;
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+/* Memory for one frame in the plan's precision. */
+static int allocate_frame(cli_rendering *rendering, skg_output *output) {
+    const int64_t channels = rendering->picture.channels;
+    const skg_view *view = &rendering->session.view;
+    int twice = rendering->session.options.precision == SKG_PRECISION_DOUBLE;
+    skg_output_init(output);
+    output->type = twice ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
+    output->data = calloc((size_t)(view->columns * view->rows * channels), twice ? 8 : 4);
+    if (!output->data) return cli_error(CLI_DEVICE, "out of host memory for the image");
+    rendering->picture.type = output->type;
+    rendering->picture.columns = view->columns;
+    rendering->picture.rows = view->rows;
+    rendering->picture.data = output->data;
+    rendering->picture.view = view;
+    return CLI_DONE;
+}
+
+int cli_render(cli_rendering *rendering) {
+    cli_session *session = &rendering->session;
+    cli_times times = {0};
+    skg_plan *plan = NULL;
+    skg_output output = {0};
+    int exit_status = read_repeats(rendering->arguments, &times.repeats);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_range(rendering->arguments, &cli_flag_range, &rendering->picture.low,
+                                &rendering->picture.high);
+    session->options.profile = times.repeats > 0;
+    if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);
+    if (exit_status == CLI_DONE) exit_status = name_channels(rendering, plan);
+    if (exit_status == CLI_DONE) exit_status = allocate_frame(rendering, &output);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_run_frames(plan, rendering->frame, &output, rendering->frame_user, &times);
+    if (exit_status == CLI_DONE) exit_status = write_files(rendering);
+    if (exit_status == CLI_DONE) exit_status = print_rendering(rendering, plan, &times);
+    free(output.data);
+    skg_plan_release(&plan);
+    cli_times_free(&times);
+    return exit_status;
+}

@@ -1,0 +1,58 @@
+#include "session/session.h"
+
+#include "common/device.h"
+#include "common/say.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static int read_tolerance(const cli_arguments *arguments, char *setting, size_t size) {
+    const char *value = cli_value(arguments, &cli_flag_tolerance);
+    char *end = NULL;
+    if (!value) return CLI_DONE;
+    double tolerance = strtod(value, &end);
+    if (end == value || *end || !(tolerance >= 0 && tolerance < 1))
+        return cli_error(CLI_USAGE, "--tolerance %s is not a relative error from 0 to below 1", value);
+    snprintf(setting, size, "Tolerance=%.17g", tolerance);
+    return CLI_DONE;
+}
+
+static int load_scene(const cli_arguments *arguments, const char *tolerance, cli_session *session) {
+    int count = 0;
+    const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings);
+    if (!settings) return cli_error(CLI_DEVICE, "out of host memory");
+    for (const char *set; (set = cli_nth_value(arguments, &cli_flag_set, count)); count++)
+        settings[count] = set;
+    if (*tolerance) settings[count++] = tolerance;
+    session->path = arguments->operands[0];
+    skg_status status = skg_setup_load(session->context, session->path, count, settings, &session->setup);
+    free(settings);
+    if (status != SKG_OK) return cli_fail(status);
+    skg_view_init(&session->view);
+    skg_plan_options_init(&session->options);
+    status = skg_setup_scene_get(session->setup, &session->scene);
+    if (status == SKG_OK) status = skg_setup_spectrum_get(session->setup, &session->spectrum);
+    if (status == SKG_OK) status = skg_setup_view_get(session->setup, &session->view);
+    if (status == SKG_OK) status = skg_setup_options_get(session->setup, &session->options);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+int cli_open_session(const cli_arguments *arguments, cli_session *session) {
+    char tolerance[64] = "";
+    int32_t precision = -1, strategy = SKG_STRATEGY_AUTO;
+    *session = (cli_session){0};
+    int exit_status = read_tolerance(arguments, tolerance, sizeof tolerance);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_precision, &precision);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_strategy, &strategy);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_open_context(arguments, &session->context, &session->device);
+    if (exit_status == CLI_DONE) exit_status = load_scene(arguments, tolerance, session);
+    if (precision >= 0) session->options.precision = precision;
+    session->options.strategy = strategy;
+    return exit_status;
+}
+
+void cli_close_session(cli_session *session) {
+    skg_setup_release(&session->setup);
+    skg_context_release(&session->context);
+}

@@ -1,0 +1,26 @@
+/* A device and the scene that was read for it. */
+#ifndef SKG_CLI_SESSION_H
+#define SKG_CLI_SESSION_H
+
+#include "common/args.h"
+
+#include <skiagraph/skiagraph.h>
+
+typedef struct {
+    skg_context *context;
+    skg_device_info device;
+    skg_setup *setup;
+    skg_scene *scene;       /* owned by the set-up */
+    skg_spectrum *spectrum; /* owned by the set-up */
+    skg_view view;
+    skg_plan_options options;
+    const char *path;
+} cli_session;
+
+/* Opens the device and reads the scene, the first operand, with --set, --precision, --tolerance and
+ * --strategy applied. The caller closes the session, also after a failure. Returns an exit status and prints
+ * the error. */
+int cli_open_session(const cli_arguments *arguments, cli_session *session);
+void cli_close_session(cli_session *session);
+
+#endif

@@ -1,0 +1,110 @@
+#include "verbs/verbs.h"
+
+#include "common/device.h"
+#include "common/environment.h"
+#include "common/json.h"
+#include "common/say.h"
+#include "manual/list.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *kind_of(const skg_device_info *device) {
+    return device->is_gpu ? "gpu" : device->is_cpu ? "cpu" : "other";
+}
+
+static json_t *device_json(const skg_device_info *device, int chosen) {
+    json_t *object = json_object();
+    char number[32];
+    snprintf(number, sizeof number, "%d:%d", device->platform, device->device);
+    json_object_set_new(object, "device", cli_json_text(number));
+    json_object_set_new(object, "name", cli_json_text(device->name));
+    json_object_set_new(object, "platform", cli_json_text(device->platform_name));
+    json_object_set_new(object, "kind", cli_json_text(kind_of(device)));
+    json_object_set_new(object, "chosen", json_boolean(chosen));
+    json_object_set_new(object, "compute_units", json_integer(device->compute_units));
+    json_object_set_new(object, "float_width", json_integer(device->float_width));
+    json_object_set_new(object, "has_double", json_boolean(device->has_double));
+    json_object_set_new(object, "correct_division", json_boolean(device->correct_division));
+    json_object_set_new(object, "memory_bytes", json_integer(device->memory));
+    json_object_set_new(object, "max_allocation_bytes", json_integer(device->max_allocation));
+    json_object_set_new(object, "local_memory_bytes", json_integer(device->local_memory));
+    json_object_set_new(object, "version", cli_json_text(device->version));
+    json_object_set_new(object, "driver", cli_json_text(device->driver));
+    return object;
+}
+
+static void print_device(const skg_device_info *device, int chosen) {
+    static const double gib = 1024.0 * 1024.0 * 1024.0;
+    printf("%s %d:%d  %s (%s, %s)\n", chosen ? "*" : " ", device->platform, device->device, device->name,
+           kind_of(device), device->platform_name);
+    printf("       %d compute units, float vectors of %d; %.1f GiB, %.1f GiB in one buffer, %.0f KiB local\n",
+           device->compute_units, device->float_width, (double)device->memory / gib,
+           (double)device->max_allocation / gib, (double)device->local_memory / 1024);
+    printf("       precision double: %s; division correctly rounded: %s\n",
+           device->has_double ? "yes" : "no (no fp64)",
+           device->correct_division ? "yes (same bits as other such devices)"
+                                    : "no (bits differ from other devices)");
+    printf("       %s, driver %s\n", device->version, device->driver);
+}
+
+static void print_variables(void) {
+    printf("\nenvironment:\n");
+    for (const cli_item *variable = cli_environment; variable->name; variable++) {
+        const char *value = getenv(variable->name);
+        const int is_affinity = strcmp(variable->name, "POCL_AFFINITY") == 0;
+        printf("  %-22s %s", variable->name, value ? value : "-");
+        if (is_affinity) printf(" (%s)", cli_affinity_reason());
+        putchar('\n');
+    }
+}
+
+static json_t *variables_json(void) {
+    json_t *object = json_object();
+    for (const cli_item *variable = cli_environment; variable->name; variable++) {
+        const char *value = getenv(variable->name);
+        json_object_set_new(object, variable->name, value ? cli_json_text(value) : json_null());
+    }
+    return object;
+}
+
+static int list_devices(int64_t count, const skg_device_info *best, int json) {
+    json_t *list = json ? json_array() : NULL;
+    for (int64_t i = 0; i < count; i++) {
+        skg_device_info device;
+        skg_device_info_init(&device);
+        skg_status status = skg_device_get(i, &device);
+        if (status != SKG_OK) {
+            json_decref(list);
+            return cli_fail(status);
+        }
+        int chosen = device.platform == best->platform && device.device == best->device;
+        if (json)
+            json_array_append_new(list, device_json(&device, chosen));
+        else
+            print_device(&device, chosen);
+    }
+    if (json) {
+        json_t *object = json_object();
+        json_object_set_new(object, "devices", list);
+        json_object_set_new(object, "environment", variables_json());
+        json_object_set_new(object, "affinity", cli_json_text(cli_affinity_reason()));
+        return cli_json_print(object);
+    }
+    print_variables();
+    return CLI_DONE;
+}
+
+int cli_devices(const cli_arguments *arguments) {
+    skg_context *context = NULL;
+    skg_device_info best;
+    int64_t count = 0;
+    int exit_status = cli_open_context(arguments, &context, &best);
+    if (exit_status != CLI_DONE) return exit_status;
+    skg_status status = skg_device_count(&count);
+    exit_status = status == SKG_OK ? list_devices(count, &best, cli_given(arguments, &cli_flag_json))
+                                   : cli_fail(status);
+    skg_context_release(&context);
+    return exit_status;
+}

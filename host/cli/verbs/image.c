@@ -1,0 +1,59 @@
+#include "verbs/verbs.h"
+
+#include "common/say.h"
+#include "session/render.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Reads "20,40,60". */
+static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_MAX + 1], int64_t *bands) {
+    const char *value = cli_value(arguments, &cli_flag_image_bands), *at = value;
+    int64_t count = 0;
+    while (at) {
+        char *end = NULL;
+        double edge = strtod(at, &end);
+        if (end == at || (*end && *end != ',') || !(edge >= 0 && edge < HUGE_VAL) ||
+            (count > 0 && !(edge > edges[count - 1])))
+            return cli_error(CLI_USAGE,
+                             "--bands %s: \"%.*s\" is not an energy in keV above the one before it", value,
+                             (int)strcspn(at, ","), at);
+        if (count > SKG_CHANNELS_MAX)
+            return cli_error(CLI_USAGE, "--bands %s: more than %d bands", value, SKG_CHANNELS_MAX);
+        edges[count++] = edge;
+        at = *end ? end + 1 : NULL;
+    }
+    if (count == 1)
+        return cli_error(CLI_USAGE, "--bands %s: one edge makes no band; give two or more", value);
+    *bands = count > 0 ? count - 1 : 0;
+    return CLI_DONE;
+}
+
+static skg_status one_image(skg_plan *plan, const skg_output *output, const void *user) {
+    (void)user;
+    return skg_plan_image(plan, output);
+}
+
+int cli_image(const cli_arguments *arguments) {
+    cli_rendering rendering = {.arguments = arguments, .frame = one_image};
+    int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH;
+    double edges[SKG_CHANNELS_MAX + 1];
+    int64_t bands = 0;
+    int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_display, &display);
+    if (exit_status == CLI_DONE) exit_status = read_bands(arguments, edges, &bands);
+    if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
+    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &rendering.session);
+    if (exit_status == CLI_DONE) {
+        rendering.session.options.quantity = quantity;
+        rendering.session.options.bands = bands;
+        rendering.session.options.band_kev = edges;
+        skg_picture_init(&rendering.picture);
+        rendering.picture.quantity = quantity;
+        rendering.picture.display = display;
+        exit_status = cli_render(&rendering);
+    }
+    cli_close_session(&rendering.session);
+    return exit_status;
+}

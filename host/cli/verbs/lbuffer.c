@@ -1,0 +1,41 @@
+#include "verbs/verbs.h"
+
+#include "common/say.h"
+#include "session/render.h"
+
+typedef struct {
+    int64_t part;
+    int32_t kind;
+} wanted_lengths;
+
+static skg_status one_buffer(skg_plan *plan, const skg_output *output, const void *user) {
+    const wanted_lengths *wanted = user;
+    skg_job *job = NULL;
+    skg_frame frame;
+    skg_frame_init(&frame);
+    skg_status status = skg_plan_lengths(plan, wanted->part, wanted->kind, 1, &frame, output, &job);
+    return status == SKG_OK ? skg_job_wait(&job) : status;
+}
+
+int cli_lbuffer(const cli_arguments *arguments) {
+    wanted_lengths wanted = {0, cli_given(arguments, &cli_flag_lbuffer_surface) ? SKG_LENGTHS_SURFACE
+                                                                                : SKG_LENGTHS_NET};
+    cli_rendering rendering = {
+        .arguments = arguments, .frame = one_buffer, .frame_user = &wanted, .lengths = 1};
+    const char *label = cli_value(arguments, &cli_flag_lbuffer_part);
+    if (!label) return cli_error(CLI_USAGE, "lbuffer: no part is named; add --part LABEL");
+    int exit_status = cli_check_outputs(arguments);
+    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &rendering.session);
+    if (exit_status == CLI_DONE) {
+        skg_status status = skg_scene_find(rendering.session.scene, label, &wanted.part);
+        if (status != SKG_OK) exit_status = cli_fail(status);
+    }
+    if (exit_status == CLI_DONE) {
+        skg_picture_init(&rendering.picture);
+        rendering.picture.name = "path length";
+        rendering.picture.unit = "mm";
+        exit_status = cli_render(&rendering);
+    }
+    cli_close_session(&rendering.session);
+    return exit_status;
+}

@@ -1,0 +1,121 @@
+/* The names of the kernels' arguments (kernels/arguments.h) are those that the OpenCL compiler finds, in this order. */
+#include "stage/kernels.h"
+#include "suite.h"
+
+#include <skiagraph/plan.h>
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_FILES = 4, MOST_ARGUMENTS = 32 };
+
+static skg_context *context;
+
+static void open_context(void) {
+    ck_skg(skg_context_create(NULL, &context));
+}
+
+static void close_context(void) {
+    skg_context_release(&context);
+}
+
+/* Every kernel with the names of its arguments; NULL ends them. */
+typedef struct {
+    const char *function;
+    const char *names[MOST_ARGUMENTS];
+} kernel_list;
+
+#define NAME(kernel, name) #name,
+#define LIST(kernel, function) {#function, {SKG_ARGUMENTS_##kernel(NAME) NULL}},
+static const kernel_list lists[] = {SKG_KERNELS(LIST)};
+enum { KERNELS = sizeof lists / sizeof *lists };
+
+/* What has to be compiled for them to be there, with all arguments. */
+static const struct {
+    const char *files[MOST_FILES];
+    const char *options;
+    int32_t half;
+} programs[] = {
+    {{"project.cl"}, "", 0},
+    {{"batch.clh", "draw.clh", "raster_copies.cl"}, "", 0},
+    {{"pixel.clh", "raster_atomics.cl"}, "", 0},
+    {{"pixel.clh", "tiles.cl", "raster_squares.cl"}, "", 0},
+    {{"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"}, "", 0},
+    {{"pixel.clh", "source_plane.cl"}, "", 0},
+    {{"pixel.clh", "hits.cl", "source_plane.cl"}, "", 0},
+    {{"pixel.clh", "half.cl"}, "", 1},
+    {{"counts.cl"}, "", 0},
+    {{"leaky.cl"}, "", 0},
+    {{"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"},
+     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1",
+     0},
+    {{"blur.cl"}, "", 0},
+    {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1", 0},
+};
+
+static const kernel_list *list_of(const char *function) {
+    for (int k = 0; k < KERNELS; k++)
+        if (strcmp(lists[k].function, function) == 0) return &lists[k];
+    ck_abort_msg("kernel %s is not in kernels/arguments.h", function);
+    return NULL;
+}
+
+static void compare(cl_kernel kernel, int found[KERNELS]) {
+    char function[128] = "", name[128];
+    cl_uint count = 0, named = 0;
+    clGetKernelInfo(kernel, CL_KERNEL_FUNCTION_NAME, sizeof function, function, NULL);
+    clGetKernelInfo(kernel, CL_KERNEL_NUM_ARGS, sizeof count, &count, NULL);
+    const kernel_list *list = list_of(function);
+    while (list->names[named]) named++;
+    ck_assert_msg(named == count, "%s has %u arguments, %u are named", function, count, named);
+    for (cl_uint a = 0; a < count; a++) {
+        const cl_int code = clGetKernelArgInfo(kernel, a, CL_KERNEL_ARG_NAME, sizeof name, name, NULL);
+        ck_assert_int_eq(code, CL_SUCCESS);
+        ck_assert_msg(strcmp(name, list->names[a]) == 0, "argument %u of %s is %s, not %s", a, function, name,
+                      list->names[a]);
+    }
+    found[list - lists] = 1;
+}
+
+START_TEST(arguments_have_the_names_of_their_kernels) {
+    int found[KERNELS] = {0};
+    for (size_t p = 0; p < sizeof programs / sizeof *programs; p++) {
+        const skg_kernel_options options = {
+            .bits = 32, .source_plane = 1, .listed = 1, .half = programs[p].half};
+        char more[200];
+        int32_t files = 0;
+        cl_uint count = 0;
+        cl_program program = NULL;
+        cl_kernel kernels[8];
+        while (files < MOST_FILES && programs[p].files[files]) files++;
+        snprintf(more, sizeof more, "%s -cl-kernel-arg-info", programs[p].options);
+        ck_skg(skg_kernels_get(context, &options, files, programs[p].files, more, &program));
+        ck_assert_int_eq(clCreateKernelsInProgram(program, 8, kernels, &count), CL_SUCCESS);
+        ck_assert_int_gt(count, 0);
+        for (cl_uint k = 0; k < count; k++) {
+            compare(kernels[k], found);
+            clReleaseKernel(kernels[k]);
+        }
+    }
+    for (int k = 0; k < KERNELS; k++) ck_assert_msg(found[k], "no kernel %s", lists[k].function);
+}
+END_TEST
+
+/* The kernels of leaky.cl begin alike, so that one function sets their first arguments. */
+START_TEST(kernels_of_leaky_parts_begin_alike) {
+    static const char *const batch[] = {SKG_ARGUMENTS_LEAKY_BATCH(NAME)};
+    static const char *const kernels[] = {"skg_leaky_add", "skg_leaky_gaps", "skg_leaky_repair",
+                                          "skg_leaky_put"};
+    for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
+        for (int a = 0; a < SKG_LEAKY_BATCH_ARGUMENTS; a++)
+            ck_assert_str_eq(list_of(kernels[k])->names[a], batch[a]);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, open_context, close_context);
+    tcase_add_test(tests, arguments_have_the_names_of_their_kernels);
+    tcase_add_test(tests, kernels_of_leaky_parts_begin_alike);
+}
+
+SKG_SUITE_MAIN("arguments", add_tests)
