@@ -126,8 +126,7 @@ static skg_plan_options plain_options(const int *on) {
     return options;
 }
 
-/* --- the plain way
- * ------------------------------------------------------------------------------------------------ */
+/* --- the plain way --------------------------------------------------------------------------------------- */
 
 /* What a ray meets, mm. */
 typedef struct {
@@ -204,7 +203,7 @@ static void add_rays(const int *on, const rays *r, double share, int channels, d
         }
 }
 
-/* What of a pixel goes on into its neighbours; beyond the border it is as at the border. */
+/* The share of a pixel that its neighbours receive; beyond the border the border's pixels are repeated. */
 static void blur(double *image) {
     static double from[PIXELS];
     double sum = 0;
@@ -251,8 +250,7 @@ static void make_plainly(const int *on, int channels, double *image) {
     for (int c = 0; c < channels && on[BLUR]; c++) blur(image + c * PIXELS);
 }
 
-/* --- all at once
- * -------------------------------------------------------------------------------------------------- */
+/* --- all at once ----------------------------------------------------------------------------------------- */
 
 static void check_together(const int *on) {
     static double plain[MOST_CHANNELS * PIXELS], together[MOST_CHANNELS * PIXELS];

@@ -124,7 +124,7 @@ static void take(skg_spectrum *spectrum, const skg_plan_options *options, pictur
     skg_plan_release(&plan);
 }
 
-/* Error of a pixel in the words of the tolerance. */
+/* Error of a pixel as the tolerance defines it. */
 static double error_of(const skg_plan_options *options, double found, double truth, double open) {
     if (options->quantity == SKG_QUANTITY_ATTENUATION) {
         found = exp(-found), truth = exp(-truth);
@@ -190,7 +190,7 @@ START_TEST(random_scenes) {
 }
 END_TEST
 
-/* A body that grows beyond what was verified is told, and its image is still made; back again is well. */
+/* A body that grows beyond the verified lengths is reported, and its image is still made; back within them it is not. */
 START_TEST(leaving_the_verified_range) {
     static float pixels[SIDE * SIDE];
     skg_plan *plan = NULL;
@@ -363,8 +363,10 @@ START_TEST(nodes_are_a_beam) {
     options.tolerance = 0;
     take(nodes, &options, &given);
     ck_assert_int_eq(given.report.nodes, fewer.report.nodes);
+    /* The tolerance asked for: the nodes' error is bounded by it. */
     for (int k = 0; k < SIDE * SIDE; k++) {
         ck_assert_double_le(error_of(&options, given.pixels[k], exact.pixels[k], exact.open[0]), 1e-3);
+        /* both bounds are that tolerance */
         ck_assert_double_le(error_of(&options, given.pixels[k], fewer.pixels[k], exact.open[0]), 1e-3);
     }
     skg_spectrum_release(&nodes);

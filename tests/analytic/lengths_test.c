@@ -2,15 +2,13 @@
  * all is worked out here for each ray by hand; round bodies are held against their smooth forms within their
  * chords' error, and against their own triangles in long double. */
 #include "suite.h"
+#include "support/angles.h"
 #include "support/verdict.h"
 
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
-/* --- convex bodies: half-spaces n . x <= d
- * ------------------------------------------------------------------------ */
+/* --- convex bodies: half-spaces n . x <= d --------------------------------------------------------------- */
 
 typedef struct {
     double normal[3], distance;
@@ -225,8 +223,7 @@ START_TEST(the_papers_cube) {
 }
 END_TEST
 
-/* --- round bodies
- * ------------------------------------------------------------------------------------------------- */
+/* --- round bodies ---------------------------------------------------------------------------------------- */
 
 /* Chord of a sphere by a ray at `off` from its centre. */
 static double chord(double radius, double off) {

@@ -4,6 +4,7 @@
 
 #include <skiagraph/skiagraph.h>
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -120,6 +121,7 @@ static void check_moments(int64_t count, const double *values, const truth *t) {
     const moments m = moments_of(count, values);
     const double n = (double)count;
     const double error = sqrt((2 * t->variance * t->variance + t->fourth) / n);
+    /* Floats of single precision add 16 roundings, 16 * FLT_EPSILON / 2 = 1e-6. */
     ck_assert_double_eq_tol(m.mean, t->mean, 4 * sqrt(t->variance / n) + 1e-6 * t->mean);
     ck_assert_double_eq_tol(m.variance, t->variance, 4 * error + 1e-6 * t->variance);
 }
@@ -345,11 +347,13 @@ START_TEST(electronics) {
     take(spectrum, &options, 2, 2, images);
     t.variance = 12.5 * 12.5, t.fourth = 0;
     check_moments(2 * PIXELS, images, &t);
+    /* Four standard errors of a correlation of that many pairs. */
     ck_assert_double_le(fabs(correlation(images, images + PIXELS)), 4 / sqrt((double)PIXELS));
     options.quantum_step_kev = 4;
     take(spectrum, &options, 2, 1, stepped);
     for (int i = 0; i < PIXELS; i++) {
         ck_assert_double_eq(stepped[i], 4 * round(stepped[i] / 4));
+        /* Half a step, and floats of the mean. */
         ck_assert_double_le(fabs(stepped[i] - images[i]), 2 + 1e-4 * t.mean);
     }
     skg_spectrum_release(&spectrum);
@@ -366,12 +370,15 @@ START_TEST(quantities) {
     take(spectrum, &options, 5, 1, energy);
     options.quantity = SKG_QUANTITY_TRANSMISSION;
     take(spectrum, &options, 5, 1, other);
+    /* The same draws: what differs are 16 roundings of single precision, 1e-6, here and below. */
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i] * open / energy[i], 1, 1e-6);
     options.quantity = SKG_QUANTITY_ATTENUATION;
     take(spectrum, &options, 5, 1, other);
+    /* As above. */
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i], -log(energy[i] / open), 1e-6);
     options.quantity = SKG_QUANTITY_FLUENCE;
     take(spectrum, &options, 5, 1, other);
+    /* As above. */
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i] * 0.04 / energy[i], 1, 1e-6);
     skg_spectrum_release(&spectrum);
 }

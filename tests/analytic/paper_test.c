@@ -5,6 +5,7 @@
 
 #include <skiagraph/skiagraph.h>
 
+#include <float.h>
 #include <math.h>
 
 enum { PIXELS = 301, MIDDLE = PIXELS / 2, SECTORS = 20, ENERGIES = 4 };
@@ -112,7 +113,8 @@ START_TEST(equations_14_and_15_from_printed_coefficients) {
     ck_skg(skg_material_create_table("printed bone", ENERGIES, kev, printed_bone, &bone));
     ck_skg(skg_material_create_table("printed soft tissue", ENERGIES, kev, printed_soft, &soft));
     if (image(bone, soft, equation, precision, pixels)) {
-        ck_assert_double_eq_tol(pixels[MIDDLE] / (equation == 14 ? 29.788626 : 4352.8505), 1, 1e-6);
+        ck_assert_double_eq_tol(pixels[MIDDLE] / (equation == 14 ? 29.788626 : 4352.8505), 1,
+                                8 * (double)FLT_EPSILON);
         for (int i = 0; i < PIXELS; i++) {
             double y = 0.3 * (i - MIDDLE);
             if (fabs(fabs(y) - cube / 2) < 1e-6) continue; /* along a face: either side is right */
@@ -133,6 +135,7 @@ START_TEST(equations_14_and_15_from_hounsfield_numbers) {
     skg_material *bone = NULL, *soft = NULL;
     ck_skg(skg_material_create_hounsfield(is_cut ? 1329 : 1329.885683, &bone));
     ck_skg(skg_material_create_hounsfield(is_cut ? 51 : 51.714752, &soft));
+    /* Within 0.06 % of what the paper prints: its Hounsfield numbers give mu in three to four digits. */
     ck_assert(image(bone, soft, equation, SKG_PRECISION_SINGLE, pixels));
     ck_assert_double_eq_tol(pixels[MIDDLE] / (equation == 14 ? 29.789 : 4353.175), 1, 6e-4);
     skg_material_release(&bone);

@@ -4,6 +4,7 @@
 
 #include <skiagraph/skiagraph.h>
 
+#include <float.h>
 #include <math.h>
 
 enum { SIDE = 33, PARTS = 3, MOST = 200 };
@@ -134,7 +135,7 @@ static void check(const skg_spectrum *spectrum, const skg_plan_options *options,
                                         : options->quantity == SKG_QUANTITY_ATTENUATION ? 0
                                         : options->quantity == SKG_QUANTITY_FLUENCE     ? before / 16
                                                                                         : before,
-                                        1e-12 * before);
+                                        64 * DBL_EPSILON * before);
         }
     }
     skg_plan_release(&plan);

@@ -227,7 +227,10 @@ static int is_on(const skg_plan *plan, const char *name) {
     return 0;
 }
 
-/* Double: sums are of units of 2^-50, and attenuations here below 30: 1e-9 leaves room for a thousand
+/* mm: lengths of some 100 mm, of depths of 1000 mm. */
+static const double DOUBLE_LENGTH = 1024 * DBL_EPSILON * 100;
+
+/* Double: sums are of units of 2^-50, and attenuations here below 30: 1e-9 leaves space for a thousand
  * roundings. Single: depths carry 2^-24 of some 0.3 of a ray of 950 mm, 2e-5 mm, some ten times at 0.5 / mm
  * of the strongest contrast: 1e-4; at silhouettes, where a length runs with the root of a coordinate of 2^-24
  * of 50 pixels, 1e-2 mm. */
@@ -412,12 +415,12 @@ START_TEST(lengths) {
                 lengths_of(r, c, mm);
                 for (int64_t q = 0; q < set.count; q++)
                     if (set.bodies[q].inside == p) mm[p] -= mm[q];
-                ck_assert_double_eq_tol(net[r][c], (double)mm[p], 1e-8);
+                ck_assert_double_eq_tol(net[r][c], (double)mm[p], DOUBLE_LENGTH);
                 ray_of(r, c, from, to);
                 for (int k = 0; k < 3; k++) whole += (to[k] - from[k]) * (to[k] - from[k]);
                 chord(&set.bodies[p], from, to, span);
                 ck_assert_double_eq_tol(surface[r][c], (double)(fmaxl(span[1] - span[0], 0) * sqrtl(whole)),
-                                        1e-8);
+                                        DOUBLE_LENGTH);
             }
     }
     skg_plan_release(&plan);

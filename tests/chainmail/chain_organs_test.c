@@ -135,6 +135,7 @@ static void assert_least(const skg_chain *chain, const double *u) {
     for (int k = 0; k < 3; k++)
         for (int64_t i = 0; i < chain->nodes; i++) {
             const double here = u[k * chain->nodes + i];
+            /* mm: a node that has not moved, but for rounding. */
             int held = chain->driver_of[i] >= 0 || fabs(here) <= 1e-9;
             for (int64_t e = chain->first[i]; e < chain->first[i + 1] && !held; e++) {
                 const double stretch = u[k * chain->nodes + chain->node[e]] - here;
@@ -338,6 +339,7 @@ START_TEST(two_drivers_apart) { /* P15: by how much they contradict each other, 
         ck_skg(skg_chain_move(chain, (double[6]){0, 0, up, 0, 0, down}, u, &report));
         ck_assert_double_eq_tol(report.conflict_mm, 7, 1e-9); /* 1e3 mm over 1e3 links */
         ck_assert_int_eq(report.axis, 2);
+        /* as above, on both sides */
         ck_assert_double_eq_tol(u[2 * o.nodes + o.top], up - 3.5, 1e-9);
         ck_assert_double_eq_tol(u[2 * o.nodes + other], down + 3.5, 1e-9);
         graph_assert_links(chain, u);

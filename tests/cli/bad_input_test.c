@@ -49,7 +49,7 @@ START_TEST(outputs_that_cannot_be_written) {
     char path[512];
     ck_run_fails(5, "none/a.mha: cannot be written: No such file or directory; make its folder first",
                  "image scene.json -o a.png -o none/a.mha");
-    ck_assert_int_eq(look_at_folder(0), 1); /* not the other one either: told before any work */
+    ck_assert_int_eq(look_at_folder(0), 1); /* not the other one either: refused before any work */
     ck_run_fails(5, "scene.json/a.mha: cannot be written: Not a directory",
                  "image scene.json -o scene.json/a.mha");
     ck_run_fails(5, "/dev/null/a.png", "lbuffer scene.json --part skin -o /dev/null/a.png");

@@ -94,6 +94,7 @@ START_TEST(the_liver_is_on_the_left) {
         row += i / SIDE * (double)lengths[i];
     }
     ck_assert_double_gt(sum, 0);
+    /* A twentieth of the side left of its middle. */
     ck_assert_double_lt(column / sum, 0.45 * SIDE);
     ck_assert_double_gt(row / sum, 0.5 * SIDE);
 }
@@ -109,7 +110,7 @@ START_TEST(a_moment_alone_is_the_moment_in_sequence) {
 }
 END_TEST
 
-START_TEST(conflicts_are_told) { /* too deep a breath for stiff organs */
+START_TEST(conflicts_are_reported) { /* too deep a breath for stiff organs */
     double values[18];
     ck_run(0,
            "breathe thorax.json %s --fps 0.25 -o f "
@@ -145,7 +146,7 @@ END_TEST
 
 /* A breath: the tidal volume of quiet breathing, mass of the lungs, a diaphragm that goes down with the
  * liver. */
-START_TEST(motion_is_told) {
+START_TEST(motion_is_reported) {
     double in[18], out[18];
     ck_run(0, "breathe thorax.json %s %s --fps 0.5 --set Breathing='{\"Waveform\":\"Sine\"}' -o f --json",
            SMALL, "");
@@ -229,8 +230,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_liver_is_on_the_left);
     tcase_add_test(tests, a_phase_alone_is_the_phase_in_sequence);
     tcase_add_test(tests, a_moment_alone_is_the_moment_in_sequence);
-    tcase_add_test(tests, conflicts_are_told);
-    tcase_add_test(tests, motion_is_told);
+    tcase_add_test(tests, conflicts_are_reported);
+    tcase_add_test(tests, motion_is_reported);
     tcase_add_test(tests, events_happen);
     tcase_add_test(tests, contrast_fills);
     tcase_add_test(tests, meshes_have_displacements);

@@ -30,6 +30,7 @@ START_TEST(numbers) {
     ck_assert_double_eq(number("0x10", "x10"), 0);
     ck_assert_double_infinite(number("1e999999999999", ""));
     ck_assert_double_eq(number("1e-999999999999", ""), 0);
+    /* Thirty digits: the nearest double or its neighbour. */
     ck_assert_double_eq_tol(number("123456789012345678901234567890", ""), 123456789012345678901234567890.0,
                             1e15);
     uint64_t state = 1;

@@ -75,7 +75,7 @@ START_TEST(environment_is_left_alone) {
 }
 END_TEST
 
-START_TEST(a_forked_child_is_told) {
+START_TEST(a_forked_child_is_refused) {
     skg_context *context = NULL;
     ck_skg(skg_context_create("device=0:0", &context));
     pid_t child = fork();
@@ -207,7 +207,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, config_words_choose);
     tcase_add_test(tests, environment_variable_stands_for_config);
     tcase_add_test(tests, environment_is_left_alone);
-    tcase_add_test(tests, a_forked_child_is_told);
+    tcase_add_test(tests, a_forked_child_is_refused);
     tcase_add_test(tests, build_errors_name_file_and_line);
     tcase_add_test(tests, buffers_that_cannot_be_are_refused);
     tcase_add_test(tests, a_callers_queue_is_checked_and_retained);

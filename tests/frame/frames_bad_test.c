@@ -151,7 +151,7 @@ START_TEST(a_vertex_that_is_not_finite) {
 }
 END_TEST
 
-/* A context is of no use to a child: it is told at once, and does not hang. */
+/* A child of fork cannot use the context: a call returns an error at once and does not hang. */
 START_TEST(a_fork) {
     const pid_t child = fork();
     if (child == 0) {
@@ -198,8 +198,7 @@ START_TEST(the_environment_stays) {
 }
 END_TEST
 
-/* --- what an image holds
- * ------------------------------------------------------------------------------------------ */
+/* --- what an image holds --------------------------------------------------------------------------------- */
 
 /* A ball in a box: lengths are net of children or the mesh's own, and the image is exp(-sum mu L) of the net
  * ones. */
@@ -229,6 +228,7 @@ START_TEST(nested_parts_and_quantities) {
             /* The net length is the surface's less the child's: floats of 60 mm. Exponents up to 2. */
             ck_assert_double_eq_tol((double)lengths[2][p], (double)lengths[0][p] + (double)lengths[1][p],
                                     60 * 0x1p-21);
+            /* 16 to 24 roundings of single precision, of the largest of what is summed. */
             ck_assert_double_eq_tol((double)image[p], expected, 3e-6 * fmax(expected, 1e-6 + open[quantity]));
         }
     }
@@ -236,7 +236,7 @@ START_TEST(nested_parts_and_quantities) {
 END_TEST
 
 /* A part that attenuates as its parent does is not seen; a child where its parent is not counts below zero,
- * and is told. */
+ * and is reported. */
 START_TEST(invisible_and_negative) {
     static float alone[PIXELS], with[PIXELS];
     skg_plan_report report;

@@ -53,8 +53,7 @@ static void shifted(double pose[16], double x, double y, double z) {
     pose[3] = x, pose[7] = y, pose[11] = z;
 }
 
-/* --- where images go
- * ---------------------------------------------------------------------------------------------- */
+/* --- where images go ------------------------------------------------------------------------------------- */
 
 /* Strides leave what lies between untouched, and every pixel is where they say. */
 START_TEST(strides_of_a_batch) {
@@ -136,8 +135,7 @@ START_TEST(two_jobs) {
 }
 END_TEST
 
-/* --- what a frame is
- * ---------------------------------------------------------------------------------------------- */
+/* --- what a frame is ------------------------------------------------------------------------------------- */
 
 START_TEST(poses_of_a_frame) {
     static float plain[PIXELS], posed[PIXELS], expected[PIXELS], after[PIXELS];
@@ -235,8 +233,7 @@ START_TEST(two_plans_share_a_mesh) {
 }
 END_TEST
 
-/* --- several of everything
- * ---------------------------------------------------------------------------------------- */
+/* --- several of everything ------------------------------------------------------------------------------- */
 
 START_TEST(several_contexts_and_scenes) {
     static float images[4][PIXELS], again[PIXELS];
@@ -265,8 +262,7 @@ START_TEST(several_contexts_and_scenes) {
 }
 END_TEST
 
-/* --- the caller's device memory
- * ----------------------------------------------------------------------------------- */
+/* --- the caller's device memory -------------------------------------------------------------------------- */
 
 /* A device, context and queue of the caller's own. */
 static skg_context *callers(cl_context *cl, cl_command_queue *queue) {
@@ -287,7 +283,7 @@ static skg_context *callers(cl_context *cl, cl_command_queue *queue) {
     return context;
 }
 
-/* Images in a cl_mem, begun by an event of the caller's and told by one of ours. Submit returns while the
+/* Images in a cl_mem, started by an event of the caller's, and their end marked by one of the library's. Submit returns while the
  * caller's event is still open: nothing is waited for. */
 START_TEST(device_memory_and_events) {
     enum { FRAMES = 2, OFFSET = 64, ROW = SIDE + 3 };

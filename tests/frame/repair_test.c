@@ -1,4 +1,4 @@
-/* Open meshes against the closed ones that they were made from: what is told, what is left out, and both
+/* Open meshes against the closed ones that they were made from: what is reported, what is left out, and both
  * repairs. */
 #include "suite.h"
 
@@ -144,7 +144,7 @@ static double worst(const picture *a, const picture *b) {
 
 static int64_t count_different(const picture *a, const picture *b) {
     int64_t count = 0;
-    for (int r = 0; r < SIDE; r++)
+    for (int r = 0; r < SIDE; r++) /* mm: more than rounding in double. */
         for (int c = 0; c < SIDE; c++) count += fabs(a->mm[r][c] - b->mm[r][c]) > 1e-6;
     return count;
 }
@@ -318,6 +318,7 @@ START_TEST(in_through_one_hole_and_out_through_another) {
         wish single = {.repair = SKG_REPAIR_EXACT};
         take(&closed, NULL, &single, &truth);
         take(&broken, NULL, &single, &exact);
+        /* mm, see above */
         ck_assert_double_le(worst(&exact, &truth), 1e-3);
     }
 }
@@ -331,6 +332,7 @@ static double neighbours_of(const picture *truth, const picture *left_out, int r
         for (int r = row - reach; r <= row + reach; r++)
             for (int c = column - reach; c <= column + reach; c++) {
                 if (r < 0 || c < 0 || r >= SIDE || c >= SIDE) continue;
+                /* mm: as in count_different. */
                 if (fabs(left_out->mm[r][c] - truth->mm[r][c]) > 1e-6) continue;
                 sum += left_out->mm[r][c];
                 valid++;
@@ -392,15 +394,16 @@ START_TEST(no_valid_pixel) {
 }
 END_TEST
 
-static char told[2000];
+static char warned[2000];
 
 static void keep_warning(int32_t level, const char *message, void *user) {
     (void)user;
-    if (level == SKG_LOG_WARNING && strstr(message, "is leaky")) snprintf(told, sizeof told, "%s", message);
+    if (level == SKG_LOG_WARNING && strstr(message, "is leaky"))
+        snprintf(warned, sizeof warned, "%s", message);
 }
 
 /* The warning names the part, how many pixels, where, and what was done. */
-START_TEST(what_is_told) {
+START_TEST(what_is_warned_of) {
     static soup broken;
     static picture image, left_out;
     static const char *const done[] = {"left out", "mean of its nearest valid pixels", "traced again"};
@@ -413,15 +416,15 @@ START_TEST(what_is_told) {
     for (int32_t repair = SKG_REPAIR_NONE; repair <= SKG_REPAIR_EXACT; repair++) {
         take(&broken, NULL, &(wish){.precision = SKG_PRECISION_DOUBLE, .repair = repair}, &left_out);
         if (repair == SKG_REPAIR_NONE)
-            for (int k = SIDE * SIDE; k-- > 0;)
+            for (int k = SIDE * SIDE; k-- > 0;) /* mm: as in count_different. */
                 if (fabs(left_out.mm[k / SIDE][k % SIDE] - image.mm[k / SIDE][k % SIDE]) > 1e-6)
                     row = k / SIDE, column = k % SIDE;
         snprintf(expected, sizeof expected, "part first is leaky: at %d pixels",
                  (int)left_out.report.bad_pixels);
-        ck_assert_msg(strstr(told, expected) != NULL, "%s", told);
+        ck_assert_msg(strstr(warned, expected) != NULL, "%s", warned);
         snprintf(expected, sizeof expected, "first at (column, row) (%d, %d), (", column, row);
-        ck_assert_msg(strstr(told, expected) != NULL, "%s", told);
-        ck_assert_msg(strstr(told, done[repair]) != NULL, "%s", told);
+        ck_assert_msg(strstr(warned, expected) != NULL, "%s", warned);
+        ck_assert_msg(strstr(warned, done[repair]) != NULL, "%s", warned);
     }
 }
 END_TEST
@@ -434,7 +437,7 @@ static void count_warnings(int32_t level, const char *message, void *user) {
 }
 
 /* Once for a part; again where it is ten times as bad as it was, not where it is better. */
-START_TEST(what_is_told_once) {
+START_TEST(what_is_warned_of_once) {
     static const double z[] = {0, 0, -800, 0, -800};
     static const int told_by[] = {1, 1, 2, 2, 2};
     static soup broken;
@@ -467,7 +470,7 @@ START_TEST(what_is_told_once) {
         skg_plan_report_init(&image.report);
         ck_skg(skg_plan_report_get(plan, &image.report));
         if (k == 0) few = image.report.bad_pixels;
-        ck_assert_int_gt(image.report.bad_pixels, z[k] < 0 ? 10 * few : 0); /* told of every frame */
+        ck_assert_int_gt(image.report.bad_pixels, z[k] < 0 ? 10 * few : 0); /* reported for every frame */
         ck_assert_int_eq(warnings, told_by[k]);
     }
     skg_plan_release(&plan);
@@ -486,8 +489,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, neighbours_are_the_means_of_squares);
     tcase_add_test(tests, strategies_agree);
     tcase_add_test(tests, no_valid_pixel);
-    tcase_add_test(tests, what_is_told);
-    tcase_add_test(tests, what_is_told_once);
+    tcase_add_test(tests, what_is_warned_of);
+    tcase_add_test(tests, what_is_warned_of_once);
 }
 
 SKG_SUITE_MAIN("repair", add_tests)

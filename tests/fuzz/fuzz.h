@@ -9,8 +9,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* The path of `name` in a temporary folder that goes away when the process ends; valid until the next call.
- */
+/* The path of `name` in a temporary folder that goes away when the process ends; valid until the next call. */
 const char *fuzz_path(const char *name);
 
 /* Writes a file there. */

@@ -5,8 +5,7 @@
 
 #include "support/run.h"
 
-/* A triangle of `pixels` across about (column, row), half-way to the detector: what it is added to is open.
- */
+/* A triangle of `pixels` across about (column, row), half-way to the detector: what it is added to is open. */
 solid stray(const skg_view *view, double column, double row, double pixels);
 
 /* The unbalanced pixels of the body with a stray triangle at (at, at). pose may be NULL. */

@@ -69,8 +69,7 @@ START_TEST(order_of_triangles) {
 }
 END_TEST
 
-/* --- images of several parts
- * -------------------------------------------------------------------------------------- */
+/* --- images of several parts ----------------------------------------------------------------------------- */
 
 /* An envelope with a bone, a cavity and an open sheet inside. */
 static skg_scene *several(void) {

@@ -47,7 +47,7 @@ void hard_same_bits(hard_outcome *o, int way, const double *image, int64_t count
 /* Every value finite, none below `least`. */
 void hard_check_values(hard_outcome *o, const double *image, int64_t count, double least);
 
-/* Sets o->slower: the fastest frame of the plan over that of an ordinary scene of that size, by turns. Its
+/* Sets o->slower: the fastest frame of the plan over that of an ordinary scene of that size, timed alternately. Its
  * size: as many pixels, triangles, and hits of pixels' paths with triangles, which are what work is made of;
  * in one part, spheres within each other, all of them between source and detector (ordinary.c). */
 void hard_compare_time(hard_outcome *o, const skg_scene *scene, skg_plan *plan, const skg_view *view);

@@ -33,7 +33,7 @@ static void conflict(hard_outcome *o) {
     ck_skg(skg_chain_create("row", NODES, rest, NODES - 1, ends, &muscle, 1, NULL, &chain));
     ck_skg(skg_chain_drive(chain, 3, (int32_t[3]){0, 100, 199}));
     ck_skg(skg_chain_move(chain, (double[9]){-500, 3, 0, 200, 0, -9, -300, 0, 40}, u, &report));
-    if (!(report.conflict_mm > 1)) hard_fault(o, "no conflict was told");
+    if (!(report.conflict_mm > 1)) hard_fault(o, "no conflict was reported");
     hard_check_values(o, u, 3 * NODES, -1e3);
     judge_links(o, chain, u);
     skg_chain_free(&chain);

@@ -81,8 +81,7 @@ static void part_of(skg_scene *scene, const char *label, const solid *s, double 
     skg_mesh_release(&mesh);
 }
 
-/* --- transmission ----------------------------------------------------------------------------------------
- */
+/* --- transmission ---------------------------------------------------------------------------------------- */
 
 static void transmission(hard_outcome *o) {
     enum { STEPS = 16 };
@@ -162,8 +161,7 @@ static void empty_bins(hard_outcome *o) {
     skg_spectrum_release(&spectrum);
 }
 
-/* --- parts -----------------------------------------------------------------------------------------------
- */
+/* --- parts ----------------------------------------------------------------------------------------------- */
 
 static void neighbours(hard_outcome *o) {
     static judgement j = {.quantity = SKG_QUANTITY_ATTENUATION, .bar = {3e-6, 1e-11}};

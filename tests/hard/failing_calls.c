@@ -226,6 +226,15 @@ PARSER(json_loadb, (const char *text, size_t size, size_t flags, json_error_t *e
         return __real_##name(object);                                                                        \
     }
 
+/* One that holds an object once more, which does not fail either. */
+#define RETAIN(type, name)                                                                                   \
+    cl_int __real_##name(type object);                                                                       \
+    cl_int __wrap_##name(type object);                                                                       \
+    cl_int __wrap_##name(type object) {                                                                      \
+        live_objects++;                                                                                      \
+        return __real_##name(object);                                                                        \
+    }
+
 /* clang-format off */
 typedef void (CL_CALLBACK *driver_function)(const char *, const void *, size_t, void *);
 typedef void (CL_CALLBACK *built_function)(cl_program, void *);
@@ -284,6 +293,9 @@ EVENT(clEnqueueBarrierWithWaitList, (cl_command_queue queue, cl_uint count, cons
       (queue, count, waits, event))
 EVENT(clEnqueueMarkerWithWaitList, (cl_command_queue queue, cl_uint count, const cl_event *waits, cl_event *event),
       (queue, count, waits, event))
+RETAIN(cl_context, clRetainContext)
+RETAIN(cl_command_queue, clRetainCommandQueue)
+RETAIN(cl_event, clRetainEvent)
 RELEASE(cl_context, clReleaseContext)
 RELEASE(cl_command_queue, clReleaseCommandQueue)
 RELEASE(cl_program, clReleaseProgram)

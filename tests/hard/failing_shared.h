@@ -12,7 +12,7 @@ typedef struct {
     cl_event start; /* complete */
 } shared_objects;
 
-/* Of the first device, with a buffer of so many bytes. */
+/* Of the first device, with a buffer of `bytes` bytes. */
 void shared_make(size_t bytes, shared_objects *s);
 void shared_free(shared_objects *s);
 

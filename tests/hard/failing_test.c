@@ -223,7 +223,7 @@ static skg_status draw(run *r) {
     else
         TRY(skg_plan_submit(r->plan, 2, frames, &output, &job));
     TRY(skg_job_wait(&job));
-    if (r->with->shared) shared_read(&r->shared, BYTES / 4 * 2, r->image);
+    if (r->with->shared) shared_read(&r->shared, 2 * PIXELS * sizeof *r->image, r->image);
     output.row_stride = 0;
     output.data = r->lengths;
     TRY(skg_plan_lengths(r->plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));

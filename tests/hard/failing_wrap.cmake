@@ -5,5 +5,5 @@ set(SKG_WRAPPED malloc calloc realloc free json_loads json_loadb
   clGetKernelInfo clGetMemObjectInfo clFlush clFinish clWaitForEvents clEnqueueNDRangeKernel clEnqueueFillBuffer
   clEnqueueReadBuffer clEnqueueReadBufferRect clEnqueueWriteBuffer clEnqueueBarrierWithWaitList
   clEnqueueMarkerWithWaitList clReleaseContext clReleaseCommandQueue clReleaseProgram clReleaseKernel
-  clReleaseMemObject clReleaseEvent)
+  clReleaseMemObject clReleaseEvent clRetainContext clRetainCommandQueue clRetainEvent)
 list(TRANSFORM SKG_WRAPPED PREPEND -Wl,--wrap=)

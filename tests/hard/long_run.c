@@ -8,7 +8,7 @@
 
 enum { CYCLE = 50, SIDE = 64, PIXELS = SIDE * SIDE };
 
-/* Resident memory in KiB; 0 where the system does not tell. */
+/* Resident memory in KiB; 0 where the system does not report it. */
 static long resident_kib(void) {
     char line[256];
     long kib = 0;

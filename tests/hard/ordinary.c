@@ -1,6 +1,7 @@
 /* What a frame of a hard case may cost: three times an ordinary scene of that size. */
 #include "hard/catalogue.h"
 #include "suite.h"
+#include "support/angles.h"
 #include "support/random.h"
 
 #include <math.h>
@@ -96,10 +97,10 @@ static size_of_scene measure(const skg_scene *scene, const skg_view *view) {
     return size;
 }
 
-/* Spheres about one centre, so many that they have the triangles and the hits; 400 mm of detector. */
+/* Spheres about one centre, as many as give the wanted triangles and hits; 400 mm of detector. */
 static skg_scene *ordinary_scene(size_of_scene size, const skg_view *view) {
     const double largest = 120, pitch = 400.0 / (double)view->columns, magnified = 1.2;
-    const double shadow = 3.14159265 * largest * largest * magnified * magnified / (pitch * pitch);
+    const double shadow = pi * largest * largest * magnified * magnified / (pitch * pitch);
     const double layers = fmax(1, ceil(size.hits / (2 * shadow)));
     const double radius = fmax(1, largest * sqrt(size.hits / (2 * shadow * layers)));
     const int down = (int)fmax(3, sqrt((double)size.triangles / layers) / 2);
@@ -129,7 +130,7 @@ void hard_compare_time(hard_outcome *o, const skg_scene *scene, skg_plan *plan, 
     skg_scene *other_scene = ordinary_scene(size, &ordinary);
     skg_plan *other = run_plan(other_scene, &ordinary, (run_choice){0});
     double least = HUGE_VAL, other_least = HUGE_VAL;
-    for (int n = 0; n < ROUNDS; n++) { /* by turns: both see the same machine */
+    for (int n = 0; n < ROUNDS; n++) { /* alternately: both see the same machine */
         least = fmin(least, frame_ms(plan, view));
         other_least = fmin(other_least, frame_ms(other, &ordinary));
     }

@@ -2,6 +2,7 @@
 #include "stage/blur.h"
 #include "suite.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -164,15 +165,16 @@ START_TEST(border) {
     for (int64_t i = 0; i < p.count; i++) p.values[i] = 12345;
     picture after = blurred(&p, &shape, 0);
     /* five fifths of 12345, each rounded */
-    for (int64_t i = 0; i < p.count; i++) ck_assert_double_eq_tol(after.values[i], 12345, 4 * 6e-8 * 12345);
+    for (int64_t i = 0; i < p.count; i++)
+        ck_assert_double_eq_tol(after.values[i], 12345, 2 * (double)FLT_EPSILON * 12345);
     free(after.values);
     *pixel(&p, 0, 4, 0) = 12345 + 5;
     after = blurred(&p, &shape, 0);
     ck_assert_double_eq_tol(*pixel(&after, 0, 4, 0), 12345 + 3,
-                            4 * 6e-8 * 12345); /* itself and twice beyond */
-    ck_assert_double_eq_tol(*pixel(&after, 0, 4, 1), 12345 + 2, 4 * 6e-8 * 12345);
-    ck_assert_double_eq_tol(*pixel(&after, 0, 4, 2), 12345 + 1, 4 * 6e-8 * 12345);
-    ck_assert_double_eq_tol(*pixel(&after, 0, 4, 3), 12345, 4 * 6e-8 * 12345);
+                            2 * (double)FLT_EPSILON * 12345); /* itself and twice beyond */
+    ck_assert_double_eq_tol(*pixel(&after, 0, 4, 1), 12345 + 2, 2 * (double)FLT_EPSILON * 12345);
+    ck_assert_double_eq_tol(*pixel(&after, 0, 4, 2), 12345 + 1, 2 * (double)FLT_EPSILON * 12345);
+    ck_assert_double_eq_tol(*pixel(&after, 0, 4, 3), 12345, 2 * (double)FLT_EPSILON * 12345);
     free(after.values);
     free(p.values);
 }

@@ -61,10 +61,15 @@ static void device_layout(const char *options, int32_t out[9]) {
 }
 
 START_TEST(structs_are_laid_out_alike) {
-    const int32_t single[9] = {
-        sizeof(skg_part_float),           sizeof(skg_contribution_float),           sizeof(skg_ray_float),
-        sizeof(skg_frame_args),           offsetof(skg_part_float, pixel_i), offsetof(skg_part_float, contributions),
-        offsetof(skg_contribution_float, plane), offsetof(skg_ray_float, unit),     offsetof(skg_frame_args, queue)};
+    const int32_t single[9] = {sizeof(skg_part_float),
+                               sizeof(skg_contribution_float),
+                               sizeof(skg_ray_float),
+                               sizeof(skg_frame_args),
+                               offsetof(skg_part_float, pixel_i),
+                               offsetof(skg_part_float, contributions),
+                               offsetof(skg_contribution_float, plane),
+                               offsetof(skg_ray_float, unit),
+                               offsetof(skg_frame_args, queue)};
     const int32_t twice[9] = {sizeof(skg_part_double),
                               sizeof(skg_contribution_double),
                               sizeof(skg_ray_double),

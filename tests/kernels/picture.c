@@ -3,6 +3,7 @@
 #include "core/vector.h"
 #include "stage/attenuate.h"
 #include "stage/raster_private.h"
+#include "support/angles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +34,6 @@ static void set_corners(shape *s, int64_t triangle, int64_t a, int64_t b, int64_
 
 shape shape_sphere(double radius, int around, int down) {
     shape s = shape_make((int64_t)around * (down - 1) + 2, 2 * (int64_t)around * (down - 1));
-    const double pi = 3.14159265358979323846;
     for (int r = 1; r < down; r++)
         for (int k = 0; k < around; k++) {
             double *v = s.positions + 3 * ((r - 1) * around + k);

@@ -155,8 +155,7 @@ START_TEST(order_and_threads_do_not_matter) {
 }
 END_TEST
 
-/* --- no seam
- * ------------------------------------------------------------------------------------------------------ */
+/* --- no seam --------------------------------------------------------------------------------------------- */
 
 /* Signed hits of a closed shape cancel in every pixel, by copies (wide) and by atomics (scalar). */
 static void check_cancels(const char *what, const skg_view *view, const shape *s, const double *pose,
@@ -249,8 +248,7 @@ START_TEST(source_inside) {
 }
 END_TEST
 
-/* --- truth
- * -------------------------------------------------------------------------------------------------------- */
+/* --- truth ----------------------------------------------------------------------------------------------- */
 
 typedef struct {
     double rms, worst, longest;
@@ -293,7 +291,7 @@ START_TEST(lengths_are_those_of_the_referee) {
                 scale_of(&options) / (n % 3 == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? 256 : 1); /* mm */
             ck_skg(picture_take(context, &options, &view, THREE, bodies, scale, &result));
             const errors e = compare(&view, &result, truth);
-            /* Single: the bars of the contract. Double: a hundred times its epsilon, and the scale's own
+            /* Single: the bars of docs/numerics.md#precision. Double: a hundred times its epsilon, and the scale's own
              * step. */
             ck_assert_double_le(e.rms, (precision == SKG_PRECISION_SINGLE ? 3e-7 : 1e-11) * e.longest);
             ck_assert_double_le(e.worst, (precision == SKG_PRECISION_SINGLE ? 1e-3 : 1e-11) * e.longest);
@@ -328,8 +326,7 @@ START_TEST(plates_in_series_add_up) {
 }
 END_TEST
 
-/* --- what is wrong is told
- * ---------------------------------------------------------------------------------------- */
+/* --- what is wrong is reported ------------------------------------------------------------------------------- */
 
 START_TEST(vertex_that_is_not_finite) {
     shape sphere = shape_sphere(40, 24, 12), bad = shape_sphere(40, 24, 12);

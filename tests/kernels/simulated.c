@@ -51,6 +51,7 @@ static const group groups[] = {
     {.name = "half", .precision = SKG_PRECISION_HALF},
     {.name = "hits", .priority = 2},
     {.name = "double_hits", .precision = SKG_PRECISION_DOUBLE, .priority = 2},
+    {.name = "hits_source_plane", .priority = 2, .inside = 1},
     {.name = "leaky", .leaky = 1, .repair = SKG_REPAIR_NEIGHBOURS},
     {.name = "leaky_exact", .leaky = 1, .repair = SKG_REPAIR_EXACT},
     {.name = "double_leaky", .precision = SKG_PRECISION_DOUBLE, .leaky = 1, .repair = SKG_REPAIR_NEIGHBOURS},
@@ -89,7 +90,7 @@ static skg_scene *make_scene(skg_context *context, const group *g) {
     solid ball = solid_sphere(12, 6, 4);
     if (g->inside) solid_shift(&box, 0, 0, -600); /* around the source, at z = -600 */
     if (g->leaky) box.triangles--;
-    solid_shift(&ball, 22, 5, g->priority ? 4 : 60);
+    solid_shift(&ball, 22, 5, !g->priority ? 60 : g->inside ? -352 : 4); /* with a priority: cuts the box */
     TRY(skg_scene_create(context, &scene));
     add(context, scene, "box", box, "Water", 0);
     add(context, scene, "ball", ball, "Al", g->priority);

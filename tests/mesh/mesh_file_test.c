@@ -19,7 +19,7 @@ void __wrap_skg_log(skg_context *context, int32_t level, const char *format, ...
     va_end(arguments);
 }
 
-/* The library's allocations: so many succeed, the next one fails; negative: all succeed. */
+/* How many more allocations of the library succeed before one fails; negative: all succeed. */
 static int64_t allocations_left = -1;
 void *__real_calloc(size_t count, size_t size);
 void *__wrap_calloc(size_t count, size_t size);
@@ -109,7 +109,7 @@ START_TEST(ascii_stl_of_two_solids_is_one_mesh) {
 }
 END_TEST
 
-START_TEST(damaged_stl_is_told) {
+START_TEST(damaged_stl_is_refused) {
     unsigned char stl[84 + 2 * 50] = "solid: a binary file of a careless program", *body = stl + 84;
     skg_mesh *mesh;
     stl[80] = 2;
@@ -177,7 +177,7 @@ END_TEST
 
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
-START_TEST(damaged_obj_is_told) {
+START_TEST(damaged_obj_is_refused) {
     refuse(file_of("a.obj", SQUARE "f 1 2"), SKG_ERR_FORMAT, "line 5: a face of fewer than three corners");
     refuse(file_of("b.obj", SQUARE "v 1 2\nf 1 2 3"), SKG_ERR_FORMAT, "line 5: a vertex is");
     refuse(file_of("c.obj", "v 1 2 3x\n"), SKG_ERR_FORMAT, "line 1: a vertex is");
@@ -239,7 +239,7 @@ START_TEST(ply_of_every_kind) {
 }
 END_TEST
 
-START_TEST(damaged_ply_is_told) {
+START_TEST(damaged_ply_is_refused) {
     refuse(file_of("a.ply", "plx\n"), SKG_ERR_FORMAT, "\"plx\"");
     refuse(file_of("b.ply", "ply\nformat ascii 1.0\nelement vertex 3"), SKG_ERR_FORMAT, "end_header");
     refuse(file_of("c.ply", "ply\nformat ascii 1.0\nelement vertex 3\nend_header\n"), SKG_ERR_FORMAT,
@@ -302,12 +302,12 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, ply_comes_back_bit_for_bit);
     tcase_add_test(tests, stl_comes_back_corner_by_corner);
     tcase_add_test(tests, ascii_stl_of_two_solids_is_one_mesh);
-    tcase_add_test(tests, damaged_stl_is_told);
+    tcase_add_test(tests, damaged_stl_is_refused);
     tcase_add_test(tests, files_that_are_none);
     tcase_add_test(tests, obj_keeps_its_numbering);
-    tcase_add_test(tests, damaged_obj_is_told);
+    tcase_add_test(tests, damaged_obj_is_refused);
     tcase_add_test(tests, ply_of_every_kind);
-    tcase_add_test(tests, damaged_ply_is_told);
+    tcase_add_test(tests, damaged_ply_is_refused);
     tcase_add_test(tests, nothing_is_left_where_nothing_can_be_written);
     tcase_add_test(tests, memory_may_end_anywhere);
 }

@@ -92,7 +92,7 @@ START_TEST(missing_triangle_leaves_three_open_edges) {
 }
 END_TEST
 
-START_TEST(inverted_cube_is_turned_and_told) {
+START_TEST(inverted_cube_is_turned_with_a_warning) {
     int32_t corners[36], back[36];
     take_cube();
     for (int i = 0; i < 36; i++) corners[i] = cube_corners[i / 3 * 3 + 2 - i % 3];
@@ -392,7 +392,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, numbering_strides_and_units_are_the_callers);
     tcase_add_test(tests, missing_triangle_leaves_three_open_edges);
-    tcase_add_test(tests, inverted_cube_is_turned_and_told);
+    tcase_add_test(tests, inverted_cube_is_turned_with_a_warning);
     tcase_add_test(tests, equal_positions_are_welded_for_the_health);
     tcase_add_test(tests, faults_are_counted);
     tcase_add_test(tests, cubes_that_share_an_edge_are_closed);

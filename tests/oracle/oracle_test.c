@@ -1,4 +1,4 @@
-/* Random closed solids under random views against the ray caster, by the bars of the contract. */
+/* Random closed solids under random views against the ray caster, by the bars of docs/numerics.md#precision. */
 #include "suite.h"
 #include "support/random.h"
 #include "support/verdict.h"

@@ -9,8 +9,8 @@ START_TEST(strategy_follows_from_the_facts) {
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_COPIES);
     facts.workers = 64;
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_TILES);
-    facts =
-        (skg_strategy_facts){.workers = 2, .image_bytes = 16 << 20, .triangles = 168100, .triangle_pixels = 80};
+    facts = (skg_strategy_facts){
+        .workers = 2, .image_bytes = 16 << 20, .triangles = 168100, .triangle_pixels = 80};
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_TILES);
     facts.triangle_pixels = 10;
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_COPIES);

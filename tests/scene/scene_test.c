@@ -182,7 +182,7 @@ static void count_warnings(int32_t level, const char *sentence, void *user) {
     if (level == SKG_LOG_WARNING && strstr(sentence, "same mesh in the same place")) ++*(int *)user;
 }
 
-START_TEST(the_same_mesh_twice_in_a_place_is_told) {
+START_TEST(the_same_mesh_twice_in_a_place_is_reported) {
     skg_context *context = NULL;
     int warnings = 0;
     ck_skg(skg_context_create(NULL, &context));
@@ -234,7 +234,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, bad_parts_are_refused);
     tcase_add_test(tests, singular_poses_are_refused);
     tcase_add_test(tests, circles_of_parents_are_refused);
-    tcase_add_test(tests, the_same_mesh_twice_in_a_place_is_told);
+    tcase_add_test(tests, the_same_mesh_twice_in_a_place_is_reported);
     tcase_add_test(tests, many_parts);
 }
 

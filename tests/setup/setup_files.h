@@ -67,7 +67,7 @@ static const char good[] =
     "    ]\n"
     "}\n";
 
-/* good with one piece of its text put in the place of another. */
+/* good with one piece of its text replaced by another. */
 static inline void write_edited(const char *from, const char *to) {
     const char *at = strstr(good, from);
     ck_assert_msg(at != NULL, "\"%s\" is not in the good file", from);

@@ -12,7 +12,7 @@ static const skg_contribution writes[] = {{0, 2, 0},  {1, 1, 0},    {0, -2, 0}, 
                                           {0, -2, 0}, {2, 0.25, 0}, {0, -1, 0}};
 static const int64_t firsts[PARTS + 1] = {0, 1, 3, 5, 7, 9, 11, 11};
 
-/* What the writes add is what lists say of it. */
+/* What the contributions add is what their lists say. */
 static void ck_same(const skg_mix *mix) {
     for (int64_t p = 0; p < PARTS; p++) {
         double given[PLANES] = {0}, mixed[PLANES] = {0};
@@ -20,7 +20,8 @@ static void ck_same(const skg_mix *mix) {
         ck_assert_int_le(mix->first_contribution[p + 1] - mix->first_contribution[p], 1);
         for (int64_t w = mix->first_contribution[p]; w < mix->first_contribution[p + 1]; w++)
             for (int k = 0; k < PLANES; k++)
-                mixed[k] += mix->contributions[w].weight * mix->lists[mix->contributions[w].plane * PLANES + k];
+                mixed[k] +=
+                    mix->contributions[w].weight * mix->lists[mix->contributions[w].plane * PLANES + k];
         ck_assert(memcmp(given, mixed, sizeof given) == 0); /* halves and doubles: exact */
     }
 }
@@ -32,9 +33,10 @@ START_TEST(parts_that_add_alike_share) {
     ck_same(&mix);
     for (int p = 2; p < 4; p++) ck_assert_int_eq(mix.contributions[p].plane, mix.contributions[1].plane);
     ck_assert_double_eq(mix.contributions[3].weight, -2 * mix.contributions[1].weight);
-    ck_assert_int_eq(mix.first_contribution[PARTS - 1], mix.first_contribution[PARTS]); /* what adds nothing */
+    ck_assert_int_eq(mix.first_contribution[PARTS - 1],
+                     mix.first_contribution[PARTS]); /* what adds nothing */
     for (int k = 0; k < PLANES; k++)
-        ck_assert_double_eq(mix.lists[3 * PLANES + k], 0); /* room for one more */
+        ck_assert_double_eq(mix.lists[3 * PLANES + k], 0); /* space for one more */
     skg_mix_release(&mix);
 }
 END_TEST

@@ -6,7 +6,7 @@
 typedef long double real;
 
 /* A vertex in the ray's frame: across (u, v), along (from the pixel, towards where the ray goes), mm. The
- * code tells the sides it lies on, so that most triangles are passed over at a glance. */
+ * code says on which sides it lies, so that most triangles are skipped quickly. */
 typedef struct {
     real u, v, along;
     unsigned code;

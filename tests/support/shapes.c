@@ -1,13 +1,12 @@
 #include "support/shapes.h"
 
+#include "support/angles.h"
 #include "support/random.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 static solid allocate(int64_t vertices, int64_t triangles) {
     return (solid){vertices, triangles, calloc((size_t)(3 * vertices), sizeof(double)),
@@ -164,8 +163,7 @@ solid solid_tetrahedra(int64_t count, double size, const double box[3], uint64_t
     return s;
 }
 
-/* A point on the ray of a pixel at path parameter t (0 source, 1 pixel), then up to `ulps` float steps off.
- */
+/* A point on the ray of a pixel at path parameter t (0 source, 1 pixel), then up to `ulps` float steps off. */
 static void near_ray(double *at, const skg_view *view, double column, double row, double t, int ulps,
                      uint64_t *seed) {
     const double c = column - (double)(view->columns - 1) / 2, r = row - (double)(view->rows - 1) / 2;

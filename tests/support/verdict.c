@@ -12,9 +12,9 @@ void verdict_free(verdict *v) {
 
 void verdict_add(verdict *v, int64_t count, const double *got, const double *low, const double *high) {
     if (!high) high = low;
-    if (v->count + count > v->room) {
-        v->room = 2 * (v->count + count);
-        v->errors = realloc(v->errors, (size_t)v->room * sizeof *v->errors);
+    if (v->count + count > v->capacity) {
+        v->capacity = 2 * (v->count + count);
+        v->errors = realloc(v->errors, (size_t)v->capacity * sizeof *v->errors);
     }
     double longest = 0;
     for (int64_t n = 0; n < count; n++) {

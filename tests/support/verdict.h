@@ -1,4 +1,4 @@
-/* Lengths held against the truth, by the bars of the contract: single: rms <= 3e-7 Lmax, 99.9 % within 3e-6
+/* Lengths held against the truth, by the bars of docs/numerics.md#precision: single: rms <= 3e-7 Lmax, 99.9 % within 3e-6
  * Lmax, none beyond 1e-3 Lmax; double: none beyond 1e-11 Lmax. Lmax is the longest true path of a picture. */
 #ifndef SKG_TESTS_VERDICT_H
 #define SKG_TESTS_VERDICT_H
@@ -8,7 +8,7 @@
 
 /* Errors of one picture or of many, in units of the Lmax of each. Free with verdict_free. */
 typedef struct {
-    int64_t count, room;
+    int64_t count, capacity;
     double *errors;
     double longest; /* Lmax of the last picture, mm */
 } verdict;
@@ -31,7 +31,7 @@ void verdict_cast(verdict *v, caster *c, const skg_view *view, const double *got
  * source's plane. */
 window window_of(const solid *s, const double *pose, const skg_view *view);
 
-/* The figures, and whether they are within the bars; `what` is told when not. */
+/* The figures, and whether they are within the bars; `what` is printed when they are not. */
 double verdict_rms(const verdict *v);
 double verdict_worst(const verdict *v);
 double verdict_beyond(const verdict *v, double error); /* fraction with a larger error */
