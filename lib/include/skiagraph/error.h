@@ -44,7 +44,7 @@ typedef int32_t skg_status;
     X(SKG_ERR_INTERNAL, -99, "a fault of the library itself")
 
 enum {
-#define SKG_STATUS_ENUM(name, value, text) name = value,
+#define SKG_STATUS_ENUM(name, value, text) name = (value),
     SKG_STATUS_LIST(SKG_STATUS_ENUM)
 #undef SKG_STATUS_ENUM
 };
