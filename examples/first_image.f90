@@ -1,4 +1,4 @@
-! A cube of water in a parallel beam, from Fortran 2003 through iso_c_binding: its path length at the middle is its edge.
+! A cube of water in a parallel beam, from Fortran 2008 through iso_c_binding: its path length at the middle is its edge.
 !
 !     gfortran first_image.f90 $(pkg-config --libs skiagraph) -o first_image_f && ./first_image_f
 program first_image
@@ -8,9 +8,10 @@ program first_image
     integer(c_int32_t), parameter :: parallel = 1, surface = 1
     integer(c_int64_t), parameter :: side = 64
 
-    ! The structs of <skiagraph/scene.h> and <skiagraph/plan.h>, field by field.
+    ! The structs of <skiagraph/scene.h>, <skiagraph/types.h> and <skiagraph/frame.h>, field by field: their layout is
+    ! in lib/bindings/interface.json. skg_X_init_sized takes the size of ours.
     type, bind(c) :: skg_part
-        integer(c_int32_t) :: size, reserved
+        integer(c_int32_t) :: size, priority
         integer(c_int64_t) :: inside
         type(c_ptr) :: mesh, material, label
         real(c_double) :: pose(16)
@@ -59,17 +60,20 @@ program first_image
             type(skg_part) :: part
             integer(c_int64_t) :: id
         end function
-        subroutine skg_part_init(part) bind(c)
-            import :: skg_part
+        subroutine skg_part_init_sized(part, size) bind(c)
+            import :: c_int32_t, skg_part
             type(skg_part) :: part
+            integer(c_int32_t), value :: size
         end subroutine
-        subroutine skg_view_init(view) bind(c)
-            import :: skg_view
+        subroutine skg_view_init_sized(view, size) bind(c)
+            import :: c_int32_t, skg_view
             type(skg_view) :: view
+            integer(c_int32_t), value :: size
         end subroutine
-        subroutine skg_output_init(output) bind(c)
-            import :: skg_output
+        subroutine skg_output_init_sized(output, size) bind(c)
+            import :: c_int32_t, skg_output
             type(skg_output) :: output
+            integer(c_int32_t), value :: size
         end subroutine
         integer(c_int32_t) function skg_plan_create(context, scene, view, spectrum, options, plan) bind(c)
             import :: c_int32_t, c_ptr, skg_view
@@ -131,11 +135,11 @@ program first_image
     call check(skg_material_create_mu(c_null_ptr, 0.1837_c_double, water))
     call check(skg_spectrum_create_mono(80.0_c_double, 1.0_c_double, beam))
     call check(skg_scene_create(context, scene))
-    call skg_part_init(part)
+    call skg_part_init_sized(part, int(c_sizeof(part), c_int32_t))
     part%mesh = mesh
     part%material = water
     call check(skg_scene_add(scene, part, id))
-    call skg_view_init(view)
+    call skg_view_init_sized(view, int(c_sizeof(view), c_int32_t))
     view%projection = parallel
     view%columns = side
     view%rows = side
@@ -144,7 +148,7 @@ program first_image
     view%column_step = [1.0_c_double, 0.0_c_double, 0.0_c_double]
     view%row_step = [0.0_c_double, 1.0_c_double, 0.0_c_double]
     call check(skg_plan_create(context, scene, view, beam, c_null_ptr, plan))
-    call skg_output_init(output)
+    call skg_output_init_sized(output, int(c_sizeof(output), c_int32_t))
     output%data = c_loc(lengths)
     call check(skg_plan_lengths(plan, id, surface, 1_c_int64_t, c_null_ptr, output, job))
     call check(skg_job_wait(job))

@@ -9,8 +9,9 @@ skg = c.CDLL(sys.argv[1] if len(sys.argv) > 1 else "libskiagraph.so.0")
 skg.skg_last_error.restype = c.c_char_p
 
 
+# Structs, field by field: their layout is in lib/bindings/interface.json.
 class Part(c.Structure):
-    _fields_ = [("size", c.c_int32), ("reserved", c.c_int32), ("inside", c.c_int64), ("mesh", c.c_void_p),
+    _fields_ = [("size", c.c_int32), ("priority", c.c_int32), ("inside", c.c_int64), ("mesh", c.c_void_p),
                 ("material", c.c_void_p), ("label", c.c_char_p), ("pose", c.c_double * 16)]
 
 
@@ -37,6 +38,13 @@ def make(function, *arguments):
     return handle
 
 
+def prepared(struct, name):
+    """A struct with the library's defaults; the library writes no more than the size that we give."""
+    made = struct()
+    getattr(skg, name + "_init_sized")(c.byref(made), c.sizeof(made))
+    return made
+
+
 SIDE = 128
 context = make("skg_context_create", None)
 mesh = make("skg_mesh_create_sphere", c.c_double(40), c.c_int64(128))
@@ -44,22 +52,19 @@ tissue = make("skg_material_create_mu", b"soft tissue at 80 keV", c.c_double(0.1
 beam = make("skg_spectrum_create_mono", c.c_double(80), c.c_double(1000))
 scene = make("skg_scene_create", context)
 
-part = Part()
-skg.skg_part_init(c.byref(part))
+part = prepared(Part, "skg_part")
 part.mesh, part.material, part.label = mesh, tissue, b"ball"
 number = c.c_int64()
 check(skg.skg_scene_add(scene, c.byref(part), c.byref(number)))
 
-view = View()
-skg.skg_view_init(c.byref(view))
+view = prepared(View, "skg_view")
 view.columns = view.rows = SIDE
 view.source[2], view.centre[2] = -1000, 200
 view.column_step[0] = view.row_step[1] = 1
 plan = make("skg_plan_create", context, scene, c.byref(view), beam, None)
 
 image = (c.c_float * (SIDE * SIDE))()
-output = Output()
-skg.skg_output_init(c.byref(output))
+output = prepared(Output, "skg_output")
 output.data = c.addressof(image)
 check(skg.skg_plan_image(plan, c.byref(output)))
 

@@ -147,7 +147,7 @@
 
 /* SKG_<KERNEL>_<name>: the argument's position; SKG_<KERNEL>_ARGUMENTS: how many there are. */
 #define SKG_ARGUMENT_POSITION(kernel, name) SKG_##kernel##_##name,
-#define SKG_ARGUMENT_POSITIONS(kernel, function)                                                                       \
+#define SKG_ARGUMENT_POSITIONS(kernel, function)                                                             \
     enum { SKG_ARGUMENTS_##kernel(SKG_ARGUMENT_POSITION) SKG_##kernel##_ARGUMENTS };
 SKG_KERNELS(SKG_ARGUMENT_POSITIONS)
 SKG_ARGUMENT_POSITIONS(LEAKY_BATCH, )

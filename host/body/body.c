@@ -13,14 +13,19 @@
  * threads that wait for work between steps take more from a device on the same cores than they give. */
 enum { THREADS_FROM = 40000 };
 
-void skg_body_options_init(skg_body_options *options) {
-    *options = (skg_body_options){.size = (int32_t)sizeof *options, .tendon_mm = {0, 0, -15}};
+void skg_body_options_init_sized(void *options, int32_t size) {
+    const skg_body_options defaults = {.tendon_mm = {0, 0, -15}};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
-void skg_organ_init(skg_organ *organ) {
-    const double unknown = (double)NAN;
-    *organ =
-        (skg_organ){.size = (int32_t)sizeof *organ, .inside = -1, .centre_mm = {unknown, unknown, unknown}};
+void skg_organ_init_sized(void *organ, int32_t size) {
+    const skg_organ defaults = {.inside = -1, .centre_mm = {(double)NAN, (double)NAN, (double)NAN}};
+    skg_struct_init(organ, size, &defaults, sizeof defaults);
+}
+
+void skg_organ_link_init_sized(void *link, int32_t size) {
+    const skg_organ_link defaults = {0};
+    skg_struct_init(link, size, &defaults, sizeof defaults);
 }
 
 static skg_status check_options(const skg_body_options *o) {

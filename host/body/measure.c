@@ -4,8 +4,9 @@
 #include "body/types.h"
 #include "core/vector.h"
 
-void skg_body_measure_init(skg_body_measure *measure) {
-    *measure = (skg_body_measure){.size = (int32_t)sizeof *measure};
+void skg_body_measure_init_sized(void *measure, int32_t size) {
+    const skg_body_measure defaults = {0};
+    skg_struct_init(measure, size, &defaults, sizeof defaults);
 }
 
 double skg_lung_hounsfield(double hounsfield, double density_ratio) {

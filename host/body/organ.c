@@ -50,18 +50,21 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
                         o->label);
     SKG_TRY(skg_alloc(given->link_count, sizeof *o->given, o->label, &o->given));
     for (int64_t l = 0; l < given->link_count; l++) {
-        const skg_organ_link *from = given->links + l;
+        skg_organ_link from;
+        skg_organ_link_init(&from);
+        SKG_TRY(skg_struct_read_at(given->links, l, "skg_organ_link", &from, sizeof from));
         char *to = NULL;
-        if (!from->to) return skg_fail(SKG_ERR_ARGUMENT, "%s: link %" PRId64 " to NULL", o->label, l);
-        if (!(from->distance_mm > 0 && from->distance_mm <= 1000 && from->rigid_mm >= 0 &&
-              from->rigid_mm <= from->distance_mm))
+        if (!from.to) return skg_fail(SKG_ERR_ARGUMENT, "%s: link %" PRId64 " to NULL", o->label, l);
+        if (!(from.distance_mm > 0 && from.distance_mm <= 1000 && from.rigid_mm >= 0 &&
+              from.rigid_mm <= from.distance_mm))
             return skg_fail(
                 SKG_ERR_BREATHING,
                 "%s: a link to %s within %g mm, rigid within %g mm; a link reaches above 0 to 1000 mm, and is rigid "
                 "no farther than that",
-                o->label, from->to, from->distance_mm, from->rigid_mm);
-        SKG_TRY(skg_copy_text(from->to, &to));
-        o->given[l] = (skg_organ_link){to, from->distance_mm, from->rigid_mm};
+                o->label, from.to, from.distance_mm, from.rigid_mm);
+        SKG_TRY(skg_copy_text(from.to, &to));
+        o->given[l] = from;
+        o->given[l].to = to;
         o->given_count = l + 1;
     }
     return SKG_OK;
@@ -91,8 +94,9 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
     o->role = skg_role_of(o->label, &o->number, &o->side);
     SKG_TRY(take_kind(given, o));
     SKG_TRY(take_links(given, o));
-    const skg_tissue *t = &given->tissue;
-    o->tissue = t->alpha_min == 0 && t->alpha_max == 0 && t->beta == 0 ? skg_tissue_of(o->label) : *t;
+    const int by_label = given->alpha_min == 0 && given->alpha_max == 0 && given->beta == 0;
+    o->tissue =
+        by_label ? skg_tissue_of(o->label) : (skg_tissue){given->alpha_min, given->alpha_max, given->beta};
     SKG_TRY(skg_mesh_count(o->mesh, &o->vertices, &o->triangles));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->rest));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->moved));

@@ -2,6 +2,8 @@
 #ifndef SKG_ROLES_H
 #define SKG_ROLES_H
 
+#include "chainmail/chainmail.h"
+
 #include <skiagraph/breathing.h>
 
 /* How an organ moves. */

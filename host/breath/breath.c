@@ -9,21 +9,27 @@
 #include <math.h>
 #include <string.h>
 
-void skg_breath_init(skg_breath *breath) {
-    *breath = (skg_breath){.size = (int32_t)sizeof *breath,
-                           .waveform = SKG_WAVEFORM_SINE,
-                           .exponent = 2,
-                           .period_s = 4,
-                           .expiration_ratio = 1.5,
-                           .thoracic = 1,
-                           .diaphragmatic = 1};
+void skg_breath_init_sized(void *breath, int32_t size) {
+    const skg_breath defaults = {.waveform = SKG_WAVEFORM_SINE,
+                                 .exponent = 2,
+                                 .period_s = 4,
+                                 .expiration_ratio = 1.5,
+                                 .thoracic = 1,
+                                 .diaphragmatic = 1};
+    skg_struct_init(breath, size, &defaults, sizeof defaults);
 }
 
-void skg_breath_state_init(skg_breath_state *state) {
-    *state = (skg_breath_state){.size = (int32_t)sizeof *state, .phase = 0.5};
+void skg_breath_state_init_sized(void *state, int32_t size) {
+    const skg_breath_state defaults = {.phase = 0.5};
+    skg_struct_init(state, size, &defaults, sizeof defaults);
 }
 
-skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
+void skg_breath_hold_init_sized(void *hold, int32_t size) {
+    const skg_breath_hold defaults = {0};
+    skg_struct_init(hold, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_breath_pattern_get(const char *name, skg_breath *breath) {
     static const struct {
         double period_s, thoracic, diaphragmatic;
     } pattern[] = {{4, 1, 1}, {4, 0, 1}, {4, 1, 0}, {3, 0.3, 0.3}, {6, 2.5, 2.5}, {1.5, 2, 2}};
@@ -32,12 +38,13 @@ skg_status skg_breath_pattern(const char *name, skg_breath *breath) {
     enum { COUNT = sizeof names / sizeof *names };
     for (int i = 0; i < COUNT; i++) {
         if (!skg_same_name(name ? name : "", names[i])) continue;
-        skg_breath_init(breath);
-        breath->waveform = SKG_WAVEFORM_ASYMMETRIC;
-        breath->period_s = pattern[i].period_s;
-        breath->thoracic = pattern[i].thoracic;
-        breath->diaphragmatic = pattern[i].diaphragmatic;
-        return SKG_OK;
+        skg_breath ours;
+        skg_breath_init(&ours);
+        ours.waveform = SKG_WAVEFORM_ASYMMETRIC;
+        ours.period_s = pattern[i].period_s;
+        ours.thoracic = pattern[i].thoracic;
+        ours.diaphragmatic = pattern[i].diaphragmatic;
+        return skg_struct_write(&ours, sizeof ours, "skg_breath", breath);
     }
     const char *near = skg_nearest_name(name ? name : "", names, COUNT);
     return skg_fail(SKG_ERR_BREATHING, "no breathing pattern \"%s\"; the nearest is \"%s\"", name ? name : "",
@@ -71,13 +78,15 @@ static skg_status check_holds(const skg_breath *b) {
                         b->hold_count);
     double last = -HUGE_VAL;
     for (int64_t i = 0; i < b->hold_count; i++) {
-        const skg_breath_hold *h = b->holds + i;
-        if (!(h->from >= last && h->to >= h->from && isfinite(h->from) && isfinite(h->to)))
+        skg_breath_hold h;
+        skg_breath_hold_init(&h);
+        SKG_TRY(skg_struct_read_at(b->holds, i, "skg_breath_hold", &h, sizeof h));
+        if (!(h.start_s >= last && h.end_s >= h.start_s && isfinite(h.start_s) && isfinite(h.end_s)))
             return skg_fail(SKG_ERR_BREATHING,
                             "breath: hold %" PRId64
                             " is from %g to %g s; holds have to be in order of time and must not overlap",
-                            i, h->from, h->to);
-        last = h->to;
+                            i, h.start_s, h.end_s);
+        last = h.end_s;
     }
     return SKG_OK;
 }
@@ -156,13 +165,15 @@ skg_status skg_breath_state_at_phase(const skg_breath *breath, double phase, skg
 }
 
 /* Time between 0 and `time` without holds. */
-static double breathing_time(const skg_breath *b, double time) {
-    double spent = time;
+static skg_status breathing_time(const skg_breath *b, double time, double *spent) {
+    *spent = time;
     for (int64_t i = 0; i < b->hold_count; i++) {
-        double from = b->holds[i].from, to = b->holds[i].to;
-        spent -= fmin(fmax(time, from), to) - fmin(fmax(0, from), to);
+        skg_breath_hold h;
+        skg_breath_hold_init(&h);
+        SKG_TRY(skg_struct_read_at(b->holds, i, "skg_breath_hold", &h, sizeof h));
+        *spent -= fmin(fmax(time, h.start_s), h.end_s) - fmin(fmax(0, h.start_s), h.end_s);
     }
-    return spent;
+    return SKG_OK;
 }
 
 skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg_breath_state *state) {
@@ -171,5 +182,7 @@ skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg
     SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
     SKG_TRY(check(&ours));
     if (!isfinite(time_s)) return skg_fail(SKG_ERR_BREATHING, "breath: time %g s is not finite", time_s);
-    return fill(&ours, ours.start_phase + breathing_time(&ours, time_s) / ours.period_s, state);
+    double spent = 0;
+    SKG_TRY(breathing_time(&ours, time_s, &spent));
+    return fill(&ours, ours.start_phase + spent / ours.period_s, state);
 }

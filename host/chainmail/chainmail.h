@@ -20,7 +20,11 @@
 
 #include "core/core.h"
 
-#include <skiagraph/breathing.h>
+/* How far links may be squeezed (alpha_min, 0 to 1), stretched (alpha_max, >= 1) and sheared (beta, >= 0), as
+ * fractions of their rest offset, axis by axis. 1, 1, 0 is rigid; a beta of 0 stiffens sheets along an axis. */
+typedef struct {
+    double alpha_min, alpha_max, beta;
+} skg_tissue;
 
 /* Scratch of one axis: the gains of one search, and the nodes that wait in it, in buckets of descending gain. Any
  * order gives the same gains; this one saves most second visits. */

@@ -13,9 +13,10 @@
 struct skg_motion {
     const skg_setup *setup;
     skg_body *body;
-    int64_t *organ;   /* [parts] number in the body */
-    double needle_mm; /* depth as the meshes have it; NaN: no needle */
-    skg_motion_state state;
+    int64_t *organ;         /* [parts] number in the body */
+    double needle_mm;       /* depth as the meshes have it; NaN: no needle */
+    skg_motion_state state; /* but for its breath, which is: */
+    skg_breath_state breath;
     int64_t override_count;  /* lungs, then parts with contrast */
     int64_t *override_parts; /* [override_count] */
     double *density_ratios;  /* [override_count] */
@@ -26,9 +27,9 @@ struct skg_motion {
 /* Energy at which Hounsfield units are reported, keV: about the mean of a beam of 120 kV. */
 static const double hu_kev = 70;
 
-void skg_motion_state_init(skg_motion_state *state) {
-    *state = (skg_motion_state){.size = (int32_t)sizeof *state};
-    skg_breath_state_init(&state->breath);
+void skg_motion_state_init_sized(void *state, int32_t size) {
+    const skg_motion_state defaults = {.phase = 0.5};
+    skg_struct_init(state, size, &defaults, sizeof defaults);
 }
 
 static skg_status add_organ(skg_motion *motion, int64_t part) {
@@ -134,6 +135,7 @@ skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_m
     SKG_TRY(skg_alloc(1, sizeof *motion, "motion", &motion));
     motion->setup = setup;
     skg_motion_state_init(&motion->state);
+    skg_breath_state_init(&motion->breath);
     skg_status status = make(context, motion);
     if (status != SKG_OK)
         skg_motion_release(&motion);
@@ -167,7 +169,7 @@ static skg_status pose(skg_motion *motion) {
     const skg_breathing_section *section = &motion->setup->breathing;
     if (!isnan(motion->needle_mm))
         SKG_TRY(skg_body_needle_set(motion->body, motion->needle_mm - motion->state.needle_mm));
-    SKG_TRY(skg_body_pose(motion->body, &motion->state.breath));
+    SKG_TRY(skg_body_pose(motion->body, &motion->breath));
     motion->state.lung_density_ratio = section->lung_density ? skg_body_lung_ratio(motion->body) : 1;
     motion->state.lung_hu = skg_lung_hounsfield(motion->lung_hu, motion->state.lung_density_ratio);
     for (int64_t k = 0; k < motion->override_count - section->contrast_count; k++)
@@ -175,17 +177,17 @@ static skg_status pose(skg_motion *motion) {
     return SKG_OK;
 }
 
-skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
+skg_status skg_motion_pose_at_time(skg_motion *motion, double time_s) {
     SKG_NEEDS(motion);
     const skg_breathing_section *section = &motion->setup->breathing;
     skg_motion_state *state = &motion->state;
-    SKG_TRY(skg_breath_state_at_time(&section->breath, time_s, &state->breath));
+    SKG_TRY(skg_breath_state_at_time(&section->breath, time_s, &motion->breath));
     state->time_s = time_s;
     state->needle_mm = section->needle.count ? value_at(&section->needle, time_s) : motion->needle_mm;
     if (section->weight.count) {
         const double weight = value_at(&section->weight, time_s);
-        state->breath.thoracic *= weight;
-        state->breath.diaphragmatic *= weight;
+        motion->breath.thoracic *= weight;
+        motion->breath.diaphragmatic *= weight;
     }
     const int64_t first = motion->override_count - section->contrast_count;
     for (int64_t c = 0; c < section->contrast_count; c++)
@@ -193,9 +195,9 @@ skg_status skg_motion_at_time(skg_motion *motion, double time_s) {
     return pose(motion);
 }
 
-skg_status skg_motion_at_phase(skg_motion *motion, double phase) {
+skg_status skg_motion_pose_at_phase(skg_motion *motion, double phase) {
     SKG_NEEDS(motion);
-    SKG_TRY(skg_breath_state_at_phase(&motion->setup->breathing.breath, phase, &motion->state.breath));
+    SKG_TRY(skg_breath_state_at_phase(&motion->setup->breathing.breath, phase, &motion->breath));
     motion->state.time_s = (double)NAN;
     motion->state.needle_mm = motion->needle_mm;
     for (int64_t k = 0; k < motion->override_count; k++) motion->fill_fractions[k] = 1;
@@ -217,7 +219,12 @@ skg_status skg_motion_fill(const skg_motion *motion, skg_frame *frame) {
 
 skg_status skg_motion_state_get(const skg_motion *motion, skg_motion_state *state) {
     SKG_NEEDS(motion);
-    return skg_struct_write(&motion->state, sizeof motion->state, "skg_motion_state", state);
+    skg_motion_state ours = motion->state;
+    ours.phase = motion->breath.phase;
+    ours.amplitude = motion->breath.amplitude;
+    ours.thoracic = motion->breath.thoracic;
+    ours.diaphragmatic = motion->breath.diaphragmatic;
+    return skg_struct_write(&ours, sizeof ours, "skg_motion_state", state);
 }
 
 skg_status skg_motion_period_get(const skg_motion *motion, double *period_s) {

@@ -7,12 +7,14 @@
 /* Triangles at resolution 1, as the counts of the makers give them: about those of the paper's scene. */
 enum { STANDARD_TRIANGLES = 42000 };
 
-void skg_thorax_options_init(skg_thorax_options *options) {
-    *options = (skg_thorax_options){.size = (int32_t)sizeof *options, .triangles = STANDARD_TRIANGLES};
+void skg_thorax_options_init_sized(void *options, int32_t size) {
+    const skg_thorax_options defaults = {.triangles = STANDARD_TRIANGLES};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
-void skg_thorax_part_init(skg_thorax_part *part) {
-    *part = (skg_thorax_part){.size = (int32_t)sizeof *part, .inside = -1};
+void skg_thorax_part_init_sized(void *part, int32_t size) {
+    const skg_thorax_part defaults = {.inside = -1};
+    skg_struct_init(part, size, &defaults, sizeof defaults);
 }
 
 static skg_status fill(double resolution, skg_thorax *thorax) {

@@ -155,7 +155,8 @@ static skg_status read_filter(const skg_json_node *node, filter_list *list) {
         status = skg_material_create_named(name, place);
     }
     SKG_TRY(skg_json_at(&material, status));
-    list->filters[list->count] = (skg_filter){*place, thickness * mm};
+    list->filters[list->count] =
+        (skg_filter){.size = (int32_t)sizeof(skg_filter), .material = *place, .thickness_mm = thickness * mm};
     list->count++;
     return SKG_OK;
 }
@@ -208,7 +209,7 @@ static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
     if (angle.value) SKG_TRY(skg_json_number(&angle, &tube->angle_deg));
     if (anode.value) {
         SKG_TRY(skg_json_text(&anode, &text));
-        skg_status status = skg_element_number(text, &tube->anode);
+        skg_status status = skg_element_number_get(text, &tube->anode);
         SKG_TRY(skg_json_at(&anode, status));
     }
     if (model.value) SKG_TRY(skg_json_choice(&model, "model of a tube", models, 2, &choice));

@@ -63,7 +63,7 @@ static skg_status read_waveform(skg_breathing_section *section, const skg_json_o
     int64_t choice = 0;
     if (pattern.value) {
         SKG_TRY(skg_json_text(&pattern, &name));
-        skg_status status = skg_breath_pattern(name, breath);
+        skg_status status = skg_breath_pattern_get(name, breath);
         SKG_TRY(skg_json_at(&pattern, status));
     }
     if (waveform.value && json_is_array(waveform.value)) {
@@ -153,7 +153,8 @@ static skg_status read_event(skg_setup_reader *reader, const skg_json_node *node
     if (hold.value) {
         double span[2];
         SKG_TRY(skg_json_numbers(&hold, "[1, 5]", 2, span));
-        section->holds[section->breath.hold_count++] = (skg_breath_hold){span[0], span[1]};
+        section->holds[section->breath.hold_count++] =
+            (skg_breath_hold){.size = (int32_t)sizeof(skg_breath_hold), .start_s = span[0], .end_s = span[1]};
         return SKG_OK;
     }
     if (weight.value) return read_curve(&weight, 0, 4, &section->weight);
@@ -186,7 +187,7 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     skg_breathing_section *section = &reader->setup->breathing;
     skg_json_object object;
     skg_breath_init(&section->breath);
-    SKG_TRY(skg_breath_pattern("quiet", &section->breath));
+    SKG_TRY(skg_breath_pattern_get("quiet", &section->breath));
     skg_body_options_init(&section->body);
     section->lung_density = 1;
     if (!node->value || json_is_null(node->value)) return SKG_OK;

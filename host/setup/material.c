@@ -29,7 +29,7 @@ static skg_status read_z(const skg_json_node *node, int32_t *z) {
         return SKG_OK;
     }
     SKG_TRY(skg_json_text(node, &text));
-    skg_status status = skg_element_number(text, z);
+    skg_status status = skg_element_number_get(text, z);
     return skg_json_at(node, status);
 }
 

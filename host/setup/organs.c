@@ -57,6 +57,7 @@ static skg_status read_link(const skg_json_node *node, skg_organ_link *link, cha
     SKG_TRY(skg_json_need(&object, "Distance", "[15, \"mm\"]", &distance));
     skg_json_node rigid = skg_json_member(&object, "RigidDistance");
     SKG_TRY(skg_json_text(&name, &label));
+    skg_organ_link_init(link);
     SKG_TRY(skg_json_lengths(&distance, "[15, \"mm\"]", 1, &link->distance_mm));
     link->rigid_mm = link->distance_mm;
     if (rigid.value) SKG_TRY(skg_json_lengths(&rigid, "[3, \"mm\"]", 1, &link->rigid_mm));
@@ -106,7 +107,9 @@ static skg_status read_organ(const skg_json_node *node, struct skg_breathing_org
             "is [%g, %g, %g]; 0 <= alpha_min <= 1 <= alpha_max and beta >= 0, or the organ does "
             "not hold at rest",
             limits[0], limits[1], limits[2]);
-    organ->organ.tissue = (skg_tissue){limits[0], limits[1], limits[2]};
+    organ->organ.alpha_min = limits[0];
+    organ->organ.alpha_max = limits[1];
+    organ->organ.beta = limits[2];
     SKG_TRY(read_rotation(&object, &organ->organ));
     return links.value ? read_links(&links, organ) : SKG_OK;
 }

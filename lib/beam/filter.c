@@ -5,18 +5,26 @@
 
 static const double NEGLIGIBLE = 1e-9; /* of the strongest energy's photons */
 
+void skg_filter_init_sized(void *filter, int32_t size) {
+    const skg_filter defaults = {0};
+    skg_struct_init(filter, size, &defaults, sizeof defaults);
+}
+
 skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed) {
     double exponent = 0;
     if (count < 0 || (count > 0 && !filters))
         return skg_fail(SKG_ERR_ARGUMENT, "no filters where there should be %" PRId64, count);
     for (int64_t i = 0; i < count; i++) {
         double per_cm = 0;
-        if (!filters[i].material) return skg_fail(SKG_ERR_BEAM, "filter %" PRId64 " has no material", i + 1);
-        if (!(isfinite(filters[i].mm) && filters[i].mm >= 0))
+        skg_filter filter;
+        skg_filter_init(&filter);
+        SKG_TRY(skg_struct_read_at(filters, i, "skg_filter", &filter, sizeof filter));
+        if (!filter.material) return skg_fail(SKG_ERR_BEAM, "filter %" PRId64 " has no material", i + 1);
+        if (!(isfinite(filter.thickness_mm) && filter.thickness_mm >= 0))
             return skg_fail(SKG_ERR_BEAM, "filter %" PRId64 " is %g mm thick; give at least 0", i + 1,
-                            filters[i].mm);
-        SKG_TRY(skg_material_attenuation_get(filters[i].material, energy_kev, &per_cm));
-        exponent += per_cm * filters[i].mm / 10;
+                            filter.thickness_mm);
+        SKG_TRY(skg_material_attenuation_get(filter.material, energy_kev, &per_cm));
+        exponent += per_cm * filter.thickness_mm / 10;
     }
     *passed = exp(-exponent);
     return SKG_OK;

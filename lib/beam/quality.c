@@ -1,7 +1,8 @@
 #include "beam/spectrum.h"
 
-void skg_quality_init(skg_quality *quality) {
-    if (quality) *quality = (skg_quality){.size = (int32_t)sizeof *quality};
+void skg_quality_init_sized(void *quality, int32_t size) {
+    const skg_quality defaults = {0};
+    skg_struct_init(quality, size, &defaults, sizeof defaults);
 }
 
 static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first, double *second) {

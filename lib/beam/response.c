@@ -101,16 +101,17 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
     return SKG_OK;
 }
 
-skg_status skg_response_create_scintillator(const skg_material *material, double mm, double packing,
+skg_status skg_response_create_scintillator(const skg_material *material, double thickness_mm, double packing,
                                             skg_response **response) {
     SKG_NEEDS(response);
     *response = NULL;
-    if (!(isfinite(mm) && mm > 0))
-        return skg_fail(SKG_ERR_BEAM, "a scintillator of %g mm is not usable; give a thickness above 0", mm);
+    if (!(isfinite(thickness_mm) && thickness_mm > 0))
+        return skg_fail(SKG_ERR_BEAM, "a scintillator of %g mm is not usable; give a thickness above 0",
+                        thickness_mm);
     if (!(packing > 0 && packing <= 1))
         return skg_fail(SKG_ERR_BEAM, "a scintillator's packing of %g is not usable; give above 0, up to 1",
                         packing);
-    return make_layer(material, mm * packing, response);
+    return make_layer(material, thickness_mm * packing, response);
 }
 
 skg_status skg_response_create_screen(const skg_material *material, double mg_cm2, skg_response **response) {

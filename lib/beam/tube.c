@@ -8,16 +8,15 @@
 
 enum { TUNGSTEN = 74, MOST_BINS = 5000 };
 
-void skg_tube_init(skg_tube *tube) {
-    if (!tube) return;
-    *tube = (skg_tube){.size = (int32_t)sizeof *tube,
-                       .angle_deg = 12,
-                       .anode = TUNGSTEN,
-                       .bin_kev = 1,
-                       .mas = 1,
-                       .distance_mm = 1000,
-                       .pixel_mm2 = 1,
-                       .output_at_mm = 1000};
+void skg_tube_init_sized(void *tube, int32_t size) {
+    const skg_tube defaults = {.angle_deg = 12,
+                               .anode = TUNGSTEN,
+                               .bin_kev = 1,
+                               .mas = 1,
+                               .distance_mm = 1000,
+                               .pixel_mm2 = 1,
+                               .output_at_mm = 1000};
+    skg_struct_init(tube, size, &defaults, sizeof defaults);
 }
 
 static skg_status check_value(const char *what, double value, double lowest, double highest,
@@ -36,7 +35,7 @@ static skg_status check_tube(const skg_tube *tube) {
                         tube->model);
     SKG_TRY(check_value("a tube voltage", tube->kvp, 10, 450, "kV"));
     SKG_TRY(check_value("an anode angle", tube->angle_deg, 3, 60, "degrees"));
-    SKG_TRY(skg_element_symbol(tube->anode, &symbol));
+    SKG_TRY(skg_element_symbol_get(tube->anode, &symbol));
     if (tube->anode < 20)
         return skg_fail(SKG_ERR_BEAM, "an anode of %s is not usable; give calcium (20) to uranium (92)",
                         symbol);
@@ -94,7 +93,7 @@ static void add_lines(const skg_tube *tube, skg_spectrum *spectrum) {
 
 /* The air kerma behind 2.5 mm of aluminium and, if hvl is given, the half-value layer there. */
 static skg_status hardened(const skg_spectrum *spectrum, double *kerma, double *hvl) {
-    skg_filter filter = {NULL, 2.5};
+    skg_filter filter = {.size = (int32_t)sizeof filter, .thickness_mm = 2.5};
     skg_material *aluminium = NULL;
     skg_spectrum *behind = NULL;
     double second = 0;

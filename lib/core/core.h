@@ -60,10 +60,19 @@ void skg_refs_init(skg_refs *refs);
 void skg_ref(skg_refs *refs);
 int skg_unref(skg_refs *refs);
 
+/* What every exported skg_X_init_sized does: zeroes `size` bytes of the caller's struct, writes those of our
+ * defaults that fit, and stores size in its first field. NULL or a size that holds no size field: nothing. */
+void skg_struct_init(void *theirs, int32_t size, const void *defaults, size_t our_size);
+
 /* Structs that callers fill start with int32_t size. Copies the caller's struct over our defaults: a smaller
  * size leaves our newer fields as they are; a larger one is refused unless its unknown tail is zero. name:
  * for the message. */
 skg_status skg_struct_read(const void *theirs, const char *name, void *ours, size_t our_size);
+
+/* The same of element `index` of an array, whose elements lie as far apart as the first one's size says. An
+ * element of another size was not prepared like the first, and is refused. */
+skg_status skg_struct_read_at(const void *array, int64_t index, const char *name, void *ours,
+                              size_t our_size);
 
 /* The other way, for structs that the library fills: at most theirs->size bytes, the size field kept. */
 skg_status skg_struct_write(const void *ours, size_t our_size, const char *name, void *theirs);

@@ -1,5 +1,9 @@
 #include <skiagraph/version.h>
 
+int32_t skg_version_number(void) {
+    return SKG_VERSION_NUMBER;
+}
+
 const char *skg_version(void) {
     return SKG_VERSION;
 }

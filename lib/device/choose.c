@@ -78,8 +78,9 @@ skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_
     return SKG_OK;
 }
 
-void skg_device_info_init(skg_device_info *info) {
-    if (info) *info = (skg_device_info){.size = (int32_t)sizeof *info};
+void skg_device_info_init_sized(void *info, int32_t size) {
+    const skg_device_info defaults = {0};
+    skg_struct_init(info, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_device_count(int64_t *count) {

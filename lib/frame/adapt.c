@@ -58,13 +58,13 @@ static skg_status double_samples(const skg_recipe *recipe, skg_machine *machine,
     int small = 0; /* doublings in a row that changed less than the tolerance */
     int64_t samples = 4;
     SKG_TRY(render(recipe, machine, outcome, samples, images[0]));
-    for (int turn = 1; small < 2 && 2 * samples <= spot->most; turn++) {
+    for (int turn = 1; small < 2 && 2 * samples <= spot->samples_max; turn++) {
         samples *= 2;
         SKG_TRY(render(recipe, machine, outcome, samples, images[turn % 2]));
         *error = most_change(recipe, images[1 - turn % 2], images[turn % 2], change);
         small = *error < spot->tolerance ? small + 1 : 0;
     }
-    *found = samples < spot->most ? samples : spot->most;
+    *found = samples < spot->samples_max ? samples : spot->samples_max;
     if (small < 2)
         skg_log(
             machine->context, SKG_LOG_WARNING,

@@ -49,6 +49,17 @@ skg_status skg_job_complete(skg_job **job) {
     return status;
 }
 
+skg_status skg_job_test(const skg_job *job, int32_t *done) {
+    SKG_NEEDS(job);
+    SKG_NEEDS(done);
+    SKG_TRY(skg_context_enter(job->machine->context));
+    cl_int stage = CL_COMPLETE;
+    SKG_CL_TRY(clGetEventInfo(job->last, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage, NULL));
+    /* A failed command has a negative status: it is over, and skg_job_wait reports it. */
+    *done = stage <= CL_COMPLETE;
+    return SKG_OK;
+}
+
 skg_status skg_job_wait(skg_job **job) {
     if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
     SKG_TRY(skg_context_enter((*job)->machine->context));

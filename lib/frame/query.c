@@ -10,8 +10,9 @@ static skg_status check_index(const char *call, const char *what, int64_t index,
     return skg_fail(SKG_ERR_ARGUMENT, "%s: %s %" PRId64 " of %" PRId64, call, what, index, count);
 }
 
-void skg_plan_report_init(skg_plan_report *report) {
-    if (report) *report = (skg_plan_report){.size = (int32_t)sizeof *report};
+void skg_plan_report_init_sized(void *report, int32_t size) {
+    const skg_plan_report defaults = {0};
+    skg_struct_init(report, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
@@ -21,14 +22,15 @@ skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 
-void skg_channel_init(skg_channel *channel) {
-    if (channel) *channel = (skg_channel){.size = (int32_t)sizeof *channel};
+void skg_channel_init_sized(void *channel, int32_t size) {
+    const skg_channel defaults = {0};
+    skg_struct_init(channel, size, &defaults, sizeof defaults);
 }
 
-skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *channels) {
+skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *count) {
     SKG_NEEDS(plan);
-    SKG_NEEDS(channels);
-    *channels = plan->recipe->model.channels;
+    SKG_NEEDS(count);
+    *count = plan->recipe->model.channels;
     return SKG_OK;
 }
 
@@ -44,6 +46,13 @@ skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel
     return skg_struct_write(&ours, sizeof ours, "skg_channel", channel);
 }
 
+skg_status skg_plan_node_count(const skg_plan *plan, int64_t *count) {
+    SKG_NEEDS(plan);
+    SKG_NEEDS(count);
+    *count = plan->recipe->model.nodes;
+    return SKG_OK;
+}
+
 skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
                              double *weights) {
     SKG_NEEDS(plan);
@@ -56,8 +65,9 @@ skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy
     return SKG_OK;
 }
 
-void skg_effect_init(skg_effect *effect) {
-    if (effect) *effect = (skg_effect){.size = (int32_t)sizeof *effect};
+void skg_effect_init_sized(void *effect, int32_t size) {
+    const skg_effect defaults = {0};
+    skg_struct_init(effect, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count) {
@@ -84,8 +94,9 @@ skg_status skg_plan_effect_get(const skg_plan *plan, int64_t index, skg_effect *
     return skg_struct_write(&ours, sizeof ours, "skg_effect", effect);
 }
 
-void skg_overlap_init(skg_overlap *overlap) {
-    if (overlap) *overlap = (skg_overlap){.size = (int32_t)sizeof *overlap};
+void skg_overlap_init_sized(void *overlap, int32_t size) {
+    const skg_overlap defaults = {0};
+    skg_struct_init(overlap, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count) {
@@ -109,8 +120,9 @@ skg_status skg_plan_overlap_get(const skg_plan *plan, int64_t index, skg_overlap
     return skg_struct_write(&ours, sizeof ours, "skg_overlap", overlap);
 }
 
-void skg_stage_init(skg_stage *stage) {
-    if (stage) *stage = (skg_stage){.size = (int32_t)sizeof *stage};
+void skg_stage_init_sized(void *stage, int32_t size) {
+    const skg_stage defaults = {0};
+    skg_struct_init(stage, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count) {

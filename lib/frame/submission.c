@@ -5,12 +5,14 @@
 #include <limits.h>
 #include <string.h>
 
-void skg_frame_init(skg_frame *frame) {
-    if (frame) *frame = (skg_frame){.size = (int32_t)sizeof *frame};
+void skg_frame_init_sized(void *frame, int32_t size) {
+    const skg_frame defaults = {0};
+    skg_struct_init(frame, size, &defaults, sizeof defaults);
 }
 
-void skg_output_init(skg_output *output) {
-    if (output) *output = (skg_output){.size = (int32_t)sizeof *output};
+void skg_output_init_sized(void *output, int32_t size) {
+    const skg_output defaults = {0};
+    skg_struct_init(output, size, &defaults, sizeof defaults);
 }
 
 int64_t skg_submission_element(const skg_submission *submission) {
@@ -81,8 +83,7 @@ static skg_status read_frame(const skg_submission *s, int64_t index, skg_frame *
     *noise = skg_noise_key(recipe->options.noise_seed, index);
     memset(poses, 0, (size_t)recipe->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
-    SKG_TRY(skg_struct_read((const char *)s->frames + index * s->frames[0].size, "skg_frame", frame,
-                            sizeof *frame));
+    SKG_TRY(skg_struct_read_at(s->frames, index, "skg_frame", frame, sizeof *frame));
     *noise = skg_noise_key((int64_t)((uint64_t)recipe->options.noise_seed + (uint64_t)frame->noise_seed),
                            frame->index);
     if (frame->view) {

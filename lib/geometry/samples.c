@@ -8,8 +8,9 @@
 
 enum { MOST_SAMPLES = 65536, MOST_SHIFTS = 16 };
 
-void skg_spot_init(skg_spot *spot) {
-    if (spot) *spot = (skg_spot){.size = (int32_t)sizeof *spot, .tolerance = 5e-3, .most = 1024};
+void skg_spot_init_sized(void *spot, int32_t size) {
+    const skg_spot defaults = {.tolerance = 5e-3, .samples_max = 1024};
+    skg_struct_init(spot, size, &defaults, sizeof defaults);
 }
 
 /* The number of extents of a shape. */
@@ -34,9 +35,10 @@ static skg_status check_spot(const skg_spot *spot) {
                             spot->extent[k], k);
     if (!skg_all_finite(spot->axis, 3))
         return skg_fail(SKG_ERR_SCENE, "the axis of the focal spot is not finite");
-    if (spot->samples < 0 || spot->samples > MOST_SAMPLES || spot->most < 1 || spot->most > MOST_SAMPLES)
+    if (spot->samples < 0 || spot->samples > MOST_SAMPLES || spot->samples_max < 1 ||
+        spot->samples_max > MOST_SAMPLES)
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " samples of the source, at most %" PRId64 "; 0 to %d",
-                        spot->samples, spot->most, MOST_SAMPLES);
+                        spot->samples, spot->samples_max, MOST_SAMPLES);
     if (!(spot->tolerance > 0 && spot->tolerance < 1))
         return skg_fail(
             SKG_ERR_ARGUMENT,

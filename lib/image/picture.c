@@ -21,8 +21,9 @@ static const format formats[] = {
     {".mha", skg_metaimage_write, skg_metaimage_check},
 };
 
-void skg_picture_init(skg_picture *picture) {
-    if (picture) *picture = (skg_picture){.size = (int32_t)sizeof *picture, .channels = 1};
+void skg_picture_init_sized(void *picture, int32_t size) {
+    const skg_picture defaults = {.channels = 1};
+    skg_struct_init(picture, size, &defaults, sizeof defaults);
 }
 
 static skg_status check_range(const skg_picture *picture) {
@@ -83,7 +84,7 @@ static skg_status find_format(const char *path, const format **found) {
                     path, dot ? dot : "", dot ? "" : "is missing and");
 }
 
-skg_status skg_picture_check_path(const char *path) {
+skg_status skg_picture_path_check(const char *path) {
     const format *writer = NULL;
     skg_output_file file;
     SKG_TRY(find_format(path, &writer));
@@ -117,7 +118,7 @@ skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
     return status;
 }
 
-skg_status skg_picture_range(const skg_picture *theirs, double *low, double *high) {
+skg_status skg_picture_range_get(const skg_picture *theirs, double *low, double *high) {
     skg_picture picture;
     SKG_TRY(prepare(theirs, &picture));
     SKG_NEEDS(low);

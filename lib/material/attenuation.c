@@ -52,8 +52,9 @@ skg_status skg_material_attenuation_get(const skg_material *material, double ene
     return SKG_OK;
 }
 
-void skg_coefficients_init(skg_coefficients *coefficients) {
-    if (coefficients) *coefficients = (skg_coefficients){.size = (int32_t)sizeof *coefficients};
+void skg_coefficients_init_sized(void *coefficients, int32_t size) {
+    const skg_coefficients defaults = {0};
+    skg_struct_init(coefficients, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,
@@ -98,26 +99,27 @@ static void add_edge(double energy_kev, int64_t most, double *edges, int64_t *co
     ++*count;
 }
 
-skg_status skg_material_edges_get(const skg_material *material, int64_t most, double *edges_kev,
+skg_status skg_material_edges_get(const skg_material *material, int64_t capacity, double *edges_kev,
                                   int64_t *count) {
     SKG_NEEDS(material);
     SKG_NEEDS(count);
-    if (most > 0) SKG_NEEDS(edges_kev);
-    if (most < 0)
+    if (capacity > 0) SKG_NEEDS(edges_kev);
+    if (capacity < 0)
         return skg_fail(SKG_ERR_ARGUMENT,
-                        "skg_material_edges_get: at most %" PRId64 " edges; give at least 0", most);
+                        "skg_material_edges_get: a capacity of %" PRId64 " edges; give at least 0", capacity);
     *count = 0;
     if (material->kind == SKG_MATTER_TABLE)
         for (int64_t i = 1; i < material->count; i++)
             if (!(material->energy_kev[i] > material->energy_kev[i - 1]))
-                add_edge(material->energy_kev[i], most, edges_kev, count);
+                add_edge(material->energy_kev[i], capacity, edges_kev, count);
     if (material->kind == SKG_MATTER_COMPOSITION)
         for (int64_t k = 0; k < material->count; k++) {
             const skg_element_row *element = &skg_elements[material->parts[k].z];
             for (int32_t i = element->first + 1; i < element->last; i++)
                 if (!(skg_knots[i].energy_kev > skg_knots[i - 1].energy_kev))
-                    add_edge(skg_knots[i].energy_kev, most, edges_kev, count);
+                    add_edge(skg_knots[i].energy_kev, capacity, edges_kev, count);
         }
-    if (most > 0) qsort(edges_kev, (size_t)(*count < most ? *count : most), sizeof *edges_kev, by_energy);
+    if (capacity > 0)
+        qsort(edges_kev, (size_t)(*count < capacity ? *count : capacity), sizeof *edges_kev, by_energy);
     return SKG_OK;
 }

@@ -16,7 +16,7 @@ skg_status skg_material_create_element(int32_t z, skg_material **material) {
     const char *symbol;
     SKG_NEEDS(material);
     *material = NULL;
-    SKG_TRY(skg_element_symbol(z, &symbol));
+    SKG_TRY(skg_element_symbol_get(z, &symbol));
     skg_mass_fraction part = {z, 1};
     return skg_material_compose(symbol, NULL, 1, &part, skg_elements[z].density, material);
 }
@@ -55,7 +55,7 @@ skg_status skg_material_create_mixture(const char *name, int64_t count, const in
         return skg_fail(SKG_ERR_MATERIAL, "%s: a mixture has at least one element", name);
     SKG_TRY(check_density(name, density));
     for (int64_t i = 0; i < count; i++) {
-        SKG_TRY(skg_element_symbol(z[i], &symbol));
+        SKG_TRY(skg_element_symbol_get(z[i], &symbol));
         if (!(isfinite(fractions[i]) && fractions[i] >= 0))
             return skg_fail(SKG_ERR_MATERIAL, "%s: the fraction of %s is %g; a fraction by mass is 0 to 1",
                             name, symbol, fractions[i]);

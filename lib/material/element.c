@@ -68,7 +68,7 @@ int32_t skg_find_element(const char *text) {
     return 0;
 }
 
-skg_status skg_element_symbol(int32_t z, const char **symbol) {
+skg_status skg_element_symbol_get(int32_t z, const char **symbol) {
     SKG_NEEDS(symbol);
     *symbol = NULL;
     if (z < 1 || z > SKG_LAST_ELEMENT)
@@ -78,7 +78,7 @@ skg_status skg_element_symbol(int32_t z, const char **symbol) {
     return SKG_OK;
 }
 
-skg_status skg_element_number(const char *text, int32_t *z) {
+skg_status skg_element_number_get(const char *text, int32_t *z) {
     SKG_NEEDS(text);
     SKG_NEEDS(z);
     *z = skg_find_element(text);

@@ -286,8 +286,9 @@ skg_status skg_mesh_examine(skg_mesh *mesh) {
     return SKG_OK;
 }
 
-void skg_mesh_health_init(skg_mesh_health *health) {
-    if (health) *health = (skg_mesh_health){.size = sizeof *health, .first_open_vertex = -1};
+void skg_mesh_health_init_sized(void *health, int32_t size) {
+    const skg_mesh_health defaults = {.first_open_vertex = -1};
+    skg_struct_init(health, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health) {

@@ -3,14 +3,13 @@
 #include <inttypes.h>
 #include <math.h>
 
-void skg_plan_options_init(skg_plan_options *options) {
-    if (options)
-        *options = (skg_plan_options){.size = (int32_t)sizeof *options,
-                                      .precision = SKG_PRECISION_SINGLE,
-                                      .overlaps = 1,
-                                      .supersampling = 1,
-                                      .swank = 1,
-                                      .repair = SKG_REPAIR_NEIGHBOURS};
+void skg_plan_options_init_sized(void *options, int32_t size) {
+    const skg_plan_options defaults = {.precision = SKG_PRECISION_SINGLE,
+                                       .overlaps = 1,
+                                       .supersampling = 1,
+                                       .swank = 1,
+                                       .repair = SKG_REPAIR_NEIGHBOURS};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
 static skg_status check_kev(const char *what, double kev) {

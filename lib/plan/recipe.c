@@ -41,10 +41,9 @@ static skg_status keep_views(skg_recipe *recipe) {
                         options->view_count, MOST_VIEWS);
     SKG_TRY(skg_alloc(options->view_count, sizeof *recipe->views, "views", &recipe->views));
     for (int64_t v = 0; v < options->view_count; v++) {
-        const void *one = (const char *)given + v * given->size;
         skg_view_init(&recipe->views[v]);
-        SKG_TRY(skg_view_check(one));
-        SKG_TRY(skg_struct_read(one, "skg_view", &recipe->views[v], sizeof *recipe->views));
+        SKG_TRY(skg_struct_read_at(given, v, "skg_view", &recipe->views[v], sizeof *recipe->views));
+        SKG_TRY(skg_view_check(&recipe->views[v]));
     }
     options->views = recipe->views;
     return SKG_OK;

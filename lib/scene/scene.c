@@ -9,10 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-void skg_part_init(skg_part *part) {
-    if (!part) return;
-    *part = (skg_part){.size = sizeof *part, .inside = -1};
-    skg_pose_identity(part->pose);
+void skg_part_init_sized(void *part, int32_t size) {
+    skg_part defaults = {.inside = -1};
+    skg_pose_identity(defaults.pose);
+    skg_struct_init(part, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
@@ -184,10 +184,10 @@ skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
     return SKG_OK;
 }
 
-skg_status skg_scene_part_count(const skg_scene *scene, int64_t *parts) {
+skg_status skg_scene_part_count(const skg_scene *scene, int64_t *count) {
     SKG_NEEDS(scene);
-    SKG_NEEDS(parts);
-    *parts = scene->count;
+    SKG_NEEDS(count);
+    *count = scene->count;
     return SKG_OK;
 }
 

@@ -23,8 +23,9 @@ typedef struct {
     double normal[3]; /* length 1 */
 } detector_plane;
 
-void skg_view_init(skg_view *view) {
-    if (view) *view = (skg_view){.size = sizeof *view};
+void skg_view_init_sized(void *view, int32_t size) {
+    const skg_view defaults = {0};
+    skg_struct_init(view, size, &defaults, sizeof defaults);
 }
 
 static skg_status check_vector(const char *what, const double *v) {

@@ -27,8 +27,9 @@ struct skg_blur {
     skg_buffer workspace;
 };
 
-void skg_detector_blur_init(skg_detector_blur *blur) {
-    if (blur) *blur = (skg_detector_blur){.size = (int32_t)sizeof *blur};
+void skg_detector_blur_init_sized(void *blur, int32_t size) {
+    const skg_detector_blur defaults = {0};
+    skg_struct_init(blur, size, &defaults, sizeof defaults);
 }
 
 int64_t skg_blur_samples(const skg_blur *blur) {

@@ -89,7 +89,7 @@ static skg_spectrum *tube(double kvp) {
     skg_spectrum *spectrum = NULL;
     skg_material *aluminium = NULL;
     ck_skg(skg_material_create_element(13, &aluminium));
-    const skg_filter filter = {aluminium, 2.5};
+    const skg_filter filter = {.size = (int32_t)sizeof filter, .material = aluminium, .thickness_mm = 2.5};
     skg_tube_init(&t);
     t.kvp = kvp, t.filter_count = 1, t.filters = &filter;
     ck_skg(skg_spectrum_create_tube(&t, &spectrum));

@@ -253,7 +253,7 @@ START_TEST(shares_of_an_extended_source) {
     check_two_energies(many, &options);
     check_two_energies(few, &options);
     spot.samples = 0; /* found without noise: doublings that differ by noise alone would never end */
-    spot.most = 64;
+    spot.samples_max = 64;
     check_two_energies(few, &options);
     view = parallel;
 }

@@ -115,7 +115,7 @@ END_TEST
 START_TEST(filters_harden) {
     static const double e[2] = {30, 80}, n[2] = {1000, 1000};
     skg_material *copper = named("Cu"), *gas = named("Ca5(PO4)3OH");
-    skg_filter filter = {copper, 0.5};
+    skg_filter filter = {.size = (int32_t)sizeof filter, .material = copper, .thickness_mm = 0.5};
     skg_spectrum *s = NULL, *behind = NULL;
     double low = 0, high = 0;
     ck_skg(skg_spectrum_create_bins(2, e, n, &s));
@@ -124,13 +124,13 @@ START_TEST(filters_harden) {
     ck_skg(skg_material_attenuation_get(copper, 80, &high));
     expect(behind, 2, e, (double[2]){1000 * exp(-0.05 * low), 1000 * exp(-0.05 * high)});
     skg_spectrum_release(&behind);
-    filter.mm = 5; /* nothing worth the name is left of 30 keV */
+    filter.thickness_mm = 5; /* nothing worth the name is left of 30 keV */
     ck_skg(skg_spectrum_create_filtered(s, 1, &filter, &behind));
     expect(behind, 1, e + 1, (double[1]){1000 * exp(-0.5 * high)});
     skg_spectrum_release(&behind);
-    filter.mm = -1;
+    filter.thickness_mm = -1;
     ck_skg_fails(skg_spectrum_create_filtered(s, 1, &filter, &behind), SKG_ERR_BEAM, "-1 mm");
-    filter = (skg_filter){gas, 1};
+    filter.material = gas, filter.thickness_mm = 1;
     ck_skg_fails(skg_spectrum_create_filtered(s, 1, &filter, &behind), SKG_ERR_MATERIAL, "density");
     skg_spectrum_release(&s);
     skg_material_release(&copper);

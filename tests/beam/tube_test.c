@@ -111,7 +111,7 @@ END_TEST
 
 START_TEST(output_scales) {
     skg_tube t;
-    skg_filter filter = {NULL, 2.5};
+    skg_filter filter = {.size = (int32_t)sizeof filter, .thickness_mm = 2.5};
     skg_material *al = named("Al");
     skg_spectrum *s = NULL;
     skg_quality one, other;
@@ -149,7 +149,7 @@ END_TEST
 START_TEST(tubes_that_cannot_be) {
     skg_tube t;
     skg_spectrum *s = NULL;
-    skg_filter none = {NULL, 1};
+    skg_filter none = {.size = (int32_t)sizeof none, .thickness_mm = 1};
     skg_tube_init(&t);
     ck_skg_fails(skg_spectrum_create_tube(&t, &s), SKG_ERR_BEAM, "tube voltage of 0 kV");
     t.kvp = 90, t.angle_deg = 0;

@@ -348,7 +348,7 @@ START_TEST(bad_bodies_are_refused) {
     organ.inside = -1;
     ck_skg(skg_body_add(body, &organ, NULL));
     ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "no organ that moves");
-    organ.label = "liver", organ.tissue.alpha_min = 2;
+    organ.label = "liver", organ.alpha_min = 2;
     ck_skg(skg_body_add(body, &organ, NULL));
     ck_skg_fails(skg_body_link(body), SKG_ERR_BREATHING, "alpha_min <= 1");
     skg_mesh_release(&organ.mesh);

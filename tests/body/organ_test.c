@@ -63,13 +63,21 @@ static void add_block(const char *label, double edge, double x, const double tur
     ck_skg(add(&organ, label, x, 0, 0));
 }
 
+static skg_organ_link link_to(const char *label, double distance_mm, double rigid_mm) {
+    return (skg_organ_link){.size = (int32_t)sizeof(skg_organ_link),
+                            .to = label,
+                            .distance_mm = distance_mm,
+                            .rigid_mm = rigid_mm};
+}
+
 static skg_status add_ball(const char *label, double radius, skg_tissue tissue, const skg_organ_link *links,
                            int64_t count) {
     skg_organ organ;
     skg_organ_init(&organ);
     ck_skg(skg_mesh_create_sphere(radius, 32, &organ.mesh));
     organ.kind = SKG_ORGAN_DEFORMABLE;
-    organ.tissue = tissue, organ.links = links, organ.link_count = count;
+    organ.alpha_min = tissue.alpha_min, organ.alpha_max = tissue.alpha_max, organ.beta = tissue.beta;
+    organ.links = links, organ.link_count = count;
     return add(&organ, label, 0, 0, 0);
 }
 
@@ -109,7 +117,7 @@ static double off_rigid(const skg_body_organ *o, const skg_rigid *rigid) {
 START_TEST(boxes_turn_with_the_drivers) {
     const double angle = 15 * (_i + 1) * degree, turn[3] = {0.3 * angle, 0, sqrt(1 - 0.09) * angle};
     const double centre[3] = {40, -10, 5};
-    const skg_organ_link link = {"block", 3, 3};
+    const skg_organ_link link = link_to("block", 3, 3);
     start(NULL);
     add_block("block", 40, 0, turn, centre);
     ck_skg(add_ball("ball", 30, muscle, &link, 1));
@@ -134,7 +142,7 @@ END_TEST
 /* Within 3 mm vertices go with the block; up to 12 mm they hang on it, and hold on to a post that stays. */
 START_TEST(links_hold_and_give) {
     const double turn[3] = {0, 0, 0.04}, centre[3] = {-60, -60, 0}, far = 1e-9;
-    const skg_organ_link links[2] = {{"block", 12, 3}, {"post", 3, 3}};
+    const skg_organ_link links[2] = {link_to("block", 12, 3), link_to("post", 3, 3)};
     start(NULL);
     add_block("block", 40, -40, turn, centre);
     skg_organ post;
@@ -176,7 +184,7 @@ END_TEST
  */
 START_TEST(contradictions_are_named) {
     const double turn[3] = {0, 0.05, 0}, back[3] = {0, -0.05, 0}, centre[3] = {0, 0, -200};
-    const skg_organ_link links[2] = {{"left block", 4, 4}, {"right block", 4, 4}};
+    const skg_organ_link links[2] = {link_to("left block", 4, 4), link_to("right block", 4, 4)};
     start(NULL);
     add_block("left block", 40, 46, turn, centre);
     add_block("right block", 40, -46, back, centre);
@@ -211,8 +219,8 @@ END_TEST
 
 START_TEST(ties_are_posed_in_order) { /* however they were added; not in a circle */
     const double turn[3] = {0, 0, 0.1}, centre[3] = {0, 0, 0};
-    const skg_organ_link to_inner = {"inner", 12, 12}, to_block = {"Block", 10, 10},
-                         to_outer = {"outer", 12, 12};
+    const skg_organ_link to_inner = link_to("inner", 12, 12), to_block = link_to("Block", 10, 10),
+                         to_outer = link_to("outer", 12, 12);
     start(NULL);
     ck_skg(add_ball("outer", 30, muscle, &to_inner, 1));
     ck_skg(add_ball("inner", 20, muscle, &to_block, 1));
@@ -345,7 +353,8 @@ START_TEST(axes_by_inertia) { /* there is no vertebra by itself: the posterior e
 END_TEST
 
 static void say_some(const char *label, skg_organ *organ) {
-    static const skg_organ_link links[] = {{"rib", 30, 20}};
+    static const skg_organ_link links[] = {
+        {.size = (int32_t)sizeof(skg_organ_link), .to = "rib", .distance_mm = 30, .rigid_mm = 20}};
     if (!strcmp(label, "rib 5 left")) {
         organ->kind = SKG_ORGAN_RIGID, organ->gamma_rad = 3 * degree, organ->lambda_rad = 2 * degree;
     } else if (!strcmp(label, "cartilage 5 left")) {
@@ -397,7 +406,7 @@ END_TEST
 
 START_TEST(what_does_not_fit_is_refused) {
     skg_organ organ, plain;
-    skg_organ_link link = {"nowhere", 5, 5};
+    skg_organ_link link = link_to("nowhere", 5, 5);
     skg_organ_init(&plain);
     plain.label = "bag";
     start(NULL);

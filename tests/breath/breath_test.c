@@ -79,14 +79,18 @@ START_TEST(channels) {
     skg_breath_state s = at_phase(&b, 0.35), earlier = at_phase(&b, 0.25);
     ck_assert_double_eq_tol(s.thoracic, 0.5 * earlier.amplitude, 4 * DBL_EPSILON);
     ck_assert_double_eq(s.diaphragmatic, 2 * s.amplitude);
-    ck_skg(skg_breath_pattern("Diaphragmatic", &b));
+    ck_skg(skg_breath_pattern_get("Diaphragmatic", &b));
     ck_assert_double_eq(at_phase(&b, 0.1).thoracic, 0);
-    ck_skg_fails(skg_breath_pattern("thoracicc", &b), SKG_ERR_BREATHING, "\"thoracic\"");
+    ck_skg_fails(skg_breath_pattern_get("thoracicc", &b), SKG_ERR_BREATHING, "\"thoracic\"");
 }
 END_TEST
 
+static skg_breath_hold hold(double start_s, double end_s) {
+    return (skg_breath_hold){.size = (int32_t)sizeof(skg_breath_hold), .start_s = start_s, .end_s = end_s};
+}
+
 START_TEST(holds_stop_the_clock) {
-    const skg_breath_hold holds[] = {{1, 3}, {3, 4}, {10, 12.5}};
+    const skg_breath_hold holds[] = {hold(1, 3), hold(3, 4), hold(10, 12.5)};
     skg_breath b = of_kind(SKG_WAVEFORM_LUJAN), free = b;
     b.holds = holds, b.hold_count = 3;
     ck_assert_double_eq(at_time(&b, 0.5).phase, at_time(&free, 0.5).phase);
@@ -99,7 +103,7 @@ END_TEST
 
 START_TEST(bad_fields_are_named) {
     const double high[] = {0.5, 0.9, 0.1};
-    const skg_breath_hold crossed[] = {{1, 3}, {2, 4}};
+    const skg_breath_hold crossed[] = {hold(1, 3), hold(2, 4)};
     skg_breath b = of_kind(7);
     skg_breath_state s;
     skg_breath_state_init(&s);

@@ -145,12 +145,51 @@ START_TEST(a_mailbox_is_bounded) {
 }
 END_TEST
 
+START_TEST(structs_are_prepared_to_their_size) {
+    const new_struct defaults = {0, 4, 5, 6};
+    struct {
+        old_struct whole;
+        int32_t guard;
+    } older = {{9, 9, 9}, 9};
+    struct {
+        new_struct known;
+        int32_t later;
+    } newer = {{9, 9, 9, 9}, 9};
+    skg_struct_init(&older, sizeof older.whole, &defaults, sizeof defaults);
+    ck_assert(older.whole.size == (int)sizeof older.whole && older.whole.a == 4 && older.whole.b == 5);
+    ck_assert_int_eq(older.guard, 9);
+    skg_struct_init(&newer, sizeof newer, &defaults, sizeof defaults);
+    ck_assert(newer.known.size == (int)sizeof newer && newer.known.c == 6 && newer.later == 0);
+    skg_struct_init(&older, 3, &defaults, sizeof defaults); /* no room for the size itself */
+    ck_assert_int_eq(older.whole.size, (int)sizeof older.whole);
+    skg_struct_init(NULL, sizeof older, &defaults, sizeof defaults);
+}
+END_TEST
+
+START_TEST(arrays_step_by_their_first_element) {
+    const new_struct wide[2] = {{sizeof *wide, 1, 2, 0}, {sizeof *wide, 3, 4, 0}};
+    old_struct narrow[2] = {{sizeof *narrow, 1, 2}, {sizeof *narrow, 3, 4}};
+    new_struct ours = {sizeof ours, 0, 0, 7};
+    old_struct older = {sizeof older, 0, 0};
+    ck_skg(skg_struct_read_at(narrow, 1, "skg_thing", &ours, sizeof ours));
+    ck_assert(ours.a == 3 && ours.b == 4 && ours.c == 7);
+    ck_skg(skg_struct_read_at(wide, 1, "skg_thing", &older, sizeof older));
+    ck_assert(older.a == 3 && older.b == 4);
+    narrow[1].size = 0;
+    ck_skg_fails(skg_struct_read_at(narrow, 1, "skg_thing", &ours, sizeof ours), SKG_ERR_ARGUMENT,
+                 "element 1 has size 0");
+    ck_skg_fails(skg_struct_read_at(NULL, 1, "skg_thing", &ours, sizeof ours), SKG_ERR_ARGUMENT, "NULL");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_status_has_name_and_text);
     tcase_add_test(tests, last_error_may_quote_itself);
     tcase_add_test(tests, a_sentence_is_one_line);
     tcase_add_test(tests, allocation_checks_its_product);
     tcase_add_test(tests, structs_grow);
+    tcase_add_test(tests, structs_are_prepared_to_their_size);
+    tcase_add_test(tests, arrays_step_by_their_first_element);
     tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
     tcase_add_test(tests, output_appears_whole_or_not_at_all);
     tcase_add_test(tests, a_missing_argument_is_named);

@@ -137,7 +137,7 @@ static const effects runs[] = {
     /* samples of the source as their tolerance asks for, a table of attenuation, the caller's OpenCL objects */
     {.file = "scene.json",
      .settings = {"Samples.skin.Material=[\"Table\",\"response.txt\",\"keV\"]"},
-     .spot = {.shape = SKG_SPOT_DISC, .extent = {0.2, 0, 0}, .tolerance = 0.2, .most = 8},
+     .spot = {.shape = SKG_SPOT_DISC, .extent = {0.2, 0, 0}, .tolerance = 0.2, .samples_max = 8},
      .shared = 1},
     {.file = "body.json", .breathes = 1}};
 enum { RUNS = sizeof runs / sizeof *runs };
@@ -183,7 +183,8 @@ static skg_status plan_it(run *r) {
         spot.shape = r->with->spot.shape;
         memcpy(spot.extent, r->with->spot.extent, sizeof spot.extent);
         spot.samples = r->with->spot.samples;
-        if (!spot.samples) spot.tolerance = r->with->spot.tolerance, spot.most = r->with->spot.most;
+        if (!spot.samples)
+            spot.tolerance = r->with->spot.tolerance, spot.samples_max = r->with->spot.samples_max;
         options.spot = &spot;
     }
     return skg_plan_create(r->context, r->scene, &r->view, spectrum, &options, &r->plan);
@@ -210,7 +211,7 @@ static skg_status draw(run *r) {
     skg_job *job = NULL;
     skg_frame_init(&frame);
     if (r->motion) {
-        TRY(skg_motion_at_time(r->motion, 0.7));
+        TRY(skg_motion_pose_at_time(r->motion, 0.7));
         TRY(skg_motion_fill(r->motion, &frame));
     }
     const skg_frame frames[2] = {frame, frame};

@@ -166,15 +166,15 @@ START_TEST(a_wrong_path_is_refused) {
     ck_skg_fails(skg_picture_write(&picture, at("none/a.tif")), SKG_ERR_OUTPUT,
                  "none/a.tif: cannot be written: No such file or directory; make its folder first");
     ck_skg_fails(skg_picture_write(&picture, "/dev/null/a.mha"), SKG_ERR_OUTPUT, "Not a directory");
-    ck_skg_fails(skg_picture_check_path(at("none/a.png")), SKG_ERR_OUTPUT, "none/a.png");
-    ck_skg_fails(skg_picture_check_path(at("a.bmp")), SKG_ERR_ARGUMENT, ".bmp");
+    ck_skg_fails(skg_picture_path_check(at("none/a.png")), SKG_ERR_OUTPUT, "none/a.png");
+    ck_skg_fails(skg_picture_path_check(at("a.bmp")), SKG_ERR_ARGUMENT, ".bmp");
     ck_assert_int_eq(mkdir(at("a.png"), 0777), 0);
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_OUTPUT, "it is a folder; add a file name");
     ck_assert_int_eq(rmdir(path), 0);
     ck_assert_int_eq(mkfifo(path, 0600), 0);
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_OUTPUT, "it is a device");
     ck_assert_int_eq(unlink(path), 0);
-    ck_skg(skg_picture_check_path(path));
+    ck_skg(skg_picture_path_check(path));
     ck_assert_int_eq(files_in_folder(), 0);
 }
 END_TEST

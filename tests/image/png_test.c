@@ -85,7 +85,7 @@ START_TEST(png_knows_what_the_data_are) {
     read_png(path, levels, texts, sizeof texts);
     for (int i = 0; i < PIXELS; i++) ck_assert_int_eq(levels[i], lround(i * 65535 / 34.0));
     ck_assert_ptr_nonnull(strstr(texts, "Display=path length (mm);Range=black 0, white 34;"));
-    ck_skg(skg_picture_range(&picture, &low, &high));
+    ck_skg(skg_picture_range_get(&picture, &low, &high));
     ck_assert(low == 0 && high == 34);
 }
 END_TEST
@@ -98,7 +98,7 @@ START_TEST(ranges_leave_out_what_is_not_finite) {
     picture.quantity = SKG_QUANTITY_TRANSMISSION;
     for (int i = 0; i < PIXELS; i++) floats[i] = 0.5f;
     floats[0] = 0, floats[1] = -0.25f, floats[2] = nanf(""), floats[3] = 1;
-    ck_skg(skg_picture_range(&picture, &low, &high));
+    ck_skg(skg_picture_range_get(&picture, &low, &high));
     ck_assert(low == 0 && fabs(high - log(2)) < 4 * DBL_EPSILON);
     ck_skg(skg_picture_write(&picture, at("a.png")));
     read_png(path, levels, texts, sizeof texts);

@@ -164,9 +164,9 @@ START_TEST(names_that_are_not_found) {
     ck_skg_fails(skg_material_create_named("HU:abc", &none), SKG_ERR_MATERIAL, "no number");
     ck_skg_fails(skg_material_create_named("mu:-1", &none), SKG_ERR_MATERIAL, "not usable");
     int32_t z = 0;
-    ck_skg_fails(skg_element_number("fe", &z), SKG_ERR_MATERIAL, "did you mean Fe");
-    ck_skg_fails(skg_element_number("93", &z), SKG_ERR_MATERIAL, "no element");
-    ck_skg(skg_element_number("74", &z));
+    ck_skg_fails(skg_element_number_get("fe", &z), SKG_ERR_MATERIAL, "did you mean Fe");
+    ck_skg_fails(skg_element_number_get("93", &z), SKG_ERR_MATERIAL, "no element");
+    ck_skg(skg_element_number_get("74", &z));
     ck_assert_int_eq(z, 74);
 }
 END_TEST

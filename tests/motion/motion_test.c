@@ -43,8 +43,8 @@ START_TEST(the_key_is_read) {
     ck_assert(section->body.reference_thoracic == 0.5 && section->body.reference_diaphragmatic == 2.5);
     ck_assert(section->body.tendon_mm[1] == 10 && section->body.tendon_plane[3] == 20);
     ck_assert(section->body.hysteresis == 0.5 && section->body.relaxation == 2 && section->lung_density == 0);
-    ck_assert(section->organs[0].part == 1 && section->organs[0].organ.tissue.alpha_max == 1.2);
-    ck_assert(section->breath.hold_count == 1 && section->breath.holds[0].to == 2);
+    ck_assert(section->organs[0].part == 1 && section->organs[0].organ.alpha_max == 1.2);
+    ck_assert(section->breath.hold_count == 1 && section->breath.holds[0].end_s == 2);
     ck_assert(section->needle.count == 2 && section->contrasts[0].part == 2);
 }
 END_TEST
@@ -97,7 +97,7 @@ START_TEST(organs_move_as_they_are_set) { /* a quarter turn about z through the 
     ck_skg(skg_mesh_count(found.mesh, &n, &t));
     ck_assert_int_le(n, 200);
     ck_skg(skg_mesh_positions_get(found.mesh, before, 0));
-    ck_skg(skg_motion_at_phase(motion, 0));
+    ck_skg(skg_motion_pose_at_phase(motion, 0));
     ck_skg(skg_mesh_positions_get(found.mesh, after, 0));
     for (int64_t i = 0; i < n; i++) { /* floats of some 100 mm */
         ck_assert_double_eq_tol(after[3 * i], -before[3 * i + 1], 4 * 100 * (double)FLT_EPSILON);
@@ -175,22 +175,22 @@ START_TEST(parts_move_as_they_are_set) {
     ck_skg(skg_motion_part_moves(motion, 1, &moves));
     ck_assert_int_eq(moves, 1);
     const double rest = height_of("flat");
-    ck_skg(skg_motion_at_time(motion, 0));
+    ck_skg(skg_motion_pose_at_time(motion, 0));
     ck_assert_double_eq_tol(height_of("flat"), rest - 15, 1e-4); /* with the tendon; float offsets */
     skg_frame frame;
     skg_frame_init(&frame);
     ck_skg(skg_motion_fill(motion, &frame));
     ck_assert(frame.override_count == 2 && frame.override_parts[0] == 0 && frame.override_parts[1] == 2);
     ck_assert(frame.fill_fractions[1] == 0);
-    ck_skg(skg_motion_at_time(motion, 1)); /* f = 1/2, weight 3/4 */
+    ck_skg(skg_motion_pose_at_time(motion, 1)); /* f = 1/2, weight 3/4 */
     ck_assert_double_eq_tol(height_of("flat"), rest - 15 * 0.375, 1e-4);
     ck_skg(skg_motion_fill(motion, &frame));
     ck_assert(frame.fill_fractions[1] == 0.5);
-    ck_skg(skg_motion_at_phase(motion, 0.5));
+    ck_skg(skg_motion_pose_at_phase(motion, 0.5));
     ck_assert(height_of("flat") == rest);
     skg_motion_state_init(&state);
     ck_skg(skg_motion_state_get(motion, &state));
-    ck_assert(isnan(state.time_s) && isnan(state.needle_mm) && state.breath.phase == 0.5);
+    ck_assert(isnan(state.time_s) && isnan(state.needle_mm) && state.phase == 0.5);
     ck_skg(load("{\"Events\": [{\"Needle\": [[0, 0]]}]}"));
     ck_skg_fails(skg_motion_create(NULL, setup, &motion), SKG_ERR_BREATHING, "no needle");
     ck_skg(load("{\"Organs\": {\"lung right\": {\"As\": \"spine\"}}}"));

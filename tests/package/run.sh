@@ -59,8 +59,8 @@ printf '#include <skiagraph/opencl.h>\nint main(void) { return (int)skg_last_cl_
 echo "every public header compiles alone, in C and as it stands:"
 for header in "$stage"/usr/include/skiagraph/*.h; do
     # shellcheck disable=SC2046
-    echo "#include <skiagraph/$(basename "$header")>" | cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
-        $(pkg-config --cflags skiagraph) -xc -
+    printf '#include <skiagraph/%s>\nextern int one;\n' "$(basename "$header")" |
+        cc -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only $(pkg-config --cflags skiagraph) -xc -
 done
 
 echo "only skg_ names are exported:"

@@ -25,7 +25,7 @@ static void take_subject(subject *s, double kvp, int materials, const char *cons
     double sums[SUBJECT_SETS] = {0}, kev[SUBJECT_BINS];
     int64_t bins = 0;
     ck_skg(skg_material_create_element(13, &aluminium));
-    const skg_filter filter = {aluminium, 2.5};
+    const skg_filter filter = {.size = (int32_t)sizeof filter, .material = aluminium, .thickness_mm = 2.5};
     skg_tube_init(&tube);
     tube.kvp = kvp, tube.filter_count = 1, tube.filters = &filter;
     ck_skg(skg_spectrum_create_tube(&tube, &spectrum));

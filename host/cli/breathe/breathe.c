@@ -69,7 +69,7 @@ static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *
     if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
     if (!isnan(s->phase) && !isnan(s->at))
         return cli_error(CLI_USAGE, "--phase and --at both choose one picture; give one of them");
-    skg_status status = skg_picture_check_path(s->place);
+    skg_status status = skg_picture_path_check(s->place);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -81,8 +81,8 @@ static int make_image(fluoroscopy *f, int which) {
 
 static int pose(fluoroscopy *f, const sequence *s, int64_t frame) {
     const double time = isnan(s->at) ? (double)frame / s->fps : s->at;
-    skg_status status =
-        isnan(s->phase) ? skg_motion_at_time(f->motion, time) : skg_motion_at_phase(f->motion, s->phase);
+    skg_status status = isnan(s->phase) ? skg_motion_pose_at_time(f->motion, time)
+                                        : skg_motion_pose_at_phase(f->motion, s->phase);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

@@ -52,7 +52,7 @@ int outline_find(fluoroscopy *f, const char *wanted) {
     output.data = f->image[0];
     f->outline = calloc((size_t)f->pixels, 1);
     if (!f->outline) return cli_error(CLI_DEVICE, "out of host memory for the outline");
-    skg_status status = skg_motion_at_phase(f->motion, phase);
+    skg_status status = skg_motion_pose_at_phase(f->motion, phase);
     if (status == SKG_OK) status = skg_scene_part_count(f->session.scene, &parts);
     for (int64_t p = 0; p < parts && status == SKG_OK; p++) {
         skg_part part;

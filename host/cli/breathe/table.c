@@ -53,10 +53,9 @@ int table_add(const fluoroscopy *f, double time_s, motion_table *table) {
     fprintf(table->stream,
             "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId64 ",%.9g,%" PRId64
             ",%.9g,",
-            time_s, s.breath.phase, s.breath.amplitude, s.breath.thoracic, s.breath.diaphragmatic, m.lung_ml,
-            m.tidal_ml, s.lung_hu, m.diaphragm_mm[0], m.diaphragm_mm[1], m.liver_mm[0], m.liver_mm[1],
-            m.liver_mm[2], m.liver_volume_ratio, m.flipped_triangles, m.conflict_mm, m.broken_links,
-            s.needle_mm);
+            time_s, s.phase, s.amplitude, s.thoracic, s.diaphragmatic, m.lung_ml, m.tidal_ml, s.lung_hu,
+            m.diaphragm_mm[0], m.diaphragm_mm[1], m.liver_mm[0], m.liver_mm[1], m.liver_mm[2],
+            m.liver_volume_ratio, m.flipped_triangles, m.conflict_mm, m.broken_links, s.needle_mm);
     write_conflict(&m, table->stream);
     return CLI_DONE;
 }

@@ -108,7 +108,7 @@ static int small_json(const cost_study *study, const cost_point *point, double *
     for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(point->small[i], LEAST_SHOWN));
     begin_picture(study, dense, &picture);
     picture.quantity = SKG_QUANTITY_ATTENUATION;
-    skg_status status = *high > *low ? SKG_OK : skg_picture_range(&picture, low, high);
+    skg_status status = *high > *low ? SKG_OK : skg_picture_range_get(&picture, low, high);
     if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* all pixels are equal */
     int exit_status = status == SKG_OK ? levels_json(study, dense, *low, *high, uri) : cli_fail(status);
     free(dense);

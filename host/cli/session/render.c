@@ -27,7 +27,7 @@ int cli_check_outputs(const cli_arguments *arguments) {
                          arguments->manual->name);
     const char *path;
     for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++) {
-        skg_status status = skg_picture_check_path(path);
+        skg_status status = skg_picture_path_check(path);
         if (status != SKG_OK) return cli_fail(status);
     }
     return CLI_DONE;

@@ -42,7 +42,8 @@ static int read_filter(const char *text, beam *b) {
     skg_material **material = &b->materials[b->filter_count];
     skg_status status = skg_material_create_named(name, material);
     if (status != SKG_OK) return cli_fail(status);
-    b->filters[b->filter_count] = (skg_filter){*material, mm};
+    b->filters[b->filter_count] =
+        (skg_filter){.size = (int32_t)sizeof(skg_filter), .material = *material, .thickness_mm = mm};
     b->filter_count++;
     return CLI_DONE;
 }
@@ -84,7 +85,7 @@ static int read_tube(const cli_arguments *arguments, beam *b) {
     const char *anode = cli_value(arguments, &cli_flag_beam_anode),
                *output = cli_value(arguments, &cli_flag_beam_output);
     if (exit_status == CLI_DONE && anode) {
-        skg_status status = skg_element_number(anode, &tube->anode);
+        skg_status status = skg_element_number_get(anode, &tube->anode);
         if (status != SKG_OK) exit_status = cli_fail(status);
     }
     if (exit_status == CLI_DONE && output) exit_status = read_output(output, tube);
@@ -149,14 +150,14 @@ static void describe(const beam *b, char *text, size_t size) {
     if (b->file) {
         used = snprintf(text, size, "%s", b->file);
     } else {
-        skg_element_symbol(b->tube.anode, &symbol);
+        skg_element_symbol_get(b->tube.anode, &symbol);
         used = snprintf(text, size, "%g kV, %s, %g degrees, %s", b->tube.kvp, symbol, b->tube.angle_deg,
                         authors[b->tube.model]);
     }
     for (int64_t i = 0; i < b->filter_count && used >= 0 && (size_t)used < size; i++) {
         skg_material_name_get(b->materials[i], &name);
         used += snprintf(text + used, size - (size_t)used, "%s %g mm %s", i == 0 ? ";" : ",",
-                         b->filters[i].mm, name);
+                         b->filters[i].thickness_mm, name);
     }
 }
 

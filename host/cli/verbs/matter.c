@@ -16,7 +16,7 @@ static void print_parts(const cli_matter *m) {
         double fraction = 0;
         const char *symbol = "";
         if (skg_material_element_get(m->material, i, &z, &fraction) != SKG_OK ||
-            skg_element_symbol(z, &symbol) != SKG_OK)
+            skg_element_symbol_get(z, &symbol) != SKG_OK)
             break;
         printf("%s%s %.6g %%", i == 0 ? "  by mass: " : ", ", symbol, 100 * fraction);
     }

@@ -1,8 +1,9 @@
-/* Spectra: how many photons of which energy reach a pixel of the open beam; and what a detector makes of
- * them.
+/** @file
+ * Beams: how many photons of which energy would reach a pixel if nothing were in the way, and what the
+ * detector records of them.
  *
- * Spectra and responses never change once made and may be shared by threads. Failures are SKG_ERR_BEAM unless
- * said otherwise. Energies are 1 keV to 20 MeV. */
+ * A spectrum or response never changes and may be shared by threads. Functions that make one return
+ * SKG_ERR_BEAM unless they say otherwise; the caller releases the result. Energies are 1 keV to 20 MeV. */
 #ifndef SKIAGRAPH_BEAM_H
 #define SKIAGRAPH_BEAM_H
 
@@ -13,127 +14,226 @@
 extern "C" {
 #endif
 
+/** Photons by energy. */
 typedef struct skg_spectrum skg_spectrum;
 
-/* One energy in keV and a number of photons per pixel (finite, > 0). */
+/** Makes a spectrum of one energy.
+ *
+ *     energy_kev   keV
+ *     photons      per pixel, finite, above 0 */
 SKG_API skg_status skg_spectrum_create_mono(double energy_kev, double photons, skg_spectrum **spectrum);
 
-/* `count` >= 1 energies in keV, in any order, and photons per pixel (finite, >= 0, not all 0). Equal energies
- * are added, energies without photons left out. */
+/** Makes a spectrum from bins.
+ *
+ *     count          number of bins, at least 1
+ *     energies_kev   [count] keV, in any order; bins of equal energy are added
+ *     photons        [count] per pixel, finite, at least 0, not all 0; bins without photons are dropped */
 SKG_API skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, const double *photons,
                                             skg_spectrum **spectrum);
 
-/* From a text file: two columns, energy in the unit ("eV", "keV", "MeV") and photons per pixel; lines with #
- * are read past. Or a GATE macro: of its lines those with "histpoint" or "hist/point", energy and weight.
- * Errors: SKG_ERR_FILE, SKG_ERR_FORMAT with the line. */
+/** Makes a spectrum from a file: text with two columns, energy and photons per pixel, in which lines that
+ * begin with # are skipped; or a GATE macro, of which the lines with "histpoint" or "hist/point" are read.
+ *
+ *     unit     of the energies: "eV", "keV" or "MeV"
+ *     errors   SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
 SKG_API skg_status skg_spectrum_load(const char *path, const char *unit, skg_spectrum **spectrum);
 
-/* A layer in the beam. */
+/** A layer of matter that the whole beam crosses. Prepare with skg_filter_init. */
 typedef struct {
-    const skg_material *material; /* of known density */
-    double mm;                    /* thickness, >= 0 */
+    /** Set by skg_filter_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Material of known density. Not retained. */
+    const skg_material *material;
+    /** mm, at least 0 */
+    double thickness_mm;
 } skg_filter;
 
-/* The spectrum behind filters; energies of which less than 1e-9 of the strongest is left are left out. */
+/** Prepares a filter of `size` bytes (export.h). */
+SKG_API void skg_filter_init_sized(void *filter, int32_t size);
+
+/** Prepares a filter. */
+static inline void skg_filter_init(skg_filter *filter) {
+    skg_filter_init_sized(filter, (int32_t)sizeof *filter);
+}
+
+/** Makes the spectrum behind filters. Energies that keep less than 1e-9 of the photons of the strongest one
+ * are dropped.
+ *
+ *     filters   [count] the layers; NULL if count is 0
+ *     errors    also SKG_ERR_MATERIAL if a density is unknown */
 SKG_API skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, int64_t count,
                                                 const skg_filter *filters, skg_spectrum **behind);
 
-/* All photon numbers times factor, finite and above 0. */
+/** Makes a spectrum with all photon numbers multiplied by a factor, finite and above 0. */
 SKG_API skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor,
                                               skg_spectrum **scaled);
 
-enum {
-    SKG_TUBE_MODEL_EBEL =
-        0, /* H. Ebel, X-Ray Spectrom. 28 (1999) 255: continuum and K lines of a reflection target */
-    SKG_TUBE_MODEL_BIRCH =
-        1 /* R. Birch and M. Marshall, Phys. Med. Biol. 24 (1979) 505: the paper's; lines as above */
+/** Models of the spectrum of an X-ray tube. Both have the same characteristic lines. */
+enum skg_tube_model {
+    /** H. Ebel, X-Ray Spectrom. 28 (1999) 255: continuum and K lines of a reflection target. */
+    SKG_TUBE_MODEL_EBEL = 0,
+    /** R. Birch and M. Marshall, Phys. Med. Biol. 24 (1979) 505: the continuum that the paper uses. */
+    SKG_TUBE_MODEL_BIRCH = 1
 };
 
-/* An X-ray tube. Prepare with skg_tube_init; set kvp.
+/** An X-ray tube. Prepare with skg_tube_init; set kvp.
  *
- * Output and K lines are calibrated for tungsten to SpekPy 2.5 (air kerma at 1 m, 12 degrees, 2.5 mm
- * Al: 48.9, 82.0, 118.9, 158.7, 222.8 uGy/mAs at 60, 80, 100, 120, 150 kV, kept within 5 %). Both models give
- * the same air kerma behind 2.5 mm Al. L lines are absent: below 15 keV not warranted. No inherent filtration
- * is assumed; from 70 kV on, less than the hardness of 2.5 mm Al (IEC 60601-1-3) is a warning. */
+ * Output and K lines are calibrated for tungsten with SpekPy 2.5: air kerma at 1 m behind 2.5 mm Al with a
+ * target angle of 12 degrees is within 5 % of 48.9, 82.0, 118.9, 158.7 and 222.8 uGy/mAs at 60, 80, 100, 120
+ * and 150 kV, with both models. There are no L lines, so the spectrum below 15 keV is not warranted. No
+ * inherent filtration is assumed; from 70 kV on, a beam softer than behind 2.5 mm Al (IEC 60601-1-3) is
+ * reported as a warning. */
 typedef struct {
+    /** Set by skg_tube_init. */
     int32_t size;
-    int32_t model;      /* SKG_TUBE_MODEL_EBEL (default) or SKG_TUBE_MODEL_BIRCH */
-    double kvp;         /* kV, 10 to 450; validated from 20 to 150 */
-    double angle_deg;   /* of the anode's face to the central ray, 3 to 60; default 12 */
-    int32_t anode;      /* atomic number, 20 to 92; default 74; others are not validated */
-    int32_t reserved;   /* 0 */
-    double bin_kev;     /* width of a bin, 0.1 to 10; default 1; energies are their middles */
-    double mas;         /* tube current times time; default 1 */
-    double distance_mm; /* from the focal spot to the pixel; default 1000 */
-    double pixel_mm2;   /* default 1: then photons are per mm2 */
-    double
-        output_ugy_mas;  /* air kerma per mAs behind the filters that replaces the model's; 0: the model's */
-    double output_at_mm; /* at this distance; default 1000 */
+    /** enum skg_tube_model; SKG_TUBE_MODEL_EBEL by default */
+    int32_t model;
+    /** Tube voltage in kV, 10 to 450; validated from 20 to 150. */
+    double kvp;
+    /** Angle between the anode's face and the central ray, degrees, 3 to 60; 12 by default. */
+    double angle_deg;
+    /** Atomic number of the anode, 20 to 92; 74 by default, the only one that is validated. */
+    int32_t anode;
+    /** 0 */
+    int32_t reserved;
+    /** Width of a bin in keV, 0.1 to 10; 1 by default. Energies are the middles of the bins. */
+    double bin_kev;
+    /** Tube current times time in mAs; 1 by default. */
+    double mas;
+    /** From the focal spot to the pixel, mm; 1000 by default. */
+    double distance_mm;
+    /** Area of a pixel in mm2; 1 by default, which gives photons per mm2. */
+    double pixel_mm2;
+    /** Measured air kerma per mAs behind the filters, uGy/mAs, instead of the model's; 0: the model's. */
+    double output_ugy_mas;
+    /** Distance at which output_ugy_mas was measured, mm; 1000 by default. */
+    double output_at_mm;
+    /** Number of filters. */
     int64_t filter_count;
-    const skg_filter *filters; /* all of them: inherent, added, air */
-    skg_context *context;      /* for warnings; may be NULL */
-    skg_log_function log;      /* receives the warnings where there is no context; may be NULL */
+    /** [filter_count] all layers in the beam: inherent filtration, added filters, air. */
+    const skg_filter *filters;
+    /** Receives warnings in its log; may be NULL. */
+    skg_context *context;
+    /** Receives the warnings if context is NULL; may be NULL. */
+    skg_log_function log;
+    /** Passed to log. */
     void *log_user;
 } skg_tube;
 
-SKG_API void skg_tube_init(skg_tube *tube);
+/** Prepares a tube of `size` bytes (export.h). */
+SKG_API void skg_tube_init_sized(void *tube, int32_t size);
+
+/** Prepares a tube. */
+static inline void skg_tube_init(skg_tube *tube) {
+    skg_tube_init_sized(tube, (int32_t)sizeof *tube);
+}
+
+/** Makes the spectrum of a tube. */
 SKG_API skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectrum);
 
+/** Adds an owner to a spectrum. */
 SKG_API skg_status skg_spectrum_retain(skg_spectrum *spectrum);
+
+/** Removes an owner; the last one frees the spectrum. */
 SKG_API void skg_spectrum_release(skg_spectrum **spectrum);
 
-/* How many energies the spectrum has, rising, and the one at 0 <= index < count: keV and photons per pixel.
- */
+/** Number of energies in a spectrum. */
 SKG_API skg_status skg_spectrum_bin_count(const skg_spectrum *spectrum, int64_t *count);
+
+/** Gets energy 0 <= index < count in keV, in rising order, and its photons per pixel. */
 SKG_API skg_status skg_spectrum_bin_get(const skg_spectrum *spectrum, int64_t index, double *energy_kev,
                                         double *photons);
 
-/* What a beam is judged by. Prepare with skg_quality_init. Half-value layers are of air kerma, whose energy
- * transfer coefficient is photo absorption, free Klein-Nishina and pairs (0.6 % above NIST's mu_en/rho at
- * 10 keV, 0.2 % at 80 keV). */
+/** Figures of a beam's quality. The library fills it; prepare with skg_quality_init.
+ *
+ * Half-value layers are of air kerma. Its energy-transfer coefficient is photo absorption plus free
+ * Klein-Nishina plus pairs, which is 0.6 % above NIST's mu_en/rho at 10 keV and 0.2 % at 80 keV. */
 typedef struct {
+    /** Set by skg_quality_init. */
     int32_t size;
-    int32_t reserved; /* 0 */
+    /** 0 */
+    int32_t reserved;
+    /** Photons per pixel. */
     double photons;
-    double energy_kev; /* of all photons together */
-    double mean_kev;   /* energy_kev / photons */
-    double hvl1_mm_al, hvl2_mm_al, hvl1_mm_cu, hvl2_mm_cu;
-    double homogeneity;   /* hvl1 / hvl2 in aluminium */
-    double air_kerma_ugy; /* where photons are per mm2 */
+    /** Energy of all photons together, keV. */
+    double energy_kev;
+    /** Mean energy of a photon, keV. */
+    double mean_kev;
+    /** First half-value layer, mm of aluminium. */
+    double hvl1_mm_al;
+    /** Second half-value layer, mm of aluminium. */
+    double hvl2_mm_al;
+    /** First half-value layer, mm of copper. */
+    double hvl1_mm_cu;
+    /** Second half-value layer, mm of copper. */
+    double hvl2_mm_cu;
+    /** First over second half-value layer in aluminium. */
+    double homogeneity;
+    /** Air kerma in uGy, if photons are per mm2. */
+    double air_kerma_ugy;
 } skg_quality;
 
-SKG_API void skg_quality_init(skg_quality *quality);
+/** Prepares a skg_quality of `size` bytes (export.h). */
+SKG_API void skg_quality_init_sized(void *quality, int32_t size);
+
+/** Prepares a skg_quality. */
+static inline void skg_quality_init(skg_quality *quality) {
+    skg_quality_init_sized(quality, (int32_t)sizeof *quality);
+}
+
+/** Gets the figures of a beam's quality. */
 SKG_API skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality);
 
-/* What a detector records of a photon. No response (NULL, where one is taken) is the ideal detector: every
- * photon, all its energy. */
+/** What a detector records of a photon, by its energy. Where a response may be NULL, NULL is the ideal
+ * detector: it records every photon with all its energy. */
 typedef struct skg_response skg_response;
 
-/* count >= 2 energies in keV, rising, and mean recorded energies in keV, 0 to the photon's own; linear
- * between them, none beyond. efficiency: [count] fraction of photons that are recorded, 0 to 1; NULL:
- * recorded energy / energy. */
+/** Makes a response from a table.
+ *
+ *     count          number of energies, at least 2
+ *     energies_kev   [count] keV, rising
+ *     recorded_kev   [count] mean recorded energy of a photon in keV, 0 to its own energy
+ *     efficiency     [count] fraction of the photons that are recorded, 0 to 1; NULL: recorded_kev divided by
+ *                    energies_kev
+ *     method         linear interpolation; no values beyond the ends */
 SKG_API skg_status skg_response_create_table(int64_t count, const double *energies_kev,
                                              const double *recorded_kev, const double *efficiency,
                                              skg_response **response);
 
-/* From a text file of two columns, both in the unit ("eV", "keV", "MeV"). SKG_ERR_FILE, SKG_ERR_FORMAT. */
+/** Makes a response from a text file with two columns, energy and mean recorded energy.
+ *
+ *     unit     of both columns: "eV", "keV" or "MeV"
+ *     errors   SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
 SKG_API skg_status skg_response_load(const char *path, const char *unit, skg_response **response);
 
-/* A scintillator of `mm` thickness, its material at `packing` (0 < packing <= 1; needles of CsI 0.75 to 0.85)
- * of its density: R = E (1 - exp(-mu t)). An upper bound: every photon that interacts is fully absorbed, no
- * fluorescence escapes. */
-SKG_API skg_status skg_response_create_scintillator(const skg_material *material, double mm, double packing,
-                                                    skg_response **response);
+/** Makes the response of a scintillator of a given thickness.
+ *
+ *     thickness_mm   mm
+ *     packing        fraction of the material's density that the layer has, above 0 to 1; needles of CsI have
+ *                    0.75 to 0.85
+ *     method         R = E (1 - exp(-mu t)): every photon that interacts is fully absorbed and no
+ *                    fluorescence escapes, so this is an upper bound */
+SKG_API skg_status skg_response_create_scintillator(const skg_material *material, double thickness_mm,
+                                                    double packing, skg_response **response);
 
-/* The same by mass per area in mg/cm2. */
+/** Makes the response of a scintillator of a given mass per area in mg/cm2. */
 SKG_API skg_status skg_response_create_screen(const skg_material *material, double mg_cm2,
                                               skg_response **response);
 
+/** Adds an owner to a response. */
 SKG_API skg_status skg_response_retain(skg_response *response);
+
+/** Removes an owner; the last one frees the response. */
 SKG_API void skg_response_release(skg_response **response);
 
-/* Mean recorded energy in keV and recorded fraction of photons (either may be NULL) at an energy; oblique:
- * path through the layer / its thickness, >= 1, of which tables take no note. */
+/** Gets what is recorded of a photon.
+ *
+ *     energy_kev     energy of the photon, keV
+ *     oblique        path through the layer divided by its thickness, at least 1; tables do not depend on it
+ *     recorded_kev   result: mean recorded energy, keV; may be NULL
+ *     efficiency     result: fraction of the photons that are recorded; may be NULL */
 SKG_API skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
                                     double *recorded_kev, double *efficiency);
 

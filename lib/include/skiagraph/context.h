@@ -1,7 +1,16 @@
-/* A context: one OpenCL device with its queue and programs, and where warnings go.
+/** @file
+ * A context: one OpenCL device with its queue and its compiled programs, and where warnings go.
  *
- * A context and the plans made on it belong to one thread at a time. A context used in a child process after
- * fork returns SKG_ERR_FORK: make a new one there. The library never changes the process environment. */
+ * Making a context takes about 200 ms, and the first plan on it compiles kernels. Make one and keep it.
+ *
+ * Threads: a context, and the plans and jobs made on it, are used by one thread at a time. Different contexts
+ * may be used by different threads at the same time. Materials, spectra and responses never change and may be
+ * shared by threads; so may meshes and scenes while nobody changes them. Reference counts are atomic.
+ *
+ * fork: OpenCL does not survive it. In the child process every call on a context that was made before returns
+ * SKG_ERR_FORK, and releasing it frees host memory only. Make a new context there.
+ *
+ * The library never changes the environment of the process and never binds the caller's threads to cores. */
 #ifndef SKIAGRAPH_CONTEXT_H
 #define SKIAGRAPH_CONTEXT_H
 
@@ -11,54 +20,105 @@
 extern "C" {
 #endif
 
+/** One device, its queue and its compiled programs. */
 typedef struct skg_context skg_context;
 
-/* Opens a device. config is words separated by spaces:
- *     device=cpu | gpu | PLATFORM:DEVICE (numbers, as skg_device_get counts) | part of a device's name
- *     threads=N       so many compute units, through a sub-device where the platform offers them
- *     kernels=DIR     reads the kernels from DIR instead of those built in (for development)
- * NULL or a string without device=: the environment variable SKG_DEVICE (the same grammar, or the bare value
- * of device=), then the best device: GPUs before CPUs, more compute units first. SKG_KERNEL_DIR stands for
- * kernels=. Errors: SKG_ERR_ARGUMENT (words), SKG_ERR_NO_DEVICE, SKG_ERR_DEVICE. The caller releases the
- * context. */
+/** Opens a device.
+ *
+ *     config    words separated by blanks, or NULL:
+ *                 device=cpu | gpu | PLATFORM:DEVICE | part of a device's name
+ *                              (numbers as in skg_device_info)
+ *                 threads=N    use N compute units, through a sub-device where the platform offers them
+ *                 kernels=DIR  read the kernels from DIR instead of those built in, for development
+ *     context   result; the caller releases it
+ *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE, SKG_ERR_DEVICE
+ *
+ * Without device= the environment variable SKG_DEVICE decides; it holds such words, or the value of device=
+ * alone. Without either the best device is taken: GPUs before CPUs, then the one with more compute units. The
+ * environment variable SKG_KERNEL_DIR stands for kernels=. */
 SKG_API skg_status skg_context_create(const char *config, skg_context **context);
 
-/* One owner more, one owner less. Release takes the handle's address, sets it to NULL, accepts NULL, never
- * fails. */
+/** Adds an owner to a context. */
 SKG_API skg_status skg_context_retain(skg_context *context);
+
+/** Removes an owner; the last one frees the context. Like every release it takes the handle's address, sets
+ * the handle to NULL, accepts NULL and cannot fail. */
 SKG_API void skg_context_release(skg_context **context);
 
-enum { SKG_LOG_WARNING = 1, SKG_LOG_NOTE = 2, SKG_LOG_PROGRESS = 3 };
+/** What a line of the log is. */
+enum skg_log_level {
+    /** Something about the result that the caller should know. */
+    SKG_LOG_WARNING = 1,
+    /** Something that was decided or assumed. */
+    SKG_LOG_NOTE = 2,
+    /** How far a long computation is. */
+    SKG_LOG_PROGRESS = 3
+};
 
-/* Receives each warning, note and progress line: one sentence, no newline, valid during the call only. */
+/** Receives one line of the log. It is called by the thread that is inside a call of the library on this
+ * context, before that call returns, and by no other. It must not call the library with the same context.
+ *
+ *     level      enum skg_log_level
+ *     sentence   one sentence without a newline, valid during the call only
+ *     user       as given to skg_context_log_set */
 typedef void (*skg_log_function)(int32_t level, const char *sentence, void *user);
 
-/* Sets where they go; NULL (the default) drops them. */
+/** Sets where the lines of a context's log go. NULL, the default, drops them. */
 SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user);
 
-/* What OpenCL offers. Filled by the library; prepare with skg_device_info_init. */
+/** A device of OpenCL. The library fills it; prepare with skg_device_info_init. */
 typedef struct {
+    /** Set by skg_device_info_init. */
     int32_t size;
-    int32_t platform, device; /* numbers for device=PLATFORM:DEVICE */
-    int32_t is_gpu, is_cpu;   /* 1 or 0 */
+    /** Number of the platform for device=PLATFORM:DEVICE; -1: the caller's own device. */
+    int32_t platform;
+    /** Number of the device on its platform; -1: the caller's own device. */
+    int32_t device;
+    /** 1: a GPU. */
+    int32_t is_gpu;
+    /** 1: a CPU. */
+    int32_t is_cpu;
+    /** Number of compute units. */
     int32_t compute_units;
-    int32_t has_double;             /* fp64: needed by precision double */
-    int32_t correct_division;       /* float division is correctly rounded: same bits as other such devices */
-    int32_t float_width;            /* native vector width of float */
-    int64_t memory, max_allocation; /* bytes, as reported now */
-    int64_t local_memory;           /* bytes */
-    char name[128], platform_name[128], version[128], driver[128];
+    /** 1: has fp64, which SKG_PRECISION_DOUBLE and SKG_TYPE_FLOAT64 need. */
+    int32_t has_double;
+    /** 1: float division is correctly rounded, so images have the same bits as on other such devices. */
+    int32_t correct_division;
+    /** Native vector width of float. */
+    int32_t float_width;
+    /** 0 */
+    int32_t reserved;
+    /** Bytes, as the driver reports them now. */
+    int64_t memory;
+    /** Largest buffer in bytes, as the driver reports it now. */
+    int64_t max_allocation;
+    /** Local memory of a work-group, bytes. */
+    int64_t local_memory;
+    /** Name of the device. */
+    char name[128];
+    /** Name of its platform. */
+    char platform_name[128];
+    /** Version of OpenCL that it has. */
+    char version[128];
+    /** Version of its driver. */
+    char driver[128];
 } skg_device_info;
 
-SKG_API void skg_device_info_init(skg_device_info *info);
+/** Prepares a skg_device_info of `size` bytes (export.h). */
+SKG_API void skg_device_info_init_sized(void *info, int32_t size);
 
-/* How many devices there are, over all platforms; 0 is no failure. */
+/** Prepares a skg_device_info. */
+static inline void skg_device_info_init(skg_device_info *info) {
+    skg_device_info_init_sized(info, (int32_t)sizeof *info);
+}
+
+/** Number of devices over all platforms. None is no failure. */
 SKG_API skg_status skg_device_count(int64_t *count);
 
-/* The device at index 0 <= index < count. */
+/** The device with number 0 <= index < count. Errors: SKG_ERR_ARGUMENT. */
 SKG_API skg_status skg_device_get(int64_t index, skg_device_info *info);
 
-/* The device of a context. */
+/** The device of a context. */
 SKG_API skg_status skg_context_device_get(skg_context *context, skg_device_info *info);
 
 #ifdef __cplusplus

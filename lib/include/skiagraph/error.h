@@ -1,26 +1,31 @@
-/* Status codes and the text of the last failure.
+/** @file
+ * Status codes, and the text of the last failure.
  *
- * Every call of the library returns a skg_status. SKG_OK is zero; failures are the SKG_ERR_ codes. SKG_STALE
- * and SKG_RANGE are answers, not failures: the call did what could be done and says what the caller should
- * know. */
+ * Every function returns a skg_status, except
+ *
+ * - skg_X_init, skg_X_init_sized and skg_X_release, which return nothing and cannot fail;
+ * - skg_status_name, skg_status_text, skg_last_error and skg_last_cl_error, which explain a failure;
+ * - skg_version and skg_version_number;
+ * - skg_lung_hounsfield, which is a formula.
+ *
+ * SKG_OK is 0 and failures (SKG_ERR_...) are negative. SKG_STALE and SKG_RANGE are positive: they are
+ * answers, not failures, and the functions that give them say what was done. A function that fails leaves its
+ * results as they were, or NULL where it makes a handle. */
 #ifndef SKIAGRAPH_ERROR_H
 #define SKIAGRAPH_ERROR_H
 
-#include <stdint.h>
+#include <skiagraph/export.h>
 
-#if defined(__GNUC__)
-#define SKG_API __attribute__((visibility("default")))
-#else
-#define SKG_API
-#endif
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/** The result of a call: one of enum skg_status_code. */
 typedef int32_t skg_status;
 
-/* name, value, text */
+/** All status codes: X(name, value, text) for each. */
 #define SKG_STATUS_LIST(X)                                                                                   \
     X(SKG_OK, 0, "success")                                                                                  \
     X(SKG_STALE, 1, "the plan cannot absorb this change; plan again")                                        \
@@ -43,20 +48,25 @@ typedef int32_t skg_status;
     X(SKG_ERR_BREATHING, -16, "a body, link or breath is not usable")                                        \
     X(SKG_ERR_INTERNAL, -99, "a fault of the library itself")
 
-enum {
+/** The status codes of SKG_STATUS_LIST. */
+enum skg_status_code {
+/** One of them. */
 #define SKG_STATUS_ENUM(name, value, text) name = (value),
     SKG_STATUS_LIST(SKG_STATUS_ENUM)
 #undef SKG_STATUS_ENUM
 };
 
-/* "SKG_ERR_MESH" for -6; "SKG_UNKNOWN" for a value that is no status. Static storage. */
+/** The name of a status: "SKG_ERR_MESH" for -6; "SKG_UNKNOWN" for a value that is no status. The text is
+ * static. */
 SKG_API const char *skg_status_name(skg_status status);
 
-/* One general sentence on a status; the particular one is skg_last_error(). Static storage. */
+/** One sentence about a status in general. What went wrong in particular says skg_last_error. The text is
+ * static. */
 SKG_API const char *skg_status_text(skg_status status);
 
-/* The sentence of the last failure in this thread: the thing, the place and the mend. Valid until the next
- * failing call in the same thread; "" before the first failure. Never NULL. */
+/** The sentence of the last failure in the calling thread: what failed, where, and how to mend it. The text
+ * stays valid until the next call that fails in this thread. Before the first failure it is "". Never
+ * NULL. */
 SKG_API const char *skg_last_error(void);
 
 #ifdef __cplusplus

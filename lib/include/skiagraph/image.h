@@ -1,53 +1,82 @@
-/* Image files: TIFF, MetaImage and PNG. A file appears whole or not at all. */
+/** @file
+ * Image files: TIFF, MetaImage and PNG. A file appears whole or not at all. */
 #ifndef SKIAGRAPH_IMAGE_H
 #define SKIAGRAPH_IMAGE_H
 
-#include <skiagraph/plan.h>
+#include <skiagraph/types.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-enum {
-    SKG_DISPLAY_RADIOGRAPH = 0,  /* -ln(I/I0): dense is white */
-    SKG_DISPLAY_TRANSMISSION = 1 /* I/I0: dense is dark */
+/** How a PNG shows an image. */
+enum skg_display {
+    /** -ln(I / I0): dense matter is white. */
+    SKG_DISPLAY_RADIOGRAPH = 0,
+    /** I / I0: dense matter is dark. */
+    SKG_DISPLAY_TRANSMISSION = 1
 };
 
-/* An image to write. Prepare with skg_picture_init. */
+/** An image to write. Prepare with skg_picture_init: one channel of float. */
 typedef struct {
+    /** Set by skg_picture_init. */
     int32_t size;
-    int32_t type; /* SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64: of data, and of .mha and .tif files */
-    int64_t columns, rows, channels;
-    const void *data;     /* [channel][row][column], dense */
-    const char *name;     /* of the quantity, for the header: "energy"; NULL: "" */
-    const char *unit;     /* "keV per pixel"; NULL: "" */
-    const skg_view *view; /* geometry for the header; NULL: pixels of 1 mm, no place */
-    int32_t display;      /* .png: SKG_DISPLAY_... */
-    int32_t quantity; /* SKG_QUANTITY_ENERGY, ... : what data holds, so that a display curve can be formed */
-    double
-        flat_field; /* value of the open beam in data's unit (I0), for display curves; unused for transmission
-                    and attenuation; 0 where data is shown as it is (path lengths) */
-    double low, high; /* .png: shown from black to white; both 0: the image's own minimum and maximum */
-    const char *const *channel_names; /* [channels]: in the place of name, for each channel; may be NULL */
+    /** enum skg_type, of data and of .mha and .tif files */
+    int32_t type;
+    /** Number of columns. */
+    int64_t columns;
+    /** Number of rows. */
+    int64_t rows;
+    /** Number of channels; 1 by default. */
+    int64_t channels;
+    /** [channel][row][column], dense */
+    const void *data;
+    /** Name of the quantity, for the file's header, such as "energy"; NULL: "". */
+    const char *name;
+    /** Its unit, such as "keV per pixel"; NULL: "". */
+    const char *unit;
+    /** Where the detector is, for the file's header; NULL: pixels of 1 mm at no particular place. */
+    const skg_view *view;
+    /** enum skg_display, for .png */
+    int32_t display;
+    /** enum skg_quantity: what data holds, from which a display curve follows */
+    int32_t quantity;
+    /** I0 in the unit of data, for display curves. Not used for transmission and attenuation; 0: data is
+     * shown as it is (path lengths). */
+    double flat_field;
+    /** Value that a .png shows as black. */
+    double low;
+    /** Value that a .png shows as white. Both 0: the image's own least and greatest value. */
+    double high;
+    /** [channels] names instead of `name`; may be NULL. */
+    const char *const *channel_names;
 } skg_picture;
 
-SKG_API void skg_picture_init(skg_picture *picture);
+/** Prepares a picture of `size` bytes (export.h). */
+SKG_API void skg_picture_init_sized(void *picture, int32_t size);
 
-/* Writes by extension: .png (16 bit grey, row 0 on top, first channel, display curve and range stated in a
- * text chunk), .tif or .tiff and .mha (float32 or float64, every channel). MetaImage carries spacing, origin
- * and direction of the detector; skewed steps cannot be such a direction and are refused
- * (SKG_ERR_UNSUPPORTED): use TIFF. Each TIFF page's description has its channel's name; a MetaImage with
- * channel_names has a field ChannelNames, "; " between them. Errors: SKG_ERR_ARGUMENT (unknown extension,
- * named with those known), SKG_ERR_OUTPUT. */
+/** Prepares a picture. */
+static inline void skg_picture_init(skg_picture *picture) {
+    skg_picture_init_sized(picture, (int32_t)sizeof *picture);
+}
+
+/** Writes an image to a file.
+ *
+ *     path     .png: 16 bits grey, row 0 on top, the first channel; a text chunk has display curve and range
+ *              .tif, .tiff: float or double, one page per channel, whose description has the channel's name
+ *              .mha: float or double, every channel, with spacing, origin and direction of the detector; a
+ *              field ChannelNames has channel_names, separated by "; "
+ *     errors   SKG_ERR_ARGUMENT (unknown extension), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for .mha if the
+ *              detector's steps are not perpendicular, which MetaImage cannot express: use TIFF */
 SKG_API skg_status skg_picture_write(const skg_picture *picture, const char *path);
 
-/* Whether skg_picture_write could write there, to know it before a long computation: the extension is one of
- * those, and a file can be made (one is, for a moment, beside it). Errors as above. */
-SKG_API skg_status skg_picture_check_path(const char *path);
+/** Checks that skg_picture_write could write to a path, before a long computation: the extension is known,
+ * and a file can be made beside it (one is, for a moment). Errors as of skg_picture_write. */
+SKG_API skg_status skg_picture_path_check(const char *path);
 
-/* The range that skg_picture_write would show when low = high = 0, so that a sequence can use one for all
- * frames. */
-SKG_API skg_status skg_picture_range(const skg_picture *picture, double *low, double *high);
+/** Gets the values that a .png would show as black and as white if low and high were 0, so that all frames of
+ * a sequence can use the same. */
+SKG_API skg_status skg_picture_range_get(const skg_picture *picture, double *low, double *high);
 
 #ifdef __cplusplus
 }

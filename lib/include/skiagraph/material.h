@@ -1,11 +1,13 @@
-/* Materials: how strongly matter attenuates.
+/** @file
+ * Materials: how strongly matter attenuates photons.
  *
- * Cross sections: NIST XCOM, elements 1 to 92, photons of 1 keV to 20 MeV (warranted from 5 keV); natural
- * cubic splines in ln-ln per process, photo absorption in pieces from edge to edge. At an absorption edge the
- * value above it counts. Tables with source, unit and licence: materials/README.md.
+ * Cross sections are those of NIST XCOM for the elements 1 to 92 and photons of 1 keV to 20 MeV (warranted
+ * from 5 keV), interpolated by natural cubic splines in ln-ln for each process, photo absorption from edge to
+ * edge. At an absorption edge the value above the edge holds. materials/README.md has source, unit and
+ * licence of each table.
  *
- * Materials never change once made and may be shared by threads. Failures are SKG_ERR_MATERIAL unless said
- * otherwise. Where a name is asked for it is for messages and may be NULL. */
+ * A material never changes and may be shared by threads. Functions that make one return SKG_ERR_MATERIAL
+ * unless they say otherwise; the caller releases the result. A `name` is for messages and may be NULL. */
 #ifndef SKIAGRAPH_MATERIAL_H
 #define SKIAGRAPH_MATERIAL_H
 
@@ -15,113 +17,187 @@
 extern "C" {
 #endif
 
+/** Matter: a composition with a density, or a linear attenuation coefficient. */
 typedef struct skg_material skg_material;
 
-/* A material as people write it:
- *     "Fe", "Iron"                     an element by symbol or name
- *     "Water", "bone cortical icru44"  a name of the tables, without regard to case, blanks and punctuation;
- *                                      or words that only one name has
- *     "H2O", "Ca5(PO4)3OH"             a formula by atoms; refused where its numbers sum to 100 +- 1
- *     "weight:Ti90Al6V4"               by mass; the numbers are taken as parts of 100
- *     "HU:52"                          tissue by Hounsfield number (skg_material_create_hounsfield)
- *     "mu:0.2"                         linear attenuation coefficient in 1/cm at every energy
- * A name that is not found: the nearest known ones are in the message. */
+/** Makes a material from the text that a user writes:
+ *
+ *     "Fe", "Iron"           an element by symbol or name
+ *     "bone cortical icru44" a name of the tables, without regard to case, blanks and punctuation, or words
+ *                            that only one name contains
+ *     "H2O", "Ca5(PO4)3OH"   a chemical formula by atoms; refused if its numbers add up to 100 +- 1, because
+ *                            fractions by mass were probably meant
+ *     "weight:Ti90Al6V4"     fractions by mass, in parts of 100
+ *     "HU:52"                tissue by Hounsfield number, see skg_material_create_hounsfield
+ *     "mu:0.2"               this linear attenuation coefficient in 1/cm at every energy
+ *
+ * For a name that is not found the message has the nearest known ones. */
 SKG_API skg_status skg_material_create_named(const char *text, skg_material **material);
 
-/* Element 1 <= z <= 92 at its density of the tables. */
+/** Makes an element with the density of the tables.
+ *
+ *     z   atomic number, 1 to 92 */
 SKG_API skg_status skg_material_create_element(int32_t z, skg_material **material);
 
-/* Chemical formula by atoms ("H2O", "Ca5(PO4)3OH", "C5H8O2"); numbers may have decimals. density in g/cm3;
- * 0: that of a tabled material written like it, or of the element, else not known. */
+/** Makes a compound from its chemical formula by atoms.
+ *
+ *     formula   such as "H2O", "Ca5(PO4)3OH"; numbers may have decimals
+ *     density   g/cm3; 0: the density of the element, or of the tables' material with this formula; if there
+ *               is none, the density is unknown */
 SKG_API skg_status skg_material_create_formula(const char *formula, double density, skg_material **material);
 
-/* `count` elements z[i] with fractions by mass. Their sum has to be 1 within 0.005 (then they are scaled to
- * 1, and skg_material_note_get says so). density in g/cm3; 0: not known. */
+/** Makes a mixture of elements.
+ *
+ *     count       number of elements
+ *     z           [count] atomic numbers, 1 to 92
+ *     fractions   [count] fractions by mass. If their sum is within 0.005 of 1 they are scaled to 1, which
+ *                 skg_material_note_get says; otherwise the call fails
+ *     density     g/cm3; 0: unknown */
 SKG_API skg_status skg_material_create_mixture(const char *name, int64_t count, const int32_t *z,
                                                const double *fractions, double density,
                                                skg_material **material);
 
-/* Human tissue by Hounsfield number, -1050 to 3000: density and composition by Schneider, Bortfeld and
- * Schlegel 2000 (density in pieces, not quite continuous: 1.1199 to 1.0762 g/cm3 at HU 100; composition
- * constant from step to step; amalgam from 1640, titanium from 2300). */
+/** Makes human tissue from its Hounsfield number.
+ *
+ *     hu       -1050 to 3000
+ *     method   density and composition of Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459.
+ *              The density has steps (1.1199 to 1.0762 g/cm3 at HU 100), the composition is constant between
+ *              the steps of their table. Amalgam from HU 1640, titanium from HU 2300. */
 SKG_API skg_status skg_material_create_hounsfield(double hu, skg_material **material);
 
-/* How a Hounsfield number and an energy between those of a table are looked up. */
-enum { SKG_INTERPOLATION_BILINEAR = 0, SKG_INTERPOLATION_BILOGARITHMIC = 1 };
+/** How skg_material_create_naive_hounsfield interpolates. */
+enum skg_interpolation {
+    /** Linear in Hounsfield number and energy. */
+    SKG_INTERPOLATION_BILINEAR = 0,
+    /** Linear in the logarithms of HU + 1000, energy and attenuation. */
+    SKG_INTERPOLATION_BILOGARITHMIC = 1
+};
 
-/* The naive way, kept to show its error (Vidal and Villard 2016, Eq. 13 and Fig. 12): mu interpolated between
- * tissue-equivalent gas, water, soft tissue and cortical bone by their Hounsfield numbers at 80 keV and
- * between the energies of the tables, linear or logarithmic in all three (HU + 1000); from the gas's -998 to
- * bone's 1330. Not for images. */
+/** Makes human tissue in the naive way, to show its error. Not for images.
+ *
+ *     hu              -998 (gas) to 1330 (cortical bone)
+ *     interpolation   enum skg_interpolation
+ *     method          linear attenuation coefficients interpolated between tissue-equivalent gas, water, soft
+ *                     tissue and cortical bone by their Hounsfield numbers at 80 keV, and between the
+ *                     energies of the tables (Vidal and Villard 2016, Eq. 13 and Fig. 12) */
 SKG_API skg_status skg_material_create_naive_hounsfield(double hu, int32_t interpolation,
                                                         skg_material **material);
 
-/* The same linear attenuation coefficient at every energy; per_cm in 1/cm, finite, >= 0. */
+/** Makes a material that has one linear attenuation coefficient at every energy.
+ *
+ *     per_cm   1/cm, finite, at least 0 */
 SKG_API skg_status skg_material_create_mu(const char *name, double per_cm, skg_material **material);
 
-/* A table of linear attenuation coefficients: count >= 2 energies in keV, rising (an edge: one energy twice),
- * and values above 0 in 1/cm; log-log interpolation between them, none beyond. */
+/** Makes a material from a table of linear attenuation coefficients.
+ *
+ *     count          number of energies, at least 2
+ *     energies_kev   [count] keV, rising; at an absorption edge the same energy stands twice
+ *     per_cm         [count] 1/cm, above 0
+ *     method         log-log interpolation; no values beyond the ends */
 SKG_API skg_status skg_material_create_table(const char *name, int64_t count, const double *energies_kev,
                                              const double *per_cm, skg_material **material);
 
-/* The same from a text file of two columns: energy in the unit ("eV", "keV", "MeV"), 1/cm. Lines that start
- * with # are read past. Errors: SKG_ERR_FILE, SKG_ERR_FORMAT with the line. */
+/** Makes a material from a text file with two columns, energy and linear attenuation coefficient in 1/cm.
+ * Lines that begin with # are skipped.
+ *
+ *     unit     of the energies: "eV", "keV" or "MeV"
+ *     errors   SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
 SKG_API skg_status skg_material_load_table(const char *path, const char *unit, skg_material **material);
 
-/* The same matter at another density in g/cm3, above 0; SKG_ERR_MATERIAL for one that is given by its linear
- * attenuation coefficient. */
+/** Makes the same matter with another density.
+ *
+ *     density   g/cm3, above 0
+ *     errors    SKG_ERR_MATERIAL if the material is given by its linear attenuation coefficient */
 SKG_API skg_status skg_material_create_at_density(const skg_material *material, double density,
                                                   skg_material **dense);
 
+/** Adds an owner to a material. */
 SKG_API skg_status skg_material_retain(skg_material *material);
+
+/** Removes an owner; the last one frees the material. */
 SKG_API void skg_material_release(skg_material **material);
 
-/* Linear attenuation coefficient in 1/cm at a photon energy in keV. SKG_ERR_MATERIAL where the density is
- * not known, or the energy lies outside 1 keV to 20 MeV or a table's range. */
+/** Gets the linear attenuation coefficient at a photon energy.
+ *
+ *     energy_kev   1 keV to 20 MeV, or the range of the material's table
+ *     per_cm       result, 1/cm
+ *     errors       SKG_ERR_MATERIAL if the energy is out of range or the density is unknown */
 SKG_API skg_status skg_material_attenuation_get(const skg_material *material, double energy_kev,
                                                 double *per_cm);
 
-/* Mass coefficients in cm2/g by process. Prepare with skg_coefficients_init. */
+/** Mass attenuation coefficients by process, cm2/g. The library fills it; prepare with
+ * skg_coefficients_init. */
 typedef struct {
+    /** Set by skg_coefficients_init. */
     int32_t size;
-    int32_t reserved; /* 0 */
-    double rayleigh, compton, photo, pair;
-    double total; /* their sum: mu/rho with coherent scattering */
+    /** 0 */
+    int32_t reserved;
+    /** Coherent scattering. */
+    double rayleigh;
+    /** Incoherent scattering. */
+    double compton;
+    /** Photo absorption. */
+    double photo;
+    /** Production of pairs and triplets. */
+    double pair;
+    /** Sum of the four: mu/rho with coherent scattering. */
+    double total;
 } skg_coefficients;
 
-SKG_API void skg_coefficients_init(skg_coefficients *coefficients);
+/** Prepares skg_coefficients of `size` bytes (export.h). */
+SKG_API void skg_coefficients_init_sized(void *coefficients, int32_t size);
+
+/** Prepares skg_coefficients. */
+static inline void skg_coefficients_init(skg_coefficients *coefficients) {
+    skg_coefficients_init_sized(coefficients, (int32_t)sizeof *coefficients);
+}
+
+/** Gets the mass attenuation coefficients at a photon energy in keV. Errors: SKG_ERR_MATERIAL if the energy
+ * is out of range or the composition is unknown. */
 SKG_API skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,
                                                  skg_coefficients *coefficients);
 
-/* Hounsfield number at an energy: 1000 (mu/mu_water - 1) (the paper's Eq. 6), water at 1 g/cm3. */
+/** Gets the Hounsfield number at a photon energy in keV: 1000 (mu / mu_water - 1), with water at 1 g/cm3 (the
+ * paper's Eq. 6). */
 SKG_API skg_status skg_material_hounsfield_get(const skg_material *material, double energy_kev, double *hu);
 
-/* Density in g/cm3; 0 where it is not known or has no meaning. */
+/** Gets the density in g/cm3; 0 if it is unknown or has no meaning. */
 SKG_API skg_status skg_material_density_get(const skg_material *material, double *density);
 
-/* Composition: how many elements (0 where it is not known), and each: atomic number, fraction by mass. */
+/** Number of elements in the composition; 0 if it is unknown. */
 SKG_API skg_status skg_material_element_count(const skg_material *material, int64_t *count);
+
+/** Gets the atomic number of element 0 <= index < count, and its fraction by mass. */
 SKG_API skg_status skg_material_element_get(const skg_material *material, int64_t index, int32_t *z,
                                             double *fraction);
 
-/* Energies in keV, 1 to 20 000, at which mu jumps: at most `most` of them go to edges (NULL with most = 0: to
- * count), rising; *count is how many there are. */
-SKG_API skg_status skg_material_edges_get(const skg_material *material, int64_t most, double *edges_kev,
+/** Gets the energies at which the attenuation jumps.
+ *
+ *     capacity    length of edges_kev; 0 to count only
+ *     edges_kev   [capacity] result: the first of them, keV, rising, 1 to 20000; NULL if capacity is 0
+ *     count       result: how many there are, which may be more than capacity */
+SKG_API skg_status skg_material_edges_get(const skg_material *material, int64_t capacity, double *edges_kev,
                                           int64_t *count);
 
-/* The material's name, and what one should know of it ("" for nothing): source of its composition,
- * normalised fractions. Valid as long as the material. */
+/** Gets the material's name, valid as long as the material. */
 SKG_API skg_status skg_material_name_get(const skg_material *material, const char **name);
+
+/** Gets what a user should know of the material: the source of its composition, or that its fractions were
+ * scaled; "" for nothing. Valid as long as the material. */
 SKG_API skg_status skg_material_note_get(const skg_material *material, const char **note);
 
-/* The names of the tables, for lists: count, and each one's names separated by ";" and
- * density in g/cm3. Static storage. */
+/** Number of materials in the tables. */
 SKG_API skg_status skg_material_tabled_count(int64_t *count);
+
+/** Gets the names of material 0 <= index < count of the tables, separated by ";", and its density in g/cm3.
+ * The text is static. */
 SKG_API skg_status skg_material_tabled_get(int64_t index, const char **name, double *density);
 
-/* "Fe" of 26 and 26 of "Fe" (also "iron", "26"). Static storage. */
-SKG_API skg_status skg_element_symbol(int32_t z, const char **symbol);
-SKG_API skg_status skg_element_number(const char *text, int32_t *z);
+/** Gets the symbol of an element: "Fe" for 26. The text is static. */
+SKG_API skg_status skg_element_symbol_get(int32_t z, const char **symbol);
+
+/** Gets the atomic number of an element: 26 for "Fe", "iron" or "26". */
+SKG_API skg_status skg_element_number_get(const char *text, int32_t *z);
 
 #ifdef __cplusplus
 }

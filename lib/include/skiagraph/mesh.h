@@ -1,11 +1,13 @@
-/* Triangle meshes.
+/** @file
+ * Triangle meshes.
  *
- * A mesh keeps the caller's numbering: vertex i and triangle i are those given, always. Positions are in mm,
- * in the caller's frame; inside they are doubles, and float offsets from an origin of the mesh's own, which
- * is what a plan of single precision uploads. Every mesh carries its health (closed? outward?) and a version
- * number that grows whenever its vertices move. Meshes that nobody writes may be shared by threads.
+ * A mesh keeps the caller's numbering: vertex i and triangle i are always those that were given. Positions
+ * are in mm in the caller's frame. The mesh stores them as doubles, and as float offsets from an origin of
+ * its own, which is what a plan in single precision uploads. A mesh has a version number, which grows when
+ * its vertices move, and a health (skg_mesh_health): is it closed, does it point outward, how large is it.
  *
- * Calls that take a context take it for its warnings only; it may be NULL. */
+ * Meshes that nobody changes may be shared by threads. Functions take a context for its log only; it may be
+ * NULL. */
 #ifndef SKIAGRAPH_MESH_H
 #define SKIAGRAPH_MESH_H
 
@@ -15,104 +17,178 @@
 extern "C" {
 #endif
 
+/** Vertices and triangles. */
 typedef struct skg_mesh skg_mesh;
 
-/* A mesh from arrays, which are copied. name: for messages; "" or NULL for "mesh".
- * positions: `vertices` rows of x, y, z, `position_stride` elements from row to row (>= 3, or 0 for 3), in
- * units of unit_mm mm (finite, > 0: 1 for mm, 10 for cm, 1000 for m). corners: `triangles` rows of three
- * vertex numbers from 0, `triangle_stride` elements from row to row (>= 3, or 0 for 3). A closed mesh that is
- * inverted as a whole is turned outward, with a warning (health.flipped); the caller's numbering stays.
- * Errors: SKG_ERR_ARGUMENT, SKG_ERR_MESH (no triangles, index out of range, NaN or infinite vertex: the first
- * one is named), SKG_ERR_MEMORY. The caller releases the mesh. */
+/** Makes a mesh from arrays, which are copied.
+ *
+ *     name              for messages; NULL or "": "mesh"
+ *     vertices          number of vertices
+ *     positions         rows of x, y, z in units of unit_mm
+ *     position_stride   elements from one row to the next, at least 3; 0: 3
+ *     triangles         number of triangles
+ *     corners           rows of three vertex numbers, counted from 0
+ *     triangle_stride   elements from one row to the next, at least 3; 0: 3
+ *     unit_mm           mm per unit: 1 for mm, 10 for cm, 1000 for m; finite, above 0
+ *     mesh              result; the caller releases it
+ *     errors            SKG_ERR_ARGUMENT, SKG_ERR_MEMORY; SKG_ERR_MESH if there are no triangles, or for the
+ *                       first corner that is out of range or vertex that is not finite
+ *
+ * If a closed mesh points inward as a whole, it is turned outward and a warning says so
+ * (skg_mesh_health.flipped). The caller's numbering stays. */
 SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices,
                                    const double *positions, int64_t position_stride, int64_t triangles,
                                    const int32_t *corners, int64_t triangle_stride, double unit_mm,
                                    skg_mesh **mesh);
+
+/** Makes a mesh from arrays with float positions; otherwise as skg_mesh_create. */
 SKG_API skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t vertices,
                                          const float *positions, int64_t position_stride, int64_t triangles,
                                          const int32_t *corners, int64_t triangle_stride, double unit_mm,
                                          skg_mesh **mesh);
 
-/* A mesh from a file: STL (ascii, binary), PLY, OBJ, and what else Assimp reads; several objects in a file
- * become one mesh. Faces of more than three corners are cut into a fan from the first, which leaves the path
- * lengths of any plane face what they are; points and lines are left out, with a warning. The file's own
- * order is kept: vertex i is the i-th "v" line of an OBJ file, the i-th vertex of a PLY file (doubles stay
- * doubles), corner i of an STL file. In other formats it is Assimp's, in floats. Numbers in text are read
- * alike in every locale. unit_mm as above. The mesh is named by the file, without its folder. Errors:
- * SKG_ERR_FILE (cannot be read), SKG_ERR_FORMAT (truncated, not a mesh), SKG_ERR_MESH. */
+/** Reads a mesh from a file: STL (text or binary), PLY, OBJ, or another format that Assimp reads.
+ *
+ *     unit_mm   mm per unit of the file
+ *     mesh      result, named like the file without its folder; the caller releases it
+ *     errors    SKG_ERR_FILE (cannot be read), SKG_ERR_FORMAT (truncated, or no mesh), SKG_ERR_MESH
+ *
+ * Several objects in one file become one mesh. A face with more than three corners is cut into a fan from its
+ * first corner, which does not change path lengths if the face is plane. Points and lines are left out with a
+ * warning. The order of the file is kept: vertex i is the i-th "v" line of an OBJ file, the i-th vertex of a
+ * PLY file (doubles stay doubles), the i-th corner of an STL file. In other formats Assimp decides the order,
+ * and positions are floats. Numbers in text are read alike in every locale. */
 SKG_API skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh);
 
-/* Writes a mesh as binary PLY (floats where they hold every position exactly, else doubles: skg_mesh_load
- * gives back the same bits), or as binary STL (floats) where path ends in .stl; positions in mm, corners as
- * given. Whole or not at all. Errors: SKG_ERR_OUTPUT; SKG_ERR_MESH (a vertex is not finite). */
+/** Writes a mesh to a file, whole or not at all. Positions are in mm, corners as given.
+ *
+ *     path     ".stl": binary STL, in floats. Otherwise binary PLY, in floats if they hold every position
+ *              exactly and in doubles if not, so that skg_mesh_load gives back the same bits
+ *     errors   SKG_ERR_OUTPUT; SKG_ERR_MESH if a vertex is not finite */
 SKG_API skg_status skg_mesh_save(const skg_mesh *mesh, const char *path);
 
-/* Makers: closed, outward, centred at the origin; lengths in mm, > 0.
- * sphere: segments >= 3 around and segments/2 (at least 2) from pole to pole, poles on z; vertices on the
- * sphere. cylinder: axis z, segments >= 3 around; vertices on the circle. step_wedge: `steps` >= 1 steps
- * along x, each length_x/steps long; step k is (k+1)/steps of height_z high, y across. */
+/** Makes a cube, centred at the origin, closed, outward. Edge in mm, above 0. */
 SKG_API skg_status skg_mesh_create_cube(double edge, skg_mesh **mesh);
+
+/** Makes a cuboid, centred at the origin, closed, outward. Edges in mm, above 0. */
 SKG_API skg_status skg_mesh_create_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh);
+
+/** Makes a sphere, centred at the origin, closed, outward. Vertices lie on the sphere, its poles on z.
+ *
+ *     radius     mm, above 0
+ *     segments   around the axis, at least 3; half as many, at least 2, from pole to pole */
 SKG_API skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **mesh);
+
+/** Makes a cylinder along z, centred at the origin, closed, outward. Vertices lie on the circles.
+ *
+ *     radius, height   mm, above 0
+ *     segments         around the axis, at least 3 */
 SKG_API skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh);
+
+/** Makes a step wedge, centred at the origin, closed, outward.
+ *
+ *     length_x, length_y, height_z   mm, above 0
+ *     steps                          at least 1, along x, each length_x / steps long; step k, counted from 0,
+ *                                    is (k + 1) / steps of height_z high */
 SKG_API skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double height_z,
                                               int64_t steps, skg_mesh **mesh);
 
+/** Adds an owner to a mesh. */
 SKG_API skg_status skg_mesh_retain(skg_mesh *mesh);
+
+/** Removes an owner; the last one frees the mesh. */
 SKG_API void skg_mesh_release(skg_mesh **mesh);
 
-/* Numbers of vertices and triangles, as given. */
+/** Numbers of vertices and triangles, as given. */
 SKG_API skg_status skg_mesh_count(const skg_mesh *mesh, int64_t *vertices, int64_t *triangles);
 
-/* Copies positions (mm) or corners out; strides as in skg_mesh_create. */
+/** Copies the positions out, in mm. position_stride as in skg_mesh_create. */
 SKG_API skg_status skg_mesh_positions_get(const skg_mesh *mesh, double *positions, int64_t position_stride);
+
+/** Copies the corners out. triangle_stride as in skg_mesh_create. */
 SKG_API skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride);
 
-/* Gives every vertex a new position (mm); same count and strides as in skg_mesh_create. The next frame
- * uploads them. The health keeps what topology says (closed, winding); volume, area, bounds and degenerate
- * triangles follow. SKG_ERR_MESH, and the mesh stays as it was: a position is not finite, or vertices of a
- * closed mesh that were welded by their equal positions would part, which would open it. */
+/** Gives every vertex a new position. The next frame uploads them.
+ *
+ *     positions   one row per vertex, mm; position_stride as in skg_mesh_create
+ *     errors      SKG_ERR_MESH, and the mesh stays as it was, if a position is not finite, or if vertices of
+ *                 a closed mesh that had equal positions no longer have: the mesh would open
+ *
+ * In the health, what depends on topology stays (closed, winding); volume, area, bounds and degenerate
+ * triangles follow the positions. */
 SKG_API skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride);
 
-/* The way without a copy: the float offsets (rows of x, y, z, in mm, from *origin) that the upload reads.
- * Write there, then call skg_mesh_offsets_moved. The pointers are valid as long as the mesh; *origin may change with
- * skg_mesh_positions_set. skg_mesh_offsets_moved fails with SKG_ERR_MESH when welded vertices of a closed mesh have
- * parted (the version grows all the same); a vertex that is not finite is found by the frame that meets it.
- */
+/** Gets the memory of the float offsets, to move vertices without a copy. Write there, then call
+ * skg_mesh_offsets_moved.
+ *
+ *     offsets   result: rows of x, y, z in mm from *origin; valid as long as the mesh
+ *     origin    result: [3] mm; valid as long as the mesh. skg_mesh_positions_set may change the values */
 SKG_API skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin);
+
+/** Says that the float offsets were written. The next frame uploads them. Errors: SKG_ERR_MESH if vertices of
+ * a closed mesh that had equal positions no longer have; the version grows all the same. A vertex that is not
+ * finite is found by the frame that meets it. */
 SKG_API skg_status skg_mesh_offsets_moved(skg_mesh *mesh);
 
-/* Grows by one with each write or skg_mesh_offsets_moved; starts at 1. */
+/** Gets the version: 1 at first, one more with each skg_mesh_positions_set and skg_mesh_offsets_moved. */
 SKG_API skg_status skg_mesh_version_get(const skg_mesh *mesh, int64_t *version);
 
-/* Health. Vertices whose positions are equal bit for bit are one vertex here (welded).
- * closed: for every pair of vertices as many edges (a,b) as (b,a); then every ray's signed hits cancel
- * exactly. */
+/** The health of a mesh. The library fills it; prepare with skg_mesh_health_init. Vertices with equal
+ * positions, bit for bit, count as one vertex here: they are welded. */
 typedef struct {
+    /** Set by skg_mesh_health_init. */
     int32_t size;
-    int32_t closed;              /* 1 or 0 */
-    int32_t consistent;          /* 1: no two triangles run along a shared edge in the same direction */
-    int32_t outward;             /* 1: closed, and its volume was positive as given or the mesh was flipped */
-    int32_t flipped;             /* 1: inverted as a whole, turned outward */
-    int32_t reserved;            /* 0 */
-    int64_t vertices, triangles; /* as given */
-    int64_t welded_vertices;     /* after welding */
-    int64_t open_edges;          /* directed edges without their opposite */
-    int64_t first_open_vertex;   /* caller's number of a vertex on the first one; -1 when closed */
-    double first_open_position[3]; /* mm */
-    int64_t degenerate_triangles;  /* two corners are the same vertex, or no area */
-    int64_t duplicate_triangles; /* of those with three vertices: repeat an earlier one, turned or inverted */
-    int64_t nonmanifold_edges;   /* edges of more than two triangles */
-    int64_t components;          /* connected through shared vertices */
-    double volume;               /* mm3, signed as seen after flipping; meaningful when closed */
-    double area;                 /* mm2 */
-    double bounds[6];            /* mm: min x, y, z, max x, y, z */
+    /** 1: for every pair of vertices there are as many edges (a, b) as (b, a). Then the signed hits of every
+     * ray cancel exactly. A mesh that is not closed is called leaky. */
+    int32_t closed;
+    /** 1: no two triangles run along a shared edge in the same direction. */
+    int32_t consistent;
+    /** 1: closed, and its volume is positive, as given or after it was turned outward. */
+    int32_t outward;
+    /** 1: it pointed inward as a whole and was turned outward. */
+    int32_t flipped;
+    /** 0 */
+    int32_t reserved;
+    /** Number of vertices, as given. */
+    int64_t vertices;
+    /** Number of triangles, as given. */
+    int64_t triangles;
+    /** Number of vertices after welding. */
+    int64_t welded_vertices;
+    /** Number of directed edges without their opposite. */
+    int64_t open_edges;
+    /** The caller's number of a vertex on the first open edge; -1 if closed. */
+    int64_t first_open_vertex;
+    /** Where that vertex is, mm. */
+    double first_open_position[3];
+    /** Number of triangles with two corners at the same vertex, or without area. */
+    int64_t degenerate_triangles;
+    /** Number of triangles with three different vertices that repeat an earlier one, rotated or inverted. */
+    int64_t duplicate_triangles;
+    /** Number of edges that more than two triangles share. */
+    int64_t nonmanifold_edges;
+    /** Number of pieces that are connected through shared vertices. */
+    int64_t components;
+    /** mm3, signed, after turning; meaningful if closed. */
+    double volume;
+    /** mm2 */
+    double area;
+    /** Least x, y, z, then greatest x, y, z, mm. */
+    double bounds[6];
 } skg_mesh_health;
 
-SKG_API void skg_mesh_health_init(skg_mesh_health *health);
+/** Prepares a skg_mesh_health of `size` bytes (export.h). */
+SKG_API void skg_mesh_health_init_sized(void *health, int32_t size);
+
+/** Prepares a skg_mesh_health. */
+static inline void skg_mesh_health_init(skg_mesh_health *health) {
+    skg_mesh_health_init_sized(health, (int32_t)sizeof *health);
+}
+
+/** Gets the health of a mesh. */
 SKG_API skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health);
 
-/* The name given, or the file's name without its folder. Valid as long as the mesh. */
+/** Gets the mesh's name, valid as long as the mesh. */
 SKG_API skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name);
 
 #ifdef __cplusplus

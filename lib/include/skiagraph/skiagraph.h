@@ -1,10 +1,18 @@
-/* Skiagraph: X-ray images of triangle meshes on any OpenCL device. This header takes in all others but
- * opencl.h. */
+/** @file
+ * Skiagraph: X-ray images of triangle meshes on any OpenCL device. This header includes all others except
+ * opencl.h.
+ *
+ * Objects are handles. skg_X_create_... makes one, skg_X_retain adds an owner and skg_X_release removes one;
+ * handles without a retain function have one owner. Results come last and by pointer. Lengths are in mm,
+ * energies in keV, densities in g/cm3, linear attenuation coefficients in 1/cm, times in s, angles in radians
+ * unless the name says degrees. error.h explains status codes, export.h the structs, context.h threads and
+ * fork, frame.h jobs. */
 #ifndef SKIAGRAPH_H
 #define SKIAGRAPH_H
 
 #include <skiagraph/beam.h>
-#include <skiagraph/breathing.h>
+#include <skiagraph/body.h>
+#include <skiagraph/breath.h>
 #include <skiagraph/context.h>
 #include <skiagraph/error.h>
 #include <skiagraph/image.h>
@@ -14,6 +22,8 @@
 #include <skiagraph/plan.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/setup.h>
+#include <skiagraph/thorax.h>
+#include <skiagraph/types.h>
 #include <skiagraph/version.h>
 
 #endif

@@ -1,0 +1,94 @@
+/** @file
+ * A generated thorax at end-expiration, for trials and lessons without patient data.
+ *
+ * x points to the patient's left, y to the back, z to the head; the origin is the top of the right half of
+ * the diaphragm. Sizes are from the literature and from averages of real bones. Every mesh is closed and
+ * outward. Two meshes are disjoint or one lies inside the other, except the needle, which passes through
+ * others; with fewer than 42,000 triangles facets may cut into a neighbour by up to 3 mm. Labels are English:
+ * "rib 5 left", "liver", "lung right", "skin". */
+#ifndef SKIAGRAPH_THORAX_H
+#define SKIAGRAPH_THORAX_H
+
+#include <skiagraph/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The parts of a generated thorax. */
+typedef struct skg_thorax skg_thorax;
+
+/** Options of a thorax. Prepare with skg_thorax_options_init. */
+typedef struct {
+    /** Set by skg_thorax_options_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Approximate number of triangles, 10,000 to 20,000,000; 42,000 by default (the paper's scene has
+     * 41,710). */
+    int64_t triangles;
+} skg_thorax_options;
+
+/** Prepares the options of a thorax, of `size` bytes (export.h). */
+SKG_API void skg_thorax_options_init_sized(void *options, int32_t size);
+
+/** Prepares the options of a thorax. */
+static inline void skg_thorax_options_init(skg_thorax_options *options) {
+    skg_thorax_options_init_sized(options, (int32_t)sizeof *options);
+}
+
+/** Makes a thorax.
+ *
+ *     options   NULL: the defaults
+ *     thorax    result; the caller releases it
+ *     errors    SKG_ERR_ARGUMENT if the number of triangles is out of range */
+SKG_API skg_status skg_thorax_create(const skg_thorax_options *options, skg_thorax **thorax);
+
+/** Frees a thorax. */
+SKG_API void skg_thorax_release(skg_thorax **thorax);
+
+/** A part of a thorax. The library fills it; prepare with skg_thorax_part_init. Texts and mesh are valid as
+ * long as the thorax; the mesh is not retained for the caller. */
+typedef struct {
+    /** Set by skg_thorax_part_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of the part that it lies inside; -1: none. */
+    int64_t inside;
+    /** Closed, outward. */
+    skg_mesh *mesh;
+    /** Unique. */
+    const char *label;
+    /** As skg_material_create_named takes it, such as "Liver", "Needle steel"; NULL for bones. */
+    const char *material;
+    /** Hounsfield number at about 120 kV, which decides the material if `material` is NULL. */
+    double hounsfield;
+    /** g/cm3; 0: that of the tables. */
+    double density_g_cm3;
+} skg_thorax_part;
+
+/** Prepares a skg_thorax_part of `size` bytes (export.h). */
+SKG_API void skg_thorax_part_init_sized(void *part, int32_t size);
+
+/** Prepares a skg_thorax_part. */
+static inline void skg_thorax_part_init(skg_thorax_part *part) {
+    skg_thorax_part_init_sized(part, (int32_t)sizeof *part);
+}
+
+/** Number of parts of a thorax. */
+SKG_API skg_status skg_thorax_part_count(const skg_thorax *thorax, int64_t *count);
+
+/** Gets part 0 <= index < count. */
+SKG_API skg_status skg_thorax_part_get(const skg_thorax *thorax, int64_t index, skg_thorax_part *part);
+
+/** Writes one PLY file per part and a scene file, thorax.json (docs/scene-files.md), into a folder that
+ * exists. The scene has a tube of 80 kV 1 m in front of a detector behind the patient's back, head up, the
+ * patient's right on the viewer's left, and the breathing and events of a percutaneous cholangiography.
+ * Errors: SKG_ERR_OUTPUT. */
+SKG_API skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,130 @@
+/** @file
+ * Frames: images of a scene, one or many, computed while the caller continues.
+ *
+ * A frame is one view of the scene as it stands when the frame is submitted. Submitting copies vertices,
+ * poses, views and all else that the frames need, so the caller may write the next frame as soon as the call
+ * returns.
+ *
+ * Any number of jobs may be in flight. The jobs of a context run in the order in which they were submitted,
+ * whichever plans they belong to; they may be waited for in any order. The output's memory belongs to the
+ * caller and must stay until the job was waited for. Plan, scene, meshes and context may be released before:
+ * a job keeps what it needs. Every job must be waited for, because that is what releases it; a job cannot be
+ * cancelled. */
+#ifndef SKIAGRAPH_FRAME_H
+#define SKIAGRAPH_FRAME_H
+
+#include <skiagraph/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** One frame. Prepare with skg_frame_init: the plan's view, the scene's poses and materials. */
+typedef struct {
+    /** Set by skg_frame_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** NULL: the plan's. It needs the plan's numbers of rows and columns. */
+    const skg_view *view;
+    /** Number of parts that have another pose in this frame. */
+    int64_t pose_count;
+    /** [pose_count] numbers of these parts */
+    const int64_t *pose_parts;
+    /** [pose_count][16] their poses */
+    const double *poses;
+    /** Seed of the noise. Seed and index decide it: frames with the same two have the same noise, others have
+     * independent noise. */
+    int64_t noise_seed;
+    /** Number of the frame in its sequence, for the noise. */
+    int64_t index;
+    /** Number of parts whose matter differs from their material in this frame. */
+    int64_t override_count;
+    /** [override_count] numbers of these parts */
+    const int64_t *override_parts;
+    /** [override_count] density of the part over that of its material, 0 to 1000; NULL: 1 */
+    const double *density_ratios;
+    /** [override_count] fill fraction: the share of the part that is there, 0 to 1; the rest is what the part
+     * lies inside. NULL: 1. A part below 1 must not contain another part. */
+    const double *fill_fractions;
+} skg_frame;
+
+/** Prepares a frame of `size` bytes (export.h). */
+SKG_API void skg_frame_init_sized(void *frame, int32_t size);
+
+/** Prepares a frame. */
+static inline void skg_frame_init(skg_frame *frame) {
+    skg_frame_init_sized(frame, (int32_t)sizeof *frame);
+}
+
+/** Where images go: [frame][channel][row][column]. Prepare with skg_output_init: float, dense. */
+typedef struct {
+    /** Set by skg_output_init. */
+    int32_t size;
+    /** enum skg_type; SKG_TYPE_FLOAT64 needs a device with fp64 */
+    int32_t type;
+    /** First element. The caller's memory; it must stay until the job was waited for. */
+    void *data;
+    /** Elements from one row to the next; 0: dense. */
+    int64_t row_stride;
+    /** Elements from one channel to the next; 0: dense. */
+    int64_t channel_stride;
+    /** Elements from one frame to the next; 0: dense. */
+    int64_t frame_stride;
+} skg_output;
+
+/** Prepares an output of `size` bytes (export.h). */
+SKG_API void skg_output_init_sized(void *output, int32_t size);
+
+/** Prepares an output. */
+static inline void skg_output_init(skg_output *output) {
+    skg_output_init_sized(output, (int32_t)sizeof *output);
+}
+
+/** Starts frames.
+ *
+ *     count    number of frames, at least 1; the plan splits them into batches that fit the device's memory
+ *     frames   [count]; NULL: each as plan and scene stand
+ *     job      result; skg_job_wait waits for it and releases it
+ *     errors   SKG_ERR_MESH with part and vertex if a vertex is not finite; SKG_ERR_SCENE, SKG_ERR_ARGUMENT
+ *     stale    SKG_STALE, and nothing is started, if the scene changed in a way that the plan cannot absorb:
+ *              a part was added or put elsewhere, a mesh has other triangles, a material lies outside what
+ *              was verified */
+SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                   const skg_output *output, skg_job **job);
+
+/** Asks whether a job is finished, without waiting.
+ *
+ *     done   result: 1 if skg_job_wait would not wait, otherwise 0 */
+SKG_API skg_status skg_job_test(const skg_job *job, int32_t *done);
+
+/** Waits until a job's images are in place, releases the job and sets the handle to NULL.
+ *
+ *     range    SKG_RANGE: the images are in place, but some pixels meet path lengths outside the range for
+ *              which the plan's error bound was verified
+ *     errors   SKG_ERR_MESH with part and vertex if a vertex is not finite in its pose; SKG_ERR_DEVICE and
+ *              others. The job is released all the same, except with SKG_ERR_FORK */
+SKG_API skg_status skg_job_wait(skg_job **job);
+
+/** Makes one image of the scene as it stands: submits one frame and waits for it. */
+SKG_API skg_status skg_plan_image(skg_plan *plan, const skg_output *output);
+
+/** What skg_plan_lengths gives. */
+enum skg_lengths {
+    /** The length through the part itself, without what lies inside it (the paper's Eq. 9). */
+    SKG_LENGTHS_NET = 0,
+    /** The length between the surfaces of the part's mesh, whatever lies inside it. */
+    SKG_LENGTHS_SURFACE = 1
+};
+
+/** Starts frames of path lengths through one part (the L-buffer), in mm; otherwise as skg_plan_submit.
+ *
+ *     part   number in the scene
+ *     kind   enum skg_lengths */
+SKG_API skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                    const skg_frame *frames, const skg_output *output, skg_job **job);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

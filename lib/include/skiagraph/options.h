@@ -1,0 +1,207 @@
+/** @file
+ * What a plan is asked for: precision, quantity, source, detector, repair, tolerances. */
+#ifndef SKIAGRAPH_OPTIONS_H
+#define SKIAGRAPH_OPTIONS_H
+
+#include <skiagraph/beam.h>
+#include <skiagraph/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** How hits are added to pixels. Every strategy gives the same bits. */
+enum skg_strategy {
+    /** The plan chooses for the device and the scene. */
+    SKG_STRATEGY_AUTO = 0,
+    /** Each worker adds to a detector of its own. */
+    SKG_STRATEGY_COPIES = 1,
+    /** Triangles are sorted into tiles of the detector. */
+    SKG_STRATEGY_TILES = 2,
+    /** All workers add to one detector by atomic operations. */
+    SKG_STRATEGY_ATOMICS = 3
+};
+
+/** Limits of the interface. */
+enum skg_limit {
+    /** Most channels of an image. */
+    SKG_CHANNELS_MAX = 16
+};
+
+/** What happens at the bad pixels of a leaky mesh, where a ray does not leave the mesh as often as it enters
+ * it.
+ *
+ * A ray that enters through one hole and leaves through another is not bad by this count: NEIGHBOURS cannot
+ * detect it and leaves the part out there; EXACT can. */
+enum skg_repair {
+    /** The part is left out at its bad pixels. */
+    SKG_REPAIR_NONE = 0,
+    /** The part's path parameters are the mean over the pixel's neighbourhood, which grows until it contains
+     * valid pixels (Vidal and Villard 2016, section 3.2.7). Without any valid pixel the part is left out. */
+    SKG_REPAIR_NEIGHBOURS = 1,
+    /** The ray is traced again on the host, in double precision, through the mesh with every loop of open
+     * edges closed by a fan about the loop's mean; so is every ray that passes such a cap. Exact if the loops
+     * are plane: missing triangles, plane holes, cracks at T-junctions, single inverted triangles. Otherwise
+     * it is one of many possible surfaces. Submitting waits until the leaky parts are rastered. */
+    SKG_REPAIR_EXACT = 2
+};
+
+/** The detector's blur: what a point or a line becomes, sampled one pixel apart. Prepare with
+ * skg_detector_blur_init.
+ *
+ * Give two line spread functions, whose product is the point spread function, or the point spread function
+ * itself. Numbers of samples are odd, 1 to 4095; sample k of n is the share of a pixel's value that is found
+ * k - n/2 pixels further on. Samples are scaled to the sum 1. A pixel beyond the edge of the image has the
+ * value of the nearest edge pixel. */
+typedef struct {
+    /** Set by skg_detector_blur_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of samples along a row. */
+    int64_t columns;
+    /** Number of samples along a column. */
+    int64_t rows;
+    /** [columns] line spread function along a row */
+    const double *along_row;
+    /** [rows] line spread function along a column */
+    const double *along_column;
+    /** [rows][columns] point spread function; NULL: the two line spread functions */
+    const double *point;
+} skg_detector_blur;
+
+/** Prepares a blur of `size` bytes (export.h). */
+SKG_API void skg_detector_blur_init_sized(void *blur, int32_t size);
+
+/** Prepares a blur. */
+static inline void skg_detector_blur_init(skg_detector_blur *blur) {
+    skg_detector_blur_init_sized(blur, (int32_t)sizeof *blur);
+}
+
+/** Shapes of the focal spot. A flat one lies across the line from the source to the detector's centre, with
+ * its width along the projected column step. */
+enum skg_spot_shape {
+    /** A point. */
+    SKG_SPOT_POINT = 0,
+    /** extent[0] along the width */
+    SKG_SPOT_LINE = 1,
+    /** extent[0] x extent[1] */
+    SKG_SPOT_RECTANGLE = 2,
+    /** extent[0] x extent[1] x extent[2], the last along the line to the detector */
+    SKG_SPOT_CUBE = 3,
+    /** diameter extent[0] */
+    SKG_SPOT_DISC = 4,
+    /** a filled sphere of diameter extent[0] */
+    SKG_SPOT_SPHERE = 5,
+    /** full widths at half maximum extent[0] x extent[1], the effective sizes of IEC 60336 */
+    SKG_SPOT_GAUSSIAN = 6
+};
+
+/** The focal spot. Prepare with skg_spot_init: a point.
+ *
+ * Its samples have equal weights, so that the flat field depends neither on the shape nor on their number.
+ * They follow Sobol's sequence: more samples continue fewer. */
+typedef struct {
+    /** Set by skg_spot_init. */
+    int32_t size;
+    /** enum skg_spot_shape */
+    int32_t shape;
+    /** Full widths, mm. */
+    double extent[3];
+    /** Normal of a flat shape; all 0: the line to the detector's centre. */
+    double axis[3];
+    /** Number of samples, 1 to 65536. 0: adaptive sampling. The number is doubled while the plan is made, for
+     * the plan's view, until two doublings in a row change 99.9 % of the pixels by less than `tolerance`. */
+    int64_t samples;
+    /** n > 0: instead, the middles of n (line), n x n (rectangle) or n x n x n (cube) equal pieces, as in
+     * Vidal and Villard 2016. */
+    int64_t grid;
+    /** Of adaptive sampling, as a fraction of the flat field; 5e-3 by default. */
+    double tolerance;
+    /** Adaptive sampling stops at this number of samples; 1024 by default. */
+    int64_t samples_max;
+} skg_spot;
+
+/** Prepares a spot of `size` bytes (export.h). */
+SKG_API void skg_spot_init_sized(void *spot, int32_t size);
+
+/** Prepares a spot. */
+static inline void skg_spot_init(skg_spot *spot) {
+    skg_spot_init_sized(spot, (int32_t)sizeof *spot);
+}
+
+/** Options of a plan. Prepare with skg_plan_options_init: single precision, energy per pixel, every energy of
+ * the spectrum, point source, ideal detector, no noise. Arrays and structs that it points to are copied by
+ * skg_plan_create, handles are retained. */
+typedef struct {
+    /** Set by skg_plan_options_init. */
+    int32_t size;
+    /** enum skg_precision; SKG_PRECISION_HALF needs closed meshes */
+    int32_t precision;
+    /** enum skg_strategy */
+    int32_t strategy;
+    /** enum skg_quantity */
+    int32_t quantity;
+    /** Rows of a band, or side of a square tile, in pixels; 0: the plan chooses. */
+    int32_t tile;
+    /** 1 (default): find parts that overlap or leave their parent, and warn. 0: do not look. */
+    int32_t overlaps;
+    /** 1: time the stages of each job, which makes frames a little slower. */
+    int32_t profile;
+    /** 1: intensity falls with the cube of the distance from the source (inverse square and obliquity);
+     * photons per pixel are those at the pixel nearest to the foot of the perpendicular from the source. */
+    int32_t falloff;
+    /** Of the detector; NULL: ideal. */
+    skg_response *response;
+    /** Around the parts; NULL: vacuum. */
+    skg_material *world;
+    /** Photon-counting bands, 1 to SKG_CHANNELS_MAX, each a channel. 0: one channel of everything. */
+    int64_t bands;
+    /** The focal spot; NULL: a point. Without effect in a parallel beam. */
+    const skg_spot *spot;
+    /** n x n rays per pixel, at the middles of its n x n pieces; 1 (default) to 16. */
+    int32_t supersampling;
+    /** 1: quantum noise of the photons that each pixel detects; exact where they are few. */
+    int32_t noise;
+    /** [bands + 1] rising edges in keV: band c has the energies from edge c to below edge c + 1. */
+    const double *band_kev;
+    /** 0 (default): every energy of the spectrum, one plane per material. Above 0 to below 1: the error that
+     * fewer energies and planes may make. It is relative where more than 1e-6 of the flat field arrives, and
+     * in units of 1e-6 of the flat field where less does. It holds for the path lengths that the plan's views
+     * meet and for a quarter more, and with noise for the variance too. */
+    double tolerance;
+    /** NULL: none */
+    const skg_detector_blur *blur;
+    /** Swank factor of the scintillator, above 0 to 1: its pulse heights multiply the variance of the noise
+     * by 1 / swank. 1 (default): none. */
+    double swank;
+    /** Added to the seed of each frame. */
+    int64_t noise_seed;
+    /** Standard deviation of the electronic noise, keV per pixel; 0: none. */
+    double electronic_kev;
+    /** Values are rounded to whole multiples of this, keV per pixel; 0: not rounded. */
+    double quantum_step_kev;
+    /** enum skg_repair, for leaky meshes; SKG_REPAIR_NEIGHBOURS by default */
+    int32_t repair;
+    /** 1: a part counts only inside its parent. 0 (default): where it leaves its parent, the parent's
+     * attenuation is subtracted. */
+    int32_t clip;
+    /** Number of further views, 0 to 1024. */
+    int64_t view_count;
+    /** [view_count] a sample of the views that frames will have, so that the error bound of `tolerance` holds
+     * for them too. Without effect if tolerance is 0. */
+    const skg_view *views;
+} skg_plan_options;
+
+/** Prepares the options of a plan, of `size` bytes (export.h). */
+SKG_API void skg_plan_options_init_sized(void *options, int32_t size);
+
+/** Prepares the options of a plan. */
+static inline void skg_plan_options_init(skg_plan_options *options) {
+    skg_plan_options_init_sized(options, (int32_t)sizeof *options);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

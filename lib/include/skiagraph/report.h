@@ -1,0 +1,222 @@
+/** @file
+ * What a plan decided and why, and what its last job found. Texts are valid as long as the plan. */
+#ifndef SKIAGRAPH_REPORT_H
+#define SKIAGRAPH_REPORT_H
+
+#include <skiagraph/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A channel of a plan's images. The library fills it; prepare with skg_channel_init. */
+typedef struct {
+    /** Set by skg_channel_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Such as "energy", "photons from 20 to 40 keV". */
+    const char *name;
+    /** Such as "keV per pixel". */
+    const char *unit;
+    /** I0 in this unit: what the beam gives without parts and world, before it is weakened by falloff. 1 for
+     * transmission, 0 for attenuation. */
+    double flat_field;
+} skg_channel;
+
+/** Prepares a skg_channel of `size` bytes (export.h). */
+SKG_API void skg_channel_init_sized(void *channel, int32_t size);
+
+/** Prepares a skg_channel. */
+static inline void skg_channel_init(skg_channel *channel) {
+    skg_channel_init_sized(channel, (int32_t)sizeof *channel);
+}
+
+/** Number of channels of a plan's images. */
+SKG_API skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *count);
+
+/** Gets channel 0 <= index < count. */
+SKG_API skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel *channel);
+
+/** What was decided, and what the last frame and job found. The library fills it; prepare with
+ * skg_plan_report_init. */
+typedef struct {
+    /** Set by skg_plan_report_init. */
+    int32_t size;
+    /** enum skg_precision */
+    int32_t precision;
+    /** enum skg_strategy, as chosen */
+    int32_t strategy;
+    /** enum skg_quantity */
+    int32_t quantity;
+    /** Number of parts. */
+    int64_t parts;
+    /** Number of their triangles. */
+    int64_t triangles;
+    /** Number of the vertices of their meshes, each mesh counted once. */
+    int64_t vertices;
+    /** Number of leaky parts. Each has planes of its own. */
+    int64_t leaky_parts;
+    /** Number of planes of which exponents are made. */
+    int64_t planes;
+    /** Bits of an accumulator: 32 or 64. */
+    int64_t plane_bits;
+    /** Columns of a tile in pixels; all of them for SKG_STRATEGY_COPIES and SKG_STRATEGY_ATOMICS. */
+    int64_t tile_columns;
+    /** Rows of a tile in pixels; likewise. */
+    int64_t tile_rows;
+    /** Number of tiles. */
+    int64_t tiles;
+    /** Mean over the tiles of the last frame; 0 before the first. */
+    double triangles_per_tile;
+    /** Bytes that this plan has allocated on the device. */
+    int64_t device_bytes;
+    /** Rays per pixel: samples of the source times those of the pixel. */
+    int64_t samples;
+    /** What the last doubling of adaptive sampling changed, as a fraction of the flat field; 0: not known. */
+    double sample_error;
+    /** Pixels of the last frame at which the signed hits of a leaky mesh do not cancel. */
+    int64_t bad_pixels;
+    /** Pixels of the last frame with a negative exponent. */
+    int64_t negative_pixels;
+    /** Number of energies that are used. */
+    int64_t nodes;
+    /** Number of energies at which the spectrum has photons. */
+    int64_t bins;
+    /** Bound of the error that fewer nodes and planes make, in the sense of skg_plan_options.tolerance: twice
+     * the largest that was found; 0 if every bin is used. */
+    double bound;
+    /** Number of points, each a length of every material, at which the error was computed. */
+    int64_t verified;
+    /** Of the bad pixels, those that were repaired. At the others the part is left out. */
+    int64_t repaired_pixels;
+    /** Pixels of the last job whose lengths lie outside the range for which the bound was verified. */
+    int64_t outside_pixels;
+    /** Number of planes that hits are added to. It differs from `planes` where the planes are made
+     * afterwards, from one accumulator for all parts of the same material in the same material, because that
+     * needs fewer additions. */
+    int64_t accumulators;
+} skg_plan_report;
+
+/** Prepares a skg_plan_report of `size` bytes (export.h). */
+SKG_API void skg_plan_report_init_sized(void *report, int32_t size);
+
+/** Prepares a skg_plan_report. */
+static inline void skg_plan_report_init(skg_plan_report *report) {
+    skg_plan_report_init_sized(report, (int32_t)sizeof *report);
+}
+
+/** Gets the report of a plan. */
+SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report);
+
+/** Number of energies that a plan uses. */
+SKG_API skg_status skg_plan_node_count(const skg_plan *plan, int64_t *count);
+
+/** Gets node 0 <= index < count. Each result may be NULL.
+ *
+ *     energy_kev   keV
+ *     photons      photons per pixel of the flat field that this energy stands for; those of the spectrum if
+ *                  every bin is used; 0 if the detector records nothing at this energy
+ *     weights      [channels] its contribution to each channel: photons or keV per pixel, or a fraction of
+ *                  the flat field for transmission and attenuation
+ *
+ * With one channel and no noise, these energies and photons are a beam (skg_spectrum_create_bins) of which a
+ * plan with tolerance 0 makes the same image, but for the error of fewer planes. A program can so keep its
+ * nodes, whatever is planned later. */
+SKG_API skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
+                                     double *weights);
+
+/** An effect that a plan knows. The library fills it; prepare with skg_effect_init. */
+typedef struct {
+    /** Set by skg_effect_init. */
+    int32_t size;
+    /** 1: the scene calls for it; 0: absent, and it costs nothing. */
+    int32_t on;
+    /** What it is called. */
+    const char *name;
+    /** Why it is on or off. */
+    const char *reason;
+    /** Estimate of what it adds to a frame, in frames of the same scene without any effect; below 0: what it
+     * saves. From counts of operations, so rough. 0 also if its cost is not in the frame. */
+    double cost;
+} skg_effect;
+
+/** Prepares a skg_effect of `size` bytes (export.h). */
+SKG_API void skg_effect_init_sized(void *effect, int32_t size);
+
+/** Prepares a skg_effect. */
+static inline void skg_effect_init(skg_effect *effect) {
+    skg_effect_init_sized(effect, (int32_t)sizeof *effect);
+}
+
+/** Number of effects that a plan knows. */
+SKG_API skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count);
+
+/** Gets effect 0 <= index < count. */
+SKG_API skg_status skg_plan_effect_get(const skg_plan *plan, int64_t index, skg_effect *effect);
+
+/** Two parts that overlap, or a part that leaves its parent, as found when the plan was made. The library
+ * fills it; prepare with skg_overlap_init. Method: a grid of 256 x 256 columns along z over the scene, so
+ * volumes have its resolution. */
+typedef struct {
+    /** Set by skg_overlap_init. */
+    int32_t size;
+    /** 1: the part leaves its parent `other`; 0: they overlap. */
+    int32_t protrudes;
+    /** Number in the scene. */
+    int64_t part;
+    /** Number in the scene. */
+    int64_t other;
+    /** mm3 */
+    double volume;
+    /** Longest chord along z, mm. */
+    double longest;
+    /** Middle of that chord, mm. */
+    double place[3];
+} skg_overlap;
+
+/** Prepares a skg_overlap of `size` bytes (export.h). */
+SKG_API void skg_overlap_init_sized(void *overlap, int32_t size);
+
+/** Prepares a skg_overlap. */
+static inline void skg_overlap_init(skg_overlap *overlap) {
+    skg_overlap_init_sized(overlap, (int32_t)sizeof *overlap);
+}
+
+/** Number of overlaps that were found. */
+SKG_API skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count);
+
+/** Gets overlap 0 <= index < count, in order of falling volume. */
+SKG_API skg_status skg_plan_overlap_get(const skg_plan *plan, int64_t index, skg_overlap *overlap);
+
+/** The time of a stage in the last job that was waited for. The library fills it; prepare with
+ * skg_stage_init. */
+typedef struct {
+    /** Set by skg_stage_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Such as "raster". */
+    const char *name;
+    /** Time on the device in ns, over all frames of the job. */
+    double ns;
+} skg_stage;
+
+/** Prepares a skg_stage of `size` bytes (export.h). */
+SKG_API void skg_stage_init_sized(void *stage, int32_t size);
+
+/** Prepares a skg_stage. */
+static inline void skg_stage_init(skg_stage *stage) {
+    skg_stage_init_sized(stage, (int32_t)sizeof *stage);
+}
+
+/** Number of stages that were timed; 0 unless skg_plan_options.profile is 1. */
+SKG_API skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count);
+
+/** Gets stage 0 <= index < count. */
+SKG_API skg_status skg_plan_stage_get(const skg_plan *plan, int64_t index, skg_stage *stage);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

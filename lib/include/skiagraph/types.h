@@ -1,0 +1,101 @@
+/** @file
+ * Types that several headers use: what a pixel holds, how exactly it is computed, and from where it is
+ * seen. */
+#ifndef SKIAGRAPH_TYPES_H
+#define SKIAGRAPH_TYPES_H
+
+#include <skiagraph/error.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A plan: how images of one scene are computed (plan.h). */
+typedef struct skg_plan skg_plan;
+
+/** Work that was submitted and may not be finished (frame.h). */
+typedef struct skg_job skg_job;
+
+/** Element type of an image in memory. */
+enum skg_type {
+    /** float, 32 bits */
+    SKG_TYPE_FLOAT32 = 0,
+    /** double, 64 bits */
+    SKG_TYPE_FLOAT64 = 1
+};
+
+/** With which precision path lengths and images are computed. */
+enum skg_precision {
+    /** Terms in float, sums exact in integers. */
+    SKG_PRECISION_SINGLE = 0,
+    /** Terms in double, sums exact in 64-bit integers. Needs a device with fp64. */
+    SKG_PRECISION_DOUBLE = 1,
+    /** Distances and images in 16 bits as in Vidal and Villard 2016, for comparison. */
+    SKG_PRECISION_HALF = 2
+};
+
+/** What a pixel holds. I0 is the flat field: the same beam and detector without noise and without parts. */
+enum skg_quantity {
+    /** keV per pixel; the paper's "energy fluence" */
+    SKG_QUANTITY_ENERGY = 0,
+    /** energy fluence as ICRU 85 defines it, keV/mm2 */
+    SKG_QUANTITY_FLUENCE = 1,
+    /** photons per pixel */
+    SKG_QUANTITY_PHOTONS = 2,
+    /** I / I0 */
+    SKG_QUANTITY_TRANSMISSION = 3,
+    /** -ln(I / I0) */
+    SKG_QUANTITY_ATTENUATION = 4
+};
+
+/** Where rays start. */
+enum skg_projection {
+    /** At the point skg_view.source. */
+    SKG_PROJECTION_POINT = 0,
+    /** On the plane through skg_view.source that is perpendicular to the line from there to the detector's
+     * centre; rays are parallel to that line. */
+    SKG_PROJECTION_PARALLEL = 1,
+    /** Infinitely far away; rays are parallel to skg_view.source, which is a direction. */
+    SKG_PROJECTION_PARALLEL_FROM_INFINITY = 2
+};
+
+/** Source and detector. Prepare with skg_view_init: point source, everything else 0. A view that can be
+ * imaged passes skg_view_check.
+ *
+ * The centre of the pixel in row r and column c is
+ *
+ *     centre + (c - (columns - 1) / 2) column_step + (r - (rows - 1) / 2) row_step.
+ *
+ * Path lengths are measured from the source, or from its plane, to that point. A pixel behind the plane sees
+ * nothing. No entry may exceed 1e9 mm. */
+typedef struct {
+    /** Set by skg_view_init. */
+    int32_t size;
+    /** enum skg_projection */
+    int32_t projection;
+    /** Number of columns, 1 to 32768. */
+    int64_t columns;
+    /** Number of rows, 1 to 32768. */
+    int64_t rows;
+    /** Position in mm; with SKG_PROJECTION_PARALLEL_FROM_INFINITY a direction of any length. */
+    double source[3];
+    /** Centre of the detector, mm. */
+    double centre[3];
+    /** From one column to the next, mm. */
+    double column_step[3];
+    /** From one row to the next, mm. */
+    double row_step[3];
+} skg_view;
+
+/** Prepares a view of `size` bytes (export.h). */
+SKG_API void skg_view_init_sized(void *view, int32_t size);
+
+/** Prepares a view. */
+static inline void skg_view_init(skg_view *view) {
+    skg_view_init_sized(view, (int32_t)sizeof *view);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
