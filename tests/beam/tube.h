@@ -22,7 +22,9 @@ static inline skg_spectrum *tube(int32_t model, double kvp, double angle, const 
     int count = 0;
     for (; layers && layers[count].material; count++) {
         materials[count] = named(layers[count].material);
-        filters[count] = (skg_filter){materials[count], layers[count].mm};
+        skg_filter_init(&filters[count]);
+        filters[count].material = materials[count];
+        filters[count].thickness_mm = layers[count].mm;
     }
     skg_tube_init(&t);
     t.model = model;
