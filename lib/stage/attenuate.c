@@ -1,4 +1,5 @@
 #include "stage/attenuate.h"
+#include "core/maths.h"
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>
@@ -120,10 +121,6 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     return SKG_OK;
 }
 
-static size_t padded(int64_t items, int64_t group) {
-    return (size_t)((items + group - 1) / group * group);
-}
-
 /* Whether a kernel compiled for this key has an argument. */
 static int has_argument(const kernel_key *key, int argument) {
     switch (argument) {
@@ -236,8 +233,8 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     SKG_TRY(set_arguments(kernel, &key, arguments));
     const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision) * RUNS;
     const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
-    const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
-                              padded(raster->frame.rows, 16)};
+    const size_t global[2] = {(size_t)skg_round_up((raster->frame.columns + lanes - 1) / lanes, 8),
+                              (size_t)skg_round_up(raster->frame.rows, 16)};
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
 }
 
@@ -277,8 +274,8 @@ skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster 
     SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
     const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision);
     const size_t local[2] = {8, 16};
-    const size_t global[2] = {padded((raster->frame.columns + lanes - 1) / lanes, 8),
-                              padded(raster->frame.rows, 16)};
+    const size_t global[2] = {(size_t)skg_round_up((raster->frame.columns + lanes - 1) / lanes, 8),
+                              (size_t)skg_round_up(raster->frame.rows, 16)};
     status = skg_kernel_run(raster->context, kernel, "logarithm", 2, global, local, log);
 cleanup:
     clReleaseKernel(kernel);

@@ -1,4 +1,5 @@
 #include "stage/blur.h"
+#include "core/maths.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -166,10 +167,6 @@ static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
     return skg_kernel_create(program, "skg_blur_across", &type->across_kernel);
 }
 
-static int64_t rounded_up(int64_t count, int64_t unit) {
-    return (count + unit - 1) / unit * unit;
-}
-
 /* The arguments that say where an image is. */
 #define IMAGE_ARGUMENTS(kernel, place)                                                                       \
     SKG_ARGUMENT(kernel, image, (place)->memory), SKG_ARGUMENT(kernel, offset, (place)->offset),             \
@@ -180,7 +177,8 @@ static int64_t rounded_up(int64_t count, int64_t unit) {
 static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, int64_t down, int64_t channels,
                       skg_stage_log *log) {
     const size_t local[3] = {4, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
-    const size_t global[3] = {(size_t)rounded_up(across, 4), (size_t)rounded_up(down, 16), (size_t)channels};
+    const size_t global[3] = {(size_t)skg_round_up(across, 4), (size_t)skg_round_up(down, 16),
+                              (size_t)channels};
     return skg_kernel_run(blur->context, kernel, "blur", 3, global, local, log);
 }
 
@@ -198,7 +196,8 @@ static blur_layout lay_out(const skg_blur *blur, int is_double, int64_t columns,
         skg_kernel_lanes(blur->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
     const int64_t left = blur->columns / 2, above = blur->separable ? 0 : blur->rows / 2;
     /* Runs of the second pass may end past the image, and read as far to the right as any. */
-    const int64_t stride = rounded_up(rounded_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);
+    const int64_t stride =
+        skg_round_up(skg_round_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);
     return (blur_layout){.columns = (cl_int)columns,
                          .rows = (cl_int)rows,
                          .stride = (cl_int)stride,

@@ -87,7 +87,7 @@ static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, 
     return SKG_OK;
 }
 
-/* The fields that a part's place in the tables gives. */
+/* Sets what an entry of the part table says of the part's place in the other tables. */
 #define SKG_PLACE(entry, p)                                                                                  \
     do {                                                                                                     \
         (entry).mesh_vertex = (SKG_INT)geometry->mesh_vertex[mesh_of_part[p]];                               \

@@ -1,3 +1,4 @@
+#include "core/maths.h"
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>
@@ -10,10 +11,6 @@ enum {
     SQUARE = 32,            /* side of a tile on a GPU */
     QUEUE_ENTRIES = 1 << 20 /* strips of large triangles; more are drawn without the queue */
 };
-
-static int64_t round_up(int64_t value, int64_t to) {
-    return (value + to - 1) / to * to;
-}
 
 int64_t skg_raster_sum_bytes(const skg_raster *raster) {
     return raster->options.kernels.bits / 8;
@@ -55,7 +52,7 @@ static skg_status lay_out(skg_raster *raster) {
     raster->workers = raster->context->device->info.compute_units + 1;
     frame->columns = (SKG_INT)o->columns;
     frame->rows = (SKG_INT)o->rows;
-    frame->stride = (SKG_INT)round_up(o->columns + SKG_SPARE_COLUMNS, 16);
+    frame->stride = (SKG_INT)skg_round_up(o->columns + SKG_SPARE_COLUMNS, 16);
     const int64_t plane = frame->stride * (o->rows + SKG_SPARE_ROWS);
     if (plane * o->planes > INT32_MAX)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%d planes of this detector are more than 2^31 accumulators",

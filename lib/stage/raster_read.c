@@ -1,11 +1,8 @@
 /* What is read from a raster: pixels whose signed hits do not cancel, and how full the tiles are. */
+#include "core/maths.h"
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>
-
-static size_t padded(int64_t items, int64_t group) {
-    return (size_t)((items + group - 1) / group * group);
-}
 
 static skg_status get_bad_kernels(skg_raster *raster) {
     static const char *const files[] = {"counts.cl"};
@@ -42,7 +39,7 @@ skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem plane
     };
     SKG_TRY(SKG_SET_ARGUMENTS(raster->bad_rows, rows_arguments));
     SKG_TRY(SKG_SET_ARGUMENTS(raster->bad, arguments));
-    const size_t group[2] = {16, 1}, rows[2] = {padded(raster->frame.rows, 16), (size_t)count};
+    const size_t group[2] = {16, 1}, rows[2] = {(size_t)skg_round_up(raster->frame.rows, 16), (size_t)count};
     const size_t one = 1;
     SKG_TRY(skg_kernel_run(raster->context, raster->bad_rows, "bad pixels", 2, rows, group, log));
     return skg_kernel_run(raster->context, raster->bad, "bad pixels", 1, &rows[1], &one, log);

@@ -1,4 +1,5 @@
 #include "stage/repair.h"
+#include "core/maths.h"
 #include "geometry/recast.h"
 #include "stage/raster_private.h"
 
@@ -7,15 +8,12 @@
 #include <math.h>
 #include <string.h>
 
-static size_t padded(int64_t items, int64_t group) {
-    return (size_t)((items + group - 1) / group * group);
-}
-
 static skg_status find_gaps(const skg_leaky_batch *batch) {
     const skg_frame_args *frame = &batch->raster->frame;
     skg_buffer *gaps = &batch->memory->gaps;
     skg_context *context = batch->raster->context;
-    const size_t local[2] = {16, 1}, global[2] = {padded(frame->rows, 16), (size_t)batch->parts};
+    const size_t local[2] = {16, 1},
+                 global[2] = {(size_t)skg_round_up(frame->rows, 16), (size_t)batch->parts};
     cl_kernel kernel = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(skg_buffer_reserve(context, gaps,
@@ -38,7 +36,8 @@ static skg_status take_neighbours(const skg_leaky_batch *batch) {
     skg_context *context = batch->raster->context;
     const int on_gpu = context->device->info.is_gpu;
     const size_t local[2] = {on_gpu ? 16 : 1, 8};
-    const size_t global[2] = {on_gpu ? padded(frame->columns, 16) : 1, padded(frame->rows, 8)};
+    const size_t global[2] = {on_gpu ? (size_t)skg_round_up(frame->columns, 16) : 1,
+                              (size_t)skg_round_up(frame->rows, 8)};
     const skg_argument arguments[] = {
         SKG_ARGUMENT(LEAKY_REPAIR, rows_bad, batch->raster->rows_bad.memory),
         SKG_ARGUMENT(LEAKY_REPAIR, gaps, batch->memory->gaps.memory),
@@ -109,7 +108,7 @@ static skg_status put_sums(const tracing *t, int64_t part, int64_t count, int64_
     skg_context *context = t->batch->raster->context;
     skg_stage_log *log = &t->batch->staging->log;
     const cl_int number = (cl_int)part, pixel_count = (cl_int)count;
-    const size_t local = 64, global = padded(count, 64);
+    const size_t local = 64, global = (size_t)skg_round_up(count, 64);
     const int64_t bytes[2] = {count * (int64_t)sizeof *pixels,
                               count * contributions * (int64_t)sizeof *values};
     const void *const from[2] = {pixels, values};
