@@ -255,9 +255,11 @@ static void set_contribution(const skg_geometry *geometry, void *contributions, 
  * that of the bars in docs/numerics.md: a length is held to be well defined if such a shift changes it by less. */
 static const double STEEP_SHARE = 1e-6;
 
-static double steepest(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part) {
+static double steepest(const skg_geometry *geometry, const skg_camera *camera,
+                       const skg_geometry_part *part) {
     const double last_bit = is_double(geometry) ? DBL_EPSILON : (double)FLT_EPSILON;
-    const double z = camera->parallel ? part->depth : part->depth / part->reference; /* z = r / t, t about reference */
+    const double z =
+        camera->parallel ? part->depth : part->depth / part->reference; /* z = r / t, t about reference */
     return STEEP_SHARE * fabs(z) / last_bit;
 }
 
