@@ -233,6 +233,49 @@ START_TEST(warnings_are_printed_unless_quiet) {
 }
 END_TEST
 
+/* A flat mesh that faces the beam has no depth along it. It was once said to lie behind the source. */
+START_TEST(a_wall_that_faces_the_beam_lies_on_its_way) {
+    static const char wall[] = "--set 'Samples=[{\"Label\":\"wall\",\"Path\":\"wall.obj\",\"Unit\":\"mm\","
+                               "\"Material\":[\"mu\",0.5]}]'";
+    write_text("wall.obj", "v -5 0 -5\nv 5 0 -5\nv 5 0 5\nv -5 0 5\nf 1 2 3\nf 1 3 4\n");
+    ck_run(0, "image scene.json -o a.mha %s", wall);
+    ck_assert_msg(strstr(complained, "part wall is leaky"), "%s", complained);
+    ck_assert_msg(!strstr(complained, "nothing falls on the detector"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha %s --set 'Samples.0.Transform=[[\"Translation\",90,0,0,\"mm\"]]'",
+           wall);
+    ck_assert_msg(strstr(complained, "the shadow of wall, which comes nearest, lies"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha %s --set 'Samples.0.Transform=[[\"Translation\",0,200,0,\"mm\"]]'",
+           wall);
+    ck_assert_msg(strstr(complained, "all parts lie behind the source or behind the detector"), "%s",
+                  complained);
+}
+END_TEST
+
+/* An unfiltered beam of 119 energies behind lead: its softest photons are met at the edges only. */
+START_TEST(compression_that_does_not_pay_is_told) {
+    static const char lead[] =
+        "plan scene.json --set Samples.skin.Material=Water --set Samples.bone.Material=Pb "
+        "--set 'Source.Beam={\"kVp\": 120}'";
+    ck_run(0, "%s --tolerance 0.01", lead);
+    ck_assert_msg(strstr(complained,
+                         "compression does not pay: no fewer energies meet a tolerance of 0.01, so all 119"),
+                  "%s", complained);
+    ck_run(0, "%s --tolerance 0", lead);
+    ck_assert_msg(!strstr(complained, "compression"), "%s", complained);
+}
+END_TEST
+
+START_TEST(noise_is_said_to_be_missing_only_where_it_is) {
+    static const char plan[] =
+        "plan scene.json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
+        "\"Filter\": [[\"Al\", 3]], \"mAs\": 2}'";
+    ck_run(0, "%s", plan);
+    ck_assert_msg(strstr(complained, "there is no noise"), "%s", complained);
+    ck_run(0, "%s --set Noise=true", plan);
+    ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
+}
+END_TEST
+
 /* A compressed scene says nothing of its bound at the view that it was planned for, and reports what leaves it.
  */
 START_TEST(the_bound_holds_at_the_own_view) {
@@ -293,6 +336,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);
     tcase_add_test(tests, warnings_are_printed_unless_quiet);
+    tcase_add_test(tests, a_wall_that_faces_the_beam_lies_on_its_way);
+    tcase_add_test(tests, compression_that_does_not_pay_is_told);
+    tcase_add_test(tests, noise_is_said_to_be_missing_only_where_it_is);
     tcase_add_test(tests, the_bound_holds_at_the_own_view);
     tcase_add_test(tests, the_open_beam_is_reported);
     tcase_add_test(tests, times_are_printed);
