@@ -1,5 +1,7 @@
 #include "setup/json_file.h"
 
+#include "core/path_hint.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,7 +9,7 @@
 /* The whole file, with a 0 at its end. */
 static skg_status read_text(const char *path, char **text, size_t *length) {
     FILE *stream = fopen(path, "rb");
-    if (!stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    if (!stream) return skg_fail_unreadable(path, errno);
     skg_status status = SKG_OK;
     size_t capacity = 0, got = 0;
     *length = 0;

@@ -235,6 +235,24 @@ START_TEST(spectra_come_from_files) {
 }
 END_TEST
 
+START_TEST(filters_are_written_as_people_write_them) {
+    static const char *const words[] = {"Al:3mm", "Al:3 mm", "Al 3mm", "Al 3 mm", "Al:3000um", "Al 0.3 cm"};
+    json_t *plain = beam_of("--kvp 80 --filter Al:3");
+    for (int i = 0; i < 6; i++) {
+        char flags[64];
+        snprintf(flags, sizeof flags, "--kvp 80 --filter '%s'", words[i]);
+        json_t *object = beam_of(flags);
+        /* 3000 um are 3 mm but for rounding. */
+        ck_assert_double_eq_tol(number(object, "hvl1_mm_al") / number(plain, "hvl1_mm_al"), 1, 1e-12);
+        json_decref(object);
+    }
+    json_decref(plain);
+    ck_run(0, "beam --kvp 120 --filter 'Stainless steel 316 2 mm'"); /* a name with blanks and a number */
+    ck_assert_ptr_nonnull(strstr(said, "; 2 mm Stainless steel 316"));
+    ck_run_fails(2, "--filter Al 2 furlong is not MATERIAL:MM", "beam --kvp 60 --filter 'Al 2 furlong'");
+}
+END_TEST
+
 START_TEST(soft_beams_are_warned_of) {
     ck_run(0, "beam --kvp 90 --filter Al:1");
     ck_assert_ptr_nonnull(strstr(complained, "skiagraph: warning: the beam's half-value layer is"));
@@ -280,6 +298,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, beams_are_those_measured);
     tcase_add_test(tests, bins_are_of_load_and_distance);
     tcase_add_test(tests, spectra_come_from_files);
+    tcase_add_test(tests, filters_are_written_as_people_write_them);
     tcase_add_test(tests, soft_beams_are_warned_of);
     tcase_add_test(tests, bad_words_are_named);
 }

@@ -41,7 +41,7 @@ const cli_flag cli_flag_strategy = {
 const cli_flag cli_flag_set = {
     "--set", "KEY=VALUE",
     "Changes a key of the scene file before it is read: Detector.NumberOfPixels=[64,64], "
-    "Samples.liver.Type=inner. May be repeated.",
+    "Samples.liver.Type=inner. KEY=null deletes the key. May be repeated.",
     NULL, CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
