@@ -272,9 +272,9 @@ START_TEST(bad_words_are_named) {
     ck_run_fails(2, "--energy x", "material Fe --energy x");
     ck_run_fails(2, "more than 100000 energies", "material Fe --energy 1:20000:0.001");
     ck_run_fails(2, "--density 0 is not a number", "material Fe --density 0");
-    ck_run_fails(2, "no material is named", "material --json");
+    ck_run_fails(2, "no material is named", "material");
     ck_run_fails(2, "one word too many", "material Fe Cu");
-    ck_run_fails(2, "no beam is named; add --kvp KV or --file FILE", "beam --json");
+    ck_run_fails(2, "no beam is named; add --kvp KV or --file FILE", "beam");
     ck_run_fails(2, "--kvp 5 is not a number from 10 to 450", "beam --kvp 5");
     ck_run_fails(2, "--filter Cu is not MATERIAL:MM", "beam --kvp 60 --filter Cu");
     ck_run_fails(2, "--filter Cu:-1", "beam --kvp 60 --filter Cu:-1");

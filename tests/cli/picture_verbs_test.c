@@ -182,9 +182,16 @@ START_TEST(json_has_its_shape) {
     ck_run(0, "lbuffer scene.json --part bone --repeat 1 --json");
     object = said_json();
     check_summary(member(object, "frame_ms"));
+    ck_assert_uint_eq(json_array_size(member(object, "files")), 0);
     json_decref(object);
-    ck_run(0, "image scene.json -o a.mha --json");
+    ck_run(0, "image scene.json -o a.mha -o a.png --quantity transmission --json");
     object = said_json();
+    ck_assert_str_eq(json_string_value(json_array_get(member(object, "files"), 1)), "a.png");
+    json_t *range = json_array_get(member(object, "range"), 0);
+    ck_assert_uint_eq(json_array_size(member(object, "range")), 1);
+    /* Open pixels, and those behind skin and bone; the margin is that of single precision. */
+    ck_assert_double_eq_tol(json_number_value(json_array_get(range, 1)), 1, 1e-6);
+    ck_assert_double_eq_tol(json_number_value(json_array_get(range, 0)), exp(-0.2 * 2.05 - 0.5 * 2), 1e-5);
     ck_assert(json_is_null(member(object, "frame_ms")) && json_is_null(member(object, "stages")));
     json_decref(object);
     ck_run(0, "plan scene.json --json --strategy tiles --precision double");

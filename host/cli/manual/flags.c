@@ -46,8 +46,10 @@ const cli_flag cli_flag_set = {
 
 const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_json = {"--json", NULL, "Prints one JSON object on standard output.", NULL,
-                                CLI_NAMES_NOTHING};
+const cli_flag cli_flag_json = {
+    "--json", NULL,
+    "Prints one JSON object on standard output; after a failure {error: {status, message, where}}.", NULL,
+    CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_output = {
     "-o", "FILE", "The file to write; its extension, .png, .tif or .mha, is its format. May be repeated.",

@@ -21,8 +21,9 @@ const char *const cli_text[] = {
     "Skiagraph's own, such as Parent, Precision, Tolerance, Breathing and Noise.",
     NULL};
 
-const cli_item cli_other_verbs[] = {
-    {"help", "this text, or that of a VERB"}, {"version", "the version (also --version)"}, {NULL, NULL}};
+const cli_item cli_other_verbs[] = {{"help", "this text, or that of a VERB"},
+                                    {"version", "the version (also --version; with --json as JSON)"},
+                                    {NULL, NULL}};
 
 const cli_item cli_exit_statuses[] = {
     {"0", "The work is done."},

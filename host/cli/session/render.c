@@ -72,11 +72,26 @@ static void print_values(const skg_picture *picture) {
     putchar('\n');
 }
 
+static void add_outputs(const cli_rendering *rendering, json_t *object) {
+    json_t *ranges = json_array(), *files = json_array();
+    const char *path;
+    for (int64_t c = 0; c < rendering->picture.channels; c++) {
+        double ends[2];
+        find_range(&rendering->picture, c, &ends[0], &ends[1]);
+        json_array_append_new(ranges, cli_json_numbers(ends, 2));
+    }
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
+        json_array_append_new(files, cli_json_text(path));
+    json_object_set_new(object, "range", ranges);
+    json_object_set_new(object, "files", files);
+}
+
 static int print_rendering(const cli_rendering *rendering, const skg_plan *plan, const cli_times *times) {
     const char *path;
     if (cli_given(rendering->arguments, &cli_flag_json)) {
         json_t *object = json_object();
         cli_times_json(times, object);
+        add_outputs(rendering, object);
         json_object_set_new(object, "plan", cli_explain_json(plan, &rendering->session));
         return cli_json_print(object);
     }
