@@ -333,6 +333,24 @@ START_TEST(times_are_printed) {
 }
 END_TEST
 
+/* The same bytes as through files, and nothing else on standard output. */
+START_TEST(dashes_are_standard_input_and_output) {
+    char line[1024];
+    snprintf(
+        line, sizeof line,
+        "cd %s && %s image - -o - <scene.json >b.mha 2>.complained && %s image scene.json -o a.mha --quiet && "
+        "cmp a.mha b.mha",
+        folder, SKG_COMMAND, SKG_COMMAND);
+    int status = system(line);
+    read_back(".complained", complained, sizeof complained);
+    ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "%s", complained);
+    ck_run_fails(3, "standard input: line 1, column 0", "plan -"); /* which is empty here */
+    ck_run(2, "image scene.json -o - --json");
+    ck_assert_msg(strstr(complained, "standard output takes one thing"), "%s", complained);
+    ck_run_fails(2, "cost reads its scene several times", "cost - --quick");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, quantities_have_their_values);
@@ -349,6 +367,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_bound_holds_at_the_own_view);
     tcase_add_test(tests, the_open_beam_is_reported);
     tcase_add_test(tests, times_are_printed);
+    tcase_add_test(tests, dashes_are_standard_input_and_output);
 }
 
 SKG_SUITE_MAIN("picture_verbs", add_tests)

@@ -52,7 +52,8 @@ const cli_flag cli_flag_json = {
     CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_output = {
-    "-o", "FILE", "The file to write; its extension, .png, .tif or .mha, is its format. May be repeated.",
+    "-o", "FILE",
+    "The file to write; its extension, .png, .tif or .mha, is its format; - writes a .mha to standard output. May be repeated.",
     NULL, CLI_NAMES_FILE};
 
 const cli_flag cli_flag_plot = {
