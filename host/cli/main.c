@@ -1,6 +1,7 @@
 /* The command skiagraph: finds the verb, parses what follows it, runs it. */
 #include "common/args.h"
 #include "common/interrupt.h"
+#include "common/json.h"
 #include "common/say.h"
 #include "manual/help.h"
 #include "manual/list.h"
@@ -55,12 +56,20 @@ static int is_one_of(const char *word, const char *a, const char *b, const char 
     return strcmp(word, a) == 0 || strcmp(word, b) == 0 || (c && strcmp(word, c) == 0);
 }
 
+static int wants_json(int count, char **words) {
+    for (int w = 1; w < count && strcmp(words[w], "--") != 0; w++)
+        if (strcmp(words[w], cli_flag_json.name) == 0) return 1;
+    return 0;
+}
+
 static int run(int count, char **words) {
     const cli_verb *verb = NULL;
     if (count < 2) {
         cli_help_overview(stderr);
         return CLI_USAGE;
     }
+    if (is_one_of(words[1], "version", "--version", NULL) && count > 2 && wants_json(count, words))
+        return cli_json_print(json_pack("{s:s}", "version", skg_version()));
     if (is_one_of(words[1], "version", "--version", NULL)) {
         printf("skiagraph %s\n", skg_version());
         return CLI_DONE;
@@ -79,6 +88,8 @@ static int run(int count, char **words) {
 
 int main(int count, char **words) {
     int exit_status = run(count, words);
+    if (exit_status != CLI_DONE && wants_json(count, words))
+        cli_json_print_failure(count > 2 && words[2][0] != '-' ? words[2] : NULL);
     errno = 0;
     if ((fflush(stdout) != 0 || ferror(stdout)) && exit_status <= CLI_CHECK_FAILED)
         exit_status = cli_error(CLI_OUTPUT, "standard output: cannot be written%s%s", errno ? ": " : "",

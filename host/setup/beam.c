@@ -274,8 +274,5 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
     SKG_TRY(skg_spectrum_create_scaled(setup->spectrum, area * pow(1000 / distance, 2), &placed));
     skg_spectrum_release(&setup->spectrum);
     setup->spectrum = placed;
-    skg_log(
-        reader->context, SKG_LOG_NOTE,
-        "mAs is given, so photons are counted absolutely. Noise is simulated only where the key Noise is given.");
     return SKG_OK;
 }

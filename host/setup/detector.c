@@ -62,8 +62,17 @@ static skg_status read_axes(const skg_json_object *detector, const skg_view *vie
     else
         skg_add_scaled(view->source, -1, view->centre, towards_source);
     skg_cross(up, towards_source, right);
+    const double distance = skg_length(towards_source);
+    if (!(distance > 0 &&
+          distance < HUGE_VAL)) { /* the source is wrong; skg_view_check says how, for any right */
+        const int has_x = fabs(up[2]) > fabs(up[0]);
+        const double other[3] = {has_x, 0, !has_x};
+        skg_cross(up, other, right);
+        skg_scale_vector(1 / skg_length(right), right, right);
+        return SKG_OK;
+    }
     double length = skg_length(right);
-    if (!(length > 1e-9 * skg_length(towards_source))) /* sine of the angle between both; rounding is 1e-16 */
+    if (!(length > 1e-9 * distance)) /* sine of the angle between both; rounding is 1e-16 */
         return skg_json_fail(&node, SKG_ERR_SCENE,
                              "points along the beam, so it does not define where right is; give RightVector");
     skg_scale_vector(1 / length, right, right);

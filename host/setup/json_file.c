@@ -1,13 +1,15 @@
 #include "setup/json_file.h"
 
+#include "core/path_hint.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The whole file, with a 0 at its end. */
-static skg_status read_text(const char *path, char **text, size_t *length) {
-    FILE *stream = fopen(path, "rb");
-    if (!stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+/* The whole file, with a 0 at its end. stream: standard input, or NULL for the file of this path. */
+static skg_status read_text(FILE *stream, const char *path, char **text, size_t *length) {
+    if (!stream) stream = fopen(path, "rb");
+    if (!stream) return skg_fail_unreadable(path, errno);
     skg_status status = SKG_OK;
     size_t capacity = 0, got = 0;
     *length = 0;
@@ -24,14 +26,16 @@ static skg_status read_text(const char *path, char **text, size_t *length) {
     else
         (*text)[*length] = '\0';
 cleanup:
-    fclose(stream);
+    if (stream != stdin) fclose(stream);
     return status;
 }
 
 skg_status skg_json_open(const char *path, skg_json_file *file) {
+    const int is_input = strcmp(path, "-") == 0;
+    if (is_input) path = "standard input";
     *file = (skg_json_file){.path = path};
     size_t length = 0;
-    SKG_TRY(read_text(path, &file->text, &length));
+    SKG_TRY(read_text(is_input ? stdin : NULL, path, &file->text, &length));
     /* Some editors write a byte order mark, which JSON does not allow. */
     if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
     json_error_t error;

@@ -46,13 +46,23 @@ static skg_status no_element(const char *setting, json_t *array, const char *ste
                     setting, step, (int64_t)json_array_size(array) - 1);
 }
 
-/* Puts a value at the end of a path, and makes objects that are missing on the way. path is overwritten. */
+static skg_status drop(const char *setting, json_t *object, const char *key) {
+    return json_object_del(object, key) == 0
+               ? SKG_OK
+               : skg_fail(SKG_ERR_ARGUMENT, "--set %s: there is no key \"%s\" to delete", setting, key);
+}
+
+/* Puts a value at the end of a path, and makes objects that are missing on the way; null deletes a key. path is
+ * overwritten. */
 static skg_status put(const char *setting, json_t *at, char *path, json_t *value) {
     for (;;) {
         size_t length = strcspn(path, ".");
         if (json_is_array(at)) {
             int64_t index = find_element(at, path, &length);
             if (index < 0) return no_element(setting, at, path);
+            if (!path[length] && json_is_null(value)) /* the lines of later elements are found by number */
+                return skg_fail(SKG_ERR_ARGUMENT, "--set %s: null deletes keys, not elements of an array",
+                                setting);
             if (!path[length])
                 return json_array_set(at, (size_t)index, value) == 0
                            ? SKG_OK
@@ -63,6 +73,7 @@ static skg_status put(const char *setting, json_t *at, char *path, json_t *value
             path[length] = '\0';
             if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "--set %s: a key is empty", setting);
             const char *key = find_key(at, path);
+            if (json_is_null(value) && (last || !json_object_get(at, key))) return drop(setting, at, key);
             if (last || !json_object_get(at, key))
                 if (json_object_set_new(at, key, last ? json_incref(value) : json_object()) != 0)
                     return skg_fail(SKG_ERR_MEMORY, "--set %s: no memory, or the key is not UTF-8", setting);

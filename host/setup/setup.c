@@ -1,4 +1,5 @@
 /* A set-up as a handle, and the keys at the top of its file. */
+#include "core/context.h"
 #include "core/names.h"
 #include "setup/json_set.h"
 #include "setup/sections.h"
@@ -103,6 +104,11 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_world(reader, &top));
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
+    if (reader->setup->absolute && !noise.value)
+        skg_log(
+            reader->context, SKG_LOG_NOTE,
+            "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
+            "given");
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
     SKG_TRY(skg_setup_read_samples(reader, &samples));

@@ -22,7 +22,7 @@ static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, s
     SKG_TRY(skg_samples_adapt(plan->recipe, machine, outcome, &adapted));
     skg_recipe_release(&plan->recipe);
     plan->recipe = adapted;
-    return skg_effects_find(plan->recipe, machine->blur, outcome);
+    return skg_effects_find(plan->recipe, plan->context, machine->blur, outcome);
 }
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,

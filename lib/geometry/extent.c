@@ -64,6 +64,7 @@ void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const doubl
     /* The part of the mesh before the start of the rays or behind the detector adds nothing. */
     part->low_depth = lesser(greater(low, lesser(first, 1)), 1);
     part->high_depth = lesser(greater(high, part->low_depth), 1);
+    extent->on_way = high > fmin(first, 1) && low < 1;
     extent->on_detector = part->high_column >= -0.5 && part->high_row >= -0.5 &&
                           part->low_column <= (double)camera->columns - 0.5 &&
                           part->low_row <= (double)camera->rows - 0.5 && part->high_depth > part->low_depth;

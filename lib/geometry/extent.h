@@ -10,6 +10,7 @@
 typedef struct {
     skg_scale_part scale; /* the caller fills its weight */
     int32_t near_source; /* 1: it may reach the plane of the source, or the plane where parallel rays start */
+    int32_t on_way;      /* 1: some of it, or a flat part, lies between the start and the end of the rays */
     int32_t on_detector; /* 1: its rectangle meets the detector, between the start and the end of the rays */
 } skg_extent;
 

@@ -3,6 +3,7 @@
 
 #include "core/names.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
 #include <math.h>
@@ -71,8 +72,13 @@ static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
     return check_range(picture);
 }
 
+static int is_standard_output(const char *path) {
+    return strcmp(path, "-") == 0;
+}
+
 static skg_status find_format(const char *path, const format **found) {
     if (!path || !*path) return skg_fail(SKG_ERR_ARGUMENT, "picture: no path to write to");
+    if (is_standard_output(path)) path = ".mha";
     const char *name = strrchr(path, '/');
     const char *dot = strrchr(name ? name : path, '.');
     for (size_t i = 0; dot && i < sizeof formats / sizeof *formats; i++)
@@ -88,6 +94,7 @@ skg_status skg_picture_path_check(const char *path) {
     const format *writer = NULL;
     skg_output_file file;
     SKG_TRY(find_format(path, &writer));
+    if (is_standard_output(path)) return SKG_OK;
     SKG_TRY(skg_output_open(path, &file));
     skg_output_discard(&file);
     return SKG_OK;
@@ -104,6 +111,16 @@ static skg_status write_plainly(const format *writer, const skg_picture *picture
     return status;
 }
 
+static skg_status write_to_standard_output(const format *writer, const skg_picture *picture) {
+    skg_output_file file = {.stream = stdout};
+    SKG_TRY(skg_copy_text("standard output", &file.path));
+    skg_status status = write_plainly(writer, picture, &file);
+    skg_free(&file.path);
+    if (status == SKG_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        status = skg_output_fail("standard output", errno, "not everything was taken");
+    return status;
+}
+
 skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
     skg_picture picture;
     const format *writer = NULL;
@@ -111,6 +128,7 @@ skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
     SKG_TRY(prepare(theirs, &picture));
     SKG_TRY(find_format(path, &writer));
     if (writer->check) SKG_TRY(writer->check(&picture, path));
+    if (is_standard_output(path)) return write_to_standard_output(writer, &picture);
     SKG_TRY(skg_output_open(path, &file));
     skg_status status = write_plainly(writer, &picture, &file);
     if (status == SKG_OK) return skg_output_commit(&file);

@@ -4,6 +4,7 @@
  * memory when it refuses one. */
 #include "core/context.h"
 #include "core/names.h"
+#include "core/path_hint.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
 
@@ -21,7 +22,7 @@
 static skg_status open_file(const char *path, FILE **stream, int64_t *size) {
     struct stat about;
     *stream = fopen(path, "rb");
-    if (!*stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    if (!*stream) return skg_fail_unreadable(path, errno);
     skg_status status = SKG_OK;
     if (fstat(fileno(*stream), &about) != 0)
         status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));

@@ -11,9 +11,13 @@
 /* What effects are found from, and where they go. */
 typedef struct {
     const skg_recipe *recipe;
+    const skg_context *context;
     const skg_blur *blur; /* NULL: none */
     skg_outcome *outcome;
 } finding;
+
+/* From this many energies on it is worth a warning that all are used: most beams need 8 to 24. */
+enum { MANY_ENERGIES = 25 };
 
 static void set(const finding *f, int effect, int on, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
@@ -156,6 +160,12 @@ static void find_compression(const finding *f) {
         set(f, effect, 0, "no fewer energies meet a tolerance of %g: every one is used", options->tolerance);
     else
         set(f, effect, 0, "tolerance 0: every energy is used");
+    if (model->verified == 0 && options->tolerance > 0 && options->precision != SKG_PRECISION_HALF &&
+        model->materials > 0 && model->bins >= MANY_ENERGIES)
+        skg_log(f->context, SKG_LOG_WARNING,
+                "compression does not pay: no fewer energies meet a tolerance of %g, so all %" PRId32
+                " are used; filter the beam as its tube does, or allow a larger tolerance",
+                options->tolerance, model->bins);
 }
 
 static void find_energies(const finding *f) {
@@ -209,8 +219,9 @@ static void find_overlaps(const finding *f) {
                        "pairs of parts overlap or leave their parent"));
 }
 
-skg_status skg_effects_find(const skg_recipe *recipe, const skg_blur *blur, skg_outcome *outcome) {
-    const finding f = {recipe, blur, outcome};
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_blur *blur,
+                            skg_outcome *outcome) {
+    const finding f = {recipe, context, blur, outcome};
     find_energies(&f);
     find_samples(&f);
     find_beam(&f);

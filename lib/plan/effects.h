@@ -6,6 +6,7 @@
 #include "stage/blur.h"
 
 /* Fills the effects of an outcome whose overlaps and samples are known. blur: NULL for none. */
-skg_status skg_effects_find(const skg_recipe *recipe, const skg_blur *blur, skg_outcome *outcome);
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_blur *blur,
+                            skg_outcome *outcome);
 
 #endif

@@ -22,9 +22,10 @@ void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const s
     for (int64_t p = 0; p < scene->count; p++) {
         if (extents[p].on_detector) return;
         const skg_scale_part *at = &extents[p].scale;
-        if (!(at->high_depth > at->low_depth)) continue; /* behind the source or the detector */
+        if (!extents[p].on_way) continue; /* behind the source or the detector */
         const double i = miss(at->low_column, at->high_column, camera->columns);
         const double j = miss(at->low_row, at->high_row, camera->rows);
+        if (i == 0 && j == 0) return; /* a flat part that faces the beam: it has no depth, but it is met */
         if (hypot(i, j) < nearest) nearest = hypot(i, j), across = i, down = j, part = p;
     }
     outcome->warned_unseen = 1;

@@ -95,6 +95,12 @@ START_TEST(scene_files) {
     write_text("scene.json", scene);
     ck_setting_fails(3, "did you mean NumberOfPixels", "Detector.NumberOfPixel=[3,3]");
     ck_setting_fails(3, "Noise: ", "Noise=3");
+    ck_setting_fails(3, "Spacing", "Detector.Spacing=null"); /* null deletes the key, and it is missed */
+    ck_setting_fails(2, "there is no key \"Spacig\" to delete", "Detector.Spacig=null");
+    ck_setting_fails(2, "there is no key \"Noise\" to delete", "Noise.Swank=null");
+    ck_setting_fails(2, "null deletes keys, not elements", "Samples.bone=null");
+    ck_run_fails(3, "did you mean ./scene.json?", "plan ./Scene.JSON");
+    ck_run_fails(3, "did you mean ./scene.json?", "plan '.\\scene.json'");
     ck_setting_fails(3, "Tolerance", "Tolerance=2");
 }
 END_TEST

@@ -32,6 +32,49 @@ START_TEST(help_is_everywhere) {
     }
     ck_run(0, "--version");
     ck_assert_int_eq(strncmp(said, "skiagraph ", 10), 0);
+    char version[64] = "";
+    ck_assert_int_eq(sscanf(said, "skiagraph %63s", version), 1);
+    ck_run(0, "--version --json");
+    json_t *object = said_json();
+    ck_assert_str_eq(json_string_value(member(object, "version")), version);
+    json_decref(object);
+}
+END_TEST
+
+static void check_failure(const char *status, const char *message, const char *where) {
+    json_t *object = said_json(), *error = member(object, "error");
+    ck_assert_str_eq(json_string_value(member(error, "status")), status);
+    ck_assert_str_eq(json_string_value(member(error, "message")), message);
+    if (where)
+        ck_assert_str_eq(json_string_value(member(error, "where")), where);
+    else
+        ck_assert(json_is_null(member(error, "where")));
+    json_decref(object);
+}
+
+/* The sentence of standard error, for programs. */
+START_TEST(failures_are_json_too) {
+    ck_run(2, "mesh --json");
+    check_failure("SKG_ERR_ARGUMENT", "mesh: FILE... is missing; see `skiagraph help mesh`", "mesh");
+    ck_assert_str_eq(complained, "skiagraph: mesh: FILE... is missing; see `skiagraph help mesh`\n");
+    ck_run(3, "plan --json 'no such.json'");
+    check_failure("SKG_ERR_FILE", "no such.json: cannot be read: No such file or directory", NULL);
+    ck_run(3, "plan 'no such.json' --json");
+    check_failure("SKG_ERR_FILE", "no such.json: cannot be read: No such file or directory", "no such.json");
+    write_text("a.json", "{\n\"Source\": {},\n\"Detector\": {},\n\"Samples\": []}");
+    ck_run(3, "plan a.json --json");
+    json_t *object = said_json();
+    ck_assert_str_eq(json_string_value(member(member(object, "error"), "where")), "a.json: line 2: Source");
+    json_decref(object);
+    ck_run(3, "material Unobtainium --json");
+    object = said_json();
+    ck_assert_str_eq(json_string_value(member(member(object, "error"), "status")), "SKG_ERR_MATERIAL");
+    json_decref(object);
+    write_text("a.obj", tetrahedron);
+    ck_run(3, "mesh none.obj a.obj --json"); /* one object: what could be read */
+    object = said_json();
+    ck_assert_uint_eq(json_array_size(member(object, "files")), 1);
+    json_decref(object);
 }
 END_TEST
 
@@ -45,7 +88,7 @@ START_TEST(slips_of_the_finger_are_named) {
     ck_run_fails(2, "--json takes no value", "devices --json=3");
     ck_run_fails(2, "--device needs a value: --device NAME", "devices --device");
     ck_run_fails(2, "\"extra\" is one word too many", "devices extra");
-    ck_run_fails(2, "mesh: FILE... is missing", "mesh --json");
+    ck_run_fails(2, "mesh: FILE... is missing", "mesh");
     ck_run_fails(2, "--unit inch is not known; known: um, mm, cm, dm, m", "mesh a.obj --unit inch");
 }
 END_TEST
@@ -207,6 +250,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, help_is_everywhere);
+    tcase_add_test(tests, failures_are_json_too);
     tcase_add_test(tests, slips_of_the_finger_are_named);
     tcase_add_test(tests, devices_are_listed_and_chosen);
     tcase_add_test(tests, no_device_is_status_4);

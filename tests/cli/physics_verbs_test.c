@@ -235,6 +235,24 @@ START_TEST(spectra_come_from_files) {
 }
 END_TEST
 
+START_TEST(filters_are_written_as_people_write_them) {
+    static const char *const words[] = {"Al:3mm", "Al:3 mm", "Al 3mm", "Al 3 mm", "Al:3000um", "Al 0.3 cm"};
+    json_t *plain = beam_of("--kvp 80 --filter Al:3");
+    for (int i = 0; i < 6; i++) {
+        char flags[64];
+        snprintf(flags, sizeof flags, "--kvp 80 --filter '%s'", words[i]);
+        json_t *object = beam_of(flags);
+        /* 3000 um are 3 mm but for rounding. */
+        ck_assert_double_eq_tol(number(object, "hvl1_mm_al") / number(plain, "hvl1_mm_al"), 1, 1e-12);
+        json_decref(object);
+    }
+    json_decref(plain);
+    ck_run(0, "beam --kvp 120 --filter 'Stainless steel 316 2 mm'"); /* a name with blanks and a number */
+    ck_assert_ptr_nonnull(strstr(said, "; 2 mm Stainless steel 316"));
+    ck_run_fails(2, "--filter Al 2 furlong is not MATERIAL:MM", "beam --kvp 60 --filter 'Al 2 furlong'");
+}
+END_TEST
+
 START_TEST(soft_beams_are_warned_of) {
     ck_run(0, "beam --kvp 90 --filter Al:1");
     ck_assert_ptr_nonnull(strstr(complained, "skiagraph: warning: the beam's half-value layer is"));
@@ -254,9 +272,9 @@ START_TEST(bad_words_are_named) {
     ck_run_fails(2, "--energy x", "material Fe --energy x");
     ck_run_fails(2, "more than 100000 energies", "material Fe --energy 1:20000:0.001");
     ck_run_fails(2, "--density 0 is not a number", "material Fe --density 0");
-    ck_run_fails(2, "no material is named", "material --json");
+    ck_run_fails(2, "no material is named", "material");
     ck_run_fails(2, "one word too many", "material Fe Cu");
-    ck_run_fails(2, "no beam is named; add --kvp KV or --file FILE", "beam --json");
+    ck_run_fails(2, "no beam is named; add --kvp KV or --file FILE", "beam");
     ck_run_fails(2, "--kvp 5 is not a number from 10 to 450", "beam --kvp 5");
     ck_run_fails(2, "--filter Cu is not MATERIAL:MM", "beam --kvp 60 --filter Cu");
     ck_run_fails(2, "--filter Cu:-1", "beam --kvp 60 --filter Cu:-1");
@@ -280,6 +298,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, beams_are_those_measured);
     tcase_add_test(tests, bins_are_of_load_and_distance);
     tcase_add_test(tests, spectra_come_from_files);
+    tcase_add_test(tests, filters_are_written_as_people_write_them);
     tcase_add_test(tests, soft_beams_are_warned_of);
     tcase_add_test(tests, bad_words_are_named);
 }

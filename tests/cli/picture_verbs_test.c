@@ -182,9 +182,16 @@ START_TEST(json_has_its_shape) {
     ck_run(0, "lbuffer scene.json --part bone --repeat 1 --json");
     object = said_json();
     check_summary(member(object, "frame_ms"));
+    ck_assert_uint_eq(json_array_size(member(object, "files")), 0);
     json_decref(object);
-    ck_run(0, "image scene.json -o a.mha --json");
+    ck_run(0, "image scene.json -o a.mha -o a.png --quantity transmission --json");
     object = said_json();
+    ck_assert_str_eq(json_string_value(json_array_get(member(object, "files"), 1)), "a.png");
+    json_t *range = json_array_get(member(object, "range"), 0);
+    ck_assert_uint_eq(json_array_size(member(object, "range")), 1);
+    /* Open pixels, and those behind skin and bone; the margin is that of single precision. */
+    ck_assert_double_eq_tol(json_number_value(json_array_get(range, 1)), 1, 1e-6);
+    ck_assert_double_eq_tol(json_number_value(json_array_get(range, 0)), exp(-0.2 * 2.05 - 0.5 * 2), 1e-5);
     ck_assert(json_is_null(member(object, "frame_ms")) && json_is_null(member(object, "stages")));
     json_decref(object);
     ck_run(0, "plan scene.json --json --strategy tiles --precision double");
@@ -230,6 +237,49 @@ START_TEST(warnings_are_printed_unless_quiet) {
     ck_run(0, "image scene.json -o a.mha --set 'Detector.Position=[1000,100,0,\"mm\"]' "
               "--set 'Source.Position=[1000,-400,0,\"mm\"]'");
     ck_assert_ptr_nonnull(strstr(complained, "skiagraph: warning: nothing falls on the detector"));
+}
+END_TEST
+
+/* A flat mesh that faces the beam has no depth along it. It was once said to lie behind the source. */
+START_TEST(a_wall_that_faces_the_beam_lies_on_its_way) {
+    static const char wall[] = "--set 'Samples=[{\"Label\":\"wall\",\"Path\":\"wall.obj\",\"Unit\":\"mm\","
+                               "\"Material\":[\"mu\",0.5]}]'";
+    write_text("wall.obj", "v -5 0 -5\nv 5 0 -5\nv 5 0 5\nv -5 0 5\nf 1 2 3\nf 1 3 4\n");
+    ck_run(0, "image scene.json -o a.mha %s", wall);
+    ck_assert_msg(strstr(complained, "part wall is leaky"), "%s", complained);
+    ck_assert_msg(!strstr(complained, "nothing falls on the detector"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha %s --set 'Samples.0.Transform=[[\"Translation\",90,0,0,\"mm\"]]'",
+           wall);
+    ck_assert_msg(strstr(complained, "the shadow of wall, which comes nearest, lies"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha %s --set 'Samples.0.Transform=[[\"Translation\",0,200,0,\"mm\"]]'",
+           wall);
+    ck_assert_msg(strstr(complained, "all parts lie behind the source or behind the detector"), "%s",
+                  complained);
+}
+END_TEST
+
+/* An unfiltered beam of 119 energies behind lead: its softest photons are met at the edges only. */
+START_TEST(compression_that_does_not_pay_is_told) {
+    static const char lead[] =
+        "plan scene.json --set Samples.skin.Material=Water --set Samples.bone.Material=Pb "
+        "--set 'Source.Beam={\"kVp\": 120}'";
+    ck_run(0, "%s --tolerance 0.01", lead);
+    ck_assert_msg(strstr(complained,
+                         "compression does not pay: no fewer energies meet a tolerance of 0.01, so all 119"),
+                  "%s", complained);
+    ck_run(0, "%s --tolerance 0", lead);
+    ck_assert_msg(!strstr(complained, "compression"), "%s", complained);
+}
+END_TEST
+
+START_TEST(noise_is_said_to_be_missing_only_where_it_is) {
+    static const char plan[] =
+        "plan scene.json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
+        "\"Filter\": [[\"Al\", 3]], \"mAs\": 2}'";
+    ck_run(0, "%s", plan);
+    ck_assert_msg(strstr(complained, "there is no noise"), "%s", complained);
+    ck_run(0, "%s --set Noise=true", plan);
+    ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
 }
 END_TEST
 
@@ -283,6 +333,24 @@ START_TEST(times_are_printed) {
 }
 END_TEST
 
+/* The same bytes as through files, and nothing else on standard output. */
+START_TEST(dashes_are_standard_input_and_output) {
+    char line[1024];
+    snprintf(
+        line, sizeof line,
+        "cd %s && %s image - -o - <scene.json >b.mha 2>.complained && %s image scene.json -o a.mha --quiet && "
+        "cmp a.mha b.mha",
+        folder, SKG_COMMAND, SKG_COMMAND);
+    int status = system(line);
+    read_back(".complained", complained, sizeof complained);
+    ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "%s", complained);
+    ck_run_fails(3, "standard input: line 1, column 0", "plan -"); /* which is empty here */
+    ck_run(2, "image scene.json -o - --json");
+    ck_assert_msg(strstr(complained, "standard output takes one thing"), "%s", complained);
+    ck_run_fails(2, "cost reads its scene several times", "cost - --quick");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, quantities_have_their_values);
@@ -293,9 +361,13 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);
     tcase_add_test(tests, warnings_are_printed_unless_quiet);
+    tcase_add_test(tests, a_wall_that_faces_the_beam_lies_on_its_way);
+    tcase_add_test(tests, compression_that_does_not_pay_is_told);
+    tcase_add_test(tests, noise_is_said_to_be_missing_only_where_it_is);
     tcase_add_test(tests, the_bound_holds_at_the_own_view);
     tcase_add_test(tests, the_open_beam_is_reported);
     tcase_add_test(tests, times_are_printed);
+    tcase_add_test(tests, dashes_are_standard_input_and_output);
 }
 
 SKG_SUITE_MAIN("picture_verbs", add_tests)

@@ -160,6 +160,10 @@ START_TEST(names_that_are_not_found) {
     ck_skg_fails(skg_material_create_named("Alumnium", &none), SKG_ERR_MATERIAL,
                  "did you mean \"Aluminium\"");
     ck_skg_fails(skg_material_create_named("tissue", &none), SKG_ERR_MATERIAL, "fits");
+    /* "steel" was once one stainless grade without a word; the grades are named and asked for. */
+    ck_skg_fails(
+        skg_material_create_named("steel", &none), SKG_ERR_MATERIAL,
+        "fits 3 materials: \"Stainless steel 304 (needle)\", \"Stainless steel 316\", \"Carbon steel\"");
     ck_skg_fails(skg_material_create_named("", &none), SKG_ERR_MATERIAL, "without a name");
     ck_skg_fails(skg_material_create_named("HU:abc", &none), SKG_ERR_MATERIAL, "no number");
     ck_skg_fails(skg_material_create_named("mu:-1", &none), SKG_ERR_MATERIAL, "not usable");

@@ -14,10 +14,13 @@ cd "$stage/work"
 
 echo "pkg-config:"
 pkg-config --validate skiagraph
-for name in first_image hundred_poses; do
+for name in first_image hundred_poses scene_loop; do
     # shellcheck disable=SC2046
     cc -std=c11 -Wall -Wextra -Werror "$source/examples/$name.c" $(pkg-config --cflags --libs skiagraph) -lm -o $name
-    ./$name
+    case $name in
+    scene_loop) ./$name "$source/examples/phantom.json" marker ;;
+    *) ./$name ;;
+    esac
 done
 
 echo "CMake:"

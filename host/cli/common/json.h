@@ -15,4 +15,9 @@ json_t *cli_json_numbers(const double *numbers, int count);
 /* Prints an object on standard output and releases it. Returns an exit status. */
 int cli_json_print(json_t *object);
 
+/* Prints {"error": {"status", "message", "where"}} for the first failure, if there was one and no object has been
+ * printed. where: the file, line, key or part that the message begins with, or null. file: the operand, whose name may
+ * have blanks; NULL: none. */
+void cli_json_print_failure(const char *file);
+
 #endif

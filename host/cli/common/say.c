@@ -5,6 +5,7 @@
 #include <string.h>
 
 static int is_quiet;
+static cli_failure first; /* of this run */
 
 void cli_set_quiet(int quiet) {
     is_quiet = quiet;
@@ -14,13 +15,33 @@ int cli_is_quiet(void) {
     return is_quiet;
 }
 
+const cli_failure *cli_first_failure(void) {
+    return &first;
+}
+
+/* The library's status that stands for a failure of the command itself. */
+static skg_status own_status(int exit_status) {
+    return exit_status == CLI_USAGE    ? SKG_ERR_ARGUMENT
+           : exit_status == CLI_INPUT  ? SKG_ERR_FORMAT
+           : exit_status == CLI_OUTPUT ? SKG_ERR_OUTPUT
+                                       : SKG_ERR_MEMORY;
+}
+
 int cli_error(int exit_status, const char *format, ...) {
+    char sentence[sizeof first.message];
     va_list arguments;
     va_start(arguments, format);
     fputs("skiagraph: ", stderr);
-    vfprintf(stderr, format, arguments);
+    vsnprintf(sentence, sizeof sentence, format, arguments);
+    va_end(arguments);
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments); /* whole, whatever its length */
     fputc('\n', stderr);
     va_end(arguments);
+    if (!*first.message) {
+        memcpy(first.message, sentence, sizeof sentence);
+        if (first.status >= 0) first.status = own_status(exit_status);
+    }
     return exit_status;
 }
 
@@ -48,6 +69,7 @@ int cli_fail(skg_status status) {
     if (!*sentence) sentence = skg_status_text(status);
     int length = (int)strlen(sentence); /* a build log ends in empty lines */
     while (length > 0 && sentence[length - 1] == '\n') length--;
+    if (!*first.message) first.status = status;
     return cli_error(cli_exit_status(status), "%.*s", length, sentence);
 }
 

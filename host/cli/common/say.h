@@ -6,6 +6,15 @@
 
 enum { CLI_DONE = 0, CLI_CHECK_FAILED = 1, CLI_USAGE = 2, CLI_INPUT = 3, CLI_DEVICE = 4, CLI_OUTPUT = 5 };
 
+/* A failure, as --json prints it. */
+typedef struct {
+    char message[4096]; /* empty: nothing failed; a longer one is cut */
+    skg_status status;
+} cli_failure;
+
+/* The first failure that cli_error or cli_fail printed. */
+const cli_failure *cli_first_failure(void);
+
 /* Prints "skiagraph: sentence" and returns the exit status. */
 int cli_error(int exit_status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

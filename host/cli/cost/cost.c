@@ -79,6 +79,8 @@ static int report(const cost_study *study) {
 }
 
 int cli_cost(const cli_arguments *arguments) {
+    if (strcmp(arguments->operands[0], "-") == 0)
+        return cli_error(CLI_USAGE, "cost reads its scene several times; give a file instead of -");
     cost_study *study = calloc(1, sizeof *study);
     if (!study) return cli_error(CLI_DEVICE, "out of host memory");
     study->arguments = arguments;

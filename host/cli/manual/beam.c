@@ -4,7 +4,7 @@ const cli_flag cli_flag_beam_kvp = {
     "--kvp", "KV", "The tube voltage, 10 to 450 kV; validated from 20 to 150 kV.", NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_beam_filter = {
     "--filter", "MATERIAL:MM",
-    "A filter of the beam with its thickness in mm. May be repeated. Give every filter, the inherent one included: "
+    "A filter of the beam with its thickness in mm, or in another unit that follows: Al:2.5, Cu:100um. May be repeated. Give every filter, the inherent one included: "
     "none is assumed.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_beam_angle = {

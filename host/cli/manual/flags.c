@@ -41,16 +41,19 @@ const cli_flag cli_flag_strategy = {
 const cli_flag cli_flag_set = {
     "--set", "KEY=VALUE",
     "Changes a key of the scene file before it is read: Detector.NumberOfPixels=[64,64], "
-    "Samples.liver.Type=inner. May be repeated.",
+    "Samples.liver.Type=inner. KEY=null deletes the key. May be repeated.",
     NULL, CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_json = {"--json", NULL, "Prints one JSON object on standard output.", NULL,
-                                CLI_NAMES_NOTHING};
+const cli_flag cli_flag_json = {
+    "--json", NULL,
+    "Prints one JSON object on standard output; after a failure {error: {status, message, where}}.", NULL,
+    CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_output = {
-    "-o", "FILE", "The file to write; its extension, .png, .tif or .mha, is its format. May be repeated.",
+    "-o", "FILE",
+    "The file to write; its extension, .png, .tif or .mha, is its format; - writes a .mha to standard output. May be repeated.",
     NULL, CLI_NAMES_FILE};
 
 const cli_flag cli_flag_plot = {

@@ -28,7 +28,9 @@ static const char *const text[] = {
     "detector's position.",
     "With --bands the image has one channel for each band: a .tif has a page for each, a .mha a component; a .png "
     "shows the first. A file appears whole or not at all.",
-    "--json prints {frame_ms, first_ms, plan_ms, stages, plan}; times are in ms.", NULL};
+    "--json prints {frame_ms, first_ms, plan_ms, stages, range, files, plan}; times are in ms, and range has the least and "
+    "the largest value of each channel.",
+    NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_output,      &cli_flag_image_quantity,
                                         &cli_flag_image_bands, &cli_flag_image_display,

@@ -12,7 +12,9 @@ static const char *const text[] = {
     "Computes, for the ray of each pixel, the length in mm inside one part, and writes it to the file of every -o.",
     "A .png shows lengths from black (the least) to white (the largest), or over --range. A .tif or .mha holds "
     "floats, or doubles with --precision double.",
-    "--json prints {frame_ms, first_ms, plan_ms, stages, plan}; times are in ms.", NULL};
+    "--json prints {frame_ms, first_ms, plan_ms, stages, range, files, plan}; times are in ms, and range has the least and "
+    "the largest length.",
+    NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_lbuffer_part, &cli_flag_output,   &cli_flag_lbuffer_surface,
                                         &cli_flag_range,        &cli_flag_repeat,   &cli_flag_device,

@@ -18,11 +18,13 @@ const char *const cli_text[] = {
     "Skiagraph computes X-ray images of triangle meshes on any OpenCL device, CPU or GPU, with no window system. It "
     "can move the meshes with the patient's breathing. Each of its functions is a verb.",
     "A SCENE is a JSON file in the schema of gVirtualXray (Source, Detector, Samples, Scan) with keys of "
-    "Skiagraph's own, such as Parent, Precision, Tolerance, Breathing and Noise.",
+    "Skiagraph's own, such as Parent, Precision, Tolerance, Breathing and Noise. The SCENE - is read from standard "
+    "input.",
     NULL};
 
-const cli_item cli_other_verbs[] = {
-    {"help", "this text, or that of a VERB"}, {"version", "the version (also --version)"}, {NULL, NULL}};
+const cli_item cli_other_verbs[] = {{"help", "this text, or that of a VERB"},
+                                    {"version", "the version (also --version; with --json as JSON)"},
+                                    {NULL, NULL}};
 
 const cli_item cli_exit_statuses[] = {
     {"0", "The work is done."},

@@ -8,12 +8,22 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MOST_REPEATS = 1000000 };
 
 static int read_repeats(const cli_arguments *arguments, int64_t *repeats) {
     *repeats = 0;
     return cli_integer(arguments, &cli_flag_repeat, 1, MOST_REPEATS, repeats);
+}
+
+/* How many outputs are standard output. */
+static int count_streams(const cli_arguments *arguments) {
+    const char *path;
+    int count = 0;
+    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++)
+        count += strcmp(path, "-") == 0;
+    return count;
 }
 
 int cli_check_outputs(const cli_arguments *arguments) {
@@ -25,6 +35,8 @@ int cli_check_outputs(const cli_arguments *arguments) {
     if (!cli_given(arguments, &cli_flag_output) && !repeats)
         return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif or .mha)",
                          arguments->manual->name);
+    if (count_streams(arguments) + cli_given(arguments, &cli_flag_json) > 1)
+        return cli_error(CLI_USAGE, "standard output takes one thing: -o - once, or --json");
     const char *path;
     for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++) {
         skg_status status = skg_picture_path_check(path);
@@ -72,15 +84,30 @@ static void print_values(const skg_picture *picture) {
     putchar('\n');
 }
 
+static void add_outputs(const cli_rendering *rendering, json_t *object) {
+    json_t *ranges = json_array(), *files = json_array();
+    const char *path;
+    for (int64_t c = 0; c < rendering->picture.channels; c++) {
+        double ends[2];
+        find_range(&rendering->picture, c, &ends[0], &ends[1]);
+        json_array_append_new(ranges, cli_json_numbers(ends, 2));
+    }
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
+        json_array_append_new(files, cli_json_text(path));
+    json_object_set_new(object, "range", ranges);
+    json_object_set_new(object, "files", files);
+}
+
 static int print_rendering(const cli_rendering *rendering, const skg_plan *plan, const cli_times *times) {
     const char *path;
     if (cli_given(rendering->arguments, &cli_flag_json)) {
         json_t *object = json_object();
         cli_times_json(times, object);
+        add_outputs(rendering, object);
         json_object_set_new(object, "plan", cli_explain_json(plan, &rendering->session));
         return cli_json_print(object);
     }
-    if (cli_is_quiet()) return CLI_DONE;
+    if (cli_is_quiet() || count_streams(rendering->arguments) > 0) return CLI_DONE;
     print_values(&rendering->picture);
     cli_times_print(times);
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)

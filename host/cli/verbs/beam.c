@@ -27,14 +27,37 @@ typedef struct {
 
 /* --- flags ---------------------------------------------------------------------------------------------- */
 
-/* Reads "Cu:0.1". The last ':' counts, because a material's name may contain one. */
+/* The millimetres of a unit; 0 if it is none of these. */
+static double millimetres(const char *unit) {
+    static const struct {
+        const char *name;
+        double mm;
+    } units[] = {{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}};
+    for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+        if (strcmp(unit, units[u].name) == 0) return units[u].mm;
+    return 0;
+}
+
+/* Where the thickness of a filter begins: behind the last ':', because a material's name may contain one; in
+ * "Al 2mm" and "Al 2 mm" at the last blank before a digit. NULL: nowhere. */
+static const char *find_thickness(const char *text) {
+    const char *found = strrchr(text, ':');
+    for (const char *at = found ? NULL : text; at && (at = strchr(at, ' ')); at++)
+        if (strspn(at + 1, "0123456789.") > 0) found = at;
+    return found;
+}
+
+/* Reads "Cu:0.1", "Al:2mm" and "Al 2 mm". */
 static int read_filter(const char *text, beam *b) {
     char name[256], *end = NULL;
-    const char *colon = strrchr(text, ':');
-    double mm = colon ? strtod(colon + 1, &end) : -1;
-    size_t length = colon ? (size_t)(colon - text) : 0;
-    if (length == 0 || length >= sizeof name || end == colon + 1 || *end || !(mm >= 0 && mm < HUGE_VAL))
-        return cli_error(CLI_USAGE, "--filter %s is not MATERIAL:MM, such as Cu:0.1", text);
+    const char *gap = find_thickness(text);
+    double mm = gap ? strtod(gap + 1, &end) : -1;
+    size_t length = gap ? (size_t)(gap - text) : 0;
+    if (gap && end != gap + 1 && *end) mm *= millimetres(end + strspn(end, " "));
+    if (length == 0 || length >= sizeof name || end == gap + 1 || !(mm >= 0 && mm < HUGE_VAL) ||
+        (*end && millimetres(end + strspn(end, " ")) == 0))
+        return cli_error(CLI_USAGE, "--filter %s is not MATERIAL:MM, such as Cu:0.1, or with a unit Al:2mm",
+                         text);
     if (b->filter_count == MOST_FILTERS)
         return cli_error(CLI_USAGE, "--filter: more than %d filters", MOST_FILTERS);
     memcpy(name, text, length);
@@ -50,22 +73,15 @@ static int read_filter(const char *text, beam *b) {
 
 /* Reads "65uGy/mAs@100cm". */
 static int read_output(const char *text, skg_tube *tube) {
-    static const struct {
-        const char *name;
-        double mm;
-    } units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}};
     static const char unit[] = "uGy/mAs@";
     char *end = NULL, *length = NULL;
     double output = strtod(text, &end), distance = 0;
     if (end != text && strncmp(end, unit, strlen(unit)) == 0) {
         const char *at = end + strlen(unit);
         distance = strtod(at, &length);
-        for (size_t i = 0; length != at && i < sizeof units / sizeof *units; i++) {
-            if (strcmp(length, units[i].name) != 0 || !(output > 0) || !(distance > 0)) continue;
-            tube->output_ugy_mas = output;
-            tube->output_at_mm = distance * units[i].mm;
-            return CLI_DONE;
-        }
+        tube->output_ugy_mas = output;
+        tube->output_at_mm = distance * millimetres(length);
+        if (length != at && output > 0 && tube->output_at_mm > 0) return CLI_DONE;
     }
     return cli_error(CLI_USAGE, "--output %s is not an output such as 65uGy/mAs@100cm", text);
 }

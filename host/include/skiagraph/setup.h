@@ -18,6 +18,7 @@ typedef struct skg_setup skg_setup;
 /** Reads a scene file.
  *
  *     context    receives warnings and notes; may be NULL
+ *     path       -: standard input; paths in the scene are then relative to the working folder
  *     count      number of settings
  *     settings   [count] "KEY=VALUE" with dotted paths, applied to the contents before they are read, such as
  *                "Detector.Size=[100, 100, \"mm\"]" or "Samples.liver.Type=inner"; NULL if count is 0

@@ -66,6 +66,7 @@ static inline void skg_picture_init(skg_picture *picture) {
  *              .tif, .tiff: float or double, one page per channel, whose description has the channel's name
  *              .mha: float or double, every channel, with spacing, origin and direction of the detector; a
  *              field ChannelNames has channel_names, separated by "; "
+ *              -: as .mha, to standard output
  *     errors   SKG_ERR_ARGUMENT (unknown extension), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for .mha if the
  *              detector's steps are not perpendicular, which MetaImage cannot express: use TIFF */
 SKG_API skg_status skg_picture_write(const skg_picture *picture, const char *path);
