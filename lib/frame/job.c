@@ -1,7 +1,7 @@
 #include "frame/job.h"
 
 skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
-                          skg_job **job) {
+                          int64_t frames, skg_job **job) {
     SKG_TRY(skg_alloc(1, sizeof **job, "job", job));
     skg_job *made = *job;
     skg_results *results = &made->results;
@@ -15,8 +15,9 @@ skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_ou
         skg_staging_take(&made->staging, 2, sizeof *results->negative, "counters", &results->negative));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
-    SKG_TRY_CLEANUP(
-        skg_staging_take(&made->staging, 1, sizeof *results->bad_vertex, "counters", &results->bad_vertex));
+    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, frames, sizeof *results->bad_vertex, "counters",
+                                     &results->bad_vertex));
+    results->frames = frames;
     SKG_TRY_CLEANUP(skg_leaky_verdicts_create(recipe->leaky_count, &made->staging, &results->leaky));
     return SKG_OK;
 cleanup:

@@ -25,12 +25,17 @@ static skg_status add_stages(const skg_stage_log *log, skg_outcome *outcome) {
     return SKG_OK;
 }
 
-static skg_status report_bad_vertex(const skg_recipe *recipe, const skg_geometry *geometry, int32_t vertex) {
-    int64_t part = 0, of_mesh = 0;
-    if (vertex == INT32_MAX) return SKG_OK;
-    skg_geometry_find(geometry, vertex, &part, &of_mesh);
+/* Names the first bad frame; the images of the others are valid. */
+static skg_status report_bad_vertex(const skg_recipe *recipe, const skg_geometry *geometry,
+                                    const skg_results *results) {
+    int64_t part = 0, of_mesh = 0, frame = 0;
+    char place[32] = "";
+    while (frame < results->frames && results->bad_vertex[frame] == INT32_MAX) frame++;
+    if (frame == results->frames) return SKG_OK;
+    skg_geometry_find(geometry, results->bad_vertex[frame], &part, &of_mesh);
+    if (results->frames > 1) snprintf(place, sizeof place, "frame %" PRId64 ": ", frame);
     return skg_fail(SKG_ERR_MESH,
-                    "part %s: vertex %" PRId64 " cannot be projected: it is not finite in this pose",
+                    "%spart %s: vertex %" PRId64 " cannot be projected: it is not finite in this pose", place,
                     recipe->scene->parts[part].label, of_mesh);
 }
 
@@ -95,7 +100,7 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
     skg_plan_report *report = &outcome->report;
     const skg_leaky_verdicts *leaky = &results->leaky;
     SKG_TRY(add_stages(log, outcome));
-    SKG_TRY(report_bad_vertex(recipe, geometry, *results->bad_vertex));
+    SKG_TRY(report_bad_vertex(recipe, geometry, results));
     report_negative(context, results->negative[0], outcome);
     const double listings = (double)results->listed[0] + (double)results->listed[1] * (double)report->tiles;
     report->triangles_per_tile =

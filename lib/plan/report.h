@@ -9,8 +9,10 @@
 typedef struct {
     int32_t
         *negative; /* [2] pixels with a negative exponent in the last frame; outside the range in any frame */
-    int32_t *listed;          /* [2] of the last frame, as skg_raster_read_listed leaves it */
-    int32_t *bad_vertex;      /* the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
+    int32_t *listed; /* [2] of the last frame, as skg_raster_read_listed leaves it */
+    int64_t frames;
+    int32_t
+        *bad_vertex; /* [frames] the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
     skg_leaky_verdicts leaky; /* of the last frame */
 } skg_results;
 
