@@ -1,4 +1,5 @@
 #include "beam/spectrum.h"
+#include "core/plain.h"
 #include "material/material.h"
 
 #include <inttypes.h>
@@ -27,6 +28,7 @@ static skg_status check_energy(double energy_kev) {
 }
 
 skg_status skg_spectrum_create_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
+    SKG_PLAIN;
     SKG_NEEDS(spectrum);
     *spectrum = NULL;
     SKG_TRY(check_energy(energy_kev));
@@ -63,6 +65,7 @@ static int64_t merge(int64_t count, bin *bins) {
 
 skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, const double *photons,
                                     skg_spectrum **spectrum) {
+    SKG_PLAIN;
     SKG_NEEDS(spectrum);
     *spectrum = NULL;
     if (count < 1 || !energies_kev || !photons)
@@ -88,6 +91,7 @@ skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, c
 }
 
 skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor, skg_spectrum **scaled) {
+    SKG_PLAIN;
     SKG_NEEDS(scaled);
     *scaled = NULL;
     SKG_NEEDS(spectrum);

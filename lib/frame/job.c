@@ -1,4 +1,5 @@
 #include "frame/job.h"
+#include "core/plain.h"
 
 skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
                           int64_t frames, skg_job **job) {
@@ -62,6 +63,7 @@ skg_status skg_job_test(const skg_job *job, int32_t *done) {
 }
 
 skg_status skg_job_wait(skg_job **job) {
+    SKG_PLAIN;
     if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
     SKG_TRY(skg_context_enter((*job)->machine->context));
     return skg_job_complete(job);
