@@ -73,6 +73,12 @@ static skg_status check_buffer(skg_submission *s, int64_t offset) {
     const skg_output *output = &s->output;
     const int64_t element = skg_submission_element(s);
     size_t bytes = 0;
+    cl_context of = NULL;
+    SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_CONTEXT, sizeof of, &of, NULL));
+    if (of != s->machine->context->device->cl)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_plan_submit_cl: the buffer is another OpenCL context's; make it in that of the "
+                        "plan (skg_context_create_cl)");
     SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL));
     if (offset < 0 || offset % element)
         return skg_fail(SKG_ERR_ARGUMENT,
