@@ -13,7 +13,7 @@ skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_ou
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
     SKG_TRY_CLEANUP(
-        skg_staging_take(&made->staging, 2, sizeof *results->negative, "counters", &results->negative));
+        skg_staging_take(&made->staging, 3, sizeof *results->negative, "counters", &results->negative));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
     SKG_TRY_CLEANUP(skg_staging_take(&made->staging, frames, sizeof *results->bad_vertex, "counters",

@@ -188,7 +188,7 @@ static skg_status enqueue_frame(const skg_submission *s, int64_t index, const do
 static skg_status clear_counters(const skg_machine *machine) {
     const cl_int none = 0;
     SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
-                                   sizeof none, 0, 2 * sizeof none, 0, NULL, NULL));
+                                   sizeof none, 0, 3 * sizeof none, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -197,7 +197,7 @@ static skg_status finish(const skg_submission *s, const skg_raster_pin *main, sk
     const skg_machine *machine = s->machine;
     const skg_results *results = &job->results;
     cl_command_queue queue = machine->context->device->queue;
-    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 2 * sizeof *results->negative,
+    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 3 * sizeof *results->negative,
                              results->negative));
     SKG_TRY(skg_raster_read_listed(main->raster, results->listed));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));

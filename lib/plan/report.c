@@ -84,6 +84,19 @@ static void report_bad(const skg_recipe *recipe, const skg_context *context, int
             done[repair], places);
 }
 
+static skg_status report_infinite(const skg_recipe *recipe, const skg_context *context, int32_t values,
+                                  skg_outcome *outcome) {
+    const int half = recipe->options.precision == SKG_PRECISION_HALF;
+    outcome->report.infinite_pixels = values;
+    if (values == 0) return SKG_OK;
+    (void)skg_fail(SKG_RANGE, "%" PRId32 " %s not finite: more than %s holds; take %s", values,
+                   skg_plural(values, "pixel is", "pixels are"),
+                   half ? "precision half (65,504; energies are in MeV)" : "the precision",
+                   half ? "precision single, or fewer photons" : "fewer photons");
+    skg_log(context, SKG_LOG_WARNING, "%s", skg_last_error());
+    return SKG_RANGE;
+}
+
 static skg_status report_outside(const skg_recipe *recipe, int32_t pixels, skg_outcome *outcome) {
     outcome->report.outside_pixels = pixels;
     if (pixels == 0) return SKG_OK;
@@ -110,5 +123,7 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
         const int32_t *bad = leaky->pixels + k * (1 + SKG_FIRST_BAD);
         if (bad[0] > 0) report_bad(recipe, context, leaky->indices[k], bad, outcome);
     }
-    return report_outside(recipe, results->negative[1], outcome);
+    const skg_status outside = report_outside(recipe, results->negative[1], outcome);
+    const skg_status infinite = report_infinite(recipe, context, results->negative[2], outcome);
+    return infinite != SKG_OK ? infinite : outside; /* the sentence is the last one's */
 }
