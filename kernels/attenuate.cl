@@ -160,6 +160,13 @@ static void skg_count(skg_realv value, skg_real limit, int pixels, __global int 
     if (found) atomic_add(count, found);
 }
 
+/* Counts what is not finite once it is shown: NaN, infinity, and what rounds to infinity in binary16. */
+static void skg_count_infinite(skg_realv shown, int pixels, __global int *count) {
+    const skg_realv most = (skg_realv)(SKG_HALF ? (skg_real)65520 / (skg_real)SKG_HALF_UNIT : (skg_real)INFINITY);
+    const skg_realv zero = (skg_realv)(0), one = (skg_realv)(1);
+    skg_count(fabs(shown) < most ? zero : one, 0, pixels, count);
+}
+
 #if SKG_RANGED
 /* Pixels that have a plane outside range[plane]. */
 static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels, __constant const skg_real *range,
@@ -309,6 +316,7 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  * factor         of intensities
  * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `limit` (the exponent is
  *                below -limit): more was subtracted for children than their parent has there
+ *                negative[2] counts the values that are not finite
  * output         strides and offset in elements
  * lists          a unit of accumulator s adds lists[s][p] to plane p
  * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
@@ -387,7 +395,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
         const int at = pass.column + r * SKG_WIDE, left = frame.columns - at;
         __global skg_out *place = output + offset + pass.row * row_stride + at;
         if (left <= 0) break;
-        SKG_EACH_CHANNEL skg_show(pixels.shown[c][r], place + c * channel_stride, left);
+        SKG_EACH_CHANNEL {
+            skg_count_infinite(pixels.shown[c][r], left, negative + 2);
+            skg_show(pixels.shown[c][r], place + c * channel_stride, left);
+        }
         skg_count(pixels.highest[r], limit, left, negative);
     }
 }

@@ -4,6 +4,7 @@
 #include "body/link.h"
 #include "body/organ.h"
 
+#include "core/plain.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
@@ -37,6 +38,7 @@ static skg_status check_options(const skg_body_options *o) {
 }
 
 skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **result) {
+    SKG_PLAIN;
     SKG_NEEDS(result);
     *result = NULL;
     skg_body_options ours;
@@ -75,6 +77,7 @@ void skg_body_release(skg_body **body) {
 }
 
 skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
+    SKG_PLAIN;
     skg_organ ours;
     skg_organ_init(&ours);
     if (!body || body->linked)
@@ -103,6 +106,7 @@ skg_status skg_body_add(skg_body *body, const skg_organ *organ, int64_t *id) {
 }
 
 skg_status skg_body_link(skg_body *body) {
+    SKG_PLAIN;
     if (!body || body->tried) return skg_fail(SKG_ERR_BREATHING, "body: skg_body_link is called once");
     int moves = 0;
     for (int64_t i = 0; i < body->organs; i++) moves |= body->organ[i].role != ROLE_STATIC;
@@ -121,6 +125,7 @@ skg_status skg_body_link(skg_body *body) {
 }
 
 skg_status skg_body_needle_set(skg_body *body, double withdrawn_mm) {
+    SKG_PLAIN;
     if (!body || !isfinite(withdrawn_mm) || fabs(withdrawn_mm) > 1000)
         return skg_fail(SKG_ERR_BREATHING, "body: the needle is withdrawn by %g mm; at most 1000 mm",
                         withdrawn_mm);

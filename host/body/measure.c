@@ -2,6 +2,7 @@
 
 #include "body/conflict.h"
 #include "body/types.h"
+#include "core/plain.h"
 #include "core/vector.h"
 
 void skg_body_measure_init_sized(void *measure, int32_t size) {
@@ -107,6 +108,7 @@ static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_bod
 }
 
 skg_status skg_body_measure_get(const skg_body *body, skg_body_measure *theirs) {
+    SKG_PLAIN;
     if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
     skg_body_measure m;
     skg_body_measure_init(&m);

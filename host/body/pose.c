@@ -3,6 +3,7 @@
 #include "body/corotate.h"
 #include "body/follow.h"
 #include "body/ribs.h"
+#include "core/plain.h"
 #include "core/vector.h"
 
 #include <string.h>
@@ -221,6 +222,7 @@ static void copy_memories(skg_body *body, int step, int out) {
 }
 
 skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
+    SKG_PLAIN;
     if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
     SKG_TRY(skg_breath_check(breath));
     body->loop = 0, body->loop_size = 0;
@@ -243,6 +245,7 @@ skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
 }
 
 skg_status skg_body_pose(skg_body *body, const skg_breath_state *theirs) {
+    SKG_PLAIN;
     skg_breath_state state;
     skg_breath_state_init(&state);
     if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");

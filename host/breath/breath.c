@@ -2,6 +2,7 @@
 #include "core/core.h"
 #include "core/maths.h"
 #include "core/names.h"
+#include "core/plain.h"
 
 #include <skiagraph/breathing.h>
 
@@ -30,6 +31,7 @@ void skg_breath_hold_init_sized(void *hold, int32_t size) {
 }
 
 skg_status skg_breath_pattern_get(const char *name, skg_breath *breath) {
+    SKG_PLAIN;
     static const struct {
         double period_s, thoracic, diaphragmatic;
     } pattern[] = {{4, 1, 1}, {4, 0, 1}, {4, 1, 0}, {3, 0.3, 0.3}, {6, 2.5, 2.5}, {1.5, 2, 2}};
@@ -105,6 +107,7 @@ static skg_status check(const skg_breath *b) {
 }
 
 skg_status skg_breath_check(const skg_breath *breath) {
+    SKG_PLAIN;
     skg_breath ours;
     skg_breath_init(&ours);
     SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
@@ -156,6 +159,7 @@ static skg_status fill(const skg_breath *b, double phase, skg_breath_state *thei
 }
 
 skg_status skg_breath_state_at_phase(const skg_breath *breath, double phase, skg_breath_state *state) {
+    SKG_PLAIN;
     skg_breath ours;
     skg_breath_init(&ours);
     SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));
@@ -177,6 +181,7 @@ static skg_status breathing_time(const skg_breath *b, double time, double *spent
 }
 
 skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg_breath_state *state) {
+    SKG_PLAIN;
     skg_breath ours;
     skg_breath_init(&ours);
     SKG_TRY(skg_struct_read(breath, "skg_breath", &ours, sizeof ours));

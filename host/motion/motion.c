@@ -1,6 +1,7 @@
 /* A set-up that breathes. */
 #include "body/measure.h"
 #include "body/types.h"
+#include "core/plain.h"
 #include "scene/scene.h"
 #include "setup/organs.h"
 
@@ -128,6 +129,7 @@ static skg_status make(skg_context *context, skg_motion *motion) {
 }
 
 skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **result) {
+    SKG_PLAIN;
     skg_motion *motion = NULL;
     SKG_NEEDS(setup);
     SKG_NEEDS(result);
@@ -178,6 +180,7 @@ static skg_status pose(skg_motion *motion) {
 }
 
 skg_status skg_motion_pose_at_time(skg_motion *motion, double time_s) {
+    SKG_PLAIN;
     SKG_NEEDS(motion);
     const skg_breathing_section *section = &motion->setup->breathing;
     skg_motion_state *state = &motion->state;
@@ -196,6 +199,7 @@ skg_status skg_motion_pose_at_time(skg_motion *motion, double time_s) {
 }
 
 skg_status skg_motion_pose_at_phase(skg_motion *motion, double phase) {
+    SKG_PLAIN;
     SKG_NEEDS(motion);
     SKG_TRY(skg_breath_state_at_phase(&motion->setup->breathing.breath, phase, &motion->breath));
     motion->state.time_s = (double)NAN;
@@ -205,6 +209,7 @@ skg_status skg_motion_pose_at_phase(skg_motion *motion, double phase) {
 }
 
 skg_status skg_motion_fill(const skg_motion *motion, skg_frame *frame) {
+    SKG_PLAIN;
     SKG_NEEDS(motion);
     SKG_NEEDS(frame);
     skg_frame ours;

@@ -1,5 +1,6 @@
 /* The thorax as files. */
 #include "core/output.h"
+#include "core/plain.h"
 #include "phantom/builder.h"
 
 #include <stdio.h>
@@ -73,6 +74,7 @@ static void write_scene(const skg_thorax *thorax, FILE *f) {
 }
 
 skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {
+    SKG_PLAIN;
     SKG_NEEDS(thorax);
     SKG_NEEDS(folder);
     for (int64_t i = 0; i < thorax->parts; i++) {

@@ -1,4 +1,5 @@
 /* The generated thorax as a handle. */
+#include "core/plain.h"
 #include "phantom/makers.h"
 
 #include <inttypes.h>
@@ -34,6 +35,7 @@ static skg_status fill(double resolution, skg_thorax *thorax) {
 }
 
 skg_status skg_thorax_create(const skg_thorax_options *options, skg_thorax **result) {
+    SKG_PLAIN;
     skg_thorax_options ours;
     skg_thorax_options_init(&ours);
     SKG_NEEDS(result);

@@ -1,6 +1,7 @@
 /* A set-up as a handle, and the keys at the top of its file. */
 #include "core/context.h"
 #include "core/names.h"
+#include "core/plain.h"
 #include "setup/json_set.h"
 #include "setup/sections.h"
 
@@ -118,6 +119,7 @@ static skg_status read_all(skg_setup_reader *reader) {
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
                           skg_setup **setup) {
+    SKG_PLAIN;
     SKG_NEEDS(setup);
     *setup = NULL;
     SKG_NEEDS(path);

@@ -1,4 +1,5 @@
 #include "beam/spectrum.h"
+#include "core/plain.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -32,6 +33,7 @@ skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double ene
 
 skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, int64_t count,
                                         const skg_filter *filters, skg_spectrum **behind) {
+    SKG_PLAIN;
     SKG_NEEDS(behind);
     *behind = NULL;
     SKG_NEEDS(spectrum);

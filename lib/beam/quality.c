@@ -1,4 +1,5 @@
 #include "beam/spectrum.h"
+#include "core/plain.h"
 
 void skg_quality_init_sized(void *quality, int32_t size) {
     const skg_quality defaults = {0};
@@ -14,6 +15,7 @@ static skg_status layers(const skg_spectrum *spectrum, int32_t z, double *first,
 }
 
 skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality) {
+    SKG_PLAIN;
     enum { ALUMINIUM = 13, COPPER = 29 };
     SKG_NEEDS(spectrum);
     SKG_NEEDS(quality);

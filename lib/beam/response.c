@@ -1,6 +1,7 @@
 /* The energy that a detector records of a photon. */
 #include "beam/spectrum.h"
 #include "core/columns.h"
+#include "core/plain.h"
 #include "core/units.h"
 
 #include <inttypes.h>
@@ -46,6 +47,7 @@ static skg_status copy(int64_t count, const double *from, double **to) {
 
 skg_status skg_response_create_table(int64_t count, const double *energies_kev, const double *recorded_kev,
                                      const double *efficiency, skg_response **response) {
+    SKG_PLAIN;
     SKG_NEEDS(response);
     *response = NULL;
     SKG_TRY(check_table(count, energies_kev, recorded_kev, efficiency));
@@ -65,6 +67,7 @@ cleanup:
 }
 
 skg_status skg_response_load(const char *path, const char *unit, skg_response **response) {
+    SKG_PLAIN;
     SKG_NEEDS(path);
     SKG_NEEDS(unit);
     SKG_NEEDS(response);
@@ -103,6 +106,7 @@ static skg_status make_layer(const skg_material *material, double mm, skg_respon
 
 skg_status skg_response_create_scintillator(const skg_material *material, double thickness_mm, double packing,
                                             skg_response **response) {
+    SKG_PLAIN;
     SKG_NEEDS(response);
     *response = NULL;
     if (!(isfinite(thickness_mm) && thickness_mm > 0))
@@ -115,6 +119,7 @@ skg_status skg_response_create_scintillator(const skg_material *material, double
 }
 
 skg_status skg_response_create_screen(const skg_material *material, double mg_cm2, skg_response **response) {
+    SKG_PLAIN;
     SKG_NEEDS(response);
     *response = NULL;
     double density = 0;
@@ -165,6 +170,7 @@ static skg_status look_up(const skg_response *r, double energy_kev, double *reco
 
 skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
                             double *recorded_kev, double *efficiency) {
+    SKG_PLAIN;
     double recorded = energy_kev, seen = 1;
     if (!(energy_kev > 0))
         return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV is not usable", energy_kev);

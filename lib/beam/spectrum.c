@@ -1,4 +1,5 @@
 #include "beam/spectrum.h"
+#include "core/plain.h"
 #include "material/material.h"
 
 #include <inttypes.h>
@@ -26,12 +27,23 @@ static skg_status check_energy(double energy_kev) {
                     SKG_LOWEST_KEV, SKG_HIGHEST_KEV);
 }
 
+/* Refuses photons whose energies add up to more than a double holds. */
+static skg_status check_sum(int64_t count, const double *energies_kev, const double *photons, double factor) {
+    double kev = 0;
+    for (int64_t i = 0; i < count; i++) kev += energies_kev[i] * photons[i] * factor;
+    if (isfinite(kev)) return SKG_OK;
+    return skg_fail(SKG_ERR_BEAM,
+                    "the energy of all photons is more than a double holds; give fewer photons");
+}
+
 skg_status skg_spectrum_create_mono(double energy_kev, double photons, skg_spectrum **spectrum) {
+    SKG_PLAIN;
     SKG_NEEDS(spectrum);
     *spectrum = NULL;
     SKG_TRY(check_energy(energy_kev));
     if (!(isfinite(photons) && photons > 0))
         return skg_fail(SKG_ERR_BEAM, "%g photons per pixel make no beam; give a number above 0", photons);
+    SKG_TRY(check_sum(1, &energy_kev, &photons, 1));
     SKG_TRY(skg_spectrum_make(1, spectrum));
     (*spectrum)->energy_kev[0] = energy_kev;
     (*spectrum)->photons[0] = photons;
@@ -63,6 +75,7 @@ static int64_t merge(int64_t count, bin *bins) {
 
 skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, const double *photons,
                                     skg_spectrum **spectrum) {
+    SKG_PLAIN;
     SKG_NEEDS(spectrum);
     *spectrum = NULL;
     if (count < 1 || !energies_kev || !photons)
@@ -73,6 +86,7 @@ skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, c
             return skg_fail(SKG_ERR_BEAM, "%g photons of %g keV: give a number of at least 0", photons[i],
                             energies_kev[i]);
     }
+    SKG_TRY(check_sum(count, energies_kev, photons, 1));
     bin *bins = NULL;
     SKG_TRY(skg_alloc(count, sizeof *bins, "spectrum", &bins));
     for (int64_t i = 0; i < count; i++) bins[i] = (bin){energies_kev[i], photons[i]};
@@ -88,11 +102,13 @@ skg_status skg_spectrum_create_bins(int64_t count, const double *energies_kev, c
 }
 
 skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor, skg_spectrum **scaled) {
+    SKG_PLAIN;
     SKG_NEEDS(scaled);
     *scaled = NULL;
     SKG_NEEDS(spectrum);
     if (!(isfinite(factor) && factor > 0))
         return skg_fail(SKG_ERR_BEAM, "a spectrum times %g makes no beam; give a factor above 0", factor);
+    SKG_TRY(check_sum(spectrum->count, spectrum->energy_kev, spectrum->photons, factor));
     SKG_TRY(skg_spectrum_make(spectrum->count, scaled));
     for (int64_t i = 0; i < spectrum->count; i++) {
         (*scaled)->energy_kev[i] = spectrum->energy_kev[i];

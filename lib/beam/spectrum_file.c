@@ -1,5 +1,6 @@
 #include "beam/spectrum.h"
 #include "core/columns.h"
+#include "core/plain.h"
 #include "core/units.h"
 
 #include <errno.h>
@@ -22,6 +23,7 @@ static skg_status find_word(const char *path, const char **word) {
 }
 
 skg_status skg_spectrum_load(const char *path, const char *unit, skg_spectrum **spectrum) {
+    SKG_PLAIN;
     SKG_NEEDS(path);
     SKG_NEEDS(unit);
     SKG_NEEDS(spectrum);

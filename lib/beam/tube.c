@@ -1,6 +1,7 @@
 /* The spectrum of an X-ray tube: model, calibration, filters, output. */
 #include "beam/spectrum.h"
 #include "core/context.h"
+#include "core/plain.h"
 #include "material/material.h"
 
 #include <inttypes.h>
@@ -156,6 +157,7 @@ static skg_status warn(const skg_tube *tube, const skg_spectrum *bare, const skg
 }
 
 skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectrum) {
+    SKG_PLAIN;
     skg_tube ours;
     skg_spectrum *bare = NULL, *behind = NULL; /* without and with its filters */
     skg_status status = SKG_OK;

@@ -1,4 +1,5 @@
 #include "core/names.h"
+#include "core/plain.h"
 #include "device/device.h"
 #include "device/program.h"
 
@@ -107,6 +108,7 @@ static skg_status new_context(skg_context **context) {
 }
 
 skg_status skg_context_create(const char *config, skg_context **context) {
+    SKG_PLAIN;
     SKG_NEEDS(context);
     *context = NULL;
     skg_context *made = NULL;
@@ -136,6 +138,7 @@ cleanup:
 
 skg_status skg_context_create_cl(cl_context cl, cl_device_id id, cl_command_queue queue,
                                  skg_context **context) {
+    SKG_PLAIN;
     SKG_NEEDS(context);
     SKG_NEEDS(cl);
     SKG_NEEDS(id);

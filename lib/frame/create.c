@@ -1,4 +1,5 @@
 /* Makes a plan: a recipe, a machine for it, and what is known before the first frame. */
+#include "core/plain.h"
 #include "frame/adapt.h"
 #include "frame/assemble.h"
 #include "frame/frame.h"
@@ -27,6 +28,7 @@ static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, s
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
                            skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
+    SKG_PLAIN;
     SKG_TRY(skg_context_enter(context));
     SKG_NEEDS(plan);
     *plan = NULL;

@@ -1,7 +1,8 @@
 #include "frame/job.h"
+#include "core/plain.h"
 
 skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
-                          skg_job **job) {
+                          int64_t frames, skg_job **job) {
     SKG_TRY(skg_alloc(1, sizeof **job, "job", job));
     skg_job *made = *job;
     skg_results *results = &made->results;
@@ -12,11 +13,12 @@ skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_ou
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
     SKG_TRY_CLEANUP(
-        skg_staging_take(&made->staging, 2, sizeof *results->negative, "counters", &results->negative));
+        skg_staging_take(&made->staging, 3, sizeof *results->negative, "counters", &results->negative));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
-    SKG_TRY_CLEANUP(
-        skg_staging_take(&made->staging, 1, sizeof *results->bad_vertex, "counters", &results->bad_vertex));
+    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, frames, sizeof *results->bad_vertex, "counters",
+                                     &results->bad_vertex));
+    results->frames = frames;
     SKG_TRY_CLEANUP(skg_leaky_verdicts_create(recipe->leaky_count, &made->staging, &results->leaky));
     return SKG_OK;
 cleanup:
@@ -61,6 +63,7 @@ skg_status skg_job_test(const skg_job *job, int32_t *done) {
 }
 
 skg_status skg_job_wait(skg_job **job) {
+    SKG_PLAIN;
     if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
     SKG_TRY(skg_context_enter((*job)->machine->context));
     return skg_job_complete(job);

@@ -17,8 +17,9 @@ struct skg_job {
     int32_t reserved;
 };
 
+/* frames: how many it is to make. */
 skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
-                          skg_job **job);
+                          int64_t frames, skg_job **job);
 
 /* Waits for everything enqueued, then frees; *job becomes NULL. Also for submissions that failed half way. */
 void skg_job_release(skg_job **job);

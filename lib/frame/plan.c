@@ -1,4 +1,5 @@
 #include "frame/plan.h"
+#include "core/plain.h"
 #include "frame/assemble.h"
 
 skg_status skg_plan_retain(skg_plan *plan) {
@@ -26,6 +27,7 @@ static void replace(skg_plan *plan, skg_recipe *recipe) {
 }
 
 skg_status skg_plan_move(skg_plan *plan, const skg_view *view) {
+    SKG_PLAIN;
     SKG_NEEDS(plan);
     SKG_TRY(skg_context_enter(plan->context));
     SKG_TRY(skg_view_check(view));

@@ -165,8 +165,10 @@ static skg_status read_back(const skg_submission *s, int64_t index, skg_job *job
 
 static skg_status enqueue_frame(const skg_submission *s, int64_t index, const double **poses, skg_job *job,
                                 skg_raster_pin *main) {
+    skg_machine *machine = s->machine;
+    int32_t *bad_vertex = job->results.bad_vertex + index;
     const skg_frame_means means = {.recipe = s->recipe,
-                                   .machine = s->machine,
+                                   .machine = machine,
                                    .outcome = s->outcome,
                                    .staging = &job->staging,
                                    .results = &job->results,
@@ -177,14 +179,16 @@ static skg_status enqueue_frame(const skg_submission *s, int64_t index, const do
         .view = &view, .poses = poses, .frame = &frame, .lengths_of = s->lengths_of, .kind = s->kind};
     SKG_TRY(read_frame(s, index, &frame, &view, poses, &work.noise));
     SKG_TRY(place_image(s, index, &work.place));
+    SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
     SKG_TRY(skg_frame_enqueue(&means, &work));
+    SKG_TRY(skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
     return s->buffer ? SKG_OK : read_back(s, index, job);
 }
 
 static skg_status clear_counters(const skg_machine *machine) {
     const cl_int none = 0;
     SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
-                                   sizeof none, 0, 2 * sizeof none, 0, NULL, NULL));
+                                   sizeof none, 0, 3 * sizeof none, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -193,10 +197,8 @@ static skg_status finish(const skg_submission *s, const skg_raster_pin *main, sk
     const skg_machine *machine = s->machine;
     const skg_results *results = &job->results;
     cl_command_queue queue = machine->context->device->queue;
-    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 2 * sizeof *results->negative,
+    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 3 * sizeof *results->negative,
                              results->negative));
-    SKG_TRY(skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *results->bad_vertex,
-                             results->bad_vertex));
     SKG_TRY(skg_raster_read_listed(main->raster, results->listed));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     SKG_CL_TRY(clFlush(queue));
@@ -208,7 +210,7 @@ skg_status skg_submission_enqueue(const skg_submission *s, skg_job **job) {
     skg_raster_pin main = {0};
     skg_job *made = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY(skg_job_create(s->recipe, s->machine, s->outcome, &made));
+    SKG_TRY(skg_job_create(s->recipe, s->machine, s->outcome, s->count, &made));
     SKG_TRY_CLEANUP(skg_alloc(s->recipe->scene->count, sizeof *poses, "poses", &poses));
     SKG_TRY_CLEANUP(clear_counters(s->machine));
     for (int64_t i = 0; i < s->count; i++) SKG_TRY_CLEANUP(enqueue_frame(s, i, poses, made, &main));

@@ -1,3 +1,4 @@
+#include "core/plain.h"
 #include "frame/submission.h"
 
 #include <skiagraph/opencl.h>
@@ -32,6 +33,7 @@ static skg_status submit(skg_plan *plan, const skg_submission *s, skg_job **job)
 
 skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
                            skg_job **job) {
+    SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1};
     SKG_TRY(prepare(plan, &s, output));
@@ -39,6 +41,7 @@ skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frame
 }
 
 skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
+    SKG_PLAIN;
     skg_job *job = NULL;
     SKG_TRY(begin("skg_plan_image", plan, &job));
     skg_submission s = {.count = 1, .lengths_of = -1};
@@ -49,6 +52,7 @@ skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
 
 skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
                             const skg_frame *frames, const skg_output *output, skg_job **job) {
+    SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths", plan, job));
     const int64_t parts = plan->recipe->scene->count;
     if (part < 0 || part >= parts)
@@ -69,6 +73,12 @@ static skg_status check_buffer(skg_submission *s, int64_t offset) {
     const skg_output *output = &s->output;
     const int64_t element = skg_submission_element(s);
     size_t bytes = 0;
+    cl_context of = NULL;
+    SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_CONTEXT, sizeof of, &of, NULL));
+    if (of != s->machine->context->device->cl)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_plan_submit_cl: the buffer is another OpenCL context's; make it in that of the "
+                        "plan (skg_context_create_cl)");
     SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL));
     if (offset < 0 || offset % element)
         return skg_fail(SKG_ERR_ARGUMENT,
@@ -86,6 +96,7 @@ static skg_status check_buffer(skg_submission *s, int64_t offset) {
 skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
                               const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
                               const cl_event *wait_list, cl_event *done, skg_job **job) {
+    SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit_cl", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1, .buffer = buffer};
     if (done) *done = NULL;

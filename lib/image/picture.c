@@ -2,10 +2,10 @@
 #include "image/image.h"
 
 #include "core/names.h"
+#include "core/plain.h"
 
 #include <errno.h>
 #include <inttypes.h>
-#include <locale.h>
 #include <math.h>
 #include <string.h>
 
@@ -100,21 +100,10 @@ skg_status skg_picture_path_check(const char *path) {
     return SKG_OK;
 }
 
-/* Calls the writer with the C locale, set for this thread only, so that numbers in headers have a decimal point. */
-static skg_status write_plainly(const format *writer, const skg_picture *picture, skg_output_file *file) {
-    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (plain == (locale_t)0) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for a locale", file->path);
-    locale_t before = uselocale(plain);
-    skg_status status = writer->write(picture, file);
-    uselocale(before);
-    freelocale(plain);
-    return status;
-}
-
 static skg_status write_to_standard_output(const format *writer, const skg_picture *picture) {
     skg_output_file file = {.stream = stdout};
     SKG_TRY(skg_copy_text("standard output", &file.path));
-    skg_status status = write_plainly(writer, picture, &file);
+    skg_status status = writer->write(picture, &file);
     skg_free(&file.path);
     if (status == SKG_OK && (fflush(stdout) != 0 || ferror(stdout)))
         status = skg_output_fail("standard output", errno, "not everything was taken");
@@ -122,6 +111,7 @@ static skg_status write_to_standard_output(const format *writer, const skg_pictu
 }
 
 skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
+    SKG_PLAIN;
     skg_picture picture;
     const format *writer = NULL;
     skg_output_file file;
@@ -130,13 +120,14 @@ skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
     if (writer->check) SKG_TRY(writer->check(&picture, path));
     if (is_standard_output(path)) return write_to_standard_output(writer, &picture);
     SKG_TRY(skg_output_open(path, &file));
-    skg_status status = write_plainly(writer, &picture, &file);
+    skg_status status = writer->write(&picture, &file);
     if (status == SKG_OK) return skg_output_commit(&file);
     skg_output_discard(&file);
     return status;
 }
 
 skg_status skg_picture_range_get(const skg_picture *theirs, double *low, double *high) {
+    SKG_PLAIN;
     skg_picture picture;
     SKG_TRY(prepare(theirs, &picture));
     SKG_NEEDS(low);

@@ -1,4 +1,5 @@
 /* The attenuation of materials: linear, by process, as a Hounsfield number, and where it jumps. */
+#include "core/plain.h"
 #include "material/material.h"
 
 #include <inttypes.h>
@@ -36,6 +37,7 @@ double skg_total_section(const double sections[SKG_PROCESSES]) {
 }
 
 skg_status skg_material_attenuation_get(const skg_material *material, double energy_kev, double *per_cm) {
+    SKG_PLAIN;
     SKG_NEEDS(material);
     SKG_NEEDS(per_cm);
     SKG_TRY(skg_check_energy(material->name, energy_kev));
@@ -59,6 +61,7 @@ void skg_coefficients_init_sized(void *coefficients, int32_t size) {
 
 skg_status skg_material_coefficients_get(const skg_material *material, double energy_kev,
                                          skg_coefficients *coefficients) {
+    SKG_PLAIN;
     SKG_NEEDS(material);
     SKG_NEEDS(coefficients);
     if (material->kind != SKG_MATTER_COMPOSITION)
@@ -79,6 +82,7 @@ skg_status skg_material_coefficients_get(const skg_material *material, double en
 }
 
 skg_status skg_material_hounsfield_get(const skg_material *material, double energy_kev, double *hu) {
+    SKG_PLAIN;
     double mu = 0, sections[SKG_PROCESSES];
     SKG_NEEDS(hu);
     SKG_TRY(skg_material_attenuation_get(material, energy_kev, &mu));

@@ -1,4 +1,5 @@
 /* Elements, formulas and mixtures as materials. */
+#include "core/plain.h"
 #include "material/mixture.h"
 
 #include <inttypes.h>
@@ -13,6 +14,7 @@ static skg_status check_density(const char *name, double density) {
 }
 
 skg_status skg_material_create_element(int32_t z, skg_material **material) {
+    SKG_PLAIN;
     const char *symbol;
     SKG_NEEDS(material);
     *material = NULL;
@@ -22,6 +24,7 @@ skg_status skg_material_create_element(int32_t z, skg_material **material) {
 }
 
 skg_status skg_material_create_formula(const char *formula, double density, skg_material **material) {
+    SKG_PLAIN;
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     int64_t count = 0;
     double sum = 0;
@@ -44,6 +47,7 @@ static const double SUM_ROUNDING = 1e-9;
 
 skg_status skg_material_create_mixture(const char *name, int64_t count, const int32_t *z,
                                        const double *fractions, double density, skg_material **material) {
+    SKG_PLAIN;
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     double of[SKG_LAST_ELEMENT + 1] = {0}, sum = 0;
     char note[LONGEST_NOTE] = "";

@@ -2,6 +2,7 @@
  *
  * The density follows Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459, Eq. 19, 21 and 23, with a
  * straight line from air to adipose tissue below -98 HU and a constant between the two lines of soft tissue. */
+#include "core/plain.h"
 #include "material/material.h"
 
 #include <math.h>
@@ -21,6 +22,7 @@ static double density_of(double hu) {
 }
 
 skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
+    SKG_PLAIN;
     char name[64], note[160];
     SKG_NEEDS(material);
     *material = NULL;

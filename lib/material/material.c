@@ -1,4 +1,5 @@
 #include "material/material.h"
+#include "core/plain.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -36,6 +37,7 @@ skg_status skg_material_compose(const char *name, const char *note, int64_t coun
 }
 
 skg_status skg_material_create_mu(const char *name, double per_cm, skg_material **material) {
+    SKG_PLAIN;
     SKG_NEEDS(material);
     *material = NULL;
     if (!isfinite(per_cm) || per_cm < 0)
@@ -70,6 +72,7 @@ void skg_material_release(skg_material **material) {
 
 skg_status skg_material_create_at_density(const skg_material *material, double density,
                                           skg_material **dense) {
+    SKG_PLAIN;
     SKG_NEEDS(dense);
     *dense = NULL;
     SKG_NEEDS(material);

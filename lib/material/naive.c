@@ -1,5 +1,6 @@
 /* The naive way from a Hounsfield number to mu: interpolation between four materials of the tables. It is kept
  * to show its error. */
+#include "core/plain.h"
 #include "material/material.h"
 
 #include <math.h>
@@ -51,6 +52,7 @@ static skg_status fill(const ladder *l, double hu, int32_t interpolation, skg_ma
 }
 
 skg_status skg_material_create_naive_hounsfield(double hu, int32_t interpolation, skg_material **material) {
+    SKG_PLAIN;
     char name[64];
     ladder l = {{NULL}, {0}};
     skg_material *made = NULL;

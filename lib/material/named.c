@@ -1,5 +1,6 @@
 /* Materials by a text as people write it: a name, a formula, or "key:value". */
 #include "core/columns.h"
+#include "core/plain.h"
 #include "material/mixture.h"
 
 #include <ctype.h>
@@ -85,6 +86,7 @@ static skg_status number_of(const char *text, const char *digits, double *value)
 }
 
 skg_status skg_material_create_named(const char *text, skg_material **material) {
+    SKG_PLAIN;
     char list[SKG_NAME_SUGGESTIONS * SKG_LONGEST_NAME];
     const char *rest;
     double value = 0;

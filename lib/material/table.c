@@ -1,5 +1,6 @@
 /* Materials by a table of the user: mu by energy. */
 #include "core/columns.h"
+#include "core/plain.h"
 #include "core/units.h"
 #include "material/material.h"
 
@@ -27,6 +28,7 @@ static skg_status check_rows(const char *name, int64_t count, const double *ener
 
 skg_status skg_material_create_table(const char *name, int64_t count, const double *energies_kev,
                                      const double *per_cm, skg_material **material) {
+    SKG_PLAIN;
     SKG_NEEDS(material);
     *material = NULL;
     if (!name || !*name) name = "table";
@@ -47,6 +49,7 @@ cleanup:
 }
 
 skg_status skg_material_load_table(const char *path, const char *unit, skg_material **material) {
+    SKG_PLAIN;
     double *energies = NULL, *values = NULL, kev = 1;
     int64_t count = 0;
     SKG_NEEDS(material);

@@ -1,6 +1,7 @@
 #include "mesh/mesh.h"
 
 #include "core/context.h"
+#include "core/plain.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -175,6 +176,7 @@ cleanup:
 skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices, const double *positions,
                            int64_t position_stride, int64_t triangles, const int32_t *corners,
                            int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+    SKG_PLAIN;
     SKG_NEEDS(mesh);
     return create(context, name, vertices, positions, NULL, position_stride, triangles, corners,
                   triangle_stride, unit_mm, mesh);
@@ -184,6 +186,7 @@ skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t
                                  const float *positions, int64_t position_stride, int64_t triangles,
                                  const int32_t *corners, int64_t triangle_stride, double unit_mm,
                                  skg_mesh **mesh) {
+    SKG_PLAIN;
     SKG_NEEDS(mesh);
     return create(context, name, vertices, NULL, positions, position_stride, triangles, corners,
                   triangle_stride, unit_mm, mesh);
@@ -262,6 +265,7 @@ static skg_status torn(const skg_mesh *mesh, int64_t vertex) {
 }
 
 skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride) {
+    SKG_PLAIN;
     double centre[3], reach;
     int far = 0;
     SKG_NEEDS(mesh);
@@ -296,6 +300,7 @@ skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **
 }
 
 skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
+    SKG_PLAIN;
     SKG_NEEDS(mesh);
     mesh->positions_stale = 1;
     mesh->version++;

@@ -5,6 +5,7 @@
 #include "core/context.h"
 #include "core/names.h"
 #include "core/path_hint.h"
+#include "core/plain.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
 
@@ -12,7 +13,6 @@
 #include <assimp/scene.h>
 #include <errno.h>
 #include <inttypes.h>
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,23 +37,16 @@ static skg_status open_file(const char *path, FILE **stream, int64_t *size) {
 
 typedef skg_status (*reader)(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 
-/* Reads the whole file into memory and calls the reader with the C locale, which is set for this thread only. */
+/* Reads the whole file into memory and calls the reader. */
 static skg_status read_here(FILE *stream, const char *path, int64_t size, reader read,
                             skg_mesh_arrays *arrays) {
     skg_mesh_file file = {path, NULL, size};
     SKG_TRY(skg_alloc(size + 1, 1, path, &file.bytes));
     skg_status status = SKG_OK;
-    locale_t plain = (locale_t)0;
     if (fread(file.bytes, 1, (size_t)size, stream) != (size_t)size)
         status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
-    else if (plain = newlocale(LC_ALL_MASK, "C", (locale_t)0), plain == (locale_t)0)
-        status = skg_fail(SKG_ERR_MEMORY, "%s: no memory for a locale", path);
-    if (status == SKG_OK) {
-        locale_t before = uselocale(plain);
+    else
         status = read(&file, arrays);
-        uselocale(before);
-        freelocale(plain);
-    }
     skg_free(&file.bytes);
     return status;
 }
@@ -122,6 +115,7 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
 }
 
 skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+    SKG_PLAIN;
     skg_mesh_arrays arrays = {0};
     SKG_NEEDS(mesh);
     *mesh = NULL;

@@ -2,6 +2,7 @@
 #include "mesh/mesh.h"
 
 #include "core/maths.h"
+#include "core/plain.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -58,6 +59,7 @@ static skg_status make_cuboid(const char *shape, const double length[3], skg_mes
 }
 
 skg_status skg_mesh_create_cube(double edge, skg_mesh **mesh) {
+    SKG_PLAIN;
     SKG_NEEDS(mesh);
     *mesh = NULL;
     SKG_TRY(check_length("cube", "edge", edge));
@@ -65,6 +67,7 @@ skg_status skg_mesh_create_cube(double edge, skg_mesh **mesh) {
 }
 
 skg_status skg_mesh_create_cuboid(double length_x, double length_y, double length_z, skg_mesh **mesh) {
+    SKG_PLAIN;
     SKG_NEEDS(mesh);
     *mesh = NULL;
     SKG_TRY(check_length("cuboid", "length along x", length_x));
@@ -99,6 +102,7 @@ static void add_wall(skg_mesh_arrays *arrays, int64_t lower, int64_t upper, int6
 }
 
 skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **mesh) {
+    SKG_PLAIN;
     skg_mesh_arrays arrays;
     SKG_NEEDS(mesh);
     *mesh = NULL;
@@ -120,6 +124,7 @@ skg_status skg_mesh_create_sphere(double radius, int64_t segments, skg_mesh **me
 }
 
 skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segments, skg_mesh **mesh) {
+    SKG_PLAIN;
     skg_mesh_arrays arrays;
     SKG_NEEDS(mesh);
     *mesh = NULL;
@@ -141,6 +146,7 @@ skg_status skg_mesh_create_cylinder(double radius, double height, int64_t segmen
  * between steps, then down the stairs from the last step. Front (-y) and back (+y) have `outline` vertices each. */
 skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double height_z, int64_t steps,
                                       skg_mesh **mesh) {
+    SKG_PLAIN;
     skg_mesh_arrays arrays;
     SKG_NEEDS(mesh);
     *mesh = NULL;

@@ -3,6 +3,7 @@
 
 #include "core/names.h"
 #include "core/output.h"
+#include "core/plain.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
@@ -96,6 +97,7 @@ static void write_stl(const skg_mesh *mesh, FILE *stream) {
 }
 
 skg_status skg_mesh_save(const skg_mesh *mesh, const char *path) {
+    SKG_PLAIN;
     skg_output_file file;
     SKG_NEEDS(mesh);
     SKG_NEEDS(path);

@@ -17,10 +17,21 @@ static skg_status check_kev(const char *what, double kev) {
     return skg_fail(SKG_ERR_ARGUMENT, "%s is %g keV; 0 or more", what, kev);
 }
 
+static skg_status check_flag(const char *name, int32_t flag) {
+    if (flag == 0 || flag == 1) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "%s is %" PRId32 "; 1 or 0", name, flag);
+}
+
+static skg_status check_flags(const skg_plan_options *options) {
+    SKG_TRY(check_flag("overlaps", options->overlaps));
+    SKG_TRY(check_flag("profile", options->profile));
+    SKG_TRY(check_flag("falloff", options->falloff));
+    SKG_TRY(check_flag("noise", options->noise));
+    return check_flag("clip", options->clip);
+}
+
 static skg_status check_detector(const skg_plan_options *options) {
     const int kev = options->electronic_kev > 0 || options->quantum_step_kev > 0;
-    if (options->noise != 0 && options->noise != 1)
-        return skg_fail(SKG_ERR_ARGUMENT, "noise is %d; 1 or 0", (int)options->noise);
     SKG_TRY(check_kev("electronic noise", options->electronic_kev));
     SKG_TRY(check_kev("the quantisation's step", options->quantum_step_kev));
     if (!(options->swank > 0 && options->swank <= 1))
@@ -50,8 +61,7 @@ skg_status skg_plan_options_check(const skg_plan_options *options, const skg_dev
         return skg_fail(SKG_ERR_ARGUMENT,
                         "quantity %" PRId32 " is unknown; SKG_QUANTITY_ENERGY to SKG_QUANTITY_ATTENUATION",
                         options->quantity);
-    if (options->falloff != 0 && options->falloff != 1)
-        return skg_fail(SKG_ERR_ARGUMENT, "falloff is %" PRId32 "; 1 or 0", options->falloff);
+    SKG_TRY(check_flags(options));
     if (!(options->tolerance >= 0 && options->tolerance < 1))
         return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
                         options->tolerance);
@@ -59,8 +69,6 @@ skg_status skg_plan_options_check(const skg_plan_options *options, const skg_dev
         return skg_fail(SKG_ERR_ARGUMENT,
                         "repair %" PRId32 " is unknown; SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT",
                         options->repair);
-    if (options->clip != 0 && options->clip != 1)
-        return skg_fail(SKG_ERR_ARGUMENT, "clip is %" PRId32 "; 1 or 0", options->clip);
     if (options->tile < 0 || options->tile > 32768)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a tile of %" PRId32 " pixels is not usable; 0 lets the plan choose", options->tile);

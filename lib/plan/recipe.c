@@ -168,6 +168,12 @@ skg_status skg_recipe_create(const skg_context *context, skg_scene *scene, const
     skg_view_init(&made->view);
     if (options) SKG_TRY_CLEANUP(keep_options(made, options, &spot));
     SKG_TRY_CLEANUP(skg_struct_read(view, "skg_view", &made->view, sizeof made->view));
+    if (made->options.profile && !context->device->profiling) {
+        status = skg_fail(SKG_ERR_UNSUPPORTED,
+                          "profile is 1, but the context's queue keeps no times; make the queue with "
+                          "CL_QUEUE_PROFILING_ENABLE, or take profile 0");
+        goto cleanup;
+    }
     SKG_TRY_CLEANUP(decide(made, &context->device->info, spot));
     *recipe = made;
     return SKG_OK;

@@ -25,12 +25,17 @@ static skg_status add_stages(const skg_stage_log *log, skg_outcome *outcome) {
     return SKG_OK;
 }
 
-static skg_status report_bad_vertex(const skg_recipe *recipe, const skg_geometry *geometry, int32_t vertex) {
-    int64_t part = 0, of_mesh = 0;
-    if (vertex == INT32_MAX) return SKG_OK;
-    skg_geometry_find(geometry, vertex, &part, &of_mesh);
+/* Names the first bad frame; the images of the others are valid. */
+static skg_status report_bad_vertex(const skg_recipe *recipe, const skg_geometry *geometry,
+                                    const skg_results *results) {
+    int64_t part = 0, of_mesh = 0, frame = 0;
+    char place[32] = "";
+    while (frame < results->frames && results->bad_vertex[frame] == INT32_MAX) frame++;
+    if (frame == results->frames) return SKG_OK;
+    skg_geometry_find(geometry, results->bad_vertex[frame], &part, &of_mesh);
+    if (results->frames > 1) snprintf(place, sizeof place, "frame %" PRId64 ": ", frame);
     return skg_fail(SKG_ERR_MESH,
-                    "part %s: vertex %" PRId64 " cannot be projected: it is not finite in this pose",
+                    "%spart %s: vertex %" PRId64 " cannot be projected: it is not finite in this pose", place,
                     recipe->scene->parts[part].label, of_mesh);
 }
 
@@ -79,6 +84,19 @@ static void report_bad(const skg_recipe *recipe, const skg_context *context, int
             done[repair], places);
 }
 
+static skg_status report_infinite(const skg_recipe *recipe, const skg_context *context, int32_t values,
+                                  skg_outcome *outcome) {
+    const int half = recipe->options.precision == SKG_PRECISION_HALF;
+    outcome->report.infinite_pixels = values;
+    if (values == 0) return SKG_OK;
+    (void)skg_fail(SKG_RANGE, "%" PRId32 " %s not finite: more than %s holds; take %s", values,
+                   skg_plural(values, "pixel is", "pixels are"),
+                   half ? "precision half (65,504; energies are in MeV)" : "the precision",
+                   half ? "precision single, or fewer photons" : "fewer photons");
+    skg_log(context, SKG_LOG_WARNING, "%s", skg_last_error());
+    return SKG_RANGE;
+}
+
 static skg_status report_outside(const skg_recipe *recipe, int32_t pixels, skg_outcome *outcome) {
     outcome->report.outside_pixels = pixels;
     if (pixels == 0) return SKG_OK;
@@ -95,7 +113,7 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
     skg_plan_report *report = &outcome->report;
     const skg_leaky_verdicts *leaky = &results->leaky;
     SKG_TRY(add_stages(log, outcome));
-    SKG_TRY(report_bad_vertex(recipe, geometry, *results->bad_vertex));
+    SKG_TRY(report_bad_vertex(recipe, geometry, results));
     report_negative(context, results->negative[0], outcome);
     const double listings = (double)results->listed[0] + (double)results->listed[1] * (double)report->tiles;
     report->triangles_per_tile =
@@ -105,5 +123,7 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
         const int32_t *bad = leaky->pixels + k * (1 + SKG_FIRST_BAD);
         if (bad[0] > 0) report_bad(recipe, context, leaky->indices[k], bad, outcome);
     }
-    return report_outside(recipe, results->negative[1], outcome);
+    const skg_status outside = report_outside(recipe, results->negative[1], outcome);
+    const skg_status infinite = report_infinite(recipe, context, results->negative[2], outcome);
+    return infinite != SKG_OK ? infinite : outside; /* the sentence is the last one's */
 }

@@ -7,10 +7,12 @@
 
 /* What the device leaves of work, in staged memory. */
 typedef struct {
+    /* [3] pixels with a negative exponent in the last frame; in any frame, pixels outside the range and infinite values */
+    int32_t *negative;
+    int32_t *listed; /* [2] of the last frame, as skg_raster_read_listed leaves it */
+    int64_t frames;
     int32_t
-        *negative; /* [2] pixels with a negative exponent in the last frame; outside the range in any frame */
-    int32_t *listed;          /* [2] of the last frame, as skg_raster_read_listed leaves it */
-    int32_t *bad_vertex;      /* the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
+        *bad_vertex; /* [frames] the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
     skg_leaky_verdicts leaky; /* of the last frame */
 } skg_results;
 

@@ -2,6 +2,7 @@
 
 #include "core/context.h"
 #include "core/names.h"
+#include "core/plain.h"
 #include "core/vector.h"
 
 #include <float.h>
@@ -126,6 +127,7 @@ static skg_status check_part(const skg_scene *scene, const skg_part *part, const
 }
 
 skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
+    SKG_PLAIN;
     SKG_NEEDS(scene);
     skg_part ours;
     skg_part_init(&ours);
@@ -229,6 +231,7 @@ skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id
 }
 
 skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) {
+    SKG_PLAIN;
     SKG_NEEDS(scene);
     SKG_NEEDS(pose);
     SKG_TRY(check_id(scene, id, __func__));

@@ -68,7 +68,8 @@ typedef struct {
  *
  * factor    of intensities; with noise, of photons: the share of one sample of the source. The draws of all samples
  *           add up to one draw of all photons.
- * least     exponents below it are counted in negative[0]; pixels outside the attenuation's range in negative[1]
+ * least     exponents below it are counted in negative[0]; pixels outside the attenuation's range in negative[1],
+ *           values that are not finite in negative[2]
  * noise     the key of the noise; NULL without noise */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,

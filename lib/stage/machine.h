@@ -24,8 +24,9 @@ typedef struct {
     skg_mix_lists mix_lists;
     skg_leaky_memory leaky;
     skg_hits_memory hits;
-    skg_buffer image;    /* on its way to the host */
-    skg_buffer negative; /* int[2]: pixels with a negative exponent; pixels outside the verified range */
+    skg_buffer image; /* on its way to the host */
+    skg_buffer
+        negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
     skg_pass_memory pass;
     skg_raster_cache rasters;
 } skg_machine;

@@ -27,7 +27,7 @@ static size_t contribution_size(const skg_geometry *geometry) {
     return is_double(geometry) ? sizeof(skg_contribution_double) : sizeof(skg_contribution_float);
 }
 
-static skg_status reset_bad(skg_context *context, skg_geometry *geometry) {
+skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) {
     const cl_int none = INT32_MAX;
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
@@ -144,7 +144,7 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
                                        CL_MEM_READ_WRITE, "projected vertices"));
     SKG_TRY_CLEANUP(
         skg_buffer_reserve(context, &geometry->bad, sizeof(cl_int), CL_MEM_READ_WRITE, "vertex check"));
-    SKG_TRY_CLEANUP(reset_bad(context, geometry));
+    SKG_TRY_CLEANUP(skg_geometry_reset_bad(context, geometry));
 cleanup:
     skg_free(&mesh_triangle);
     skg_free(&first_triangle);
@@ -185,9 +185,8 @@ skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int
     const int64_t row = 3 * (int64_t)real_size(geometry);
     const int64_t first = geometry->mesh_vertex[mesh], count = geometry->mesh_vertex[mesh + 1] - first;
     if (count == 0) return SKG_OK;
-    SKG_TRY(
-        skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets, log));
-    return reset_bad(context, geometry);
+    return skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets,
+                           log);
 }
 
 /* The vertices of a mesh as the device wants them: offsets from its origin, [vertices][3]. */

@@ -56,7 +56,7 @@ typedef struct {
     skg_kernel_options kernel_options;
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
     skg_buffer projected; /* x, y, z, t of each vertex over all parts */
-    /* int: the lowest vertex over all parts that was not finite since the last upload; INT32_MAX: none */
+    /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;
 
@@ -80,6 +80,9 @@ skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int
 
 /* Enqueues the upload of all meshes whose vertices have changed since they were last uploaded. meshes: [meshes]. */
 skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging);
+
+/* Enqueues that no vertex was bad: frames are independent, so each begins with it. */
+skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry);
 
 /* Enqueues one frame's part table and projection. part: [parts]; scale: of the accumulators (multiplies weights). */
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,

@@ -5,6 +5,7 @@
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>
+#include <string.h>
 
 enum { SIDE = 65 };
 
@@ -103,7 +104,59 @@ START_TEST(what_half_cannot_hold_is_refused) {
 }
 END_TEST
 
+static int warned;
+
+static void count_warning(int32_t level, const char *sentence, void *user) {
+    (void)user;
+    warned += level == SKG_LOG_WARNING && strstr(sentence, "precision single") != NULL;
+}
+
+/* 80 keV by a million photons are 80,000 MeV: infinite in 16 bits where nothing attenuates them. */
+START_TEST(overflow_is_reported) {
+    static float image[SIDE * SIDE];
+    skg_context *context = NULL;
+    skg_spectrum *beam = NULL;
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    skg_plan_report report;
+    skg_output output;
+    skg_view view;
+    ck_skg(skg_context_create(NULL, &context));
+    ck_skg(skg_context_log_set(context, count_warning, NULL));
+    ck_skg(skg_spectrum_create_mono(80, 1e6, &beam));
+    skg_scene *scene = paper_object(context);
+    skg_view_init(&view);
+    view.columns = view.rows = SIDE;
+    view.source[0] = -100;
+    view.centre[0] = 100;
+    view.column_step[1] = view.row_step[2] = 2;
+    skg_plan_options_init(&options);
+    skg_plan_report_init(&report);
+    skg_output_init(&output);
+    output.data = image;
+    for (int half = 1; half >= 0; half--) {
+        int64_t infinite = 0;
+        options.precision = half ? SKG_PRECISION_HALF : SKG_PRECISION_SINGLE;
+        ck_skg(skg_plan_create(context, scene, &view, beam, &options, &plan));
+        if (half)
+            ck_skg_fails(skg_plan_image(plan, &output), SKG_RANGE, "precision single");
+        else
+            ck_skg(skg_plan_image(plan, &output));
+        for (int p = 0; p < SIDE * SIDE; p++) infinite += !isfinite(image[p]);
+        ck_skg(skg_plan_report_get(plan, &report));
+        ck_assert_int_eq(report.infinite_pixels, infinite);
+        ck_assert_int_eq(infinite > 0, half);
+        skg_plan_release(&plan);
+    }
+    ck_assert_int_eq(warned, 1);
+    skg_scene_release(&scene);
+    skg_spectrum_release(&beam);
+    skg_context_release(&context);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, overflow_is_reported);
     tcase_add_test(tests, printed_values);
     tcase_add_test(tests, what_half_cannot_hold_is_refused);
 }

@@ -35,6 +35,19 @@ START_TEST(bins_are_sorted_and_merged) {
 }
 END_TEST
 
+/* Finite numbers whose sum is not. */
+START_TEST(more_photons_than_a_double_holds) {
+    static const double e[3] = {60, 70, 80}, n[3] = {1e306, 1e306, 1e306};
+    skg_spectrum *s = NULL, *more = NULL;
+    ck_skg_fails(skg_spectrum_create_bins(3, e, n, &s), SKG_ERR_BEAM, "fewer photons");
+    ck_skg_fails(skg_spectrum_create_mono(100, 1e308, &s), SKG_ERR_BEAM, "fewer photons");
+    ck_skg(skg_spectrum_create_mono(100, 1e300, &s));
+    ck_skg_fails(skg_spectrum_create_scaled(s, 1e10, &more), SKG_ERR_BEAM, "fewer photons");
+    ck_assert_ptr_null(more);
+    skg_spectrum_release(&s);
+}
+END_TEST
+
 static void write_file(char *path, const char *text) {
     int file = mkstemp(path);
     ck_assert_int_ge(file, 0);
@@ -204,6 +217,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, bins_are_sorted_and_merged);
+    tcase_add_test(tests, more_photons_than_a_double_holds);
     tcase_add_test(tests, files_of_two_columns);
     tcase_add_test(tests, gate_macros);
     tcase_add_test(tests, half_value_layers_of_one_energy);

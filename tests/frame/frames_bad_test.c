@@ -151,6 +151,46 @@ START_TEST(a_vertex_that_is_not_finite) {
 }
 END_TEST
 
+enum { MANY = 1000, BAD = 617 };
+
+/* Frames whose part turns a little further each time; one of them is `far` mm away. */
+static void turn(skg_frame *frames, double (*poses)[16], double far) {
+    static const int64_t id = 0;
+    for (int n = 0; n < MANY; n++) {
+        const double c = cos(0.01 * n), s = sin(0.01 * n);
+        const double pose[16] = {c, -s, 0, n == BAD ? far : 0, s, c, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        memcpy(poses[n], pose, sizeof pose);
+        skg_frame_init(&frames[n]);
+        frames[n].pose_parts = &id;
+        frames[n].poses = poses[n];
+        frames[n].pose_count = 1;
+    }
+}
+
+/* Frames are independent: one that cannot be is named, and changes no bit of the others nor of later jobs. */
+START_TEST(one_bad_frame_in_a_thousand) {
+    static float good[MANY][PIXELS], with[MANY][PIXELS];
+    static skg_frame frames[MANY];
+    static double poses[MANY][16];
+    turn(frames, poses, 0);
+    output.data = good;
+    ck_skg(skg_plan_submit(plan, MANY, frames, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    turn(frames, poses, 1e60);
+    output.data = with;
+    ck_skg(skg_plan_submit(plan, MANY, frames, &output, &job));
+    ck_skg_fails(skg_job_wait(&job), SKG_ERR_MESH, "frame 617: part box: vertex 0 ");
+    for (int n = 0; n < MANY; n++)
+        if (n != BAD) ck_assert_msg(memcmp(with[n], good[n], sizeof good[n]) == 0, "frame %d", n);
+    output.data = pixels;
+    ck_skg(skg_plan_submit(plan, 1, &frames[BAD], &output, &job));
+    ck_skg_fails(skg_job_wait(&job), SKG_ERR_MESH, "part box: vertex 0 ");
+    ck_skg(skg_plan_submit(plan, 1, &frames[0], &output, &job));
+    ck_skg(skg_job_wait(&job));
+    ck_assert_int_eq(memcmp(pixels, good[0], sizeof good[0]), 0);
+}
+END_TEST
+
 /* A child of fork cannot use the context: a call returns an error at once and does not hang. */
 START_TEST(a_fork) {
     const pid_t child = fork();
@@ -276,6 +316,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, poses_and_views);
     tcase_add_test(tests, changes_of_the_scene);
     tcase_add_test(tests, a_vertex_that_is_not_finite);
+    tcase_add_test(tests, one_bad_frame_in_a_thousand);
     tcase_add_test(tests, a_fork);
     tcase_add_test(tests, structs_of_other_sizes);
     tcase_add_test(tests, the_environment_stays);

@@ -329,15 +329,69 @@ START_TEST(device_memory_and_events) {
                  SKG_ERR_ARGUMENT, "buffer");
     ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, &output, buffer, 2, 0, NULL, NULL, &job),
                  SKG_ERR_ARGUMENT, "offset");
-    ck_assert_ptr_null(job);
     clReleaseEvent(start);
     clReleaseEvent(done);
     clReleaseMemObject(buffer);
+    /* A buffer of another context. */
+    cl_device_id device = NULL;
+    ck_assert_int_eq(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof device, &device, NULL), CL_SUCCESS);
+    cl_context other = clCreateContext(NULL, 1, &device, NULL, NULL, &code);
+    ck_assert_int_eq(code, CL_SUCCESS);
+    buffer = clCreateBuffer(other, CL_MEM_READ_WRITE, sizeof got, NULL, &code);
+    ck_assert_int_eq(code, CL_SUCCESS);
+    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, &output, buffer, 0, 0, NULL, NULL, &job),
+                 SKG_ERR_ARGUMENT, "another OpenCL context");
+    ck_assert_ptr_null(job);
+    clReleaseMemObject(buffer);
+    clReleaseContext(other);
     skg_plan_release(&plan);
     skg_context_release(&run_context);
     clReleaseCommandQueue(queue);
     clReleaseContext(cl);
     run_context = own;
+}
+END_TEST
+
+/* Times of stages on a queue that keeps none: refused when the plan is made, not after the work. */
+START_TEST(profile_without_times) {
+    cl_context cl = NULL;
+    cl_command_queue queue = NULL;
+    skg_context *own = run_context;
+    skg_spectrum *spectrum = NULL;
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    run_context = callers(&cl, &queue);
+    skg_plan_options_init(&options);
+    options.profile = 1;
+    ck_skg(skg_spectrum_create_mono(100, 1, &spectrum));
+    ck_skg_fails(skg_plan_create(run_context, scene, &view, spectrum, &options, &plan), SKG_ERR_UNSUPPORTED,
+                 "CL_QUEUE_PROFILING_ENABLE");
+    ck_assert_ptr_null(plan);
+    skg_spectrum_release(&spectrum);
+    skg_context_release(&run_context);
+    clReleaseCommandQueue(queue);
+    clReleaseContext(cl);
+    run_context = own;
+}
+END_TEST
+
+/* Flags are 0 or 1. */
+START_TEST(flags) {
+    static const char *const names[] = {"overlaps is 5", "profile is 5", "falloff is 5", "noise is 5",
+                                        "clip is 5"};
+    skg_spectrum *spectrum = NULL;
+    skg_plan *plan = NULL;
+    ck_skg(skg_spectrum_create_mono(100, 1, &spectrum));
+    for (int n = 0; n < 5; n++) {
+        skg_plan_options options;
+        skg_plan_options_init(&options);
+        int32_t *const of[] = {&options.overlaps, &options.profile, &options.falloff, &options.noise,
+                               &options.clip};
+        *of[n] = 5;
+        ck_skg_fails(skg_plan_create(run_context, scene, &view, spectrum, &options, &plan), SKG_ERR_ARGUMENT,
+                     names[n]);
+    }
+    skg_spectrum_release(&spectrum);
 }
 END_TEST
 
@@ -351,6 +405,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, two_plans_share_a_mesh);
     tcase_add_test(tests, several_contexts_and_scenes);
     tcase_add_test(tests, device_memory_and_events);
+    tcase_add_test(tests, profile_without_times);
+    tcase_add_test(tests, flags);
 }
 
 SKG_SUITE_MAIN("frames", add_tests)

@@ -96,6 +96,9 @@ typedef struct {
      * afterwards, from one accumulator for all parts of the same material in the same material, because that
      * needs fewer additions. */
     int64_t accumulators;
+    /** Values of the last job's images that were not finite, in every channel and sample: more than the
+     * precision holds. */
+    int64_t infinite_pixels;
 } skg_plan_report;
 
 /** Prepares a skg_plan_report of `size` bytes (export.h). */

@@ -6,7 +6,10 @@
  * handles without a retain function have one owner. Results come last and by pointer. Lengths are in mm,
  * energies in keV, densities in g/cm3, linear attenuation coefficients in 1/cm, times in s, angles in radians
  * unless the name says degrees. error.h explains status codes, export.h the structs, context.h threads and
- * fork, frame.h jobs. */
+ * fork, frame.h jobs.
+ *
+ * Calls compute in the default floating-point environment and read and write decimal points, whatever rounding
+ * mode and locale the calling thread has. Both are restored when a call returns. */
 #ifndef SKIAGRAPH_H
 #define SKIAGRAPH_H
 
