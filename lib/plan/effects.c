@@ -131,7 +131,8 @@ static void find_beam(const finding *f) {
         set(f, SKG_EFFECT_FALLOFF, 0, "the beam is parallel: its intensity is the same everywhere");
     else if (attenuation.falloff)
         set(f, SKG_EFFECT_FALLOFF, 1,
-            "inverse square and obliquity, from the pixel nearest the perpendicular on");
+            "inverse square and obliquity, from the foot of the source's perpendicular on the detector's "
+            "plane on");
     else
         set(f, SKG_EFFECT_FALLOFF, 0,
             options->falloff ? "ratios to the flat field do not show it" : "photons are counted per pixel");

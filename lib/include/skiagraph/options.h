@@ -149,13 +149,15 @@ typedef struct {
     /** 1: time the stages of each job, which makes frames a little slower. */
     int32_t profile;
     /** 1: intensity falls with the cube of the distance from the source (inverse square and obliquity);
-     * photons per pixel are those at the pixel nearest to the foot of the perpendicular from the source. */
+     * photons per pixel of the spectrum are those at the foot of the perpendicular from the source to the
+     * plane of the detector, whether or not a pixel lies there. */
     int32_t falloff;
     /** Of the detector; NULL: ideal. */
     skg_response *response;
     /** Around the parts; NULL: vacuum. */
     skg_material *world;
-    /** Photon-counting bands, 1 to SKG_CHANNELS_MAX, each a channel. 0: one channel of everything. */
+    /** Photon-counting bands, 1 to SKG_CHANNELS_MAX, each a channel. 0: one channel of everything. Energy and
+     * fluence of a band are in keV; its other quantities count photons, unless band_weight says otherwise. */
     int64_t bands;
     /** The focal spot; NULL: a point. Without effect in a parallel beam. */
     const skg_spot *spot;
