@@ -275,6 +275,7 @@ static void check_together(const int *on) {
     options.blur = on[BLUR] ? &spread : NULL;
     options.bands = on[BANDS] ? MOST_CHANNELS : 0, options.band_kev = edges;
     options.falloff = on[FALLOFF];
+    options.band_weight = SKG_BAND_WEIGHT_ENERGY;
     options.quantity = on[RATIO] ? SKG_QUANTITY_TRANSMISSION : SKG_QUANTITY_ENERGY;
     ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
     skg_output_init(&output);

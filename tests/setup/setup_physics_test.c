@@ -130,6 +130,17 @@ START_TEST(falloff_can_be_asked_for) {
 }
 END_TEST
 
+START_TEST(weight_of_bands) {
+    ck_skg(load_with("Falloff=true", NULL));
+    ck_assert_int_eq(options().band_weight, SKG_BAND_WEIGHT_PHOTONS);
+    ck_skg(load_with("BandWeight=\"energy\"", NULL));
+    ck_assert_int_eq(options().band_weight, SKG_BAND_WEIGHT_ENERGY);
+    ck_skg(load_with("BandWeight=\"photons\"", NULL));
+    ck_assert_int_eq(options().band_weight, SKG_BAND_WEIGHT_PHOTONS);
+    ck_skg_fails(load_with("BandWeight=\"mass\"", NULL), SKG_ERR_FORMAT, "BandWeight");
+}
+END_TEST
+
 /* The beam of gVXR's paediatric case; then with a load, whose photons are those per pixel of 1 mm x 2 mm at
  * 500 mm. */
 START_TEST(tubes) {
@@ -336,6 +347,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, tables_of_attenuation);
     tcase_add_test(tests, beams_of_many_energies);
     tcase_add_test(tests, falloff_can_be_asked_for);
+    tcase_add_test(tests, weight_of_bands);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
     tcase_add_test(tests, focal_spots);

@@ -193,6 +193,10 @@ typedef struct {
     /** [view_count] a sample of the views that frames will have, so that the error bound of `tolerance` holds
      * for them too. Without effect if tolerance is 0. */
     const skg_view *views;
+    /** enum skg_band_weight, of transmission and attenuation of bands; SKG_BAND_WEIGHT_PHOTONS by default */
+    int32_t band_weight;
+    /** 0 */
+    int32_t reserved;
 } skg_plan_options;
 
 /** Prepares the options of a plan, of `size` bytes (export.h). */
