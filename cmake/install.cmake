@@ -1,18 +1,34 @@
 # Library, headers, command, and what pkg-config and find_package(skiagraph) need.
 include(CMakePackageConfigHelpers)
+set(cmake_files ${CMAKE_INSTALL_LIBDIR}/cmake/skiagraph)
 install(TARGETS skiagraph EXPORT skiagraph-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY lib/include/skiagraph host/include/skiagraph DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(EXPORT skiagraph-targets NAMESPACE skiagraph:: DESTINATION ${cmake_files})
+if(SKG_STATIC)
+  install(TARGETS skiagraph_static EXPORT skiagraph-static-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT skiagraph-static-targets NAMESPACE skiagraph:: DESTINATION ${cmake_files})
+endif()
+install(DIRECTORY lib/include/skiagraph host/include/skiagraph DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h")
 install(FILES ${skiagraph_BINARY_DIR}/include/skiagraph/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/skiagraph)
-install(EXPORT skiagraph-targets NAMESPACE skiagraph:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/skiagraph)
 configure_package_config_file(cmake/skiagraph-config.cmake.in ${skiagraph_BINARY_DIR}/skiagraph-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/skiagraph)
+  INSTALL_DESTINATION ${cmake_files})
 write_basic_package_version_file(${skiagraph_BINARY_DIR}/skiagraph-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${skiagraph_BINARY_DIR}/skiagraph-config.cmake ${skiagraph_BINARY_DIR}/skiagraph-config-version.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/skiagraph)
-# Where the prefix is, seen from skiagraph.pc: an installed tree may be moved.
+  DESTINATION ${cmake_files})
+
+# The .pc files find the prefix from their own place: an installed tree may be moved.
 file(RELATIVE_PATH SKG_PREFIX_FROM_PC "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
-configure_file(cmake/skiagraph.pc.in ${skiagraph_BINARY_DIR}/skiagraph.pc @ONLY)
-install(FILES ${skiagraph_BINARY_DIR}/skiagraph.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+# What a static program links besides, by -l: Requires.private would ask for these libraries' .pc files from programs
+# that link the shared library, too.
+set(SKG_LIBS_PRIVATE ${ASSIMP_LDFLAGS} ${JANSSON_LDFLAGS} ${PNG_LDFLAGS} ${TIFF_LDFLAGS} ${OPENCL_LDFLAGS})
+list(TRANSFORM OpenMP_C_LIB_NAMES PREPEND -l OUTPUT_VARIABLE openmp)
+list(APPEND SKG_LIBS_PRIVATE ${openmp} -lm)
+list(REMOVE_DUPLICATES SKG_LIBS_PRIVATE)
+list(JOIN SKG_LIBS_PRIVATE " " SKG_LIBS_PRIVATE)
+foreach(name skiagraph skiagraph-opencl)
+  configure_file(cmake/${name}.pc.in ${skiagraph_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${skiagraph_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 if(TARGET skiagraph_command)
   set_target_properties(skiagraph_command PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS skiagraph_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

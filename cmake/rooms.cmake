@@ -2,7 +2,8 @@
 #
 # A room includes the headers of another as "room/file.h". It finds only its own and those of the rooms that were
 # declared before it: its include path is a folder of links to these rooms. An include that points upward does not
-# compile. Public headers (<skiagraph/...>) and the kernels' shared ones are visible to all.
+# compile. Public headers (<skiagraph/...>) and the kernels' shared ones are visible to all, except that a room of lib
+# does not see the public headers of host. The test `house` reads the same order from the property SKG_ROOMS.
 set_property(GLOBAL PROPERTY SKG_ROOMS "")
 
 # Makes the folder PATH with a link to each folder of the list FOLDERS, named like it.
@@ -18,12 +19,14 @@ function(skg_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS" ${ARGN})
   get_property(rooms GLOBAL PROPERTY SKG_ROOMS)
   list(APPEND rooms ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+  list(REMOVE_DUPLICATES rooms)
   set_property(GLOBAL PROPERTY SKG_ROOMS "${rooms}")
   set(sight ${skiagraph_BINARY_DIR}/rooms/${name})
   skg_link_folders(${sight} "${rooms}")
   list(TRANSFORM ROOM_SOURCES PREPEND ${name}/ REGEX "^[^/].*")
   add_library(skg_${name} OBJECT ${ROOM_SOURCES})
-  target_include_directories(skg_${name} PRIVATE ${sight} ${skiagraph_SOURCE_DIR}/kernels)
+  target_include_directories(skg_${name} PRIVATE
+    ${sight} ${CMAKE_CURRENT_SOURCE_DIR}/include ${skiagraph_SOURCE_DIR}/kernels)
   target_link_libraries(skg_${name} PRIVATE skg_interface ${ROOM_LINKS})
   # The objects, for the library and for tests of private code.
   target_sources(skg_objects INTERFACE $<TARGET_OBJECTS:skg_${name}>)

@@ -1,9 +1,11 @@
-# Sourced by demo and check: makes sure that what the build needs is there. Debian package names.
-# skg_need WORDS...: installs what is missing of these packages, or says the exact line and stops.
+# shellcheck shell=sh
+# demo and check read this file. It makes sure that what the build needs is there. Packages have their Debian names.
 
+# shellcheck disable=SC2034
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
 libassimp-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
 
+# skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {
     if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then
         echo "This is no Debian: nothing is installed. Needed, by their Debian names: $*"
@@ -15,11 +17,11 @@ skg_need() {
     done
     [ -z "$missing" ] && return 0
     line="apt-get install -y --no-install-recommends$missing"
-    # Root installs; others through sudo, where sudo can ask or need not.
+    # Root installs. Others do it through sudo, if sudo needs no password or can ask for it.
     sudo=""
     if [ "$(id -u)" -ne 0 ]; then
         if command -v sudo >/dev/null 2>&1 && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
-            sudo="sudo "
+            sudo=sudo
         else
             skg_install=no
         fi
@@ -29,17 +31,19 @@ skg_need() {
         echo "    apt-get update && $line"
         return 1
     fi
-    echo "Installing: $sudo$line"
-    ${sudo}apt-get update -qq && ${sudo}env DEBIAN_FRONTEND=noninteractive $line
+    echo "Installing: $sudo $line"
+    # shellcheck disable=SC2086
+    $sudo apt-get update -qq && $sudo env DEBIAN_FRONTEND=noninteractive $line
 }
 
-# skg_build DIR OPTIONS...: configures and builds.
+# skg_build PRESET [TARGET...]: configures one of CMakePresets.json, and builds these targets or all.
 skg_build() {
-    build=$1
+    preset=$1
     shift
-    cmake -S . -B "$build" "$@" >"$build.log" 2>&1 && cmake --build "$build" -j "$(nproc)" >>"$build.log" 2>&1 || {
-        tail -n 40 "$build.log"
-        echo "The build failed; the whole log is in $build.log"
+    if ! { cmake --preset "$preset" && cmake --build --preset "$preset" -j "$(nproc)" ${1:+--target "$@"}; } \
+        >"build-$preset.log" 2>&1; then
+        tail -n 40 "build-$preset.log"
+        echo "The build failed; the whole log is in build-$preset.log"
         return 1
-    }
+    fi
 }

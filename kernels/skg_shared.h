@@ -52,7 +52,7 @@
     real anchor_x, anchor_y, reference;                                                                      \
     real highest;  /* of r: where the ray ends, at the pixel */                                              \
     real start[3]; /* parallel: paths start at r = start[0] + start[1] i + start[2] j */                     \
-    real unused;                                                                                             \
+    real steepest; /* gradient of z (per pixel) times a coordinate above which a face is steep */            \
     SKG_INT pixel_i, pixel_j;                                                                                \
     SKG_INT mesh_vertex;  /* first of the mesh in the vertex buffer */                                       \
     SKG_INT first_vertex; /* of the part, in the numbering over all parts */                                 \

@@ -84,6 +84,8 @@ static void compare(const char *label, const char *tissue, skg_chain *chain, int
             fprintf(csv, "%s,%s,%s,%d,%g,%g,%g,%g\n", label, tissue, s[i].name, (int)broken, worst, apart,
                     bench_least(times + i), bench_median(times + i));
         if (i == 0 && broken > 0) bench_die("the exact solution breaks %d links", (int)broken);
+    }
+    for (int i = 0; i < SOLVERS; i++) {
         queue_free(&s[i].scratch);
         free(s[i].u);
     }

@@ -18,16 +18,6 @@ void skg_body_options_init_sized(void *options, int32_t size) {
     skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
-void skg_organ_init_sized(void *organ, int32_t size) {
-    const skg_organ defaults = {.inside = -1, .centre_mm = {(double)NAN, (double)NAN, (double)NAN}};
-    skg_struct_init(organ, size, &defaults, sizeof defaults);
-}
-
-void skg_organ_link_init_sized(void *link, int32_t size) {
-    const skg_organ_link defaults = {0};
-    skg_struct_init(link, size, &defaults, sizeof defaults);
-}
-
 static skg_status check_options(const skg_body_options *o) {
     if (o->relaxation < 0 || o->relaxation > 20)
         return skg_fail(SKG_ERR_BREATHING, "body: %" PRId32 " relaxation passes; the range is 0 to 20",

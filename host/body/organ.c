@@ -8,6 +8,16 @@
 #include <inttypes.h>
 #include <string.h>
 
+void skg_organ_init_sized(void *organ, int32_t size) {
+    const skg_organ defaults = {.inside = -1, .centre_mm = {(double)NAN, (double)NAN, (double)NAN}};
+    skg_struct_init(organ, size, &defaults, sizeof defaults);
+}
+
+void skg_organ_link_init_sized(void *link, int32_t size) {
+    const skg_organ_link defaults = {0};
+    skg_struct_init(link, size, &defaults, sizeof defaults);
+}
+
 /* The rotation vector at weight 1. With x to the left and y to the back, the front is raised by a rotation about -x,
  * and the side by one about -y on the left and about y on the right. */
 static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {

@@ -75,6 +75,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                                 .origin = mesh->origin,
                                 .flipped = mesh->orientation < 0,
                                 .reference = 0.5 * (extent->scale.low_depth + extent->scale.high_depth),
+                                .depth = extent->scale.high_depth - extent->scale.low_depth,
                                 .contributions = mesh->closed ? (int32_t)count : 0,
                                 .contribution = pass->contributions + pass->first[p]};
         if (count == 0) continue;

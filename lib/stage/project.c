@@ -2,7 +2,9 @@
 
 #include <skiagraph/plan.h>
 
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -229,6 +231,7 @@ static void round_entry(const skg_part_double *from, skg_part_float *to) {
     to->anchor_y = (float)from->anchor_y;
     to->reference = (float)from->reference;
     to->highest = (float)from->highest;
+    to->steepest = (float)fmin(from->steepest, (double)FLT_MAX);
     to->pixel_i = from->pixel_i;
     to->pixel_j = from->pixel_j;
     to->turned = from->turned;
@@ -248,6 +251,16 @@ static void set_contribution(const skg_geometry *geometry, void *contributions, 
                                      .plane = (SKG_INT)from->plane};
 }
 
+/* A face is steep if the last bit of a coordinate moves its depth by more than this share of the part's depth. The share is
+ * that of the bars in docs/numerics.md: a length is held to be well defined if such a shift changes it by less. */
+static const double STEEP_SHARE = 1e-6;
+
+static double steepest(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part) {
+    const double last_bit = is_double(geometry) ? DBL_EPSILON : (double)FLT_EPSILON;
+    const double z = camera->parallel ? part->depth : part->depth / part->reference; /* z = r / t, t about reference */
+    return STEEP_SHARE * fabs(z) / last_bit;
+}
+
 static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *camera,
                               const skg_geometry_part *part, double scale, skg_table_slot *slot) {
     int64_t total = 0;
@@ -260,6 +273,7 @@ static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *ca
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
         skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
+        entry->steepest = steepest(geometry, camera, &part[p]);
         entry->first_contribution = (SKG_INT)slot->contribution_count;
         entry->contributions = (SKG_INT)part[p].contributions;
         if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);

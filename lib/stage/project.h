@@ -25,6 +25,7 @@ typedef struct {
     /* The path parameter that the part's depths are measured from: the middle of those that lie on paths, so that no
      * term is larger than the part's extent. Above 0 with a point source. */
     double reference;
+    double depth;          /* the difference between its greatest and least path parameter */
     int32_t contributions; /* how many; 0: the part is not drawn, but keeps its place in the tables */
     const skg_contribution *contribution;
 } skg_geometry_part;

@@ -273,6 +273,7 @@ static void check_round(const char *what, const solid *s, form *of, double sagit
                           (int)p);
         caster *c = caster_create(s, NULL);
         verdict v = {0};
+        v.single = precision == SKG_PRECISION_SINGLE;
         verdict_cast(&v, c, &view, got, window_of(s, NULL, &view), 400, 0, &seed);
         verdict_check(&v, precision, what);
         verdict_free(&v);

@@ -46,7 +46,7 @@ static int64_t rays_for(const hard_solid *s) {
 
 static void judge_lengths(const hard_solid *s, int32_t precision, const double *got, hard_outcome *o) {
     caster *c = caster_create(&s->body, s->pose);
-    verdict v = {0};
+    verdict v = {.single = precision == SKG_PRECISION_SINGLE};
     uint64_t seed = 5;
     int64_t below = 0;
     const int64_t pixels = s->view.rows * s->view.columns;
@@ -54,7 +54,7 @@ static void judge_lengths(const hard_solid *s, int32_t precision, const double *
     const double by = s->size > 0 ? v.longest / s->size : 1, worst = by * verdict_worst(&v),
                  rms = by * verdict_rms(&v), most = s->sliver ? 3.2e-6 : 3e-7;
     o->worst[precision] = worst;
-    o->bar[precision] = precision == SKG_PRECISION_SINGLE ? 1e-3 : s->double_bar > 0 ? s->double_bar : 1e-11;
+    o->bar[precision] = precision == SKG_PRECISION_SINGLE ? 3e-5 : s->double_bar > 0 ? s->double_bar : 1e-11;
     if (!(worst <= o->bar[precision])) hard_fault(o, "worst %.3g", worst);
     if (precision == SKG_PRECISION_SINGLE && !(rms <= most)) hard_fault(o, "rms %.3g above %.3g", rms, most);
     const double longest = s->size > 0 ? s->size : v.longest;

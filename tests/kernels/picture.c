@@ -197,7 +197,12 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
     skg_contribution *weights = calloc((size_t)bodies, sizeof *weights);
     for (int b = 0; b < bodies; b++) {
         weights[b] = (skg_contribution){of[b].plane, of[b].weight, of[b].bias};
-        parts[b] = (skg_geometry_part){of[b].pose, origin, 0, middle_depth(camera, &of[b]), 1, &weights[b]};
+        parts[b] = (skg_geometry_part){.pose = of[b].pose,
+                                       .origin = origin,
+                                       .reference = middle_depth(camera, &of[b]),
+                                       .depth = 0.1, /* of the path: what is steep is nearly the same for all */
+                                       .contributions = 1,
+                                       .contribution = &weights[b]};
     }
     skg_status status =
         skg_geometry_project(context, geometry, &options->kernels, camera, parts, scale, NULL);

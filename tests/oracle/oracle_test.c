@@ -111,6 +111,7 @@ static void judge(uint64_t *seed, int64_t columns, int64_t rows, double wide, in
     place(seed, &view, distance, wide, &s, pose);
     double *got = run_solid(&s, pose, &view, (run_choice){.precision = precision});
     caster *c = caster_create(&s, pose);
+    v->single = precision == SKG_PRECISION_SINGLE;
     verdict_cast(v, c, &view, got, window_of(&s, pose, &view), pixels, 0, seed);
     caster_free(c);
     free(got);

@@ -15,7 +15,7 @@ case $1 in
 fortran)
     need gfortran
     # shellcheck disable=SC2046
-    gfortran -std=f2003 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
+    gfortran -std=f2008 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
     ./first_image_f
     ;;
 python)

@@ -25,6 +25,37 @@ cmake -S "$source/examples" -B cmake -DCMAKE_PREFIX_PATH="$stage/usr" >cmake.log
 cmake --build cmake >>cmake.log
 cmake/first_image
 
+if [ -e "$lib/libskiagraph.a" ]; then
+    echo "the static library, by pkg-config and by CMake:"
+    # shellcheck disable=SC2046
+    cc -std=c11 "$source/examples/first_image.c" $(pkg-config --cflags skiagraph) \
+        $(pkg-config --static --libs skiagraph | sed 's/-lskiagraph/-l:libskiagraph.a/') -o first_image_static
+    mkdir -p components
+    cat >components/CMakeLists.txt <<END
+cmake_minimum_required(VERSION 3.25)
+project(components LANGUAGES C)
+find_package(skiagraph REQUIRED COMPONENTS static opencl)
+add_executable(first_image $source/examples/first_image.c)
+target_link_libraries(first_image PRIVATE skiagraph::static m)
+file(WRITE opencl.c "#include <skiagraph/opencl.h>\nint main(void) { return (int)skg_last_cl_error(); }\n")
+add_executable(opencl opencl.c)
+target_link_libraries(opencl PRIVATE skiagraph::opencl)
+END
+    cmake -S components -B components/build -DCMAKE_PREFIX_PATH="$stage/usr" >components.log
+    cmake --build components/build >>components.log
+    for program in ./first_image_static components/build/first_image; do
+        if ldd $program | grep libskiagraph; then exit 1; fi
+        $program
+    done
+    components/build/opencl
+fi
+
+echo "skiagraph/opencl.h by pkg-config:"
+# shellcheck disable=SC2046
+printf '#include <skiagraph/opencl.h>\nint main(void) { return (int)skg_last_cl_error(); }\n' |
+    cc -std=c11 -xc - $(pkg-config --cflags --libs skiagraph-opencl) -o opencl_pc
+./opencl_pc
+
 echo "every public header compiles alone, in C and as it stands:"
 for header in "$stage"/usr/include/skiagraph/*.h; do
     # shellcheck disable=SC2046

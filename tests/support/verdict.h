@@ -1,5 +1,7 @@
 /* Lengths held against the truth, by the bars of docs/numerics.md#precision: single: rms <= 3e-7 Lmax, 99.9 % within 3e-6
- * Lmax, none beyond 1e-3 Lmax; double: none beyond 1e-11 Lmax. Lmax is the longest true path of a picture. */
+ * Lmax, none beyond 3e-5 Lmax; double: none beyond 1e-11 Lmax. Lmax is the longest true path of a picture. Where the true
+ * length changes by more than 1e-6 Lmax under shifts of the ray by 4 units in the last place of a coordinate relative to
+ * the part, the truth in single is the interval that it takes under these shifts. */
 #ifndef SKG_TESTS_VERDICT_H
 #define SKG_TESTS_VERDICT_H
 
@@ -11,6 +13,7 @@ typedef struct {
     int64_t count, capacity;
     double *errors;
     double longest; /* Lmax of the last picture, mm */
+    int32_t single; /* 1: single precision, whose truth may be an interval; set it before verdict_cast */
 } verdict;
 
 void verdict_free(verdict *v);

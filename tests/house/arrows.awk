@@ -1,0 +1,46 @@
+# From the facts of house.sh to arrows: FROM TO "includes" FILE, or FROM TO "calls" NAME.
+function stem(path) { sub(/\.[a-z]+$/, "", path); return path }
+# An object's file, as room/file without ending.
+function node(room, object,   name) {
+    name = object
+    sub(/.*\.dir\//, "", name)
+    sub(/\.o$/, "", name)
+    if (name ~ /^\// || name ~ /__\//) sub(/.*\//, "", name) # made at build time
+    sub(/^\.\.\//, "", name)
+    name = stem(name)
+    return index(name, room "/") == 1 ? name : room "/" name
+}
+$1 == "file" { known[$2] = 1 }
+$1 == "include" { n++; from[n] = $2; what[n] = $3 }
+$1 == "symbol" {
+    symbols++
+    at[symbols] = node($2, $4); program[symbols] = $3; name[symbols] = $5; type[symbols] = $6
+    if ($6 !~ /[Uw]/) {
+        own[$3, $5] = at[symbols]
+        if ($3 !~ /^program:/) shared[$5] = at[symbols]
+    }
+}
+END {
+    for (i = 1; i <= n; i++) {
+        path = substr(what[i], 2, length(what[i]) - 2)
+        folder = from[i]
+        sub(/[^\/]*$/, "", folder)
+        to = ""
+        if (what[i] ~ /^<skiagraph\//) {
+            sub(/^skiagraph\//, "", path)
+            to = ("host/include/" path) in known ? "host/include/" path : "include/" path
+        } else if (what[i] ~ /^"/) {
+            if ((folder path) in known) to = folder path
+            else if (from[i] ~ /^bench\// && ("bench/" path) in known) to = "bench/" path
+            else if (from[i] ~ /^(cli|bench)\// && ("cli/" path) in known) to = "cli/" path
+            else if (path in known) to = path
+            else if (("kernels/" path) in known) to = "kernels/" path
+        }
+        if (to != "" && stem(to) != stem(from[i])) print stem(from[i]), stem(to), "includes", path
+    }
+    for (i = 1; i <= symbols; i++) {
+        if (type[i] !~ /[Uw]/) continue
+        to = (program[i], name[i]) in own ? own[program[i], name[i]] : shared[name[i]]
+        if (to != "" && to != at[i]) print at[i], to, "calls", name[i]
+    }
+}
