@@ -109,7 +109,7 @@
     X(ATTENUATE, channel_stride) \
     X(ATTENUATE, lists) /* SKG_SUMS */ \
     X(ATTENUATE, world_plane) X(ATTENUATE, world) /* SKG_WORLD */ \
-    X(ATTENUATE, nearest) /* SKG_FALLOFF */ \
+    X(ATTENUATE, foot) /* SKG_FALLOFF */ \
     X(ATTENUATE, variances) X(ATTENUATE, key) X(ATTENUATE, photons) /* SKG_NOISE */ \
     X(ATTENUATE, range) /* SKG_RANGED */
 

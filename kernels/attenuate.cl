@@ -85,7 +85,7 @@ typedef struct {
     skg_real4 world;
 #endif
 #if SKG_FALLOFF
-    skg_real nearest;
+    skg_real foot;
 #endif
 #if SKG_NOISE
     __constant const skg_real *variances;
@@ -279,7 +279,7 @@ static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int
 static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
 #if SKG_FALLOFF
     const skg_realv near =
-        pass->nearest / skg_ray_lengths_v(pass->ray, pass->column + r * SKG_WIDE, pass->row);
+        pass->foot / skg_ray_lengths_v(pass->ray, pass->column + r * SKG_WIDE, pass->row);
     const skg_realv all = near * near * near * pass->factor;
 #else
     const skg_realv all = (skg_realv)(pass->factor);
@@ -320,7 +320,8 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  * output         strides and offset in elements
  * lists          a unit of accumulator s adds lists[s][p] to plane p
  * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
- * nearest        intensities are multiplied by the cube of nearest / |ray|
+ * foot           distance from the source to the foot of its perpendicular on the plane of the detector: intensities are
+ *                multiplied by the cube of foot / |ray|
  * variances      of the nodes, as weights
  * photons        if fewer are detected in a pixel they are drawn one by one; mean^2 / variance, which is never more than
  *                their number, decides
@@ -340,7 +341,7 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #endif
 #if SKG_FALLOFF
                             ,
-                            skg_real nearest
+                            skg_real foot
 #endif
 #if SKG_NOISE
                             ,
@@ -369,7 +370,7 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     pass.world = world;
 #endif
 #if SKG_FALLOFF
-    pass.nearest = nearest;
+    pass.foot = foot;
 #endif
 #if SKG_NOISE
     pass.variances = variances;

@@ -1,4 +1,5 @@
 /* The key Material of a sample, and of everything else that has one. */
+#include "material/material.h"
 #include "core/context.h"
 #include "setup/sections.h"
 
@@ -51,6 +52,18 @@ static skg_status read_element(const skg_json_node *node, skg_material **materia
     return skg_material_create_element(z, material);
 }
 
+/* Logs the note of a material. */
+static skg_status tell_note(skg_setup_reader *reader, const skg_json_node *node,
+                            const skg_material *material) {
+    const char *note = NULL;
+    char place[256];
+    SKG_TRY(skg_material_note_get(material, &note));
+    if (!*note) return SKG_OK;
+    skg_json_place(node, place, sizeof place);
+    skg_log(reader->context, SKG_LOG_NOTE, "%s: %s", place, note);
+    return SKG_OK;
+}
+
 /* [1, 0.112, 8, 0.888]: elements and fractions by mass. */
 static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *node, const char *label,
                                  skg_material **material) {
@@ -58,7 +71,6 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
     int32_t z[MOST / 2];
     double fractions[MOST / 2];
     int64_t count = 0;
-    const char *note = NULL;
     SKG_TRY(skg_json_array(node, "[1, 0.112, 8, 0.888]", &count));
     if (count % 2 != 0 || count > MOST)
         return skg_json_fail(node, SKG_ERR_FORMAT,
@@ -72,13 +84,7 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
     }
     skg_status status = skg_material_create_mixture(label, count / 2, z, fractions, 0, material);
     SKG_TRY(skg_json_at(node, status));
-    SKG_TRY(skg_material_note_get(*material, &note));
-    if (*note) {
-        char place[256];
-        skg_json_place(node, place, sizeof place);
-        skg_log(reader->context, SKG_LOG_NOTE, "%s: %s", place, note);
-    }
-    return SKG_OK;
+    return tell_note(reader, node, *material);
 }
 
 /* A chemical formula, or a name of the material tables. */
@@ -89,11 +95,15 @@ static skg_status read_compound(const skg_json_node *node, skg_material **materi
     return read_named(node, "", material);
 }
 
-static skg_status read_hounsfield(const skg_json_node *node, skg_material **material) {
+static skg_status read_hounsfield(skg_setup_reader *reader, const skg_json_node *node,
+                                  skg_material **material) {
     double hu = 0;
     SKG_TRY(skg_json_number(node, &hu));
     skg_status status = skg_material_create_hounsfield(hu, material);
-    return skg_json_at(node, status);
+    SKG_TRY(skg_json_at(node, status));
+    if (hu <= SKG_HOUNSFIELD_TABLED || reader->told_beyond_table) return SKG_OK;
+    reader->told_beyond_table = 1;
+    return tell_note(reader, node, *material);
 }
 
 /* ["Table", "mu.txt", "keV"] */
@@ -130,7 +140,7 @@ static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node,
     if (kind == MIXTURE && json_is_string(value.value)) return read_named(&value, "weight:", material);
     if (kind == MIXTURE) return read_fractions(reader, &value, label, material);
     if (kind == COMPOUND) return read_compound(&value, material);
-    if (kind == HU) return read_hounsfield(&value, material);
+    if (kind == HU) return read_hounsfield(reader, &value, material);
     if (kind == TABLE) return read_table(reader, &value, &unit, material);
     SKG_TRY(read_mu(&value, &per_cm));
     skg_status status = skg_material_create_mu(label, per_cm, material);

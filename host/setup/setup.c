@@ -22,6 +22,7 @@ static const skg_json_key top_keys[] = {
     {"Breathing", NULL, SKG_KEY_READ},
     {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", NULL, SKG_KEY_READ},
+    {"BandWeight", NULL, SKG_KEY_READ},
     {"World", NULL, SKG_KEY_READ},
     {"Repair", NULL, SKG_KEY_READ},
     {"Clip", NULL, SKG_KEY_READ},
@@ -64,6 +65,18 @@ static skg_status read_repair(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
+static skg_status read_band_weight(skg_setup *setup, const skg_json_object *top) {
+    static const char *const names[] = {
+        [SKG_BAND_WEIGHT_PHOTONS] = "photons", [SKG_BAND_WEIGHT_ENERGY] = "energy"};
+    const skg_json_node node = skg_json_member(top, "BandWeight");
+    if (!node.value) return SKG_OK;
+    int64_t choice = 0;
+    SKG_TRY(skg_json_choice(&node, "weight of bands", names, 2, &choice));
+    setup->has_band_weight = 1;
+    setup->band_weight = (int32_t)choice;
+    return SKG_OK;
+}
+
 static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     skg_json_node node = skg_json_member(top, "Tolerance");
     setup->tolerance = -1;
@@ -96,6 +109,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
     SKG_TRY(read_repair(reader->setup, &top));
+    SKG_TRY(read_band_weight(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
@@ -184,6 +198,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->falloff) ours.falloff = 1;
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;
+    if (setup->has_band_weight) ours.band_weight = setup->band_weight;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;

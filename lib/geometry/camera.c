@@ -154,17 +154,10 @@ double skg_camera_pixel_area(const skg_camera *camera) {
     return skg_length(across);
 }
 
-double skg_camera_nearest_ray(const skg_camera *camera) {
-    /* At the foot the ray is perpendicular to both steps: a least squares problem in (i, j). */
-    const double uu = skg_dot(camera->column, camera->column), vv = skg_dot(camera->row, camera->row);
-    const double uv = skg_dot(camera->column, camera->row), fu = skg_dot(camera->first, camera->column);
-    const double fv = skg_dot(camera->first, camera->row), area = uu * vv - uv * uv;
-    const double i = own_pixel((uv * fv - vv * fu) / area, camera->columns);
-    const double j = own_pixel((uv * fu - uu * fv) / area, camera->rows);
-    double ray[3];
-    skg_add_scaled(camera->first, i, camera->column, ray);
-    skg_add_scaled(ray, j, camera->row, ray);
-    return skg_length(ray);
+double skg_camera_foot(const skg_camera *camera) {
+    double across[3];
+    skg_cross(camera->column, camera->row, across);
+    return fabs(skg_dot(camera->first, across)) / skg_length(across);
 }
 
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray) {

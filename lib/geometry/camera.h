@@ -48,8 +48,9 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
 /* The area of a pixel in mm2. */
 double skg_camera_pixel_area(const skg_camera *camera);
 
-/* The distance in mm from a point source to the pixel nearest to the foot of its perpendicular on the detector. */
-double skg_camera_nearest_ray(const skg_camera *camera);
+/* The distance in mm from a point source to the plane of the detector: to the foot of the perpendicular, which may lie
+ * beyond the pixels. */
+double skg_camera_foot(const skg_camera *camera);
 
 /* The factors that make lengths of sums: the lengths of the rays, and 1 / scale. */
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* HU. Noise takes air below -1000; the last row of the table, a titanium implant, begins at 2300. */
+/* HU. Noise takes air below -1000; bone of rising density goes on to 3000, where 12-bit scanners end. */
 static const double LOWEST = -1050, HIGHEST = 3000;
 
 static double density_of(double hu) {
@@ -23,7 +23,7 @@ static double density_of(double hu) {
 
 skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
     SKG_PLAIN;
-    char name[64], note[160];
+    char name[64], note[256];
     SKG_NEEDS(material);
     *material = NULL;
     if (!(hu >= LOWEST && hu <= HIGHEST))
@@ -33,7 +33,12 @@ skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
     while (row + 1 < skg_hounsfield_count && hu >= skg_hounsfield_rows[row + 1].lowest) row++;
     const skg_hounsfield_row *tissue = &skg_hounsfield_rows[row];
     snprintf(name, sizeof name, "HU %g", hu);
-    snprintf(note, sizeof note, "%s; composition and density by Schneider 2000", tissue->name);
+    snprintf(
+        note, sizeof note, "%s; composition and density by Schneider 2000%s", tissue->name,
+        hu > SKG_HOUNSFIELD_TABLED
+            ? ", whose table ends at HU 1600: beyond it bone of rising density goes on. If it is a metal, name it, "
+              "such as Ti"
+            : "");
     return skg_material_compose(name, note, tissue->count, skg_mass_fractions + tissue->first, density_of(hu),
                                 material);
 }

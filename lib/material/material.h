@@ -33,6 +33,9 @@ struct skg_material {
 /* Makes a material with a copy of its name and note. The rest is zero. */
 skg_status skg_material_make(const char *name, const char *note, int32_t kind, skg_material **material);
 
+/* The Hounsfield number at which Schneider's table ends. */
+#define SKG_HOUNSFIELD_TABLED 1600
+
 /* Makes a material of a composition that has been checked. */
 skg_status skg_material_compose(const char *name, const char *note, int64_t count,
                                 const skg_mass_fraction *parts, double density, skg_material **material);

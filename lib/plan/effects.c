@@ -3,6 +3,7 @@
 #include "geometry/priority.h"
 #include "plan/costs.h"
 #include "plan/decide.h"
+#include "spectral/quantity.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
@@ -126,8 +127,13 @@ static void find_beam(const finding *f) {
         set(f, SKG_EFFECT_WORLD, 1, "the parts stand in %s", world);
     else
         set(f, SKG_EFFECT_WORLD, 0, "the parts stand in vacuum");
+    const int counts = skg_quantity_counts(options);
     if (options->response)
-        set(f, SKG_EFFECT_RESPONSE, 1, "photons count by what the detector records of their energy");
+        set(f, SKG_EFFECT_RESPONSE, 1,
+            counts ? "photons are counted by the share of them that the detector records"
+                   : "photons count by what the detector records of their energy");
+    else if (counts)
+        set(f, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: it counts all photons");
     else
         set(f, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: all photons, all their energy");
     skg_decide_attenuation(f->recipe, &attenuation);
@@ -135,7 +141,8 @@ static void find_beam(const finding *f) {
         set(f, SKG_EFFECT_FALLOFF, 0, "the beam is parallel: its intensity is the same everywhere");
     else if (attenuation.falloff)
         set(f, SKG_EFFECT_FALLOFF, 1,
-            "inverse square and obliquity, from the pixel nearest the perpendicular on");
+            "inverse square and obliquity, from the foot of the source's perpendicular on the detector's "
+            "plane on");
     else
         set(f, SKG_EFFECT_FALLOFF, 0,
             options->falloff ? "ratios to the flat field do not show it" : "photons are counted per pixel");

@@ -1,5 +1,7 @@
 #include "plan/options.h"
 
+#include "spectral/quantity.h"
+
 #include <inttypes.h>
 #include <math.h>
 
@@ -36,10 +38,13 @@ static skg_status check_detector(const skg_plan_options *options) {
     SKG_TRY(check_kev("the quantisation's step", options->quantum_step_kev));
     if (!(options->swank > 0 && options->swank <= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "the Swank factor is %g; above 0, at most 1", options->swank);
-    if (kev && options->quantity == SKG_QUANTITY_PHOTONS)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "electronic noise and quantisation are in keV, but photons are counted; take "
-                        "another quantity or leave them out");
+    if (kev && skg_quantity_counts(options))
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "electronic noise and quantisation are in keV, but photons are counted; leave them out, or "
+            "take %s",
+            options->quantity == SKG_QUANTITY_PHOTONS ? "another quantity"
+                                                      : "SKG_BAND_WEIGHT_ENERGY (BandWeight)");
     return SKG_OK;
 }
 
@@ -62,6 +67,11 @@ skg_status skg_plan_options_check(const skg_plan_options *options, const skg_dev
                         "quantity %" PRId32 " is unknown; SKG_QUANTITY_ENERGY to SKG_QUANTITY_ATTENUATION",
                         options->quantity);
     SKG_TRY(check_flags(options));
+    if (options->band_weight != SKG_BAND_WEIGHT_PHOTONS && options->band_weight != SKG_BAND_WEIGHT_ENERGY)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "weight of bands %" PRId32
+                        " is unknown; SKG_BAND_WEIGHT_PHOTONS or SKG_BAND_WEIGHT_ENERGY",
+                        options->band_weight);
     if (!(options->tolerance >= 0 && options->tolerance < 1))
         return skg_fail(SKG_ERR_ARGUMENT, "a tolerance of %g; a relative error from 0 to below 1",
                         options->tolerance);

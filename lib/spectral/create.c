@@ -138,7 +138,7 @@ static skg_status list_contributions(const making *m, skg_model *model) {
 
 /* What a photon of an energy adds to the image: the recorded energy, or 1 if photons are counted. */
 static skg_status worth_of(const making *m, double energy, double *worth) {
-    const int counts = m->options->quantity == SKG_QUANTITY_PHOTONS;
+    const int counts = skg_quantity_counts(m->options);
     *worth = counts ? 1 : energy;
     if (!m->options->response) return SKG_OK;
     return skg_response_get(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
@@ -150,7 +150,7 @@ static skg_status worth_of(const making *m, double energy, double *worth) {
 static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
     double efficiency = 1;
     if (m->options->response) SKG_TRY(skg_response_get(m->options->response, energy, 1, NULL, &efficiency));
-    const double swank = m->options->quantity == SKG_QUANTITY_PHOTONS ? 1 : m->options->swank;
+    const double swank = skg_quantity_counts(m->options) ? 1 : m->options->swank;
     *variance = efficiency > 0 ? worth * worth / (efficiency * swank) : 0;
     return SKG_OK;
 }

@@ -7,3 +7,9 @@ int skg_quantity_is_absolute(const skg_plan_options *options) {
 int skg_quantity_is_ratio(const skg_plan_options *options) {
     return options->quantity == SKG_QUANTITY_TRANSMISSION || options->quantity == SKG_QUANTITY_ATTENUATION;
 }
+
+int skg_quantity_counts(const skg_plan_options *options) {
+    if (options->quantity == SKG_QUANTITY_PHOTONS) return 1;
+    return skg_quantity_is_ratio(options) && options->bands > 0 &&
+           options->band_weight == SKG_BAND_WEIGHT_PHOTONS;
+}

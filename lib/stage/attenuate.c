@@ -129,7 +129,7 @@ static int has_argument(const kernel_key *key, int argument) {
     case SKG_ATTENUATE_world_plane:
     case SKG_ATTENUATE_world:
         return key->world;
-    case SKG_ATTENUATE_nearest:
+    case SKG_ATTENUATE_foot:
         return key->falloff;
     case SKG_ATTENUATE_variances:
     case SKG_ATTENUATE_key:
@@ -190,7 +190,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
     /* The kernel counts powers of two above a limit, or exponents if these are shown. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
-    skg_real_argument reals[4]; /* factor, limit, nearest, photons */
+    skg_real_argument reals[4]; /* factor, limit, foot, photons */
     double world[4];
     float world_single[4];
     cl_kernel kernel = NULL;
@@ -202,7 +202,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     find_world(camera, attenuation, world, world_single);
     skg_real_argument_set(&reals[0], is_double, factor);
     skg_real_argument_set(&reals[1], is_double, limit);
-    skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_nearest_ray(camera) : 0);
+    skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_foot(camera) : 0);
     skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * factor);
     const skg_argument arguments[SKG_ATTENUATE_ARGUMENTS] = {
         SKG_ARGUMENT(ATTENUATE, frame, raster->frame),
@@ -224,7 +224,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, world_plane, attenuation->world_plane),
         {SKG_ATTENUATE_world, is_double ? sizeof world : sizeof world_single,
          is_double ? (const void *)world : (const void *)world_single},
-        {SKG_ATTENUATE_nearest, reals[2].size, reals[2].value},
+        {SKG_ATTENUATE_foot, reals[2].size, reals[2].value},
         SKG_ARGUMENT(ATTENUATE, variances, attenuation->variances.memory),
         SKG_ARGUMENT(ATTENUATE, key, *noise),
         {SKG_ATTENUATE_photons, reals[3].size, reals[3].value},

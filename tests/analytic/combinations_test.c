@@ -131,7 +131,7 @@ static skg_plan_options plain_options(const int *on) {
 /* What a ray meets, mm. */
 typedef struct {
     double lengths[PARTS][PIXELS];
-    double all[PIXELS], nearest; /* rays from end to end; the one to the pixel nearest the source */
+    double all[PIXELS], distance; /* rays from end to end; from the source to the plane of the detector */
 } rays;
 
 static skg_plan *plan_lengths(const skg_plan_options *options) {
@@ -158,7 +158,8 @@ static void find_rays(skg_plan *plan, int32_t precision, const skg_view *from, r
         for (int k = 0; k < PIXELS && output.type == SKG_TYPE_FLOAT32; k++)
             found->lengths[p][k] = (double)single[k];
     }
-    found->nearest = HUGE_VAL;
+    /* Steps lie along x and y. */
+    found->distance = fabs(from->centre[2] - from->source[2]);
     for (int k = 0; k < PIXELS; k++) {
         double square = 0;
         for (int a = 0; a < 3; a++) {
@@ -167,7 +168,6 @@ static void find_rays(skg_plan *plan, int32_t precision, const skg_view *from, r
             square += to * to;
         }
         found->all[k] = sqrt(square);
-        found->nearest = fmin(found->nearest, found->all[k]);
     }
 }
 
@@ -198,7 +198,7 @@ static void add_rays(const int *on, const rays *r, double share, int channels, d
     }
     for (int c = 0; c < channels; c++)
         for (int k = 0; k < PIXELS; k++) {
-            const double fall = on[FALLOFF] ? pow(r->nearest / r->all[k], 3) : 1;
+            const double fall = on[FALLOFF] ? pow(r->distance / r->all[k], 3) : 1;
             image[c * PIXELS + k] += share * (on[RATIO] ? behind[c][k] / before[c][k] : fall * behind[c][k]);
         }
 }
@@ -275,6 +275,7 @@ static void check_together(const int *on) {
     options.blur = on[BLUR] ? &spread : NULL;
     options.bands = on[BANDS] ? MOST_CHANNELS : 0, options.band_kev = edges;
     options.falloff = on[FALLOFF];
+    options.band_weight = SKG_BAND_WEIGHT_ENERGY;
     options.quantity = on[RATIO] ? SKG_QUANTITY_TRANSMISSION : SKG_QUANTITY_ENERGY;
     ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
     skg_output_init(&output);

@@ -430,7 +430,7 @@ START_TEST(over_the_open_field) {
     skg_spot_init(&spot);
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 4;
     options.spot = &spot;
-    options.bands = 2, options.band_kev = edges;
+    options.bands = 2, options.band_kev = edges, options.band_weight = SKG_BAND_WEIGHT_ENERGY;
     options.precision = SKG_PRECISION_DOUBLE;
     check_over_the_open_field(options, spectrum);
     skg_material_release(&water);
@@ -453,6 +453,14 @@ START_TEST(refused) {
     options.electronic_kev = 1, options.quantity = SKG_QUANTITY_PHOTONS;
     ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &plan), SKG_ERR_ARGUMENT,
                  "photons are counted");
+    /* Ratios of bands count photons, unless they are weighted by energy. */
+    const double edges[2] = {10, 100};
+    options.bands = 1, options.band_kev = edges, options.quantity = SKG_QUANTITY_TRANSMISSION;
+    ck_skg_fails(skg_plan_create(context, scene, &view, spectrum, &options, &plan), SKG_ERR_ARGUMENT,
+                 "BandWeight");
+    options.band_weight = SKG_BAND_WEIGHT_ENERGY;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    skg_plan_release(&plan);
     skg_spectrum_release(&spectrum);
 }
 END_TEST

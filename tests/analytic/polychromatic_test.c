@@ -70,6 +70,13 @@ static double mu_of(const skg_material *material, double kev) {
     return 0.1 * per_cm;
 }
 
+/* Whether photons count 1, or by their recorded energy. */
+static int counts(const skg_plan_options *options) {
+    if (options->quantity == SKG_QUANTITY_PHOTONS) return 1;
+    return options->quantity >= SKG_QUANTITY_TRANSMISSION && options->bands &&
+           options->band_weight == SKG_BAND_WEIGHT_PHOTONS;
+}
+
 /* Sum over the bins of worth * photons behind the parts (all of them: the centre), and in front of them. */
 static void sum_bins(const skg_spectrum *spectrum, const skg_plan_options *options, double longer, double low,
                      double high, double *behind, double *before) {
@@ -87,7 +94,7 @@ static void sum_bins(const skg_spectrum *spectrum, const skg_plan_options *optio
             exponent += mu_of(materials[p], kev) * (thickness[p] - inner) * longer;
         }
         double world = options->world ? mu_of(options->world, kev) * 1200 * longer : 0;
-        const double worth = options->quantity == SKG_QUANTITY_PHOTONS ? efficiency : recorded;
+        const double worth = counts(options) ? efficiency : recorded;
         *before += photons * worth * exp(-world);
         if (options->world) world -= mu_of(options->world, kev) * thickness[0] * longer;
         *behind += photons * worth * exp(-exponent - world);
@@ -214,10 +221,21 @@ END_TEST
 START_TEST(bands_are_channels) {
     static const double edges[5] = {10, 33, 50, 70, 200};
     skg_spectrum *spectrum = tube(110);
+    skg_material *layer = NULL;
+    skg_response *silicon = NULL;
+    ck_skg(skg_material_create_element(14, &layer));
+    ck_skg(skg_response_create_scintillator(layer, 0.5, 1, &silicon));
+    skg_material_release(&layer);
     for (int32_t quantity = SKG_QUANTITY_ENERGY; quantity <= SKG_QUANTITY_ATTENUATION; quantity++) {
         skg_plan_options options = options_of(SKG_PRECISION_SINGLE, quantity);
         options.bands = 4, options.band_kev = edges;
-        check(spectrum, &options, bar(SKG_PRECISION_SINGLE));
+        /* By photons and energy, of an ideal detector and of one of silicon. */
+        const int32_t ways = quantity < SKG_QUANTITY_TRANSMISSION ? 1 : 4;
+        for (int32_t k = 0; k < ways; k++) {
+            options.band_weight = k % 2 ? SKG_BAND_WEIGHT_ENERGY : SKG_BAND_WEIGHT_PHOTONS;
+            options.response = k > 1 ? silicon : NULL;
+            check(spectrum, &options, bar(SKG_PRECISION_SINGLE));
+        }
     }
     static const double falling[3] = {30, 20, 40}, nothing[3] = {10, 100, 200};
     skg_plan_options options = options_of(SKG_PRECISION_SINGLE, SKG_QUANTITY_TRANSMISSION);
@@ -230,7 +248,63 @@ START_TEST(bands_are_channels) {
     ck_skg_fails(skg_plan_create(context, scene, &view, mono, &options, &plan), SKG_ERR_BEAM, "channel 1");
     options.bands = SKG_CHANNELS_MAX + 1;
     ck_skg_fails(skg_plan_create(context, scene, &view, mono, &options, &plan), SKG_ERR_ARGUMENT, "bands");
+    options.bands = 2, options.band_weight = 2;
+    ck_skg_fails(skg_plan_create(context, scene, &view, mono, &options, &plan), SKG_ERR_ARGUMENT, "weight");
     skg_spectrum_release(&mono);
+    skg_spectrum_release(&spectrum);
+    skg_response_release(&silicon);
+}
+END_TEST
+
+/* 120 kV behind 20 cm of water, one band from 20 keV: the figures of a sum by hand. */
+START_TEST(a_band_counts_photons) {
+    static const double edges[2] = {20, 200};
+    skg_spectrum *spectrum = tube(120);
+    skg_material *water = NULL;
+    skg_mesh *slab = NULL;
+    skg_scene *phantom = NULL;
+    skg_part part;
+    skg_output output;
+    static float image[SIDE * SIDE];
+    double sums[2][2] = {{0}}; /* [by energy][behind] */
+    int64_t count = 0;
+    ck_skg(skg_material_create_named("water", &water));
+    ck_skg(skg_spectrum_bin_count(spectrum, &count));
+    for (int64_t i = 0; i < count; i++) {
+        double kev = 0, photons = 0;
+        ck_skg(skg_spectrum_bin_get(spectrum, i, &kev, &photons));
+        if (kev < edges[0]) continue;
+        const double passed = photons * exp(-mu_of(water, kev) * 200);
+        sums[0][0] += photons, sums[0][1] += passed;
+        sums[1][0] += photons * kev, sums[1][1] += passed * kev;
+    }
+    /* Half a unit of the last of the digits that docs/physics.md tells. */
+    ck_assert_double_eq_tol(sums[0][1] / sums[0][0], 0.0130, 0.00005);
+    /* As above. */
+    ck_assert_double_eq_tol(sums[1][1] / sums[1][0], 0.0165, 0.00005);
+    ck_skg(skg_mesh_create_cuboid(100, 100, 200, &slab));
+    ck_skg(skg_scene_create(context, &phantom));
+    skg_part_init(&part);
+    part.mesh = slab, part.material = water;
+    ck_skg(skg_scene_add(phantom, &part, NULL));
+    skg_output_init(&output);
+    output.data = image;
+    for (int32_t k = 0; k < 4; k++) {
+        const int32_t weight = k % 2, is_logarithm = k / 2;
+        skg_plan *plan = NULL;
+        skg_plan_options options = options_of(SKG_PRECISION_SINGLE, is_logarithm ? SKG_QUANTITY_ATTENUATION
+                                                                                 : SKG_QUANTITY_TRANSMISSION);
+        options.bands = 1, options.band_kev = edges, options.band_weight = weight;
+        ck_skg(skg_plan_create(context, phantom, &view, spectrum, &options, &plan));
+        ck_skg(skg_plan_image(plan, &output));
+        const double shown = (double)image[SIDE / 2 * SIDE + SIDE / 2];
+        const double found = is_logarithm ? exp(-shown) : shown;
+        ck_assert_double_eq_tol(found * sums[weight][0] / sums[weight][1], 1, bar(SKG_PRECISION_SINGLE));
+        skg_plan_release(&plan);
+    }
+    skg_scene_release(&phantom);
+    skg_mesh_release(&slab);
+    skg_material_release(&water);
     skg_spectrum_release(&spectrum);
 }
 END_TEST
@@ -281,6 +355,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_quantity, 0, 2 * (SKG_QUANTITY_ATTENUATION + 1));
     tcase_add_test(tests, one_energy_has_one_plane);
     tcase_add_test(tests, bands_are_channels);
+    tcase_add_test(tests, a_band_counts_photons);
     tcase_add_test(tests, attenuation_beyond_any_float);
 }
 

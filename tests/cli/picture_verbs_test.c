@@ -93,6 +93,11 @@ START_TEST(bands_are_channels) {
     /* Some tens of roundings of single precision. */
     ck_assert_double_eq_tol((double)values[0], 100 * expected, 64 * (double)FLT_EPSILON * 100);
     ck_assert_double_eq_tol((double)values[1], 1000 * expected, 64 * (double)FLT_EPSILON * 1000);
+    static const char both[] = "image scene.json -o a.mha --bands 30,70 --quantity transmission";
+    ck_run(0, "%s %s", both, beam);
+    ck_assert_ptr_nonnull(strstr(said, "transmission from 30 to 70 keV"));
+    ck_run(0, "%s --band-weight energy %s", both, beam);
+    ck_run_fails(2, "--band-weight mass is not known", "%s --band-weight mass", both);
     ck_run(0, "image scene.json -o a.mha --bands 1,2");
     ck_assert_ptr_nonnull(strstr(said, "energy from 1 to 2 keV 0 to 0 keV per pixel"));
     ck_run_fails(2, "--bands 30: one edge makes no band", "image scene.json -o b.mha --bands 30");

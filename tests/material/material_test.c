@@ -267,8 +267,7 @@ START_TEST(hounsfield_joints) {
         ck_assert_double_eq_tol(density_of(m), hu[i][1], 16 * DBL_EPSILON);
         skg_material_release(&m);
     }
-    for (double h = -1050; h <= 3000;
-         h += 12.5) { /* rows sum to 100; denser than air, lighter than implants */
+    for (double h = -1050; h <= 3000; h += 12.5) { /* rows sum to 100; denser than air, lighter than metals */
         int64_t parts = 0;
         double sum = 0, w = 0;
         int32_t z;
@@ -285,6 +284,37 @@ START_TEST(hounsfield_joints) {
     ck_skg_fails(skg_material_create_hounsfield(-1051, &m), SKG_ERR_MATERIAL, "outside");
     ck_skg_fails(skg_material_create_hounsfield(3001, &m), SKG_ERR_MATERIAL, "outside");
     ck_skg_fails(skg_material_create_hounsfield((double)NAN, &m), SKG_ERR_MATERIAL, "outside");
+}
+END_TEST
+
+/* Beyond the end of the table: bone that grows denser, not amalgam or titanium, and a note of it. */
+START_TEST(hounsfield_beyond_the_table) {
+    double before = 0;
+    for (double h = 1500; h <= 3000; h += 12.5) {
+        skg_material *m = NULL;
+        const char *note = NULL;
+        int64_t parts = 0;
+        double calcium = 0, heavier = 0, w = 0;
+        int32_t z;
+        ck_skg(skg_material_create_hounsfield(h, &m));
+        ck_skg(skg_material_element_count(m, &parts));
+        for (int64_t k = 0; k < parts; k++) {
+            ck_skg(skg_material_element_get(m, k, &z, &w));
+            if (z == 20) calcium = w;
+            if (z > 20) heavier += w;
+        }
+        ck_assert_double_eq_tol(calcium, 0.225, 4 * DBL_EPSILON);
+        ck_assert_double_eq(heavier, 0);
+        ck_assert_double_eq_tol(density_of(m), 1.017 + 0.592e-3 * h, 16 * DBL_EPSILON);
+        ck_assert_double_gt(mu_of(m, 80), before);
+        before = mu_of(m, 80);
+        ck_skg(skg_material_note_get(m, &note));
+        ck_assert_ptr_nonnull(strstr(note, "Schneider 2000"));
+        ck_assert_int_eq(strstr(note, "ends at HU 1600") != NULL, h > 1600);
+        /* 0.44 / cm, as bone of 1.99 g/cm3 has; amalgam would have 5.27. */
+        if (h == 1650) ck_assert_double_eq_tol(before, 0.44, 0.01);
+        skg_material_release(&m);
+    }
 }
 END_TEST
 
@@ -392,6 +422,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, mixtures_by_fractions);
     tcase_add_test(tests, every_name_of_the_tables);
     tcase_add_test(tests, hounsfield_joints);
+    tcase_add_test(tests, hounsfield_beyond_the_table);
     tcase_add_test(tests, hounsfield_numbers_depend_on_energy);
     tcase_add_test(tests, the_naive_way);
     tcase_add_test(tests, tables_of_the_user);

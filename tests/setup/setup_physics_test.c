@@ -72,6 +72,29 @@ START_TEST(tables_of_attenuation) {
 }
 END_TEST
 
+static void count_ends(int32_t level, const char *sentence, void *user) {
+    if (level == SKG_LOG_NOTE && strstr(sentence, "ends at HU 1600")) ++*(int *)user;
+}
+
+/* Two samples beyond the end of Schneider's table: told once; up to its end: not at all. */
+START_TEST(hounsfield_beyond_the_table_is_told_once) {
+    skg_context *context = NULL;
+    int told = 0;
+    const char *settings[] = {"Samples.skin.Material=[\"HU\", 1700]", "Samples.bone.Material=[\"HU\", 2500]"};
+    ck_skg(skg_context_create(NULL, &context));
+    ck_skg(skg_context_log_set(context, count_ends, &told));
+    write_file("scene.json", good);
+    ck_skg(skg_setup_load(context, path, 2, settings, &setup));
+    ck_assert_int_eq(told, 1);
+    skg_setup_release(&setup);
+    settings[0] = settings[1] = "Samples.bone.Material=[\"HU\", 1600]";
+    ck_skg(skg_setup_load(context, path, 2, settings, &setup));
+    ck_assert_int_eq(told, 1);
+    skg_setup_release(&setup);
+    skg_context_release(&context);
+}
+END_TEST
+
 static skg_spectrum *spectrum(int64_t *count) {
     skg_spectrum *s = NULL;
     ck_skg(skg_setup_spectrum_get(setup, &s));
@@ -127,6 +150,17 @@ START_TEST(falloff_can_be_asked_for) {
     ck_skg(load_with("Source.Beam={\"kVp\": 85, \"Filter\": [[\"Al\", 3]], \"mAs\": 1}", "Falloff=false"));
     ck_assert_int_eq(options().falloff, 0);
     ck_skg_fails(load_with("Falloff=2", NULL), SKG_ERR_FORMAT, "Falloff");
+}
+END_TEST
+
+START_TEST(weight_of_bands) {
+    ck_skg(load_with("Falloff=true", NULL));
+    ck_assert_int_eq(options().band_weight, SKG_BAND_WEIGHT_PHOTONS);
+    ck_skg(load_with("BandWeight=\"energy\"", NULL));
+    ck_assert_int_eq(options().band_weight, SKG_BAND_WEIGHT_ENERGY);
+    ck_skg(load_with("BandWeight=\"photons\"", NULL));
+    ck_assert_int_eq(options().band_weight, SKG_BAND_WEIGHT_PHOTONS);
+    ck_skg_fails(load_with("BandWeight=\"mass\"", NULL), SKG_ERR_FORMAT, "BandWeight");
 }
 END_TEST
 
@@ -336,6 +370,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, tables_of_attenuation);
     tcase_add_test(tests, beams_of_many_energies);
     tcase_add_test(tests, falloff_can_be_asked_for);
+    tcase_add_test(tests, weight_of_bands);
+    tcase_add_test(tests, hounsfield_beyond_the_table_is_told_once);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
     tcase_add_test(tests, focal_spots);

@@ -22,23 +22,41 @@ const cli_flag cli_flag_image_bands = {
     "The edges of photon-counting bands, rising. Each band from one edge to the next is a channel.", NULL,
     CLI_NAMES_NOTHING};
 
+/* In the order of SKG_BAND_WEIGHT_. */
+static const cli_item weights[] = {{"photons", "every recorded photon counts 1 (the default)"},
+                                   {"energy", "photons count by their recorded energy"},
+                                   {NULL, NULL}};
+const cli_flag cli_flag_image_band_weight = {
+    "--band-weight", "NAME",
+    "How photons count in the transmission and attenuation of bands, in the place of BandWeight of the scene.",
+    weights, CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
     "and --range. A .tif or .mha holds floats, or doubles with --precision double; a .mha also holds the "
     "detector's position.",
     "With --bands the image has one channel for each band: a .tif has a page for each, a .mha a component; a .png "
-    "shows the first. A file appears whole or not at all.",
+    "shows the first. Energy and fluence of a band are in keV; photons, transmission and attenuation count photons. "
+    "A file appears whole or not at all.",
     "--json prints {frame_ms, first_ms, plan_ms, stages, range, files, plan}; times are in ms, and range has the least and "
     "the largest value of each channel.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_output,      &cli_flag_image_quantity,
-                                        &cli_flag_image_bands, &cli_flag_image_display,
-                                        &cli_flag_range,       &cli_flag_repeat,
-                                        &cli_flag_device,      &cli_flag_precision,
-                                        &cli_flag_tolerance,   &cli_flag_strategy,
-                                        &cli_flag_set,         &cli_flag_json,
-                                        &cli_flag_quiet,       NULL};
+static const cli_flag *const flags[] = {&cli_flag_output,
+                                        &cli_flag_image_quantity,
+                                        &cli_flag_image_bands,
+                                        &cli_flag_image_band_weight,
+                                        &cli_flag_image_display,
+                                        &cli_flag_range,
+                                        &cli_flag_repeat,
+                                        &cli_flag_device,
+                                        &cli_flag_precision,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_strategy,
+                                        &cli_flag_set,
+                                        &cli_flag_json,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item examples[] = {
     {"skiagraph image scene.json -o image.png", "writes a radiograph"},

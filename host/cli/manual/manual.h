@@ -52,7 +52,8 @@ extern const cli_flag cli_flag_device, cli_flag_precision, cli_flag_tolerance, c
     cli_flag_range;
 
 /* Flags of one verb. */
-extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands;
+extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
+    cli_flag_image_band_weight;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick;
 extern const cli_flag cli_flag_mesh_unit;

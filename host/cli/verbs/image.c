@@ -37,11 +37,12 @@ static skg_status one_image(skg_plan *plan, const skg_output *output, const void
 
 int cli_image(const cli_arguments *arguments) {
     cli_rendering rendering = {.arguments = arguments, .frame = one_image};
-    int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH;
+    int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH, weight = -1;
     double edges[SKG_CHANNELS_MAX + 1];
     int64_t bands = 0;
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_display, &display);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_band_weight, &weight);
     if (exit_status == CLI_DONE) exit_status = read_bands(arguments, edges, &bands);
     if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &rendering.session);
@@ -49,6 +50,7 @@ int cli_image(const cli_arguments *arguments) {
         rendering.session.options.quantity = quantity;
         rendering.session.options.bands = bands;
         rendering.session.options.band_kev = edges;
+        if (weight >= 0) rendering.session.options.band_weight = weight;
         skg_picture_init(&rendering.picture);
         rendering.picture.quantity = quantity;
         rendering.picture.display = display;

@@ -62,7 +62,8 @@ SKG_API skg_status skg_material_create_mixture(const char *name, int64_t count, 
  *     hu       -1050 to 3000
  *     method   density and composition of Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459.
  *              The density has steps (1.1199 to 1.0762 g/cm3 at HU 100), the composition is constant between
- *              the steps of their table. Amalgam from HU 1640, titanium from HU 2300. */
+ *              the steps of their table, which ends at HU 1600. Beyond it bone of the last composition and of
+ *              rising density goes on (skg_material_note_get says so): a metal has to be named. */
 SKG_API skg_status skg_material_create_hounsfield(double hu, skg_material **material);
 
 /** How skg_material_create_naive_hounsfield interpolates. */

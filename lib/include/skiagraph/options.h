@@ -149,13 +149,15 @@ typedef struct {
     /** 1: time the stages of each job, which makes frames a little slower. */
     int32_t profile;
     /** 1: intensity falls with the cube of the distance from the source (inverse square and obliquity);
-     * photons per pixel are those at the pixel nearest to the foot of the perpendicular from the source. */
+     * photons per pixel of the spectrum are those at the foot of the perpendicular from the source to the
+     * plane of the detector, whether or not a pixel lies there. */
     int32_t falloff;
     /** Of the detector; NULL: ideal. */
     skg_response *response;
     /** Around the parts; NULL: vacuum. */
     skg_material *world;
-    /** Photon-counting bands, 1 to SKG_CHANNELS_MAX, each a channel. 0: one channel of everything. */
+    /** Photon-counting bands, 1 to SKG_CHANNELS_MAX, each a channel. 0: one channel of everything. Energy and
+     * fluence of a band are in keV; its other quantities count photons, unless band_weight says otherwise. */
     int64_t bands;
     /** The focal spot; NULL: a point. Without effect in a parallel beam. */
     const skg_spot *spot;
@@ -191,6 +193,10 @@ typedef struct {
     /** [view_count] a sample of the views that frames will have, so that the error bound of `tolerance` holds
      * for them too. Without effect if tolerance is 0. */
     const skg_view *views;
+    /** enum skg_band_weight, of transmission and attenuation of bands; SKG_BAND_WEIGHT_PHOTONS by default */
+    int32_t band_weight;
+    /** 0 */
+    int32_t reserved;
 } skg_plan_options;
 
 /** Prepares the options of a plan, of `size` bytes (export.h). */

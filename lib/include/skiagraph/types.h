@@ -48,6 +48,14 @@ enum skg_quantity {
     SKG_QUANTITY_ATTENUATION = 4
 };
 
+/** How photons of different energies count in ratios of a band to its flat field. */
+enum skg_band_weight {
+    /** Every recorded photon counts 1, as in a photon-counting detector. */
+    SKG_BAND_WEIGHT_PHOTONS = 0,
+    /** Every recorded photon counts by its recorded energy. */
+    SKG_BAND_WEIGHT_ENERGY = 1
+};
+
 /** Where rays start. */
 enum skg_projection {
     /** At the point skg_view.source. */
