@@ -65,11 +65,11 @@ static figures judge(const solid *s, const skg_view *view, const double *got, do
         const double *v = values + 4 * n;
         const double error = (v[0] - v[1]) / longest;
         const double off = fmax(0, fmax(v[2] - v[0], v[0] - v[3])) / longest;
-        if (v[3] - v[2] <= 1e-6 * longest) { /* these and the bars below are those of the page named above */
-            if (n >= pixels / 2) {           /* the others were chosen for their error */
+        if (v[3] - v[2] <= 1e-6 * longest) {
+            if (n >= pixels / 2) { /* the others were chosen for their error */
                 f.sound++;
                 f.squares += error * error;
-                f.beyond += fabs(error) > 3e-6;
+                f.beyond += fabs(error) > 3e-6; /* the bar of docs/numerics.md#precision for 99.9 % */
             }
             f.worst = fmax(f.worst, fabs(error));
             f.lowest = fmin(f.lowest, v[0] / longest);
