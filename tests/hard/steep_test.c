@@ -94,8 +94,8 @@ static void check(const char *what, const solid *s, const skg_view *view, double
             const figures f = judge(s, view, got, radius, pixels);
             const double rms = sqrt(f.squares / (double)(f.sound ? f.sound : 1));
             ck_assert_msg(
-                rms <= 3e-7 && f.beyond <= 1e-3 * (double)f.sound && f.worst <= 3e-5 && f.lowest >= -1e-6 &&
-                    f.outside <= 3e-5,
+                rms <= 3e-7 && (double)f.beyond <= 1e-3 * (double)f.sound && f.worst <= 3e-5 &&
+                    f.lowest >= -1e-6 && f.outside <= 3e-5,
                 "%s: rms %.3g, %lld of %lld beyond 3e-6, worst %.3g, lowest %.3g, %.3g outside in %lld of L",
                 what, rms, (long long)f.beyond, (long long)f.sound, f.worst, f.lowest, f.outside,
                 (long long)f.sensitive);
