@@ -375,11 +375,46 @@ START_TEST(nodes_are_a_beam) {
 }
 END_TEST
 
+/* A part beside the detector has no rays of the plan's view; its longest edge stands for them, so that the bound holds when a
+ * frame moves the part into the view. */
+START_TEST(a_part_beside_the_view_may_move_in) {
+    static float pixels[SIDE * SIDE];
+    skg_plan *plan = NULL;
+    skg_plan_options options;
+    skg_output output;
+    skg_job *job = NULL;
+    const int64_t part = 0;
+    const double aside[16] = {1, 0, 0, 5000, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const double home[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    skg_frame frame;
+    open_scene(5);
+    add_parts(0);
+    skg_spectrum *spectrum = tube(100);
+    ck_skg(skg_scene_pose_set(scene, part, aside));
+    skg_plan_options_init(&options);
+    options.tolerance = 1e-3;
+    ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
+    skg_output_init(&output);
+    output.data = pixels;
+    ck_skg(skg_plan_image(plan, &output));
+    const float without = pixels[SIDE * SIDE / 2 + SIDE / 2];
+    skg_frame_init(&frame);
+    frame.pose_count = 1, frame.pose_parts = &part, frame.poses = home;
+    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    ck_assert(pixels[SIDE * SIDE / 2 + SIDE / 2] < without);
+    skg_plan_release(&plan);
+    skg_spectrum_release(&spectrum);
+    close_scene();
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, random_scenes, 0, 20);
     tcase_add_test(tests, nodes_are_a_beam);
     tcase_add_test(tests, leaving_the_verified_range);
     tcase_add_test(tests, views_of_a_scan_stay_within_the_range);
+    tcase_add_test(tests, a_part_beside_the_view_may_move_in);
     tcase_add_test(tests, a_fold_is_within_the_verified_range);
 }
 

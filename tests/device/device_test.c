@@ -202,6 +202,27 @@ START_TEST(the_drivers_words_wait_for_the_contexts_thread) {
 }
 END_TEST
 
+START_TEST(every_code_of_opencl_has_a_name) {
+    /* OpenCL 1.2 has the codes 0 to -19 and -30 to -68; these are of images, samplers and OpenGL, which are not used. */
+    static const cl_int unused[] = {-9, -10, -39, -40, -41, -60, -62, -65};
+    const char *unknown = skg_cl_name(-9999), *before = "";
+    size_t next = 0;
+    for (cl_int code = 0; code >= -68; code--) {
+        if (code < -19 && code > -30) continue;
+        if (next < sizeof unused / sizeof *unused && code == unused[next]) {
+            next++;
+            continue;
+        }
+        const char *name = skg_cl_name(code);
+        ck_assert_msg(strncmp(name, "CL_", 3) == 0 && strcmp(name, before) != 0, "code %d is called %s",
+                      (int)code, name);
+        before = name;
+    }
+    ck_assert_str_eq(skg_cl_name(-52), "CL_INVALID_KERNEL_ARGS");
+    ck_assert_str_eq(skg_cl_name(-20), unknown);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_device_is_found_and_described);
     tcase_add_test(tests, config_words_choose);
@@ -211,6 +232,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, build_errors_name_file_and_line);
     tcase_add_test(tests, buffers_that_cannot_be_are_refused);
     tcase_add_test(tests, a_callers_queue_is_checked_and_retained);
+    tcase_add_test(tests, every_code_of_opencl_has_a_name);
     tcase_add_test(tests, the_drivers_words_wait_for_the_contexts_thread);
 }
 
