@@ -101,8 +101,8 @@ static skg_status read_hounsfield(skg_setup_reader *reader, const skg_json_node 
     SKG_TRY(skg_json_number(node, &hu));
     skg_status status = skg_material_create_hounsfield(hu, material);
     SKG_TRY(skg_json_at(node, status));
-    if (hu <= SKG_HOUNSFIELD_TABLED || reader->told_beyond_table) return SKG_OK;
-    reader->told_beyond_table = 1;
+    if (hu <= SKG_HOUNSFIELD_TABLED || reader->noted_beyond_table) return SKG_OK;
+    reader->noted_beyond_table = 1;
     return tell_note(reader, node, *material);
 }
 

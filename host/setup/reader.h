@@ -11,7 +11,7 @@ typedef struct {
     skg_json_file file;
     char *folder; /* of the scene file, with its last slash; "" for the current folder */
     skg_setup *setup;
-    int32_t told_beyond_table; /* 1: told that Schneider's table ends below a Hounsfield number */
+    int32_t noted_beyond_table; /* 1: it was said that Schneider's table ends below a Hounsfield number */
 } skg_setup_reader;
 
 /* A path relative to the scene file's folder; the caller frees it. */
