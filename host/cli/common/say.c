@@ -27,16 +27,17 @@ static skg_status own_status(int exit_status) {
                                        : SKG_ERR_MEMORY;
 }
 
-int cli_error(int exit_status, const char *format, ...) {
+int cli_error(int exit_status, const char *given, ...) {
     char sentence[sizeof first.message];
+    const char *format = given ? given : ""; /* gcc's sanitizer build takes a null format for possible */
     va_list arguments;
-    va_start(arguments, format);
+    va_start(arguments, given);
     fputs("skiagraph: ", stderr);
-    vsnprintf(sentence, sizeof sentence, format, arguments);
-    va_end(arguments);
-    va_start(arguments, format);
     vfprintf(stderr, format, arguments); /* whole, whatever its length */
     fputc('\n', stderr);
+    va_end(arguments);
+    va_start(arguments, given);
+    if (vsnprintf(sentence, sizeof sentence, format, arguments) < 0) *sentence = '\0';
     va_end(arguments);
     if (!*first.message) {
         memcpy(first.message, sentence, sizeof sentence);
