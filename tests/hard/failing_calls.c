@@ -264,6 +264,8 @@ CODE(clGetDeviceInfo, (cl_device_id device, cl_device_info what, size_t size, vo
      (device, what, size, value, used))
 CODE(clGetCommandQueueInfo, (cl_command_queue queue, cl_command_queue_info what, size_t size, void *value,
                              size_t *used), (queue, what, size, value, used))
+CODE(clGetEventInfo, (cl_event of, cl_event_info what, size_t size, void *value, size_t *used),
+     (of, what, size, value, used))
 CODE(clGetEventProfilingInfo, (cl_event of, cl_profiling_info what, size_t size, void *value, size_t *used),
      (of, what, size, value, used))
 CODE(clGetKernelInfo, (cl_kernel kernel, cl_kernel_info what, size_t size, void *value, size_t *used),

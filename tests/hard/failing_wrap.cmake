@@ -1,7 +1,7 @@
 # The calls that failing_calls.c stands in for.
 set(SKG_WRAPPED malloc calloc realloc free json_loads json_loadb
   clCreateSubDevices clCreateContext clCreateCommandQueue clCreateProgramWithSource clCreateKernel clCreateBuffer clBuildProgram
-  clSetKernelArg clGetPlatformIDs clGetPlatformInfo clGetDeviceIDs clGetDeviceInfo clGetCommandQueueInfo clGetEventProfilingInfo
+  clSetKernelArg clGetPlatformIDs clGetPlatformInfo clGetDeviceIDs clGetDeviceInfo clGetCommandQueueInfo clGetEventInfo clGetEventProfilingInfo
   clGetKernelInfo clGetMemObjectInfo clFlush clFinish clWaitForEvents clEnqueueNDRangeKernel clEnqueueFillBuffer
   clEnqueueReadBuffer clEnqueueReadBufferRect clEnqueueWriteBuffer clEnqueueBarrierWithWaitList
   clEnqueueMarkerWithWaitList clReleaseContext clReleaseCommandQueue clReleaseProgram clReleaseKernel
