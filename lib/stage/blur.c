@@ -5,13 +5,13 @@
 #include <math.h>
 #include <stdio.h>
 
-/* The same numbers as in blur.cl. */
+/* What a work-item does, as blur.cl has it: rows of the first pass, vectors of a row, vectors of a run of the second. */
 enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
 
-/* Longest function along either direction, samples. */
+/* The most samples that a function may have along either direction. */
 enum { MOST_SAMPLES = 4095 };
 
-/* What one type of image needs. */
+/* Kernels and weights for images of one type, float or double. */
 typedef struct {
     cl_kernel down_kernel, across_kernel;
     skg_buffer down, across; /* weights */
@@ -52,7 +52,7 @@ static skg_status check_count(const char *what, int64_t count) {
     return SKG_OK;
 }
 
-/* Turned end to end, as a convolution needs it, and scaled to sum 1. */
+/* Copies the samples in reverse order, as a convolution reads them, and scales them to sum 1. */
 static skg_status copy_turned(const char *what, int64_t count, const double *samples, double **turned) {
     double sum = 0, magnitude = 0;
     if (!samples) return skg_fail(SKG_ERR_ARGUMENT, "the %s has no samples: NULL", what);
@@ -63,7 +63,7 @@ static skg_status copy_turned(const char *what, int64_t count, const double *sam
         sum += samples[i];
         magnitude += fabs(samples[i]);
     }
-    /* A sum of 0 may be left as this by rounding. */
+    /* Samples that cancel leave not 0 but a rounding error of this size. */
     if (!(sum > 1e-12 * magnitude) || !isfinite(magnitude))
         return skg_fail(SKG_ERR_ARGUMENT, "the samples of the %s sum to %g; the sum has to be above 0", what,
                         sum);
@@ -182,7 +182,7 @@ static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, in
     return skg_kernel_run(blur->context, kernel, "blur", 3, global, local, log);
 }
 
-/* Sizes of both passes. */
+/* The sizes that both passes work with. */
 typedef struct {
     cl_int columns, rows;      /* of the image */
     cl_int stride, high;       /* of the workspace */
@@ -195,7 +195,8 @@ static blur_layout lay_out(const skg_blur *blur, int is_double, int64_t columns,
     const int64_t lanes =
         skg_kernel_lanes(blur->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
     const int64_t left = blur->columns / 2, above = blur->separable ? 0 : blur->rows / 2;
-    /* Runs of the second pass may end past the image, and read as far to the right as any. */
+    /* The last run of a row in the second pass may end past the image, and reads `left` samples beyond its end like every
+     * other. */
     const int64_t stride =
         skg_round_up(skg_round_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);
     return (blur_layout){.columns = (cl_int)columns,

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Vertices that a work-item projects on a CPU. */
+/* How many vertices one work-item projects on a CPU. */
 enum { RUN = 256 };
 
 static int is_double(const skg_geometry *geometry) {
@@ -34,7 +34,8 @@ skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) 
     return SKG_OK;
 }
 
-/* For each block of items the part that its first item belongs to. first: [parts + 1]. */
+/* Uploads a table that says, for each block of SKG_BLOCK items, to which part the block's first item belongs: a work-item
+ * searches from there. The items are numbered through all parts; first[p] is the first one of part p, [parts + 1]. */
 static skg_status upload_blocks(skg_context *context, int64_t parts, const int64_t *first, const char *what,
                                 skg_buffer *buffer) {
     const int64_t blocks = first[parts] / SKG_BLOCK + 1;
@@ -65,7 +66,7 @@ static skg_status upload_corners(skg_context *context, skg_geometry *geometry, c
     return SKG_OK;
 }
 
-/* Numbers meshes and parts; fails where 32-bit numbers do not reach. */
+/* Numbers vertices and triangles through all meshes and through all parts. Fails where 32 bits do not number them all. */
 static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, const int64_t *mesh_of_part,
                          int64_t *mesh_triangle, int64_t *first_triangle) {
     for (int64_t m = 0; m < geometry->meshes; m++) {
@@ -89,7 +90,7 @@ static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, 
     return SKG_OK;
 }
 
-/* Sets what an entry of the part table says of the part's place in the other tables. */
+/* Writes into a part's entry where its vertices and triangles stand in the other tables. */
 #define SKG_PLACE(entry, p)                                                                                  \
     do {                                                                                                     \
         (entry).mesh_vertex = (SKG_INT)geometry->mesh_vertex[mesh_of_part[p]];                               \
@@ -152,7 +153,7 @@ cleanup:
     return status;
 }
 
-/* Until the device has read the slot's last contents. */
+/* Waits until the device has read what this slot was last filled with: only then may it be filled again. */
 static skg_status wait_for(skg_table_slot *slot) {
     if (!slot->read) return SKG_OK;
     SKG_CL_TRY(clWaitForEvents(1, &slot->read));
@@ -189,7 +190,7 @@ skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int
                            log);
 }
 
-/* The vertices of a mesh as the device wants them: offsets from its origin, [vertices][3]. */
+/* Writes the vertices of a mesh in the device's precision, as offsets from the mesh's origin: [vertices][3]. */
 static void read_offsets(const skg_geometry *geometry, const skg_mesh *mesh, void *offsets) {
     if (!is_double(geometry)) {
         memcpy(offsets, mesh->offsets, (size_t)mesh->vertices * 3 * sizeof *mesh->offsets);
@@ -215,7 +216,7 @@ skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, 
     return SKG_OK;
 }
 
-/* What changes from frame to frame in single precision is double's, rounded once. */
+/* Single precision takes what changes from frame to frame from the double values, rounded once. */
 static void round_entry(const skg_part_double *from, skg_part_float *to) {
     for (int k = 0; k < 3; k++) {
         to->row0[k] = (float)from->row0[k];

@@ -16,6 +16,12 @@ static const struct {
      "scene.json: Detector.Sise: unknown key; did you mean Size"},
     {"Detector.Size=[1, 1]", SKG_ERR_FORMAT, "scene.json: Detector.Size: has no unit"},
     {"Detector.Size=big", SKG_ERR_FORMAT, "is a string"},
+    {"Detector.Size=3", SKG_ERR_FORMAT, "is a number"},
+    {"Detector.Size=true", SKG_ERR_FORMAT, "is true"},
+    {"Detector.Size=false", SKG_ERR_FORMAT, "is false"},
+    {"Detector.Size={}", SKG_ERR_FORMAT, "is an object"},
+    {"Detector.UpVector=null", SKG_ERR_FORMAT, "UpVector"},
+    {"Detector.UpVector.0=[1]", SKG_ERR_FORMAT, "is an array"},
 };
 
 START_TEST(bad_settings_are_refused) {
