@@ -263,10 +263,18 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
     double normal[3], way[3];
     skg_spectrum *placed = NULL;
     if (!setup->absolute) return SKG_OK;
-    if (view->projection != SKG_PROJECTION_POINT)
-        return skg_json_fail(
-            node, SKG_ERR_BEAM,
-            "a parallel beam has no distance from a tube; leave out mAs, or use PointSource");
+    if (view->projection != SKG_PROJECTION_POINT) {
+        skg_quality quality;
+        skg_quality_init(&quality);
+        SKG_TRY(skg_spectrum_quality_get(setup->spectrum, &quality));
+        setup->absolute = 0;
+        return skg_json_remark(
+            node,
+            "a parallel beam has no distance from a tube, so mAs does not say how many photons "
+            "arrive (a point source would send %.4g to a mm2 at 1 m); the image is in units of "
+            "that number per pixel",
+            quality.photons);
+    }
     skg_cross(view->column_step, view->row_step, normal);
     double area = skg_length(normal);
     skg_add_scaled(view->centre, -1, view->source, way);

@@ -14,12 +14,25 @@ static const skg_json_key detector_keys[] = {
     {"PSF", NULL, SKG_KEY_READ},
 };
 
+/* Size and Spacing may both be given if they agree; if they do not, that is a fault, and Spacing holds. */
+static skg_status compare_size(const skg_json_node *node, const skg_view *view, const double *spacing) {
+    /* Exporters write six digits. */
+    const double alike = 1e-5, pixels[2] = {(double)view->columns, (double)view->rows};
+    double size[2];
+    SKG_TRY(skg_json_lengths(node, "[width, height, \"mm\"]", 2, size));
+    for (int k = 0; k < 2; k++)
+        if (!(fabs(size[k] - pixels[k] * spacing[k]) <= alike * fabs(size[k])))
+            return skg_json_fault(
+                node, SKG_ERR_FORMAT,
+                "Size is %g x %g mm, but Spacing and NumberOfPixels make %g x %g mm; give one "
+                "of them (read leniently, Spacing holds)",
+                size[0], size[1], pixels[0] * spacing[0], pixels[1] * spacing[1]);
+    return SKG_OK;
+}
+
 /* Width and height of a pixel in mm, from Spacing or Size. */
 static skg_status read_spacing(const skg_json_object *detector, const skg_view *view, double *spacing) {
     skg_json_node given = skg_json_member(detector, "Spacing"), size = skg_json_member(detector, "Size");
-    if (given.value && size.value)
-        return skg_json_fail(&size, SKG_ERR_FORMAT,
-                             "give either Size (of the detector) or Spacing (of its pixels), not both");
     if (!given.value && !size.value)
         return skg_json_fail(detector->node, SKG_ERR_FORMAT,
                              "Size is missing; give \"Size\": [400, 400, \"mm\"] or \"Spacing\": [0.5, 0.5, "
@@ -30,6 +43,7 @@ static skg_status read_spacing(const skg_json_object *detector, const skg_view *
         return skg_json_fail(node, SKG_ERR_SCENE,
                              "the detector has no size: %g mm wide and %g mm high; both have to be above 0",
                              spacing[0], spacing[1]);
+    if (given.value && size.value) return compare_size(&size, view, spacing);
     if (size.value) spacing[0] /= (double)view->columns, spacing[1] /= (double)view->rows;
     return SKG_OK;
 }

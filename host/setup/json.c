@@ -28,18 +28,54 @@ void skg_json_place(const skg_json_node *node, char *place, size_t size) {
     if (line > 0) snprintf(place + used, size - used, " (line %" PRId64 ")", line);
 }
 
-skg_status skg_json_fail(const skg_json_node *node, skg_status status, const char *format, ...) {
-    char sentence[4096], path[1024] = "";
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(sentence, sizeof sentence, format, arguments);
-    va_end(arguments);
+enum { LONGEST_SENTENCE = 4096, LONGEST_PATH = 1024 };
+
+static skg_status fail(const skg_json_node *node, skg_status status, const char *sentence) {
+    char path[LONGEST_PATH] = "";
     write_path(node, path, sizeof path);
     if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT;
     int64_t line = skg_json_line(node);
     if (line > 0)
         return skg_fail(status, "%s: line %" PRId64 ": %s: %s", node->file->path, line, path, sentence);
     return skg_fail(status, "%s: %s%s%s", node->file->path, path, *path ? ": " : "", sentence);
+}
+
+static skg_status remark(const skg_json_node *node, const char *sentence) {
+    char place[LONGEST_PATH], whole[LONGEST_SENTENCE + LONGEST_PATH];
+    json_t *remarks = node->file->remarks;
+    skg_json_place(node, place, sizeof place);
+    snprintf(whole, sizeof whole, "%s: %s", place, sentence);
+    for (size_t i = 0; i < json_array_size(remarks); i++)
+        if (strcmp(json_string_value(json_array_get(remarks, i)), whole) == 0) return SKG_OK;
+    if (json_array_append_new(remarks, json_string(whole)) == 0) return SKG_OK;
+    return skg_fail(SKG_ERR_MEMORY, "%s: no memory for a warning", node->file->path);
+}
+
+skg_status skg_json_fail(const skg_json_node *node, skg_status status, const char *format, ...) {
+    char sentence[LONGEST_SENTENCE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence, sizeof sentence, format, arguments);
+    va_end(arguments);
+    return fail(node, status, sentence);
+}
+
+skg_status skg_json_remark(const skg_json_node *node, const char *format, ...) {
+    char sentence[LONGEST_SENTENCE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence, sizeof sentence, format, arguments);
+    va_end(arguments);
+    return remark(node, sentence);
+}
+
+skg_status skg_json_fault(const skg_json_node *node, skg_status status, const char *format, ...) {
+    char sentence[LONGEST_SENTENCE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence, sizeof sentence, format, arguments);
+    va_end(arguments);
+    return node->file->lenient ? remark(node, sentence) : fail(node, status, sentence);
 }
 
 skg_status skg_json_at(const skg_json_node *node, skg_status status) {
@@ -83,9 +119,18 @@ int skg_json_same_key(const char *a, const char *b) {
     return *a == '\0' && *b == '\0';
 }
 
+/* What people and exporters write into any object for themselves and for displays. */
+static const skg_json_key asides[] = {
+    {"Comment", NULL, SKG_KEY_IGNORED},     {"Comments", NULL, SKG_KEY_IGNORED},
+    {"Colour", NULL, SKG_KEY_IGNORED},      {"Color", NULL, SKG_KEY_IGNORED},
+    {"Description", NULL, SKG_KEY_IGNORED},
+};
+
 static const skg_json_key *find_key(const skg_json_object *object, const char *name) {
     for (int64_t i = 0; i < object->count; i++)
         if (skg_json_same_key(object->keys[i].name, name)) return &object->keys[i];
+    for (size_t i = 0; i < sizeof asides / sizeof *asides; i++)
+        if (skg_json_same_key(asides[i].name, name)) return &asides[i];
     return NULL;
 }
 
@@ -98,8 +143,8 @@ static skg_status unknown_key(const skg_json_object *object, const skg_json_node
     int64_t count = object->count < 64 ? object->count : 64;
     for (int64_t i = 0; i < count; i++) names[i] = object->keys[i].name;
     const char *near = skg_nearest_name(member->key, names, count);
-    return skg_json_fail(member, SKG_ERR_FORMAT, "unknown key%s%s", near ? "; did you mean " : "",
-                         near ? near : "");
+    return skg_json_fault(member, SKG_ERR_FORMAT, "unknown key%s%s", near ? "; did you mean " : "",
+                          near ? near : "");
 }
 
 skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *keys, int64_t count,
@@ -111,7 +156,8 @@ skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *k
     json_object_foreach(node->value, name, value) {
         skg_json_node member = {.file = node->file, .up = node, .key = name, .value = value};
         const skg_json_key *key = find_key(object, name);
-        if (!key) return unknown_key(object, &member);
+        if (!key) SKG_TRY(unknown_key(object, &member));
+        if (!key) continue;
         if (key->kind == SKG_KEY_NOT_YET && !json_is_null(value) && !json_is_false(value))
             return skg_json_fail(&member, SKG_ERR_UNSUPPORTED, "%s is not simulated yet; leave the key out",
                                  key->as);

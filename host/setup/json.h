@@ -16,13 +16,21 @@ skg_status skg_json_fail(const skg_json_node *node, skg_status status, const cha
 /* The status of a call that used a value of the file. On a failure the last error gets the value's place, as above. */
 skg_status skg_json_at(const skg_json_node *node, skg_status status);
 
+/* Keeps a warning about a value: its place, then the sentence. The same warning is kept once. */
+skg_status skg_json_remark(const skg_json_node *node, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* A fault that leniency forgives: a failure as of skg_json_fail, or, where the file is read leniently, a remark and SKG_OK. */
+skg_status skg_json_fault(const skg_json_node *node, skg_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* Writes "Samples[3].Material (line 12)", for warnings; truncated where it does not fit. */
 void skg_json_place(const skg_json_node *node, char *place, size_t size);
 
 /* Keys that an object may have. */
 enum {
     SKG_KEY_READ = 0,
-    SKG_KEY_IGNORED = 1, /* concerns the display only */
+    SKG_KEY_IGNORED = 1, /* concerns the display only, or is a comment */
     SKG_KEY_NOT_YET = 2  /* of the schema, but not simulated: refused unless its value is null or false */
 };
 typedef struct {
@@ -39,8 +47,8 @@ typedef struct {
     int64_t count;
 } skg_json_object;
 
-/* The node has to be an object with these keys only, each once. An unknown key is SKG_ERR_FORMAT with the nearest
- * known name; one of SKG_KEY_NOT_YET is SKG_ERR_UNSUPPORTED. */
+/* The node has to be an object with these keys only, each once. An unknown key is a fault with the nearest known name;
+ * one of SKG_KEY_NOT_YET is SKG_ERR_UNSUPPORTED. Every object may have a comment and a colour, which are ignored. */
 skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *keys, int64_t count,
                                 skg_json_object *object);
 

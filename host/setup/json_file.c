@@ -46,13 +46,15 @@ skg_status skg_json_open(const char *path, skg_json_file *file) {
     if (!json_is_object(file->root))
         return skg_fail(SKG_ERR_FORMAT, "%s: a scene file holds one JSON object { ... }", path);
     file->set = json_array();
-    if (!file->set) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
+    file->remarks = json_array();
+    if (!file->set || !file->remarks) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
     return SKG_OK;
 }
 
 void skg_json_close(skg_json_file *file) {
     json_decref(file->root);
     json_decref(file->set);
+    json_decref(file->remarks);
     skg_free(&file->text);
     *file = (skg_json_file){0};
 }

@@ -8,9 +8,12 @@
 
 typedef struct {
     const char *path;
-    char *text;   /* the file's contents, for line numbers; ends with a 0 */
-    json_t *root; /* an object */
-    json_t *set;  /* array of the values that settings put in; they have no line */
+    char *text;      /* the file's contents, for line numbers; ends with a 0 */
+    json_t *root;    /* an object */
+    json_t *set;     /* array of the values that settings put in; they have no line */
+    json_t *remarks; /* array of strings: warnings for the reader's log, each once */
+    int32_t lenient; /* 1: unknown keys and the like are remarks, not errors */
+    int32_t lengths; /* 1: only path lengths are wanted: a beam and materials may be absent or unknown */
 } skg_json_file;
 
 /* Reads and parses a file whose top level is an object. SKG_ERR_FILE, SKG_ERR_FORMAT with line and column.

@@ -4,6 +4,7 @@
 #include "setup/sections.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 static const char *const example = "[\"mu\", 0.2], [\"Compound\", \"H2O\"] or a name such as \"Water\"";
@@ -64,6 +65,17 @@ static skg_status tell_note(skg_setup_reader *reader, const skg_json_node *node,
     return SKG_OK;
 }
 
+/* Read leniently, fractions may sum to anything above 0, such as 100; they are scaled to 1. */
+static skg_status scale_fractions(const skg_json_node *node, int64_t count, double *fractions) {
+    /* Sums within this of 1 are scaled in any case, with a note of the material's own (skg_material_create_mixture). */
+    const double close = 5e-3;
+    double sum = 0;
+    for (int64_t i = 0; i < count; i++) sum += fractions[i];
+    if (!node->file->lenient || !(sum > 0) || fabs(sum - 1) <= close || !isfinite(sum)) return SKG_OK;
+    for (int64_t i = 0; i < count; i++) fractions[i] /= sum;
+    return skg_json_remark(node, "the fractions by mass sum to %g; they are scaled to 1", sum);
+}
+
 /* [1, 0.112, 8, 0.888]: elements and fractions by mass. */
 static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *node, const char *label,
                                  skg_material **material) {
@@ -82,6 +94,7 @@ static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *
         SKG_TRY(read_z(&element, &z[i / 2]));
         SKG_TRY(skg_json_number(&fraction, &fractions[i / 2]));
     }
+    SKG_TRY(scale_fractions(node, count / 2, fractions));
     skg_status status = skg_material_create_mixture(label, count / 2, z, fractions, 0, material);
     SKG_TRY(skg_json_at(node, status));
     return tell_note(reader, node, *material);

@@ -1,4 +1,5 @@
 /* What the detector does to an image: LSF, PSF and Noise. */
+#include "core/columns.h"
 #include "core/units.h"
 #include "setup/sections.h"
 
@@ -51,6 +52,21 @@ static skg_status read_lines(skg_setup *setup, const skg_json_node *node) {
     return SKG_OK;
 }
 
+/* A text file of numbers, one list for both directions. */
+static skg_status read_lines_file(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_setup *setup = reader->setup;
+    char *path = NULL;
+    int64_t count = 0;
+    SKG_TRY(skg_setup_resolve(reader, json_string_value(node->value), &path));
+    skg_status status = skg_read_list(path, &count, &setup->blur_samples);
+    skg_free(&path);
+    SKG_TRY(skg_json_at(node, status));
+    SKG_TRY(check_odd(node, count));
+    setup->blur.columns = setup->blur.rows = count;
+    setup->blur.along_row = setup->blur.along_column = setup->blur_samples;
+    return SKG_OK;
+}
+
 /* Rows of the same length. */
 static skg_status read_points(skg_setup *setup, const skg_json_node *node) {
     int64_t rows = 0, columns = 0;
@@ -76,6 +92,7 @@ skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *
     skg_detector_blur_init(&reader->setup->blur);
     if (lines.value && points.value)
         return skg_json_fail(&points, SKG_ERR_FORMAT, "give either LSF or PSF, not both");
+    if (json_is_string(lines.value)) return read_lines_file(reader, &lines);
     if (lines.value) return read_lines(reader->setup, &lines);
     return points.value ? read_points(reader->setup, &points) : SKG_OK;
 }

@@ -4,6 +4,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,7 +44,7 @@ static const skg_json_key sample_keys[] = {
 
 /* What the second pass needs to know of a sample. */
 typedef struct {
-    int64_t element; /* in Samples */
+    skg_json_node node; /* of the sample, in Samples or the scene graph */
     int64_t part;
     int32_t outer;
 } sample_part;
@@ -67,8 +68,14 @@ static skg_status read_flag(const skg_json_object *object, const char *name, int
 static skg_status read_material(skg_setup_reader *reader, const skg_json_object *sample, const char *label,
                                 skg_material **material) {
     skg_json_node node, density = skg_json_member(sample, "Density");
-    SKG_TRY(skg_json_need(sample, "Material", "\"Water\", [\"mu\", 0.2]", &node));
-    return skg_setup_read_material(reader, &node, &density, label, material);
+    skg_status status = skg_json_need(sample, "Material", "\"Water\", [\"mu\", 0.2]", &node);
+    const int is_absent = status != SKG_OK;
+    if (!is_absent) status = skg_setup_read_material(reader, &node, &density, label, material);
+    if (!reader->file.lengths || !(is_absent || status == SKG_ERR_MATERIAL)) return status;
+    /* Path lengths need no material: one that attenuates nothing stands in. */
+    SKG_TRY(skg_json_remark(
+        sample->node, "has no usable Material: its path lengths are right, its attenuation is not known"));
+    return skg_material_create_mu(label, 0, material);
 }
 
 /* pose = pose T(-centre of the mesh's bounds) */
@@ -94,22 +101,46 @@ static skg_status read_pose(const skg_json_object *sample, const skg_mesh *mesh,
     return centred ? centre_mesh(mesh, pose) : SKG_OK;
 }
 
+static int has_label(const skg_scene *scene, const char *label) {
+    for (int64_t i = 0; i < scene->count; i++)
+        if (strcmp(scene->parts[i].label, label) == 0) return 1;
+    return 0;
+}
+
+/* The label of a part, or of its mesh; with a number behind it if a part before has the same. */
+static skg_status choose_label(const skg_setup_reader *reader, const skg_json_object *sample, skg_part *part,
+                               char *numbered, size_t size) {
+    const skg_json_node node = skg_json_member(sample, "Label");
+    if (node.value) SKG_TRY(skg_json_text(&node, &part->label));
+    const char *label = part->label;
+    if (!label) SKG_TRY(skg_mesh_name_get(part->mesh, &label));
+    if (!has_label(reader->setup->scene, label)) return SKG_OK;
+    for (int64_t number = 2;; number++) {
+        snprintf(numbered, size, "%s %" PRId64, label, number);
+        if (!has_label(reader->setup->scene, numbered)) break;
+    }
+    part->label = numbered;
+    return skg_json_remark(node.value ? &node : sample->node,
+                           "another sample has the label %s, so this one is called \"%s\"", label, numbered);
+}
+
 /* The sample's part, with everything but its parent. */
 static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sample, skg_mesh_cache *cache,
                             int64_t *id) {
     skg_part part;
     double own[16];
     int32_t flip = 0;
+    char numbered[512];
     skg_part_init(&part);
-    skg_json_node label = skg_json_member(sample, "Label"), priority = skg_json_member(sample, "Priority");
+    const skg_json_node priority = skg_json_member(sample, "Priority");
     int64_t number = 0;
     if (priority.value) SKG_TRY(skg_json_integer(&priority, INT32_MIN, INT32_MAX, &number));
     part.priority = (int32_t)number;
-    if (label.value) SKG_TRY(skg_json_text(&label, &part.label));
     SKG_TRY(read_flag(sample, "FlipNormals", &flip));
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
     SKG_TRY_CLEANUP(skg_setup_read_shape(reader, sample, flip, cache, &part.mesh, own));
+    SKG_TRY_CLEANUP(choose_label(reader, sample, &part, numbered, sizeof numbered));
+    SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
     SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
     status = skg_scene_add(reader->setup->scene, &part, id);
     status = skg_json_at(sample->node, status);
@@ -133,7 +164,7 @@ static skg_status read_element(skg_setup_reader *reader, const skg_json_node *no
     skg_json_node type = skg_json_member(&sample, "Type");
     if (type.value) SKG_TRY(skg_json_choice(&type, "type of a sample", types, 2, &choice));
     SKG_TRY(read_part(reader, &sample, cache, &part->part));
-    part->element = node->index;
+    part->node = *node;
     part->outer = choice == 1;
     list->count++;
     if (part->outer) list->outers++, list->outer_part = part->part;
@@ -142,11 +173,9 @@ static skg_status read_element(skg_setup_reader *reader, const skg_json_node *no
 
 /* An inner sample without Parent lies inside the one outer sample, where there is one. "Parent": null puts it
  * into the world. */
-static skg_status read_parent(skg_scene *scene, const skg_json_node *samples, const sample_list *list,
-                              const sample_part *part) {
-    skg_json_node node = skg_json_element(samples, part->element);
+static skg_status read_parent(skg_scene *scene, const sample_list *list, const sample_part *part) {
     skg_json_object sample;
-    SKG_TRY(read_sample_object(&node, &sample));
+    SKG_TRY(read_sample_object(&part->node, &sample));
     skg_json_node parent = skg_json_member(&sample, "Parent");
     int64_t inside = -1;
     if (parent.value && !json_is_null(parent.value)) {
@@ -158,12 +187,12 @@ static skg_status read_parent(skg_scene *scene, const skg_json_node *samples, co
     }
     if (parent.value || part->outer || list->outers == 0) return SKG_OK;
     if (list->outers > 1)
-        return skg_json_fail(&node, SKG_ERR_SCENE,
+        return skg_json_fail(&part->node, SKG_ERR_SCENE,
                              "there are %" PRId64 " outer samples, so each inner one needs a Parent: the "
                              "label of the sample around it, or null",
                              list->outers);
     skg_status status = skg_scene_set_inside(scene, part->part, list->outer_part);
-    return skg_json_at(&node, status);
+    return skg_json_at(&part->node, status);
 }
 
 /* Widens bounds (min x, y, z, max x, y, z) by a part's vertices in the world. */
@@ -197,14 +226,20 @@ static skg_status move_all_to_centre(skg_scene *scene) {
     return SKG_OK;
 }
 
-skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node) {
+skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node,
+                                  const skg_json_node *graph) {
     int64_t count = 0;
     sample_list list = {.outer_part = -1};
     skg_mesh_cache cache = {0};
     skg_status status = SKG_OK;
-    SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
+    if (node->value || !graph->value) SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
     SKG_TRY(skg_scene_create(reader->context, &reader->setup->scene));
-    SKG_TRY(skg_alloc(count, sizeof *list.parts, "samples", &list.parts));
+    SKG_TRY(skg_alloc(count + 1, sizeof *list.parts, "samples", &list.parts));
+    if (graph->value) { /* an object: a string would be a command */
+        skg_json_object sample;
+        SKG_TRY_CLEANUP(read_sample_object(graph, &sample));
+        SKG_TRY_CLEANUP(read_element(reader, graph, &cache, &list));
+    }
     for (int64_t i = 0; i < count; i++) {
         skg_json_node element = skg_json_element(node, i);
         SKG_TRY_CLEANUP(read_element(reader, &element, &cache, &list));
@@ -214,7 +249,7 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
         goto cleanup;
     }
     for (int64_t i = 0; i < list.count; i++)
-        SKG_TRY_CLEANUP(read_parent(reader->setup->scene, node, &list, &list.parts[i]));
+        SKG_TRY_CLEANUP(read_parent(reader->setup->scene, &list, &list.parts[i]));
     if (list.move_to_centre) SKG_TRY_CLEANUP(move_all_to_centre(reader->setup->scene));
 cleanup:
     skg_mesh_cache_clear(&cache);

@@ -18,8 +18,11 @@
  * from, and both before Scan. */
 skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
-skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
+
+/* graph: a SceneGraph, which is one more sample, its file with all its meshes. Either value may be NULL, not both. */
+skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node,
+                                  const skg_json_node *graph);
 
 /* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);

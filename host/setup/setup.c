@@ -18,7 +18,7 @@ static const skg_json_key top_keys[] = {
     {"Scan", NULL, SKG_KEY_READ},
     {"Precision", NULL, SKG_KEY_READ},
     {"Tolerance", NULL, SKG_KEY_READ},
-    {"SceneGraph", "a scene graph file", SKG_KEY_NOT_YET},
+    {"SceneGraph", NULL, SKG_KEY_READ},
     {"Breathing", NULL, SKG_KEY_READ},
     {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", NULL, SKG_KEY_READ},
@@ -104,7 +104,9 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
     SKG_TRY(skg_json_need(&top, "Source", "{ ... }", &source));
     SKG_TRY(skg_json_need(&top, "Detector", "{ ... }", &detector));
-    SKG_TRY(skg_json_need(&top, "Samples", "[ ... ]", &samples));
+    const skg_json_node graph = skg_json_member(&top, "SceneGraph");
+    samples = skg_json_member(&top, "Samples");
+    if (!graph.value) SKG_TRY(skg_json_need(&top, "Samples", "[ ... ]", &samples));
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
@@ -126,9 +128,16 @@ static skg_status read_all(skg_setup_reader *reader) {
             "given");
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
-    SKG_TRY(skg_setup_read_samples(reader, &samples));
+    SKG_TRY(skg_setup_read_samples(reader, &samples, &graph));
     skg_json_node breathing = skg_json_member(&top, "Breathing");
     return skg_setup_read_breathing(reader, &breathing);
+}
+
+/* Gives what was kept while reading to the log. */
+static void say_remarks(const skg_setup_reader *reader) {
+    for (size_t i = 0; i < json_array_size(reader->file.remarks); i++)
+        skg_log(reader->context, SKG_LOG_WARNING, "%s",
+                json_string_value(json_array_get(reader->file.remarks, i)));
 }
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
@@ -148,6 +157,7 @@ skg_status skg_setup_load(skg_context *context, const char *path, int64_t count,
     SKG_TRY_CLEANUP(skg_json_open(path, &reader.file));
     for (int64_t i = 0; i < count; i++) SKG_TRY_CLEANUP(skg_json_set(&reader.file, settings[i]));
     SKG_TRY_CLEANUP(read_all(&reader));
+    say_remarks(&reader);
     *setup = reader.setup;
     reader.setup = NULL;
 cleanup:

@@ -8,6 +8,9 @@ static const skg_json_key source_keys[] = {
     {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
 };
 
+/* Where only path lengths are wanted, any energy does for a beam that is absent. */
+static const double STAND_IN_KEV = 60;
+
 skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node) {
     skg_setup *setup = reader->setup;
     skg_json_object source;
@@ -32,6 +35,13 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
         setup->view.projection = parallel ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         SKG_TRY(skg_json_need(&source, "Position", example, &position));
         SKG_TRY(skg_json_lengths(&position, example, 3, setup->view.source));
+    }
+    beam = skg_json_member(&source, "Beam");
+    if (node->file->lengths && (!beam.value || json_is_null(beam.value))) {
+        SKG_TRY(skg_json_remark(node,
+                                "there is no Beam: path lengths are right, and %g keV stand in for the beam",
+                                STAND_IN_KEV));
+        return skg_spectrum_create_mono(STAND_IN_KEV, 1, &setup->spectrum);
     }
     SKG_TRY(skg_json_need(&source, "Beam", "[{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]",
                           &beam));

@@ -127,3 +127,41 @@ skg_status skg_read_columns(const char *path, const char *word, int64_t *count, 
     *second = c.second;
     return SKG_OK;
 }
+
+/* Appends the numbers of a line. */
+static skg_status read_numbers(const char *path, int64_t line, const char *text, int64_t *count,
+                               double **numbers) {
+    static const char separators[] = " \t\r\n,;";
+    for (text += strspn(text, separators); *text && *text != '#' && *text != '%';
+         text += strspn(text, separators)) {
+        const char *end = NULL;
+        const double number = skg_read_number(text, &end);
+        if (end == text || (*end && !strchr(separators, *end)))
+            return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": \"%.20s\" is no number", path, line, text);
+        SKG_TRY(skg_realloc(*count + 1, sizeof **numbers, path, numbers));
+        (*numbers)[(*count)++] = number;
+        text = end;
+    }
+    return SKG_OK;
+}
+
+skg_status skg_read_list(const char *path, int64_t *count, double **numbers) {
+    char text[4096];
+    skg_status status = SKG_OK;
+    *count = 0;
+    *numbers = NULL;
+    FILE *file = fopen(path, "r");
+    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
+    for (int64_t line = 1; status == SKG_OK && fgets(text, sizeof text, file); line++) {
+        if (strlen(text) + 1 == sizeof text)
+            status = skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", path, line);
+        else
+            status = read_numbers(path, line, text, count, numbers);
+    }
+    if (status == SKG_OK && ferror(file))
+        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
+    fclose(file);
+    if (status == SKG_OK && *count == 0) status = skg_fail(SKG_ERR_FORMAT, "%s: holds no number", path);
+    if (status != SKG_OK) skg_free(numbers);
+    return status;
+}

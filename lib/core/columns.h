@@ -1,4 +1,4 @@
-/* Two columns of numbers from a text file. Private. */
+/* Numbers from text files: two columns, or one list. Private. */
 #ifndef SKG_COLUMNS_H
 #define SKG_COLUMNS_H
 
@@ -12,6 +12,10 @@
  * errors   SKG_ERR_FILE, or SKG_ERR_FORMAT with the line */
 skg_status skg_read_columns(const char *path, const char *word, int64_t *count, double **first,
                             double **second);
+
+/* Reads all numbers of `path`, with blanks, line ends, commas or semicolons between them; the rest of a line from # or % on is
+ * skipped. The caller frees the numbers. Errors as above. */
+skg_status skg_read_list(const char *path, int64_t *count, double **numbers);
 
 /* Reads a number with a decimal point, whatever the locale. *end points behind it, or to text if there is none. */
 double skg_read_number(const char *text, const char **end);

@@ -35,7 +35,7 @@ skg_status skg_material_create_formula(const char *formula, double density, skg_
     SKG_TRY(skg_read_formula(formula, 0, &count, parts, &sum));
     const skg_mixture_row *known = skg_find_mixture(formula);
     if (!(density > 0) && count == 1) density = skg_elements[parts[0].z].density;
-    if (!(density > 0) && known) density = known->density;
+    if (!(density > 0) && known && !skg_lacks_hyphens(known, formula)) density = known->density;
     return skg_material_compose(formula, NULL, count, parts, density, material);
 }
 

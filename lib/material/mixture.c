@@ -49,6 +49,17 @@ const skg_mixture_row *skg_find_mixture(const char *name) {
     return NULL;
 }
 
+int skg_lacks_hyphens(const skg_mixture_row *row, const char *text) {
+    char wanted[SKG_LONGEST_NAME], one[SKG_LONGEST_NAME], own[SKG_LONGEST_NAME];
+    plain(text, strlen(text), wanted);
+    if (strchr(text, '-')) return 0;
+    for (int k = 0; name_at(row->names, k, one); k++) {
+        plain(one, strlen(one), own);
+        if (strcmp(own, wanted) == 0) return strchr(one, '-') != NULL;
+    }
+    return 0;
+}
+
 /* Whether the text begins with these letters. Hyphens in the text are skipped: "icru44" begins "ICRU-44". */
 static int begins(const char *text, const char *word, size_t length) {
     for (; length > 0; text++) {

@@ -14,6 +14,10 @@ void skg_mixture_name(const skg_mixture_row *row, char name[SKG_LONGEST_NAME]);
 /* The mixture that has this name, without regard to case, blanks and punctuation; NULL if there is none. */
 const skg_mixture_row *skg_find_mixture(const char *name);
 
+/* Whether the text is one of the mixture's names without its hyphens: "Ti6Al4V" for "Ti-6Al-4V". Such numbers are parts by mass,
+ * while those of a formula count atoms. */
+int skg_lacks_hyphens(const skg_mixture_row *row, const char *text);
+
 /* Counts the mixtures whose names hold every word of the query. *row is the last of them; list names the first
  * few. */
 int skg_find_mixtures(const char *query, const skg_mixture_row **row, char *list, size_t size);

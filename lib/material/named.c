@@ -28,23 +28,45 @@ static skg_status fail_unknown(const char *text, const char *formula_error) {
                     text, why);
 }
 
+/* The mass attenuation coefficient at 80 keV, cm2/g, by which messages tell two readings of a text apart. */
+static double total_at_80(int64_t count, const skg_mass_fraction *parts) {
+    double section[SKG_PROCESSES], total = 0;
+    skg_mixed_sections(count, parts, 80, section);
+    for (int p = 0; p < SKG_PROCESSES; p++) total += section[p];
+    return total;
+}
+
 /* Parts by mass in percent sum to 100; one more or less is allowed for numbers that are rounded. */
 static const double PERCENT = 100, PERCENT_MARGIN = 1;
 
 /* A formula whose numbers sum to 100 is usually meant by mass. It is refused, and the message gives both readings. */
 static skg_status check_reading(const char *text, double sum, int64_t count, const skg_mass_fraction *atoms) {
     skg_mass_fraction by_mass[SKG_LAST_ELEMENT];
-    double ignored = 0, a[SKG_PROCESSES], m[SKG_PROCESSES];
+    double ignored = 0;
     int64_t same = 0;
     if (count < 2 || !(fabs(sum - PERCENT) <= PERCENT_MARGIN)) return SKG_OK;
     SKG_TRY(skg_read_formula(text, 1, &same, by_mass, &ignored));
-    skg_mixed_sections(count, atoms, 80, a);
-    skg_mixed_sections(same, by_mass, 80, m);
-    for (int p = 1; p < SKG_PROCESSES; p++) a[0] += a[p], m[0] += m[p];
     return skg_fail(SKG_ERR_MATERIAL,
                     "\"%s\" can be read by atoms (mu/rho %.5g cm2/g at 80 keV) or by mass (%.5g); its "
                     "numbers sum to %g: write weight:%s for the latter",
-                    text, a[0], m[0], sum, text);
+                    text, total_at_80(count, atoms), total_at_80(same, by_mass), sum, text);
+}
+
+/* "Ti6Al4V" counts atoms as a formula, but is also how people write the alloy Ti-6Al-4V, whose numbers are parts by mass. */
+static skg_status check_alloy(const char *text, const skg_mixture_row *row) {
+    skg_mass_fraction atoms[SKG_LAST_ELEMENT];
+    char name[SKG_LONGEST_NAME];
+    double sum = 0;
+    int64_t count = 0;
+    if (!skg_lacks_hyphens(row, text)) return SKG_OK;
+    if (skg_read_formula(text, 0, &count, atoms, &sum) != SKG_OK) return SKG_OK;
+    skg_mixture_name(row, name);
+    return skg_fail(
+        SKG_ERR_MATERIAL,
+        "\"%s\" can be read as a formula that counts atoms (mu/rho %.5g cm2/g at 80 keV) or as \"%s\" (%.5g): "
+        "write that name for the alloy, or [\"Compound\", \"%s\"] with a density for the formula",
+        text, total_at_80(count, atoms), name, total_at_80(row->count, skg_mass_fractions + row->first),
+        text);
 }
 
 static skg_status from_formula(const char *text, skg_material **material) {
@@ -105,6 +127,7 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
     int32_t z = skg_find_element(text);
     if (z) return skg_material_create_element(z, material);
     const skg_mixture_row *row = skg_find_mixture(text);
+    if (row) SKG_TRY(check_alloy(text, row));
     if (row) return from_row(row, material);
     skg_status status = from_formula(text, material);
     if (status == SKG_OK || (status != SKG_ERR_MATERIAL) || strstr(skg_last_error(), "weight:"))

@@ -122,7 +122,6 @@ END_TEST
 START_TEST(parts) {
     ck_setting_fails(3, "itself", "Samples.bone.Parent=bone");
     ck_setting_fails(3, "skim", "Samples.bone.Parent=skim");
-    ck_setting_fails(3, "two parts have the label skin", "Samples.bone.Label=skin");
     ck_setting_fails(3, "a scaling by 0 flattens", "Samples.bone.Transform=[[\"Scaling\",1,0,1]]");
     ck_setting_fails(3, "its pose is singular",
                      "Samples.bone.Transform=[[\"Matrix\",[1,0,0,0,1,0,0,0,0,0,1,0,0,0,0,1]]]");

@@ -175,6 +175,49 @@ START_TEST(names_that_are_not_found) {
 }
 END_TEST
 
+/* Alloys, plastics and scintillators by the names that people write, with their densities in g/cm3. */
+START_TEST(names_of_engineering) {
+    static const struct {
+        const char *name;
+        double density;
+    } names[] = {
+        {"Ti-6Al-4V", 4.43}, {"ti-6al-4v", 4.43},     {"AA6061", 2.7},   {"Aluminum alloy 7075", 2.81},
+        {"Graphite", 2.26},  {"Amorphous carbon", 2}, {"PEEK", 1.32},    {"ABS", 1.05},
+        {"CFRP", 1.56},      {"Brass", 8.07},         {"Steel 316", 8},  {"Cesium iodine", 4.51},
+        {"CsI", 4.51},       {"NaI", 3.667},          {"Gadox", 7.44},   {"Gadox DRZ-Plus", 4.76},
+        {"Gd2O3", 7.41},     {"Gd3Ga5O12", 7.08},     {"YGO", 5.9},      {"CdWO4", 7.9},
+        {"Y2O3", 5.01},      {"La2HfO7", 7.9},        {"Y3Al5O12", 4.56}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        skg_material *material = named(names[i].name);
+        ck_assert_msg(density_of(material) == names[i].density, "%s: %g", names[i].name,
+                      density_of(material));
+        skg_material_release(&material);
+    }
+    const double ti = mu_rho("Ti", 80), al = mu_rho("Al", 80), v = mu_rho("V", 80);
+    ck_assert_double_eq_tol(mu_rho("Ti-6Al-4V", 80), .9 * ti + .06 * al + .04 * v, 16 * DBL_EPSILON);
+}
+END_TEST
+
+/* A bare Ti6Al4V counts atoms to a chemist and is an alloy to an engineer: refused, with both readings. */
+START_TEST(alloys_without_hyphens_are_refused) {
+    skg_material *material = NULL, *alloy = named("Ti-6Al-4V");
+    char by_atoms[32], by_mass[32];
+    ck_skg(skg_material_create_formula("Ti6Al4V", 4.43, &material));
+    snprintf(by_atoms, sizeof by_atoms, "atoms (mu/rho %.5g", mass_mu(material, 80));
+    snprintf(by_mass, sizeof by_mass, "Ti-6Al-4V\" (%.5g)", mass_mu(alloy, 80));
+    ck_assert_str_ne(by_atoms, by_mass);
+    skg_material_release(&material);
+    ck_skg_fails(skg_material_create_named("Ti6Al4V", &material), SKG_ERR_MATERIAL, by_atoms);
+    ck_skg_fails(skg_material_create_named("Ti6Al4V", &material), SKG_ERR_MATERIAL, by_mass);
+    ck_skg_fails(skg_material_create_named("AlSi10Mg", &material), SKG_ERR_MATERIAL, "can be read as");
+    /* A formula that was asked for as such does not take the alloy's density. */
+    ck_skg(skg_material_create_formula("Ti6Al4V", 0, &material));
+    ck_assert_double_eq(density_of(material), 0);
+    skg_material_release(&material);
+    skg_material_release(&alloy);
+}
+END_TEST
+
 START_TEST(density_unknown_or_another) {
     skg_material *glass = named("Ca5(PO4)3OH"), *dense = NULL;
     double mu = 0;
@@ -418,6 +461,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, one_material_by_many_names);
     tcase_add_test(tests, formulas);
     tcase_add_test(tests, names_that_are_not_found);
+    tcase_add_test(tests, names_of_engineering);
+    tcase_add_test(tests, alloys_without_hyphens_are_refused);
     tcase_add_test(tests, density_unknown_or_another);
     tcase_add_test(tests, mixtures_by_fractions);
     tcase_add_test(tests, every_name_of_the_tables);

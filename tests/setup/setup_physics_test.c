@@ -358,12 +358,6 @@ START_TEST(what_is_refused) {
 }
 END_TEST
 
-START_TEST(parallel_beams_have_no_mas) {
-    ck_skg_fails(load_with("Source.Shape=Parallel", "Source.Beam={\"kVp\": 85, \"mAs\": 1}"), SKG_ERR_BEAM,
-                 "no distance");
-}
-END_TEST
-
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_loop_test(tests, every_kind_of_material, 0, sizeof kinds / sizeof *kinds);
@@ -379,7 +373,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, line_and_point_spread);
     tcase_add_test(tests, noises);
     tcase_add_loop_test(tests, what_is_refused, 0, sizeof bad / sizeof *bad);
-    tcase_add_test(tests, parallel_beams_have_no_mas);
 }
 
 SKG_SUITE_MAIN("setup_physics", add_tests)

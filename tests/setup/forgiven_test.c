@@ -1,0 +1,151 @@
+/* What scene files in use have, and is forgiven with a warning: always, or where a file is read leniently. */
+#include "core/vector.h"
+#include "scene/scene.h"
+#include "setup/setup_files.h"
+
+#include <float.h>
+#include <math.h>
+
+enum { MOST_WARNINGS = 8 };
+static char warnings[MOST_WARNINGS][512];
+static int warning_count;
+static skg_context *context;
+
+static void keep(int32_t level, const char *sentence, void *user) {
+    (void)user;
+    if (level != SKG_LOG_WARNING) return;
+    ck_assert_int_lt(warning_count, MOST_WARNINGS);
+    snprintf(warnings[warning_count++], sizeof *warnings, "%s", sentence);
+}
+
+static void set_up_log(void) {
+    set_up();
+    warning_count = 0;
+    ck_skg(skg_context_create(NULL, &context));
+    ck_skg(skg_context_log_set(context, keep, NULL));
+}
+
+static void tear_down_log(void) {
+    tear_down();
+    skg_context_release(&context);
+}
+
+/* Loads the good file with one piece of its text replaced by another. */
+static void load_edited(const char *from, const char *to) {
+    write_edited(from, to);
+    ck_skg(skg_setup_load(context, path, 0, NULL, &setup));
+}
+
+static const char *label_of(int64_t id) {
+    skg_part part;
+    skg_part_init(&part);
+    ck_skg(skg_scene_part_get(setup->scene, id, &part));
+    return part.label;
+}
+
+START_TEST(labels_are_numbered) {
+    load_edited("\"Label\": \"bone\"", "\"Label\": \"skin\"");
+    ck_assert_int_eq(warning_count, 1);
+    ck_assert_ptr_nonnull(strstr(warnings[0], "Samples[1].Label (line 20): "));
+    ck_assert_ptr_nonnull(strstr(warnings[0], "this one is called \"skin 2\""));
+    ck_assert_str_eq(label_of(0), "skin");
+    ck_assert_str_eq(label_of(1), "skin 2");
+    /* The parent is found among the first. */
+    ck_assert_int_eq(setup->scene->parts[1].inside, 0);
+}
+END_TEST
+
+START_TEST(a_taken_number_is_passed_over) {
+    load_edited("\"Label\": \"bone\",\n",
+                "\"Label\": \"skin 2\", \"Sphere\": [8, 1, \"mm\"], \"Material\": [\"mu\", 1]},\n"
+                "{\"Label\": \"skin\",\n");
+    ck_assert_int_eq(warning_count, 1);
+    ck_assert_str_eq(label_of(2), "skin 3");
+}
+END_TEST
+
+START_TEST(asides_are_ignored) {
+    load_edited("\"Label\": \"bone\",", "\"Label\": \"bone\", \"Colour\": [1, 0, 0], \"comment\": \"left\",");
+    load_edited("\"Source\": {", "\"Comment\": \"of a hip\", \"Source\": {\"Color\": 7,");
+    ck_assert_int_eq(warning_count, 0);
+}
+END_TEST
+
+START_TEST(size_and_spacing_that_agree) {
+    load_edited("\"Size\": [6.4, 9.6, \"cm\"]", "\"Size\": [6.4, 9.6, \"cm\"], \"Spacing\": [1, 2, \"mm\"]");
+    ck_assert_double_eq(skg_length(setup->view.column_step), 1);
+    ck_assert_double_eq(skg_length(setup->view.row_step), 2);
+    ck_assert_int_eq(warning_count, 0);
+}
+END_TEST
+
+/* With mAs, a tube gives photons per mm2 at 1 m, which a parallel beam keeps as its unit. */
+START_TEST(parallel_beams_have_no_mas) {
+    const char *settings[] = {"Source.Shape=Parallel", "Source.Beam={\"kVp\": 85, \"mAs\": 2, \"Filter\": [[\"Al\", 2.5]]}"};
+    skg_quality parallel, tube;
+    skg_quality_init(&parallel);
+    skg_quality_init(&tube);
+    write_file("scene.json", good);
+    ck_skg(skg_setup_load(context, path, 2, settings, &setup));
+    ck_skg(skg_spectrum_quality_get(setup->spectrum, &parallel));
+    ck_assert_int_eq(setup->falloff, 0);
+    ck_assert_int_eq(warning_count, 1);
+    ck_assert_ptr_nonnull(strstr(warnings[0], "mAs does not say how many photons arrive"));
+    skg_setup_release(&setup);
+    settings[0] = "Detector.Position=[0, 600, 0, \"mm\"]"; /* 1 m from the source */
+    ck_skg(skg_setup_load(context, path, 2, settings, &setup));
+    ck_skg(skg_spectrum_quality_get(setup->spectrum, &tube));
+    /* a pixel of 1 mm by 2 mm; some roundings in each of a hundred energies */
+    ck_assert_double_eq_tol(tube.photons / 2 / parallel.photons, 1, 64 * DBL_EPSILON);
+    ck_assert_int_eq(setup->falloff, 1);
+}
+END_TEST
+
+START_TEST(a_line_spread_function_from_a_file) {
+    write_file("motion.csv", "# measured\n0.1, 0.2;\n0.4\t0.2\n\n0.1 % end\n");
+    load_edited("\"UpVector\"", "\"LSF\": \"motion.csv\", \"UpVector\"");
+    ck_assert_int_eq(setup->blur.columns, 5);
+    ck_assert_int_eq(setup->blur.rows, 5);
+    ck_assert_double_eq(setup->blur.along_row[2], 0.4);
+    ck_assert_double_eq(setup->blur.along_column[4], 0.1);
+    skg_setup_release(&setup);
+    static const char *const bad[][2] = {{"1 2 x 4 5", "line 1: \"x 4 5\" is no number"},
+                                         {"1 2", "2 samples; give an odd number"},
+                                         {"# nothing\n", "holds no number"},
+                                         {"1\n2a\n3\n", "line 2: \"2a"}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        write_file("motion.csv", bad[i][0]);
+        ck_skg_fails(load(), SKG_ERR_FORMAT, bad[i][1]);
+    }
+}
+END_TEST
+
+/* A file of two triangulated boxes as one sample: its material is one. */
+START_TEST(a_scene_graph_of_one_file) {
+    write_file("open.obj", "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+                           "o b\nv 5 0 0\nv 6 0 0\nv 5 1 0\nv 5 0 1\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 5 8 7\n");
+    load_edited("\"Samples\": [",
+                "\"SceneGraph\": {\"Path\": \"open.obj\", \"Unit\": \"cm\", \"Label\": \"both\", "
+                "\"Material\": \"Water\", \"Parent\": null}, \"Samples\": [");
+    int64_t count = 0, vertices = 0, triangles = 0;
+    ck_skg(skg_scene_part_count(setup->scene, &count));
+    ck_assert_int_eq(count, 3);
+    ck_assert_str_eq(label_of(0), "both");
+    ck_skg(skg_mesh_count(setup->scene->parts[0].mesh, &vertices, &triangles));
+    ck_assert_int_eq(triangles, 8);
+    ck_assert_int_eq(setup->scene->parts[0].inside, -1);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_log, tear_down_log);
+    tcase_add_test(tests, labels_are_numbered);
+    tcase_add_test(tests, a_taken_number_is_passed_over);
+    tcase_add_test(tests, asides_are_ignored);
+    tcase_add_test(tests, size_and_spacing_that_agree);
+    tcase_add_test(tests, parallel_beams_have_no_mas);
+    tcase_add_test(tests, a_line_spread_function_from_a_file);
+    tcase_add_test(tests, a_scene_graph_of_one_file);
+}
+
+SKG_SUITE_MAIN("forgiven", add_tests)
