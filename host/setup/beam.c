@@ -79,16 +79,13 @@ cleanup:
 
 static skg_status read_file(skg_setup_reader *reader, const skg_json_object *beam,
                             const skg_json_node *node) {
-    const char *path = NULL, *unit = NULL;
-    char *resolved = NULL;
+    const char *name = NULL, *path = NULL, *unit = NULL;
     skg_json_node unit_node;
-    SKG_TRY(skg_json_text(node, &path));
+    SKG_TRY(skg_json_text(node, &name));
     SKG_TRY(skg_json_need(beam, "Unit", "\"keV\"", &unit_node));
     SKG_TRY(skg_json_text(&unit_node, &unit));
-    SKG_TRY(skg_setup_resolve(reader, path, &resolved));
-    skg_status status = skg_spectrum_load(resolved, unit, &reader->setup->spectrum);
-    skg_free(&resolved);
-    return skg_json_at(node, status);
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
+    return skg_json_at(node, skg_spectrum_load(path, unit, &reader->setup->spectrum));
 }
 
 /* A number, or [number, unit] with one of the names given. */

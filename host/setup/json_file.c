@@ -30,12 +30,9 @@ cleanup:
     return status;
 }
 
-skg_status skg_json_open(const char *path, skg_json_file *file) {
-    const int is_input = strcmp(path, "-") == 0;
-    if (is_input) path = "standard input";
-    *file = (skg_json_file){.path = path};
-    size_t length = 0;
-    SKG_TRY(read_text(is_input ? stdin : NULL, path, &file->text, &length));
+/* Parses the text of the file, which has this length. */
+static skg_status parse(skg_json_file *file, size_t length) {
+    const char *path = file->path;
     /* Some editors write a byte order mark, which JSON does not allow. */
     if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
     json_error_t error;
@@ -49,6 +46,21 @@ skg_status skg_json_open(const char *path, skg_json_file *file) {
     file->remarks = json_array();
     if (!file->set || !file->remarks) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
     return SKG_OK;
+}
+
+skg_status skg_json_open(const char *path, skg_json_file *file) {
+    const int is_input = strcmp(path, "-") == 0;
+    if (is_input) path = "standard input";
+    *file = (skg_json_file){.path = path};
+    size_t length = 0;
+    SKG_TRY(read_text(is_input ? stdin : NULL, path, &file->text, &length));
+    return parse(file, length);
+}
+
+skg_status skg_json_parse(const char *text, const char *path, skg_json_file *file) {
+    *file = (skg_json_file){.path = path};
+    SKG_TRY(skg_copy_text(text, &file->text));
+    return parse(file, strlen(text));
 }
 
 void skg_json_close(skg_json_file *file) {

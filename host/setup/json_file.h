@@ -7,18 +7,21 @@
 #include <jansson.h>
 
 typedef struct {
-    const char *path;
-    char *text;      /* the file's contents, for line numbers; ends with a 0 */
-    json_t *root;    /* an object */
-    json_t *set;     /* array of the values that settings put in; they have no line */
-    json_t *remarks; /* array of strings: warnings for the reader's log, each once */
-    int32_t lenient; /* 1: unknown keys and the like are remarks, not errors */
-    int32_t lengths; /* 1: only path lengths are wanted: a beam and materials may be absent or unknown */
+    const char *path; /* for messages */
+    char *text;       /* the file's contents, for line numbers; ends with a 0 */
+    json_t *root;     /* an object */
+    json_t *set;      /* array of the values that settings put in; they have no line */
+    json_t *remarks;  /* array of strings: warnings for the reader's log, each once */
+    int32_t lenient;  /* 1: unknown keys and the like are remarks, not errors */
+    int32_t lengths;  /* 1: only path lengths are wanted: a beam and materials may be absent or unknown */
 } skg_json_file;
 
 /* Reads and parses a file whose top level is an object. SKG_ERR_FILE, SKG_ERR_FORMAT with line and column.
  * path is not copied. Close also after a failure. */
 skg_status skg_json_open(const char *path, skg_json_file *file);
+
+/* The same from a text, which is copied. path: for messages. */
+skg_status skg_json_parse(const char *text, const char *path, skg_json_file *file);
 void skg_json_close(skg_json_file *file);
 
 /* A value and the path to it. Lives on the stack; `up` has to outlive it. */

@@ -122,14 +122,11 @@ static skg_status read_hounsfield(skg_setup_reader *reader, const skg_json_node 
 /* ["Table", "mu.txt", "keV"] */
 static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path_node,
                              const skg_json_node *unit_node, skg_material **material) {
-    const char *path = NULL, *unit = NULL;
-    char *resolved = NULL;
-    SKG_TRY(skg_json_text(path_node, &path));
+    const char *name = NULL, *path = NULL, *unit = NULL;
+    SKG_TRY(skg_json_text(path_node, &name));
     SKG_TRY(skg_json_text(unit_node, &unit));
-    SKG_TRY(skg_setup_resolve(reader, path, &resolved));
-    skg_status status = skg_material_load_table(resolved, unit, material);
-    skg_free(&resolved);
-    return skg_json_at(path_node, status);
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
+    return skg_json_at(path_node, skg_material_load_table(path, unit, material));
 }
 
 /* The material without the density that the sample gives. */

@@ -55,11 +55,10 @@ static skg_status read_lines(skg_setup *setup, const skg_json_node *node) {
 /* A text file of numbers, one list for both directions. */
 static skg_status read_lines_file(skg_setup_reader *reader, const skg_json_node *node) {
     skg_setup *setup = reader->setup;
-    char *path = NULL;
+    const char *path = NULL;
     int64_t count = 0;
-    SKG_TRY(skg_setup_resolve(reader, json_string_value(node->value), &path));
+    SKG_TRY(skg_setup_find_file(reader, json_string_value(node->value), &path));
     skg_status status = skg_read_list(path, &count, &setup->blur_samples);
-    skg_free(&path);
     SKG_TRY(skg_json_at(node, status));
     SKG_TRY(check_odd(node, count));
     setup->blur.columns = setup->blur.rows = count;

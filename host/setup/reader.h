@@ -11,11 +11,19 @@ typedef struct {
     skg_json_file file;
     char *folder; /* of the scene file, with its last slash; "" for the current folder */
     skg_setup *setup;
+    skg_setup_source source;    /* of this library's size; its text and path are in `file` */
     int32_t noted_beyond_table; /* 1: it was said that Schneider's table ends below a Hounsfield number */
 } skg_setup_reader;
 
 /* A path relative to the scene file's folder; the caller frees it. */
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved);
+
+/* The path of a file that the scene names, and that is read now: where the source of the set-up says, otherwise as
+ * above. It is kept in the list of files, and belongs to it. */
+skg_status skg_setup_find_file(skg_setup_reader *reader, const char *name, const char **path);
+
+/* Frees the list of files. */
+void skg_setup_files_free(skg_setup *setup);
 
 /* The number of the sample with this label. node: where the label stands, for the message. */
 skg_status skg_setup_find_part(const skg_setup_reader *reader, const skg_json_node *node, const char *label,

@@ -18,13 +18,10 @@ static const skg_json_key scintillator_keys[] = {
 };
 
 static skg_status read_file(skg_setup_reader *reader, const skg_json_node *node, const char *unit) {
-    const char *path = NULL;
-    char *resolved = NULL;
-    SKG_TRY(skg_json_text(node, &path));
-    SKG_TRY(skg_setup_resolve(reader, path, &resolved));
-    skg_status status = skg_response_load(resolved, unit, &reader->setup->response);
-    skg_free(&resolved);
-    return skg_json_at(node, status);
+    const char *name = NULL, *path = NULL;
+    SKG_TRY(skg_json_text(node, &name));
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
+    return skg_json_at(node, skg_response_load(path, unit, &reader->setup->response));
 }
 
 /* [[10, 10], [20, 19.98], ...] */

@@ -232,7 +232,7 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
     sample_list list = {.outer_part = -1};
     skg_mesh_cache cache = {0};
     skg_status status = SKG_OK;
-    if (node->value || !graph->value) SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
+    if (node->value) SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
     SKG_TRY(skg_scene_create(reader->context, &reader->setup->scene));
     SKG_TRY(skg_alloc(count + 1, sizeof *list.parts, "samples", &list.parts));
     if (graph->value) { /* an object: a string would be a command */
@@ -244,7 +244,7 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
         skg_json_node element = skg_json_element(node, i);
         SKG_TRY_CLEANUP(read_element(reader, &element, &cache, &list));
     }
-    if (list.count == 0) {
+    if (list.count == 0 && !reader->source.partial) {
         status = skg_json_fail(node, SKG_ERR_SCENE, "is empty; give at least one sample");
         goto cleanup;
     }

@@ -56,7 +56,7 @@ skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node
 /* The meshes loaded so far: a file that several samples use is loaded once. */
 typedef struct {
     struct skg_loaded_mesh {
-        char *path;
+        const char *path;
         double unit_mm;
         int32_t flip;
         skg_mesh *mesh;

@@ -98,23 +98,39 @@ static skg_status read_world(skg_setup_reader *reader, const skg_json_object *to
     return skg_setup_read_material(reader, &node, &no_density, "world", &reader->setup->world);
 }
 
+/* A section that a file has to have. A partial text may leave it out together with `twin`. */
+static skg_status need(const skg_setup_reader *reader, const skg_json_object *top, const char *name,
+                       const char *twin, const char *example, skg_json_node *section) {
+    *section = skg_json_member(top, name);
+    if (section->value || (reader->source.partial && !skg_json_member(top, twin).value)) return SKG_OK;
+    return skg_json_need(top, name, example, section);
+}
+
+/* Source and detector. */
+static skg_status read_beam_path(skg_setup_reader *reader, const skg_json_node *source,
+                                 const skg_json_node *detector) {
+    skg_view_init(&reader->setup->view);
+    if (!source->value) return SKG_OK;
+    SKG_TRY(skg_setup_read_source(reader, source));
+    SKG_TRY(skg_setup_read_detector(reader, detector));
+    return skg_setup_place_beam(reader, source);
+}
+
 static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
     skg_json_object top;
     SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
-    SKG_TRY(skg_json_need(&top, "Source", "{ ... }", &source));
-    SKG_TRY(skg_json_need(&top, "Detector", "{ ... }", &detector));
+    SKG_TRY(need(reader, &top, "Source", "Detector", "{ ... }", &source));
+    SKG_TRY(need(reader, &top, "Detector", "Source", "{ ... }", &detector));
     const skg_json_node graph = skg_json_member(&top, "SceneGraph");
     samples = skg_json_member(&top, "Samples");
-    if (!graph.value) SKG_TRY(skg_json_need(&top, "Samples", "[ ... ]", &samples));
+    if (!graph.value) SKG_TRY(need(reader, &top, "Samples", "Samples", "[ ... ]", &samples));
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
     SKG_TRY(read_tolerance(reader->setup, &top));
     SKG_TRY(read_repair(reader->setup, &top));
     SKG_TRY(read_band_weight(reader->setup, &top));
-    SKG_TRY(skg_setup_read_source(reader, &source));
-    SKG_TRY(skg_setup_read_detector(reader, &detector));
-    SKG_TRY(skg_setup_place_beam(reader, &source));
+    SKG_TRY(read_beam_path(reader, &source, &detector));
     const skg_json_node falloff = skg_json_member(&top, "Falloff");
     reader->setup->falloff = reader->setup->absolute;
     if (falloff.value) SKG_TRY(skg_json_flag(&falloff, &reader->setup->falloff));
@@ -127,7 +143,10 @@ static skg_status read_all(skg_setup_reader *reader) {
             "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
             "given");
     skg_json_node scan = skg_json_member(&top, "Scan");
-    if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
+    if (scan.value) {
+        if (!source.value) return skg_json_fail(&scan, SKG_ERR_SCENE, "needs Source and Detector");
+        SKG_TRY(skg_setup_read_scan(reader, &scan));
+    }
     SKG_TRY(skg_setup_read_samples(reader, &samples, &graph));
     skg_json_node breathing = skg_json_member(&top, "Breathing");
     return skg_setup_read_breathing(reader, &breathing);
@@ -140,31 +159,72 @@ static void say_remarks(const skg_setup_reader *reader) {
                 json_string_value(json_array_get(reader->file.remarks, i)));
 }
 
+void skg_setup_source_init_sized(void *source, int32_t size) {
+    const skg_setup_source defaults = {0};
+    skg_struct_init(source, size, &defaults, sizeof defaults);
+}
+
+static skg_status check_texts(int64_t count, const char *const *texts, const char *what) {
+    if (count < 0 || (count > 0 && !texts))
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_source: %s: %" PRId64 ", but the array is %s", what,
+                        count, texts ? "there" : "NULL");
+    for (int64_t i = 0; i < count; i++)
+        if (!texts[i])
+            return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_source: %s[%" PRId64 "] is NULL", what, i);
+    return SKG_OK;
+}
+
+/* Makes a set-up from reader->source; its text NULL: from the file of its path. */
+static skg_status make(skg_setup_reader *reader, skg_setup **setup) {
+    const skg_setup_source *source = &reader->source;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(check_texts(source->setting_count, source->settings, "settings"));
+    SKG_TRY_CLEANUP(check_texts(source->file_count, source->file_names, "file_names"));
+    SKG_TRY_CLEANUP(check_texts(source->file_count, source->file_paths, "file_paths"));
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader->setup, "set-up", &reader->setup));
+    SKG_TRY_CLEANUP(skg_copy_text(source->path, &reader->folder));
+    char *slash = strrchr(reader->folder, '/');
+    *(slash ? slash + 1 : reader->folder) = '\0';
+    SKG_TRY_CLEANUP(source->text ? skg_json_parse(source->text, source->path, &reader->file)
+                                 : skg_json_open(source->path, &reader->file));
+    for (int64_t i = 0; i < source->setting_count; i++)
+        SKG_TRY_CLEANUP(skg_json_set(&reader->file, source->settings[i]));
+    reader->file.lenient = source->lenient;
+    reader->file.lengths = source->lengths_only;
+    SKG_TRY_CLEANUP(read_all(reader));
+    say_remarks(reader);
+    *setup = reader->setup;
+    reader->setup = NULL;
+cleanup:
+    skg_setup_release(&reader->setup);
+    skg_json_close(&reader->file);
+    skg_free(&reader->folder);
+    return status;
+}
+
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
                           skg_setup **setup) {
     SKG_PLAIN;
     SKG_NEEDS(setup);
     *setup = NULL;
     SKG_NEEDS(path);
-    if (count < 0) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: %" PRId64 " settings", count);
-    if (count > 0) SKG_NEEDS(settings);
     skg_setup_reader reader = {.context = context};
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader.setup, "set-up", &reader.setup));
-    SKG_TRY_CLEANUP(skg_copy_text(path, &reader.folder));
-    char *slash = strrchr(reader.folder, '/');
-    *(slash ? slash + 1 : reader.folder) = '\0';
-    SKG_TRY_CLEANUP(skg_json_open(path, &reader.file));
-    for (int64_t i = 0; i < count; i++) SKG_TRY_CLEANUP(skg_json_set(&reader.file, settings[i]));
-    SKG_TRY_CLEANUP(read_all(&reader));
-    say_remarks(&reader);
-    *setup = reader.setup;
-    reader.setup = NULL;
-cleanup:
-    skg_setup_release(&reader.setup);
-    skg_json_close(&reader.file);
-    skg_free(&reader.folder);
-    return status;
+    reader.source.path = path;
+    reader.source.settings = settings;
+    reader.source.setting_count = count;
+    return make(&reader, setup);
+}
+
+skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
+    SKG_PLAIN;
+    SKG_NEEDS(setup);
+    *setup = NULL;
+    skg_setup_reader reader = {.context = context};
+    SKG_TRY(skg_struct_read(source, "skg_setup_source", &reader.source, sizeof reader.source));
+    if (!reader.source.text && !reader.source.path)
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_source: both text and path are NULL; give one of them");
+    if (!reader.source.path) reader.source.path = "scene";
+    return make(&reader, setup);
 }
 
 void skg_setup_release(skg_setup **setup) {
@@ -177,6 +237,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_free(&(*setup)->scan.folder);
     skg_free(&(*setup)->scan.views);
     skg_breathing_section_free(&(*setup)->breathing);
+    skg_setup_files_free(*setup);
     skg_free(setup);
 }
 

@@ -21,20 +21,19 @@ enum { MOST_SECTORS = 100000 };
 
 void skg_mesh_cache_clear(skg_mesh_cache *cache) {
     for (int64_t i = 0; i < cache->count; i++) {
-        skg_free(&cache->loaded[i].path);
         skg_mesh_release(&cache->loaded[i].mesh);
     }
     skg_free(&cache->loaded);
     cache->count = 0;
 }
 
-/* Takes ownership of the path; the mesh gets one more owner. */
-static skg_status remember(skg_mesh_cache *cache, char **path, double unit_mm, int32_t flip, skg_mesh *mesh) {
+/* The mesh gets one more owner; the path belongs to the set-up. */
+static skg_status remember(skg_mesh_cache *cache, const char *path, double unit_mm, int32_t flip,
+                           skg_mesh *mesh) {
     SKG_TRY(skg_realloc(cache->count + 1, sizeof *cache->loaded, "meshes", &cache->loaded));
     SKG_TRY(skg_mesh_retain(mesh));
     cache->loaded[cache->count++] =
-        (struct skg_loaded_mesh){.path = *path, .unit_mm = unit_mm, .flip = flip, .mesh = mesh};
-    *path = NULL;
+        (struct skg_loaded_mesh){.path = path, .unit_mm = unit_mm, .flip = flip, .mesh = mesh};
     return SKG_OK;
 }
 
@@ -77,34 +76,25 @@ cleanup:
     return status;
 }
 
-static skg_status load(const skg_setup_reader *reader, const skg_json_object *sample,
-                       const skg_json_node *node, int32_t flip, skg_mesh_cache *cache, skg_mesh **mesh) {
-    const char *text = NULL;
-    char *path = NULL;
+static skg_status load(skg_setup_reader *reader, const skg_json_object *sample, const skg_json_node *node,
+                       int32_t flip, skg_mesh_cache *cache, skg_mesh **mesh) {
+    const char *name = NULL, *path = NULL;
     double unit_mm = 1;
     skg_json_node unit;
-    SKG_TRY(skg_json_text(node, &text));
+    SKG_TRY(skg_json_text(node, &name));
     SKG_TRY(skg_json_need(sample, "Unit", "\"mm\"", &unit));
     SKG_TRY(skg_json_unit_of_length(&unit, &unit_mm));
-    SKG_TRY(skg_setup_resolve(reader, text, &path));
-    skg_status status = SKG_OK;
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
     for (int64_t i = 0; i < cache->count; i++) {
         const struct skg_loaded_mesh *known = &cache->loaded[i];
         if (strcmp(known->path, path) != 0 || known->unit_mm != unit_mm || known->flip != flip) continue;
-        SKG_TRY_CLEANUP(skg_mesh_retain(known->mesh));
+        SKG_TRY(skg_mesh_retain(known->mesh));
         *mesh = known->mesh;
-        goto cleanup;
+        return SKG_OK;
     }
-    status = skg_mesh_load(reader->context, path, unit_mm, mesh);
-    if (status != SKG_OK) {
-        status = skg_json_at(node, status);
-        goto cleanup;
-    }
-    if (flip) SKG_TRY_CLEANUP(turn_inside_out(reader, node, mesh));
-    SKG_TRY_CLEANUP(remember(cache, &path, unit_mm, flip, *mesh));
-cleanup:
-    skg_free(&path);
-    return status;
+    SKG_TRY(skg_json_at(node, skg_mesh_load(reader->context, path, unit_mm, mesh)));
+    if (flip) SKG_TRY(turn_inside_out(reader, node, mesh));
+    return remember(cache, path, unit_mm, flip, *mesh);
 }
 
 static const skg_json_key wedge_keys[] = {

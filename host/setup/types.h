@@ -59,7 +59,15 @@ typedef struct {
     int64_t seed;
 } skg_setup_noise;
 
+/* A file that the scene names. */
+typedef struct {
+    char *name; /* as the scene has it */
+    char *path; /* where it was read */
+} skg_setup_file;
+
 struct skg_setup {
+    skg_setup_file *files;
+    int64_t file_count;
     skg_scene *scene;
     skg_spectrum *spectrum;
     int32_t absolute;       /* 1: photons come from mAs */

@@ -36,6 +36,19 @@ static void load_edited(const char *from, const char *to) {
     ck_skg(skg_setup_load(context, path, 0, NULL, &setup));
 }
 
+/* Reads it leniently, or for path lengths only. */
+static skg_status read_edited(const char *from, const char *to, int32_t lenient, int32_t lengths_only) {
+    skg_setup_source source;
+    skg_setup_source_init(&source);
+    source.path = path;
+    source.lenient = lenient;
+    source.lengths_only = lengths_only;
+    write_edited(from, to);
+    warning_count = 0;
+    skg_setup_release(&setup);
+    return skg_setup_create(context, &source, &setup);
+}
+
 static const char *label_of(int64_t id) {
     skg_part part;
     skg_part_init(&part);
@@ -81,7 +94,8 @@ END_TEST
 
 /* With mAs, a tube gives photons per mm2 at 1 m, which a parallel beam keeps as its unit. */
 START_TEST(parallel_beams_have_no_mas) {
-    const char *settings[] = {"Source.Shape=Parallel", "Source.Beam={\"kVp\": 85, \"mAs\": 2, \"Filter\": [[\"Al\", 2.5]]}"};
+    const char *settings[] = {"Source.Shape=Parallel",
+                              "Source.Beam={\"kVp\": 85, \"mAs\": 2, \"Filter\": [[\"Al\", 2.5]]}"};
     skg_quality parallel, tube;
     skg_quality_init(&parallel);
     skg_quality_init(&tube);
@@ -137,6 +151,75 @@ START_TEST(a_scene_graph_of_one_file) {
 }
 END_TEST
 
+/* What is an error becomes a warning. What stays an error: wrong types, missing files, geometry. */
+START_TEST(lenient_reading) {
+    static const struct {
+        const char *from, *to, *says;
+    } faults[] = {
+        {"\"Shape\": \"PointSource\",", "\"Shape\": \"PointSource\", \"filters\": [],",
+         "Source.filters (line 5): unknown key"},
+        {"\"Label\": \"bone\",", "\"Label\": \"bone\", \"Texture\": 1,",
+         "Samples[1].Texture (line 20): unknown key"},
+        {"\"Size\": [6.4, 9.6, \"cm\"]", "\"Size\": [6.4, 9.6, \"cm\"], \"Spacing\": [1, 1, \"mm\"]",
+         "Spacing holds"},
+        {"[\"mu\", 0.5]", "[\"Mixture\", [1, 11.2, 8, 88.8]], \"Density\": 1",
+         "sum to 100; they are scaled to 1"},
+    };
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
+        ck_assert_int_ne(read_edited(faults[i].from, faults[i].to, 0, 0), SKG_OK);
+        ck_assert_ptr_null(setup);
+        ck_skg(read_edited(faults[i].from, faults[i].to, 1, 0));
+        ck_assert_int_eq(warning_count, 1);
+        ck_assert_msg(strstr(warnings[0], faults[i].says) != NULL, "%s", warnings[0]);
+    }
+    ck_assert_int_eq(read_edited("\"Size\": [6.4, 9.6, \"cm\"]",
+                                 "\"Size\": [6.4, 9.6, \"cm\"], \"Spacing\": [1, 1, \"mm\"]", 1, 0),
+                     SKG_OK);
+    ck_assert_double_eq(skg_length(setup->view.row_step), 1);
+    ck_skg_fails(read_edited("[64, 48]", "[64, \"48\"]", 1, 0), SKG_ERR_FORMAT, "is a string");
+    ck_skg_fails(read_edited("[0, 0, -1]", "[0, 1, 0]", 1, 0), SKG_ERR_SCENE, "along the beam");
+    ck_skg_fails(read_edited("\"Cuboid\": [1, 2, 3, \"cm\"]", "\"Path\": \"no.stl\", \"Unit\": \"mm\"", 1, 0),
+                 SKG_ERR_FILE, "no.stl");
+}
+END_TEST
+
+/* Water by mass in per cent is water. */
+START_TEST(scaled_fractions_are_right) {
+    skg_material *water = NULL;
+    const int32_t z[2] = {1, 8};
+    const double parts[2] = {0.112, 0.888};
+    double lenient = 0, exact = 0;
+    ck_skg(read_edited("[\"mu\", 0.5]", "[\"Mixture\", [1, 11.2, 8, 88.8]], \"Density\": 1", 1, 0));
+    ck_skg(skg_material_create_mixture("water", 2, z, parts, 1, &water));
+    ck_skg(skg_material_attenuation_get(setup->scene->parts[1].material, 60, &lenient));
+    ck_skg(skg_material_attenuation_get(water, 60, &exact));
+    skg_material_release(&water);
+    ck_assert_double_eq_tol(lenient / exact, 1, 16 * DBL_EPSILON); /* a sum, two quotients and two products */
+}
+END_TEST
+
+START_TEST(lengths_need_neither_beam_nor_material) {
+    static const char beam[] =
+        ",\n        \"Beam\": [{\"Energy\": 0.06, \"Unit\": \"MeV\", \"PhotonCount\": 1000}]";
+    double mu = 1;
+    ck_skg_fails(read_edited(beam, "", 0, 0), SKG_ERR_FORMAT, "Beam is missing");
+    ck_skg(read_edited(beam, "", 0, 1));
+    ck_assert_int_eq(warning_count, 1);
+    ck_assert_ptr_nonnull(strstr(warnings[0], "there is no Beam"));
+    ck_assert_ptr_nonnull(setup->spectrum);
+    ck_skg_fails(read_edited("[\"mu\", 0.5]", "\"Unobtainium\"", 0, 0), SKG_ERR_MATERIAL, "Unobtainium");
+    ck_skg(read_edited("[\"mu\", 0.5]", "\"Unobtainium\"", 0, 1));
+    ck_assert_int_eq(warning_count, 1);
+    ck_assert_ptr_nonnull(strstr(warnings[0], "Samples[1] (line 19): has no usable Material"));
+    ck_skg(skg_material_attenuation_get(setup->scene->parts[1].material, 60, &mu));
+    ck_assert_double_eq(mu, 0);
+    ck_skg(read_edited(",\n            \"Material\": [\"mu\", 0.5]", "", 0, 1));
+    ck_assert_int_eq(warning_count, 1);
+    /* A wrong type stays an error. */
+    ck_skg_fails(read_edited("[\"mu\", 0.5]", "{}", 0, 1), SKG_ERR_FORMAT, "Material");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_log, tear_down_log);
     tcase_add_test(tests, labels_are_numbered);
@@ -146,6 +229,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, parallel_beams_have_no_mas);
     tcase_add_test(tests, a_line_spread_function_from_a_file);
     tcase_add_test(tests, a_scene_graph_of_one_file);
+    tcase_add_test(tests, lenient_reading);
+    tcase_add_test(tests, scaled_fractions_are_right);
+    tcase_add_test(tests, lengths_need_neither_beam_nor_material);
 }
 
 SKG_SUITE_MAIN("forgiven", add_tests)

@@ -30,13 +30,65 @@ typedef struct skg_setup skg_setup;
 SKG_API skg_status skg_setup_load(skg_context *context, const char *path, int64_t count,
                                   const char *const *settings, skg_setup **setup);
 
+/** Where skg_setup_create takes a scene from, and how it is read. Prepare with skg_setup_source_init; set `text`, or `path`
+ * alone. */
+typedef struct {
+    /** Set by skg_setup_source_init. */
+    int32_t size;
+    /** 1: Samples may be missing or empty, and so may Source and Detector, both together. Then the spectrum
+     * is NULL and the view as skg_view_init leaves it, and the caller completes them. 0: as in a file. */
+    int32_t partial;
+    /** 1: what can be passed over is a warning and not an error: unknown keys, fractions of a mixture that do
+     * not sum to 1 (they are scaled), a Size that contradicts Spacing (Spacing holds). */
+    int32_t lenient;
+    /** 1: only path lengths are wanted. A source without a beam and a sample without a usable material are
+     * warnings: 60 keV stand in for the beam, and a material that attenuates nothing. */
+    int32_t lengths_only;
+    /** The JSON text, as a file has it; NULL: the file at `path` is read, as by skg_setup_load. */
+    const char *text;
+    /** Where the text is from: paths in it are relative to the folder of this path, and messages begin with
+     * it. NULL: "scene", in the working folder. */
+    const char *path;
+    /** [setting_count] as of skg_setup_load. */
+    const char *const *settings;
+    /** Number of settings. */
+    int64_t setting_count;
+    /** [file_count] names of files as the text has them, which are read from elsewhere. */
+    const char *const *file_names;
+    /** [file_count] where these files are. */
+    const char *const *file_paths;
+    /** Number of such files. */
+    int64_t file_count;
+} skg_setup_source;
+
+/** Prepares a skg_setup_source of `size` bytes (export.h). */
+SKG_API void skg_setup_source_init_sized(void *source, int32_t size);
+
+/** Prepares a skg_setup_source. */
+static inline void skg_setup_source_init(skg_setup_source *source) {
+    skg_setup_source_init_sized(source, (int32_t)sizeof *source);
+}
+
+/** Makes a set-up from a text or file; otherwise as skg_setup_load. */
+SKG_API skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup);
+
+/** Number of the files that the scene names and that were read: meshes, spectra, responses, materials. */
+SKG_API skg_status skg_setup_file_count(const skg_setup *setup, int64_t *count);
+
+/** Gets file 0 <= index < count, in the order in which they were first read, each once.
+ *
+ *     name   result: as the scene has it
+ *     path   result: where it was read. Both are valid as long as the set-up */
+SKG_API skg_status skg_setup_file_get(const skg_setup *setup, int64_t index, const char **name,
+                                      const char **path);
+
 /** Frees a set-up and releases what it holds. Plans retain what they need of it. */
 SKG_API void skg_setup_release(skg_setup **setup);
 
 /** Gets the scene, which is valid as long as the set-up and not retained for the caller. */
 SKG_API skg_status skg_setup_scene_get(const skg_setup *setup, skg_scene **scene);
 
-/** Gets the spectrum, which is valid as long as the set-up and not retained for the caller. */
+/** Gets the spectrum, NULL if a partial text has none, which is valid as long as the set-up and not retained for the caller. */
 SKG_API skg_status skg_setup_spectrum_get(const skg_setup *setup, skg_spectrum **spectrum);
 
 /** Gets the view; of a scan, that of the first projection. */
