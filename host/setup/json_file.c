@@ -30,24 +30,35 @@ cleanup:
     return status;
 }
 
+/* Parses file->text. */
+static skg_status parse(size_t length, skg_json_file *file) {
+    /* Some editors write a byte order mark, which JSON does not allow. */
+    if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
+    json_error_t error;
+    file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &error);
+    if (!file->root)
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %d, column %d: %s", file->path, error.line, error.column,
+                        error.text);
+    if (!json_is_object(file->root))
+        return skg_fail(SKG_ERR_FORMAT, "%s: a scene file holds one JSON object { ... }", file->path);
+    file->set = json_array();
+    if (!file->set) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", file->path);
+    return SKG_OK;
+}
+
 skg_status skg_json_open(const char *path, skg_json_file *file) {
     const int is_input = strcmp(path, "-") == 0;
     if (is_input) path = "standard input";
     *file = (skg_json_file){.path = path};
     size_t length = 0;
     SKG_TRY(read_text(is_input ? stdin : NULL, path, &file->text, &length));
-    /* Some editors write a byte order mark, which JSON does not allow. */
-    if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
-    json_error_t error;
-    file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &error);
-    if (!file->root)
-        return skg_fail(SKG_ERR_FORMAT, "%s: line %d, column %d: %s", path, error.line, error.column,
-                        error.text);
-    if (!json_is_object(file->root))
-        return skg_fail(SKG_ERR_FORMAT, "%s: a scene file holds one JSON object { ... }", path);
-    file->set = json_array();
-    if (!file->set) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
-    return SKG_OK;
+    return parse(length, file);
+}
+
+skg_status skg_json_parse(const char *text, const char *path, skg_json_file *file) {
+    *file = (skg_json_file){.path = path};
+    SKG_TRY(skg_copy_text(text, &file->text));
+    return parse(strlen(text), file);
 }
 
 void skg_json_close(skg_json_file *file) {

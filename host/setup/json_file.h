@@ -16,6 +16,9 @@ typedef struct {
 /* Reads and parses a file whose top level is an object. SKG_ERR_FILE, SKG_ERR_FORMAT with line and column.
  * path is not copied. Close also after a failure. */
 skg_status skg_json_open(const char *path, skg_json_file *file);
+
+/* The same from a text, which is copied. path: for messages. */
+skg_status skg_json_parse(const char *text, const char *path, skg_json_file *file);
 void skg_json_close(skg_json_file *file);
 
 /* A value and the path to it. Lives on the stack; `up` has to outlive it. */

@@ -101,9 +101,10 @@ static skg_status read_world(skg_setup_reader *reader, const skg_json_object *to
 static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
     skg_json_object top;
+    int32_t fitted = 0;
     SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
     SKG_TRY(skg_json_need(&top, "Source", "{ ... }", &source));
-    SKG_TRY(skg_json_need(&top, "Detector", "{ ... }", &detector));
+    detector = skg_json_member(&top, "Detector");
     SKG_TRY(skg_json_need(&top, "Samples", "[ ... ]", &samples));
     SKG_TRY(read_version(&top));
     SKG_TRY(read_precision(reader->setup, &top));
@@ -111,6 +112,8 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_repair(reader->setup, &top));
     SKG_TRY(read_band_weight(reader->setup, &top));
     SKG_TRY(skg_setup_read_source(reader, &source));
+    SKG_TRY(skg_setup_is_fitted(&detector, &fitted));
+    if (fitted) SKG_TRY(skg_setup_read_samples(reader, &samples));
     SKG_TRY(skg_setup_read_detector(reader, &detector));
     SKG_TRY(skg_setup_place_beam(reader, &source));
     const skg_json_node falloff = skg_json_member(&top, "Falloff");
@@ -125,10 +128,40 @@ static skg_status read_all(skg_setup_reader *reader) {
             "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
             "given");
     skg_json_node scan = skg_json_member(&top, "Scan");
+    if (scan.value && fitted)
+        return skg_json_fail(
+            &scan, SKG_ERR_FORMAT,
+            "needs a detector at a given place, because the parts turn; give Detector.Position");
     if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
-    SKG_TRY(skg_setup_read_samples(reader, &samples));
+    if (!fitted) SKG_TRY(skg_setup_read_samples(reader, &samples));
     skg_json_node breathing = skg_json_member(&top, "Breathing");
     return skg_setup_read_breathing(reader, &breathing);
+}
+
+void skg_setup_source_init_sized(void *source, int32_t size) {
+    const skg_setup_source defaults = {0};
+    skg_struct_init(source, size, &defaults, sizeof defaults);
+}
+
+/* Makes a set-up from a source; its text NULL: from the file of its path. */
+static skg_status make(skg_setup_reader *reader, const skg_setup_source *source, skg_setup **setup) {
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader->setup, "set-up", &reader->setup));
+    SKG_TRY_CLEANUP(skg_copy_text(source->path, &reader->folder));
+    char *slash = strrchr(reader->folder, '/');
+    *(slash ? slash + 1 : reader->folder) = '\0';
+    SKG_TRY_CLEANUP(source->text ? skg_json_parse(source->text, source->path, &reader->file)
+                                 : skg_json_open(source->path, &reader->file));
+    for (int64_t i = 0; i < source->setting_count; i++)
+        SKG_TRY_CLEANUP(skg_json_set(&reader->file, source->settings[i]));
+    SKG_TRY_CLEANUP(read_all(reader));
+    *setup = reader->setup;
+    reader->setup = NULL;
+cleanup:
+    skg_setup_release(&reader->setup);
+    skg_json_close(&reader->file);
+    skg_free(&reader->folder);
+    return status;
 }
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
@@ -139,22 +172,25 @@ skg_status skg_setup_load(skg_context *context, const char *path, int64_t count,
     SKG_NEEDS(path);
     if (count < 0) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_load: %" PRId64 " settings", count);
     if (count > 0) SKG_NEEDS(settings);
+    const skg_setup_source source = {.path = path, .settings = settings, .setting_count = count};
     skg_setup_reader reader = {.context = context};
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *reader.setup, "set-up", &reader.setup));
-    SKG_TRY_CLEANUP(skg_copy_text(path, &reader.folder));
-    char *slash = strrchr(reader.folder, '/');
-    *(slash ? slash + 1 : reader.folder) = '\0';
-    SKG_TRY_CLEANUP(skg_json_open(path, &reader.file));
-    for (int64_t i = 0; i < count; i++) SKG_TRY_CLEANUP(skg_json_set(&reader.file, settings[i]));
-    SKG_TRY_CLEANUP(read_all(&reader));
-    *setup = reader.setup;
-    reader.setup = NULL;
-cleanup:
-    skg_setup_release(&reader.setup);
-    skg_json_close(&reader.file);
-    skg_free(&reader.folder);
-    return status;
+    return make(&reader, &source, setup);
+}
+
+skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
+    SKG_PLAIN;
+    SKG_NEEDS(setup);
+    *setup = NULL;
+    SKG_NEEDS(source);
+    skg_setup_source ours = {.size = (int32_t)sizeof ours};
+    SKG_TRY(skg_struct_read(source, "skg_setup_source", &ours, sizeof ours));
+    if (!ours.text) return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_create: the text of the source is NULL");
+    if (ours.setting_count < 0 || (ours.setting_count > 0 && !ours.settings))
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_create: %" PRId64 " settings, but the array is %s",
+                        ours.setting_count, ours.settings ? "there" : "NULL");
+    if (!ours.path) ours.path = "scene";
+    skg_setup_reader reader = {.context = context};
+    return make(&reader, &ours, setup);
 }
 
 void skg_setup_release(skg_setup **setup) {

@@ -30,6 +30,34 @@ typedef struct skg_setup skg_setup;
 SKG_API skg_status skg_setup_load(skg_context *context, const char *path, int64_t count,
                                   const char *const *settings, skg_setup **setup);
 
+/** A scene as a text in memory. Prepare with skg_setup_source_init; set `text`. */
+typedef struct {
+    /** Set by skg_setup_source_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** The JSON text, as a file has it. */
+    const char *text;
+    /** Where the text is from: paths in it are relative to the folder of this path, and messages begin with
+     * it. NULL: "scene", in the working folder. */
+    const char *path;
+    /** [setting_count] as of skg_setup_load. */
+    const char *const *settings;
+    /** Number of settings. */
+    int64_t setting_count;
+} skg_setup_source;
+
+/** Prepares a skg_setup_source of `size` bytes (export.h). */
+SKG_API void skg_setup_source_init_sized(void *source, int32_t size);
+
+/** Prepares a skg_setup_source. */
+static inline void skg_setup_source_init(skg_setup_source *source) {
+    skg_setup_source_init_sized(source, (int32_t)sizeof *source);
+}
+
+/** Makes a set-up from the text of a scene; otherwise as skg_setup_load. */
+SKG_API skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup);
+
 /** Frees a set-up and releases what it holds. Plans retain what they need of it. */
 SKG_API void skg_setup_release(skg_setup **setup);
 
