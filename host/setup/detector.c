@@ -101,27 +101,64 @@ static skg_status read_oversampling(const skg_json_object *detector, int32_t *ra
     return SKG_OK;
 }
 
+static skg_status read_object(const skg_json_node *node, skg_json_object *detector) {
+    *detector = (skg_json_object){node, detector_keys, sizeof detector_keys / sizeof *detector_keys};
+    return node->value ? skg_json_read_object(node, detector_keys, detector->count, detector) : SKG_OK;
+}
+
+skg_status skg_setup_is_fitted(const skg_json_node *node, int32_t *fitted) {
+    skg_json_object detector;
+    SKG_TRY(read_object(node, &detector));
+    *fitted = skg_json_member(&detector, "Position").value == NULL;
+    return SKG_OK;
+}
+
+static skg_status place(const skg_json_object *detector, const skg_json_node *position, skg_view *view) {
+    double right[3], up[3], spacing[2];
+    SKG_TRY(skg_json_lengths(position, "[0, 500, 0, \"mm\"]", 3, view->centre));
+    SKG_TRY(read_pixels(detector, view));
+    if (view->columns < 1 || view->rows < 1) { /* before Size is divided by them */
+        skg_status status = skg_view_check(view);
+        return skg_json_at(detector->node, status);
+    }
+    SKG_TRY(read_spacing(detector, view, spacing));
+    SKG_TRY(read_axes(detector, view, right, up));
+    skg_scale_vector(spacing[0], right, view->column_step);
+    skg_scale_vector(spacing[1], up, view->row_step);
+    return SKG_OK;
+}
+
+/* The number of pixels may be given. */
+static skg_status fit(skg_setup_reader *reader, const skg_json_object *detector) {
+    skg_view *view = &reader->setup->view;
+    view->columns = view->rows = 0;
+    if (skg_json_member(detector, "NumberOfPixels").value) {
+        SKG_TRY(read_pixels(detector, view));
+        if (view->columns < 1 || view->rows < 1) {
+            skg_status status = skg_view_check(view);
+            return skg_json_at(detector->node, status);
+        }
+    }
+    return skg_setup_fit_view(reader, detector);
+}
+
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node) {
     skg_view *view = &reader->setup->view;
     skg_json_object detector;
-    skg_json_node position;
-    double right[3], up[3], spacing[2];
-    SKG_TRY(
-        skg_json_read_object(node, detector_keys, sizeof detector_keys / sizeof *detector_keys, &detector));
-    SKG_TRY(skg_json_need(&detector, "Position", "[0, 500, 0, \"mm\"]", &position));
-    SKG_TRY(skg_json_lengths(&position, "[0, 500, 0, \"mm\"]", 3, view->centre));
-    SKG_TRY(read_pixels(&detector, view));
-    if (view->columns < 1 || view->rows < 1) { /* before Size is divided by them */
-        skg_status status = skg_view_check(view);
-        return skg_json_at(node, status);
-    }
-    SKG_TRY(read_spacing(&detector, view, spacing));
-    SKG_TRY(read_axes(&detector, view, right, up));
+    SKG_TRY(read_object(node, &detector));
+    const skg_json_node position = skg_json_member(&detector, "Position");
+    if (!position.value)
+        SKG_TRY(fit(reader, &detector));
+    else if (reader->has_side)
+        return skg_json_fail(
+            &position, SKG_ERR_FORMAT,
+            "Source.From is a side, from which source and detector are placed together; leave out "
+            "Detector.Position, or give Source.Position");
+    else
+        SKG_TRY(place(&detector, &position, view));
     SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
     SKG_TRY(skg_setup_read_response(reader, &detector));
     SKG_TRY(skg_setup_read_blur(reader, &detector));
-    skg_scale_vector(spacing[0], right, view->column_step);
-    skg_scale_vector(spacing[1], up, view->row_step);
     skg_status status = skg_view_check(view);
     SKG_TRY(skg_json_at(node, status));
     return SKG_OK;

@@ -11,7 +11,9 @@ typedef struct {
     skg_json_file file;
     char *folder; /* of the scene file, with its last slash; "" for the current folder */
     skg_setup *setup;
-    skg_setup_source source;    /* of this library's size; its text and path are in `file` */
+    skg_setup_source source; /* of this library's size; its text and path are in `file` */
+    int32_t has_side; /* 1: the source stands on a side of the parts, and is placed with the detector */
+    double side[3];   /* from the centre of the parts to the source, of length 1 */
     int32_t noted_beyond_table; /* 1: it was said that Schneider's table ends below a Hounsfield number */
 } skg_setup_reader;
 

@@ -3,7 +3,6 @@
 #include "setup/sections.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -195,28 +194,9 @@ static skg_status read_parent(skg_scene *scene, const sample_list *list, const s
     return skg_json_at(&part->node, status);
 }
 
-/* Widens bounds (min x, y, z, max x, y, z) by a part's vertices in the world. */
-static skg_status add_bounds(const skg_scene_part_data *part, double *bounds) {
-    int64_t vertices = 0, triangles = 0;
-    double *positions = NULL;
-    SKG_TRY(skg_mesh_count(part->mesh, &vertices, &triangles));
-    SKG_TRY(skg_alloc(vertices, 3 * sizeof *positions, part->label, &positions));
-    skg_status status = skg_mesh_positions_get(part->mesh, positions, 3);
-    for (int64_t i = 0; status == SKG_OK && i < vertices; i++) {
-        double x[3];
-        skg_pose_point(part->pose, positions + 3 * i, x);
-        for (int k = 0; k < 3; k++) {
-            bounds[k] = fmin(bounds[k], x[k]);
-            bounds[3 + k] = fmax(bounds[3 + k], x[k]);
-        }
-    }
-    skg_free(&positions);
-    return status;
-}
-
 static skg_status move_all_to_centre(skg_scene *scene) {
-    double bounds[6] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int64_t i = 0; i < scene->count; i++) SKG_TRY(add_bounds(&scene->parts[i], bounds));
+    double bounds[6];
+    SKG_TRY(skg_setup_bounds(scene, bounds));
     for (int64_t i = 0; i < scene->count; i++) {
         double pose[16];
         memcpy(pose, scene->parts[i].pose, sizeof pose);

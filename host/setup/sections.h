@@ -15,7 +15,8 @@
 #include "setup/reader.h"
 
 /* Each reads one section into reader->setup. Source comes before Detector, which needs to know where the beam comes
- * from, and both before Scan. */
+ * from, and both before Scan. A detector that is fitted to the parts comes after Samples; its node->value may be
+ * NULL. */
 skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node);
@@ -23,6 +24,14 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
 /* graph: a SceneGraph, which is one more sample, its file with all its meshes. Either value may be NULL, not both. */
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node,
                                   const skg_json_node *graph);
+/* Whether the detector is fitted: there is none, or one without Position. */
+skg_status skg_setup_is_fitted(const skg_json_node *detector, int32_t *fitted);
+
+/* Places a detector without Position behind the parts, and a source that gives a side only in front of them. */
+skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *detector);
+
+/* Bounds of all vertices in the world, mm: least x, y, z, largest x, y, z. */
+skg_status skg_setup_bounds(const skg_scene *scene, double *bounds);
 
 /* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);

@@ -106,22 +106,14 @@ static skg_status need(const skg_setup_reader *reader, const skg_json_object *to
     return skg_json_need(top, name, example, section);
 }
 
-/* Source and detector. */
-static skg_status read_beam_path(skg_setup_reader *reader, const skg_json_node *source,
-                                 const skg_json_node *detector) {
-    skg_view_init(&reader->setup->view);
-    if (!source->value) return SKG_OK;
-    SKG_TRY(skg_setup_read_source(reader, source));
-    SKG_TRY(skg_setup_read_detector(reader, detector));
-    return skg_setup_place_beam(reader, source);
-}
-
 static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node root = skg_json_root(&reader->file), source, detector, samples;
     skg_json_object top;
+    int32_t fitted = 0;
+    skg_view_init(&reader->setup->view);
     SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
     SKG_TRY(need(reader, &top, "Source", "Detector", "{ ... }", &source));
-    SKG_TRY(need(reader, &top, "Detector", "Source", "{ ... }", &detector));
+    detector = skg_json_member(&top, "Detector");
     const skg_json_node graph = skg_json_member(&top, "SceneGraph");
     samples = skg_json_member(&top, "Samples");
     if (!graph.value) SKG_TRY(need(reader, &top, "Samples", "Samples", "[ ... ]", &samples));
@@ -130,7 +122,11 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_tolerance(reader->setup, &top));
     SKG_TRY(read_repair(reader->setup, &top));
     SKG_TRY(read_band_weight(reader->setup, &top));
-    SKG_TRY(read_beam_path(reader, &source, &detector));
+    if (source.value) SKG_TRY(skg_setup_is_fitted(&detector, &fitted));
+    if (source.value) SKG_TRY(skg_setup_read_source(reader, &source));
+    if (fitted) SKG_TRY(skg_setup_read_samples(reader, &samples, &graph));
+    if (source.value) SKG_TRY(skg_setup_read_detector(reader, &detector));
+    if (source.value) SKG_TRY(skg_setup_place_beam(reader, &source));
     const skg_json_node falloff = skg_json_member(&top, "Falloff");
     reader->setup->falloff = reader->setup->absolute;
     if (falloff.value) SKG_TRY(skg_json_flag(&falloff, &reader->setup->falloff));
@@ -143,11 +139,13 @@ static skg_status read_all(skg_setup_reader *reader) {
             "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
             "given");
     skg_json_node scan = skg_json_member(&top, "Scan");
-    if (scan.value) {
-        if (!source.value) return skg_json_fail(&scan, SKG_ERR_SCENE, "needs Source and Detector");
-        SKG_TRY(skg_setup_read_scan(reader, &scan));
-    }
-    SKG_TRY(skg_setup_read_samples(reader, &samples, &graph));
+    if (scan.value && !source.value) return skg_json_fail(&scan, SKG_ERR_SCENE, "needs Source and Detector");
+    if (scan.value && fitted)
+        return skg_json_fail(
+            &scan, SKG_ERR_FORMAT,
+            "needs a detector at a given place, because the parts turn; give Detector.Position");
+    if (scan.value) SKG_TRY(skg_setup_read_scan(reader, &scan));
+    if (!fitted) SKG_TRY(skg_setup_read_samples(reader, &samples, &graph));
     skg_json_node breathing = skg_json_member(&top, "Breathing");
     return skg_setup_read_breathing(reader, &breathing);
 }

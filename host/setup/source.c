@@ -6,10 +6,23 @@ static const skg_json_key source_keys[] = {
     {"Shape", NULL, SKG_KEY_READ},    {"Samples", NULL, SKG_KEY_READ},
     {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
     {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
+    {"From", NULL, SKG_KEY_READ},
 };
 
 /* Where only path lengths are wanted, any energy does for a beam that is absent. */
 static const double STAND_IN_KEV = 60;
+
+/* The side of the parts on which the source stands: a name, or a direction from their centre. */
+static skg_status read_side(skg_setup_reader *reader, const skg_json_node *node) {
+    static const char *const names[] = {"front", "side", "top"};
+    static const double sides[][3] = {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
+    int64_t choice = 0;
+    reader->has_side = 1;
+    if (!json_is_string(node->value)) return skg_json_direction(node, reader->side);
+    SKG_TRY(skg_json_choice(node, "side", names, 3, &choice));
+    for (int k = 0; k < 3; k++) reader->side[k] = sides[choice][k];
+    return SKG_OK;
+}
 
 skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *node) {
     skg_setup *setup = reader->setup;
@@ -21,7 +34,14 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     skg_view_init(&setup->view);
     skg_json_node position = skg_json_member(&source, "Position");
     skg_json_node direction = skg_json_member(&source, "Direction");
-    if (direction.value) {
+    const skg_json_node side = skg_json_member(&source, "From");
+    if (side.value) {
+        if (position.value || direction.value)
+            return skg_json_fail(&side, SKG_ERR_FORMAT, "give either From, or %s, not both",
+                                 position.value ? "Position" : "Direction");
+        setup->view.projection = parallel ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
+        SKG_TRY(read_side(reader, &side));
+    } else if (direction.value) {
         if (!parallel)
             return skg_json_fail(&direction, SKG_ERR_FORMAT,
                                  "only a parallel beam has a Direction; give a Position");

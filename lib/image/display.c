@@ -47,6 +47,51 @@ void skg_picture_shown_range(const skg_picture *picture, double *low, double *hi
     *high = most;
 }
 
+/* Moves the values until that of rank `rank` is in its place, none before it is larger and none behind it smaller
+ * (Hoare's selection). */
+static double select_rank(double *values, int64_t count, int64_t rank) {
+    int64_t first = 0, last = count - 1;
+    while (first < last) {
+        const double pivot = values[first + (last - first) / 2];
+        int64_t i = first, j = last;
+        while (i <= j) {
+            while (values[i] < pivot) i++;
+            while (values[j] > pivot) j--;
+            if (i > j) break;
+            const double swapped = values[i];
+            values[i++] = values[j];
+            values[j--] = swapped;
+        }
+        if (rank <= j)
+            last = j;
+        else if (rank >= i)
+            first = i;
+        else
+            break;
+    }
+    return values[rank];
+}
+
+skg_status skg_picture_shown_window(const skg_picture *picture, double below, double above, double *low,
+                                    double *high) {
+    const int64_t pixels = picture->columns * picture->rows;
+    double *values = NULL;
+    int64_t count = 0;
+    SKG_TRY(skg_alloc(pixels, sizeof *values, "range of a picture", &values));
+    for (int64_t i = 0; i < pixels; i++) {
+        const double shown = skg_picture_shown(picture, skg_picture_value(picture, i));
+        if (isfinite(shown)) values[count++] = shown;
+    }
+    *low = *high = 0;
+    if (count > 0) {
+        *low = select_rank(values, count, (int64_t)floor(below * (double)(count - 1) + 0.5));
+        *high = select_rank(values, count, (int64_t)floor((1 - above) * (double)(count - 1) + 0.5));
+    }
+    if (!(*low < *high)) skg_picture_shown_range(picture, low, high);
+    skg_free(&values);
+    return SKG_OK;
+}
+
 void skg_picture_curve(const skg_picture *picture, char *text, size_t length) {
     if (!is_relative(picture))
         skg_picture_title(picture, text, length);

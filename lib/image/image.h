@@ -20,6 +20,10 @@ double skg_picture_shown(const skg_picture *picture, double value);
 /* The smallest and the largest number that is shown in the first channel; 0 and 1 if none is finite. */
 void skg_picture_shown_range(const skg_picture *picture, double *low, double *high);
 
+/* The range without a share of values below it and one above it. */
+skg_status skg_picture_shown_window(const skg_picture *picture, double below, double above, double *low,
+                                    double *high);
+
 /* The display curve in words, for the text of a PNG: "-ln(I/I0)", "I/I0", or the quantity with its unit. */
 void skg_picture_curve(const skg_picture *picture, char *text, size_t length);
 

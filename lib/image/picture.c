@@ -135,3 +135,17 @@ skg_status skg_picture_range_get(const skg_picture *theirs, double *low, double 
     skg_picture_shown_range(&picture, low, high);
     return SKG_OK;
 }
+
+skg_status skg_picture_window_get(const skg_picture *theirs, double below, double above, double *low,
+                                  double *high) {
+    SKG_PLAIN;
+    SKG_NEEDS(low);
+    SKG_NEEDS(high);
+    skg_picture picture;
+    SKG_TRY(prepare(theirs, &picture));
+    if (!(below >= 0 && below < 0.5 && above >= 0 && above < 0.5))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_picture_window_get: shares %g and %g; give shares from 0 to below 0.5", below,
+                        above);
+    return skg_picture_shown_window(&picture, below, above, low, high);
+}

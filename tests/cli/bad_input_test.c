@@ -41,7 +41,7 @@ START_TEST(usage) {
     ck_run_fails(2, "Detector", "image scene.json -o a.mha --set Detector");
     ck_run_fails(2, "the extension .jpg is no image format; use .png, .tif or .mha",
                  "image scene.json -o a.jpg");
-    ck_run_fails(2, "SCENE is missing", "image -o a.mha");
+    ck_run_fails(2, "SCENE|MESH... is missing", "image -o a.mha");
 }
 END_TEST
 

@@ -118,7 +118,7 @@ START_TEST(bash_completes_values_and_files) {
     ck_assert_str_eq(said, "single\ndouble\nhalf\n");
     write_text("a scene.json", "");
     write_text("a mesh.stl", "");
-    complete("skiagraph image a", 2);
+    complete("skiagraph breathe a", 2);
     ck_assert_str_eq(said, "a scene.json\n");
     complete("skiagraph mesh a", 2);
     ck_assert_msg(has_line("a scene.json") && has_line("a mesh.stl"), "%s", said);

@@ -118,10 +118,36 @@ START_TEST(ranges_leave_out_what_is_not_finite) {
 }
 END_TEST
 
+/* The lengths 0 to 34, out of order. */
+START_TEST(windows_leave_out_outliers) {
+    double low, high;
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
+    picture.flat_field = 0;
+    for (int i = 0; i < PIXELS; i++)
+        doubles[i] = (double)(i * 12 % PIXELS); /* 12 and 35 have no common factor */
+    ck_skg(skg_picture_window_get(&picture, 0, 0, &low, &high));
+    ck_assert(low == 0 && high == 34);
+    ck_skg(skg_picture_window_get(&picture, 0.1, 0.2, &low, &high)); /* ranks 3.4 and 27.2 of 34 */
+    ck_assert(low == 3 && high == 27);
+    /* Values that are not finite are left out. */
+    for (int i = 0; i < PIXELS; i++)
+        if (doubles[i] == 34 || doubles[i] == 0) doubles[i] = doubles[i] == 34 ? HUGE_VAL : (double)NAN;
+    ck_skg(skg_picture_window_get(&picture, 0, 0, &low, &high));
+    ck_assert(low == 1 && high == 33);
+    /* One pixel stands out of a field: the window would be empty. */
+    for (int i = 0; i < PIXELS; i++) doubles[i] = i == 5 ? 3 : 1;
+    ck_skg(skg_picture_window_get(&picture, 0.1, 0.1, &low, &high));
+    ck_assert(low == 1 && high == 3);
+    ck_skg_fails(skg_picture_window_get(&picture, 0.5, 0, &low, &high), SKG_ERR_ARGUMENT, "below 0.5");
+    ck_skg_fails(skg_picture_window_get(&picture, 0, -0.1, &low, &high), SKG_ERR_ARGUMENT, "below 0.5");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, png_shows_dense_white_or_dark);
     tcase_add_test(tests, png_knows_what_the_data_are);
+    tcase_add_test(tests, windows_leave_out_outliers);
     tcase_add_test(tests, ranges_leave_out_what_is_not_finite);
 }
 

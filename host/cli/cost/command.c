@@ -63,6 +63,7 @@ char *cost_command(const cost_study *study, const cost_setting *setting) {
     put_flag(stream, study, &cli_flag_device);
     put_flag(stream, study, &cli_flag_strategy);
     put_flag(stream, study, &cli_flag_set);
+    if (cli_given(study->arguments, &cli_flag_lenient)) fputs(" --lenient", stream);
     fprintf(stream, " --precision %s --tolerance %.3g", cost_precision_name(setting), setting->tolerance);
     if (setting->bins > 0)
         fprintf(stream, " --set Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)setting->bins);

@@ -44,6 +44,12 @@ const cli_flag cli_flag_set = {
     "Samples.liver.Type=inner. KEY=null deletes the key. May be repeated.",
     NULL, CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_lenient = {
+    "--lenient", NULL,
+    "Reads a scene file although it has unknown keys, fractions of a mixture that do not sum to 1, or a Size that "
+    "contradicts Spacing: these are warnings.",
+    NULL, CLI_NAMES_NOTHING};
+
 const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_json = {
@@ -68,5 +74,38 @@ const cli_flag cli_flag_repeat = {
 
 const cli_flag cli_flag_range = {
     "--range", "LOW:HIGH",
-    "The values that a .png shows as black and as white. The default is the picture's own range.", NULL,
-    CLI_NAMES_NOTHING};
+    "The values that a .png shows as black and as white. The default for an image are the percentiles 0.5 and 99.5 of "
+    "its pixels, for path lengths the least and the largest.",
+    NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_meshes_material = {
+    "--material", "NAME",
+    "The operands are meshes of this material: an element, a compound or a tissue, as in `skiagraph material NAME`. "
+    "Given several times, each mesh in order has its own.",
+    NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_meshes_kvp = {
+    "--kvp", "KV", "With --material: the voltage of the tube, 10 to 450 kV.", NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_meshes_kev = {"--kev", "E", "With --material: the one energy of the beam, in keV.",
+                                      NULL, CLI_NAMES_NOTHING};
+
+const cli_flag cli_flag_meshes_filter = {
+    "--filter", "MATERIAL:MM",
+    "With --kvp: a filter of the beam with its thickness in mm, or in another unit that follows: Al:2.5, Cu:100um. "
+    "May be repeated. The default is 2.5 mm of aluminium.",
+    NULL, CLI_NAMES_NOTHING};
+
+const cli_item cli_flag_meshes_from_names[] = {
+    {"front", "the source at -y"}, {"side", "the source at +x"}, {"top", "the source at +z"}, {NULL, NULL}};
+
+const cli_flag cli_flag_meshes_from = {
+    "--from", "front|side|top|X,Y,Z",
+    "With --material: the side on which the source stands: front is -y (the default), side is +x, top is +z; or the "
+    "direction from the meshes to the source. The picture is as seen from there, with +z up; from the top, with +y up.",
+    NULL, CLI_NAMES_NOTHING};
+
+const char cli_text_meshes[] =
+    "With --material the operands are meshes instead of a scene: the source stands 1 m from their centre (farther if "
+    "they are large), and a detector of up to 512 x 512 pixels is fitted behind them. --set changes that scene as well: "
+    "--set Detector.NumberOfPixels=[2000,1000].";

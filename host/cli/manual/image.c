@@ -38,27 +38,26 @@ static const char *const text[] = {
     "With --bands the image has one channel for each band: a .tif has a page for each, a .mha a component; a .png "
     "shows the first. Energy and fluence of a band are in keV; photons, transmission and attenuation count photons. "
     "A file appears whole or not at all.",
-    "--json prints {frame_ms, first_ms, plan_ms, stages, range, files, plan}; times are in ms, and range has the least and "
-    "the largest value of each channel.",
+    cli_text_meshes,
+    "--json prints {frame_ms, first_ms, plan_ms, stages, range, window, files, plan}; times are in ms; range has the least and "
+    "the largest value of each channel, and window what a .png shows as black and as white.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_output,
-                                        &cli_flag_image_quantity,
-                                        &cli_flag_image_bands,
-                                        &cli_flag_image_band_weight,
-                                        &cli_flag_image_display,
-                                        &cli_flag_range,
-                                        &cli_flag_repeat,
-                                        &cli_flag_device,
-                                        &cli_flag_precision,
-                                        &cli_flag_tolerance,
-                                        &cli_flag_strategy,
-                                        &cli_flag_set,
-                                        &cli_flag_json,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&cli_flag_output,        &cli_flag_image_quantity,
+                                        &cli_flag_image_bands,   &cli_flag_image_band_weight,
+                                        &cli_flag_image_display, &cli_flag_range,
+                                        &cli_flag_repeat,        &cli_flag_meshes_material,
+                                        &cli_flag_meshes_kvp,    &cli_flag_meshes_kev,
+                                        &cli_flag_meshes_filter, &cli_flag_meshes_from,
+                                        &cli_flag_mesh_unit,     &cli_flag_device,
+                                        &cli_flag_precision,     &cli_flag_tolerance,
+                                        &cli_flag_strategy,      &cli_flag_set,
+                                        &cli_flag_lenient,       &cli_flag_json,
+                                        &cli_flag_quiet,         NULL};
 
 static const cli_item examples[] = {
+    {"skiagraph image bunny.stl --material Al --kvp 120 -o bunny.png",
+     "writes a radiograph of a mesh, without a scene"},
     {"skiagraph image scene.json -o image.png", "writes a radiograph"},
     {"skiagraph image scene.json -o image.mha --quantity attenuation --precision double",
      "writes -ln(I/I0) as doubles"},
@@ -67,12 +66,12 @@ static const cli_item examples[] = {
     {NULL, NULL}};
 
 const cli_manual cli_manual_image = {.name = "image",
-                                     .operands = "SCENE",
+                                     .operands = "SCENE|MESH...",
                                      .summary = "one X-ray image of a scene",
                                      .text = text,
                                      .least = 1,
-                                     .most = 1,
-                                     .names = CLI_NAMES_SCENE,
+                                     .most = -1,
+                                     .names = CLI_NAMES_FILE,
                                      .flags = flags,
                                      .examples = examples,
                                      .has_device = 1};

@@ -1,5 +1,6 @@
 #include "session/render.h"
 
+#include "common/file.h"
 #include "common/json.h"
 #include "common/say.h"
 #include "session/explain.h"
@@ -12,9 +13,22 @@
 
 enum { MOST_REPEATS = 1000000 };
 
+/* The share of an image's pixels that a .png shows black because they are below its window, and white because they are
+ * above. */
+static const double OUTSIDE = 0.005;
+
 static int read_repeats(const cli_arguments *arguments, int64_t *repeats) {
     *repeats = 0;
     return cli_integer(arguments, &cli_flag_repeat, 1, MOST_REPEATS, repeats);
+}
+
+/* Whether an output is a .png whose range --range leaves open. */
+static int has_window(const cli_rendering *rendering) {
+    const char *path;
+    if (rendering->lengths || cli_given(rendering->arguments, &cli_flag_range)) return 0;
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
+        if (cli_has_extension(path, ".png")) return 1;
+    return 0;
 }
 
 /* How many outputs are standard output. */
@@ -95,6 +109,10 @@ static void add_outputs(const cli_rendering *rendering, json_t *object) {
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
         json_array_append_new(files, cli_json_text(path));
     json_object_set_new(object, "range", ranges);
+    if (has_window(rendering)) {
+        const double window[2] = {rendering->picture.low, rendering->picture.high};
+        json_object_set_new(object, "window", cli_json_numbers(window, 2));
+    }
     json_object_set_new(object, "files", files);
 }
 
@@ -110,8 +128,15 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
     if (cli_is_quiet() || count_streams(rendering->arguments) > 0) return CLI_DONE;
     print_values(&rendering->picture);
     cli_times_print(times);
-    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
-        printf("wrote %s\n", path);
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
+        printf("wrote %s", path);
+        if (has_window(rendering) && cli_has_extension(path, ".png"))
+            printf(
+                ", %s from %.4g (black) to %.4g (white): percentiles %g and %g of the pixels, --range changes that",
+                rendering->picture.display == SKG_DISPLAY_RADIOGRAPH ? "-ln(I/I0)" : "I/I0",
+                rendering->picture.low, rendering->picture.high, 100 * OUTSIDE, 100 - 100 * OUTSIDE);
+        putchar('\n');
+    }
     return CLI_DONE;
 }
 
@@ -133,6 +158,11 @@ static int name_channels(cli_rendering *rendering, const skg_plan *plan) {
         picture->flat_field = channel.flat_field;
     }
     picture->channel_names = rendering->channel_names;
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int find_window(skg_picture *picture) {
+    skg_status status = skg_picture_window_get(picture, OUTSIDE, OUTSIDE, &picture->low, &picture->high);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -168,6 +198,7 @@ int cli_render(cli_rendering *rendering) {
     if (exit_status == CLI_DONE) exit_status = allocate_frame(rendering, &output);
     if (exit_status == CLI_DONE)
         exit_status = cli_run_frames(plan, rendering->frame, &output, rendering->frame_user, &times);
+    if (exit_status == CLI_DONE && has_window(rendering)) exit_status = find_window(&rendering->picture);
     if (exit_status == CLI_DONE) exit_status = write_files(rendering);
     if (exit_status == CLI_DONE) exit_status = print_rendering(rendering, plan, &times);
     free(output.data);

@@ -2,6 +2,7 @@
 
 #include "common/device.h"
 #include "common/say.h"
+#include "session/meshes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,8 @@ static int read_tolerance(const cli_arguments *arguments, char *setting, size_t 
     return CLI_DONE;
 }
 
-static int load_scene(const cli_arguments *arguments, const char *tolerance, cli_session *session) {
+static int load_scene(const cli_arguments *arguments, const char *tolerance, int lengths_only,
+                      cli_session *session) {
     int count = 0;
     const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings);
     if (!settings) return cli_error(CLI_DEVICE, "out of host memory");
@@ -25,8 +27,21 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, cli
         settings[count] = set;
     if (*tolerance) settings[count++] = tolerance;
     session->path = arguments->operands[0];
-    skg_status status = skg_setup_load(session->context, session->path, count, settings, &session->setup);
+    skg_setup_source source;
+    skg_setup_source_init(&source);
+    source.settings = settings;
+    source.setting_count = count;
+    char *text = NULL;
+    skg_status status = SKG_OK;
+    int exit_status = cli_has_meshes(arguments) ? cli_scene_of_meshes(arguments, &text) : CLI_DONE;
+    source.text = text;
+    if (!text) source.path = session->path;
+    source.lenient = cli_given(arguments, &cli_flag_lenient);
+    source.lengths_only = lengths_only;
+    if (exit_status == CLI_DONE) status = skg_setup_create(session->context, &source, &session->setup);
     free(settings);
+    free(text);
+    if (exit_status != CLI_DONE) return exit_status;
     if (status != SKG_OK) return cli_fail(status);
     skg_view_init(&session->view);
     skg_plan_options_init(&session->options);
@@ -37,16 +52,17 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, cli
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-int cli_open_session(const cli_arguments *arguments, cli_session *session) {
+int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_session *session) {
     char tolerance[64] = "";
     int32_t precision = -1, strategy = SKG_STRATEGY_AUTO;
     *session = (cli_session){0};
-    int exit_status = read_tolerance(arguments, tolerance, sizeof tolerance);
+    int exit_status = cli_check_operands(arguments);
+    if (exit_status == CLI_DONE) exit_status = read_tolerance(arguments, tolerance, sizeof tolerance);
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_precision, &precision);
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_strategy, &strategy);
     if (exit_status == CLI_DONE)
         exit_status = cli_open_context(arguments, &session->context, &session->device);
-    if (exit_status == CLI_DONE) exit_status = load_scene(arguments, tolerance, session);
+    if (exit_status == CLI_DONE) exit_status = load_scene(arguments, tolerance, lengths_only, session);
     if (precision >= 0) session->options.precision = precision;
     session->options.strategy = strategy;
     return exit_status;

@@ -17,10 +17,10 @@ typedef struct {
     const char *path;
 } cli_session;
 
-/* Opens the device and reads the scene, the first operand, with --set, --precision, --tolerance and
- * --strategy applied. The caller closes the session, also after a failure. Returns an exit status and prints
- * the error. */
-int cli_open_session(const cli_arguments *arguments, cli_session *session);
+/* Opens the device and reads the scene, the first operand, with --set, --lenient, --precision, --tolerance and --strategy
+ * applied. lengths_only: 1 if a scene without beam or materials will do. The caller closes the session, also after a failure.
+ * Returns an exit status and prints the error. */
+int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_session *session);
 void cli_close_session(cli_session *session);
 
 #endif

@@ -1,5 +1,6 @@
 #include "verbs/verbs.h"
 
+#include "common/filter.h"
 #include "common/json.h"
 #include "common/say.h"
 #include "verbs/plot.h"
@@ -27,41 +28,13 @@ typedef struct {
 
 /* --- flags ---------------------------------------------------------------------------------------------- */
 
-/* The millimetres of a unit; 0 if it is none of these. */
-static double millimetres(const char *unit) {
-    static const struct {
-        const char *name;
-        double mm;
-    } units[] = {{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}};
-    for (size_t u = 0; u < sizeof units / sizeof *units; u++)
-        if (strcmp(unit, units[u].name) == 0) return units[u].mm;
-    return 0;
-}
-
-/* Where the thickness of a filter begins: behind the last ':', because a material's name may contain one; in
- * "Al 2mm" and "Al 2 mm" at the last blank before a digit. NULL: nowhere. */
-static const char *find_thickness(const char *text) {
-    const char *found = strrchr(text, ':');
-    for (const char *at = found ? NULL : text; at && (at = strchr(at, ' ')); at++)
-        if (strspn(at + 1, "0123456789.") > 0) found = at;
-    return found;
-}
-
-/* Reads "Cu:0.1", "Al:2mm" and "Al 2 mm". */
 static int read_filter(const char *text, beam *b) {
-    char name[256], *end = NULL;
-    const char *gap = find_thickness(text);
-    double mm = gap ? strtod(gap + 1, &end) : -1;
-    size_t length = gap ? (size_t)(gap - text) : 0;
-    if (gap && end != gap + 1 && *end) mm *= millimetres(end + strspn(end, " "));
-    if (length == 0 || length >= sizeof name || end == gap + 1 || !(mm >= 0 && mm < HUGE_VAL) ||
-        (*end && millimetres(end + strspn(end, " ")) == 0))
-        return cli_error(CLI_USAGE, "--filter %s is not MATERIAL:MM, such as Cu:0.1, or with a unit Al:2mm",
-                         text);
+    char name[256];
+    double mm = 0;
+    int exit_status = cli_read_filter(text, name, sizeof name, &mm);
+    if (exit_status != CLI_DONE) return exit_status;
     if (b->filter_count == MOST_FILTERS)
         return cli_error(CLI_USAGE, "--filter: more than %d filters", MOST_FILTERS);
-    memcpy(name, text, length);
-    name[length] = '\0';
     skg_material **material = &b->materials[b->filter_count];
     skg_status status = skg_material_create_named(name, material);
     if (status != SKG_OK) return cli_fail(status);
@@ -80,7 +53,7 @@ static int read_output(const char *text, skg_tube *tube) {
         const char *at = end + strlen(unit);
         distance = strtod(at, &length);
         tube->output_ugy_mas = output;
-        tube->output_at_mm = distance * millimetres(length);
+        tube->output_at_mm = distance * cli_millimetres(length);
         if (length != at && output > 0 && tube->output_at_mm > 0) return CLI_DONE;
     }
     return cli_error(CLI_USAGE, "--output %s is not an output such as 65uGy/mAs@100cm", text);

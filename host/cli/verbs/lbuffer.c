@@ -1,6 +1,7 @@
 #include "verbs/verbs.h"
 
 #include "common/say.h"
+#include "session/meshes.h"
 #include "session/render.h"
 
 typedef struct {
@@ -23,10 +24,11 @@ int cli_lbuffer(const cli_arguments *arguments) {
     cli_rendering rendering = {
         .arguments = arguments, .frame = one_buffer, .frame_user = &wanted, .lengths = 1};
     const char *label = cli_value(arguments, &cli_flag_lbuffer_part);
-    if (!label) return cli_error(CLI_USAGE, "lbuffer: no part is named; add --part LABEL");
+    const int is_one_mesh = cli_has_meshes(arguments) && arguments->operand_count == 1;
+    if (!label && !is_one_mesh) return cli_error(CLI_USAGE, "lbuffer: no part is named; add --part LABEL");
     int exit_status = cli_check_outputs(arguments);
-    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &rendering.session);
-    if (exit_status == CLI_DONE) {
+    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 1, &rendering.session);
+    if (exit_status == CLI_DONE && label) {
         skg_status status = skg_scene_find(rendering.session.scene, label, &wanted.part);
         if (status != SKG_OK) exit_status = cli_fail(status);
     }

@@ -79,6 +79,16 @@ SKG_API skg_status skg_picture_path_check(const char *path);
  * a sequence can use the same. */
 SKG_API skg_status skg_picture_range_get(const skg_picture *picture, double *low, double *high);
 
+/** Gets a range for a .png from which outliers are left out: of the shown values of the first channel that are
+ * finite, a share below `low` and a share above `high`. If both ends are the same value, the result is that of
+ * skg_picture_range_get.
+ *
+ *     below, above   the shares, from 0 to below 0.5, such as 0.005: the value of the nearest rank
+ *     low, high      results, in the unit of the display curve
+ *     errors         SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
+SKG_API skg_status skg_picture_window_get(const skg_picture *picture, double below, double above, double *low,
+                                          double *high);
+
 #ifdef __cplusplus
 }
 #endif

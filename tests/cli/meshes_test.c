@@ -1,0 +1,101 @@
+/* Meshes instead of a scene: the flags --material, --kvp, --kev, --filter, --from and --unit. */
+#include "cli/command.h"
+
+#include <float.h>
+#include <math.h>
+
+/* A cuboid of 20 x 10 x 40 of the file's unit, about (5, 5, 5), as an OBJ file. */
+static const char box[] = "v -5 0 -15\nv 15 0 -15\nv -5 10 -15\nv 15 10 -15\n"
+                          "v -5 0 25\nv 15 0 25\nv -5 10 25\nv 15 10 25\n"
+                          "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+static void set_up_box(void) {
+    set_up();
+    write_text("box.obj", box);
+}
+
+/* The first channel's least and largest value. */
+static void check_range(double low, double high, double margin) {
+    json_t *object = said_json(), *range = json_array_get(member(object, "range"), 0);
+    ck_assert_double_eq_tol(json_number_value(json_array_get(range, 0)), low, margin);
+    ck_assert_double_eq_tol(json_number_value(json_array_get(range, 1)), high, margin);
+    json_decref(object);
+}
+
+START_TEST(a_mesh_needs_no_scene) {
+    ck_run(0, "image box.obj --material Al --kvp 120 -o box.png");
+    ck_assert(has_file("box.png"));
+    ck_assert_ptr_nonnull(strstr(complained, "the beam is filtered by 2.5 mm of aluminium"));
+    ck_assert_ptr_nonnull(strstr(complained, "fitted to the parts: 256 x 512 pixels"));
+    ck_assert_ptr_nonnull(strstr(said, "percentiles 0.5 and 99.5 of the pixels"));
+    ck_run(0, "image box.obj --material Al --kvp 120 --filter Al:3mm --filter \"Cu 0.1\" -o box.png --quiet");
+    ck_assert_str_eq(complained, "");
+    ck_run(0, "plan box.obj --material Al --kev 60");
+    ck_assert_ptr_nonnull(strstr(said, "60 keV"));
+}
+END_TEST
+
+/* Lengths across the box from its sides, up to a pixel's oblique ray: 1 + (20 / 1000)^2 / 2. */
+START_TEST(a_mesh_is_seen_from_any_side) {
+    const double oblique = 40 * 2e-4 + 1e-5;
+    ck_run(0, "lbuffer box.obj --material Al --json -o l.mha");
+    check_range(0, 10, oblique);
+    ck_run(0, "lbuffer box.obj --material Al --from side --json -o l.mha");
+    check_range(0, 20, oblique);
+    ck_run(0, "lbuffer box.obj --material Al --from top --json -o l.mha");
+    check_range(0, 40, oblique);
+    ck_run(0, "lbuffer box.obj --material Al --from 0,0,-2 --unit cm --json -o l.mha");
+    check_range(0, 400, 400 * 0.02);
+    ck_run(0, "image box.obj --material H2O --kev 60 --from top --quantity attenuation --json -o l.mha "
+              "--set Samples.box.Material='[\"mu\",0.5]'");
+    check_range(0, 2, 0.05 * oblique + 1e-6);
+}
+END_TEST
+
+START_TEST(several_meshes) {
+    write_text("a.obj", box);
+    ck_assert_int_eq(run("lbuffer box.obj ./box.obj a.obj --material Al --part \"box 2\" --json -o l.mha"),
+                     0);
+    check_range(0, 10, 40 * 2e-4 + 1e-5);
+    ck_run(0, "plan box.obj a.obj --material Al --material H2O --kev 60");
+    ck_assert_ptr_nonnull(strstr(said, "2 parts"));
+    ck_run_fails(2, "3 meshes have 2 materials",
+                 "plan box.obj a.obj a.obj --material Al --material Cu --kev 60");
+}
+END_TEST
+
+static const struct {
+    int exit_status;
+    const char *says, *words;
+} bad[] = {
+    {2, "box.obj is a mesh, not a scene; add --material NAME", "image box.obj -o a.png"},
+    {2, "give the beam as either --kvp KV", "image box.obj --material Al -o a.png"},
+    {2, "give the beam as either --kvp KV", "image box.obj --material Al --kvp 90 --kev 60 -o a.png"},
+    {2, "--filter belongs to a tube", "image box.obj --material Al --kev 60 --filter Al:1 -o a.png"},
+    {2, "--filter thick is not", "image box.obj --material Al --kvp 60 --filter thick -o a.png"},
+    {2, "--from back is neither", "image box.obj --material Al --kev 60 --from back -o a.png"},
+    {2, "--from 0,0,0 is neither", "image box.obj --material Al --kev 60 --from 0,0,0 -o a.png"},
+    {2, "--from 1,2 is neither", "image box.obj --material Al --kev 60 --from 1,2 -o a.png"},
+    {2, "box.json is a scene", "image box.json --material Al --kev 60 -o a.png"},
+    {2, "--kev describes meshes", "image box.json --kev 60 -o a.png"},
+    {2, "one word too many", "image a.json b.json -o a.png"},
+    {2, "did you mean mm", "image box.obj --material Al --kev 60 --unit mn -o a.png"},
+    {3, "Unobtainium", "image box.obj --material Unobtainium --kev 60 -o a.png"},
+    {3, "none.obj", "image none.obj --material Al --kev 60 -o a.png"},
+};
+
+START_TEST(bad_meshes_are_refused) {
+    ck_run_fails(bad[_i].exit_status, bad[_i].says, "%s", bad[_i].words);
+    ck_assert(!has_file("a.png"));
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_box, tear_down);
+    tcase_add_test(tests, a_mesh_needs_no_scene);
+    tcase_add_test(tests, a_mesh_is_seen_from_any_side);
+    tcase_add_test(tests, several_meshes);
+    tcase_add_loop_test(tests, bad_meshes_are_refused, 0, sizeof bad / sizeof *bad);
+}
+
+SKG_SUITE_MAIN("meshes", add_tests)
