@@ -7,9 +7,9 @@
 /* Longest strut in mm: the diaphragm's thickness, 2.5 to 4 mm, and a little more where the faces are not parallel. */
 static const double thickest = 4;
 
-/* Vertices in cells as wide as the longest strut. */
+/* Vertices in cells as wide as the longest strut, or wider where they are far apart. */
 typedef struct {
-    double low[3];
+    double low[3], width;
     int64_t size[3];
     int64_t *first;
     int32_t *list;
@@ -17,7 +17,7 @@ typedef struct {
 } vertex_grid;
 
 static int64_t cell_at(const vertex_grid *grid, int k, double x) {
-    const int64_t at = (int64_t)floor((x - grid->low[k]) / thickest);
+    const int64_t at = (int64_t)floor((x - grid->low[k]) / grid->width);
     return at < 0 ? 0 : at >= grid->size[k] ? grid->size[k] - 1 : at;
 }
 
@@ -26,14 +26,26 @@ static int64_t cell_of(const vertex_grid *grid, const double p[3]) {
            cell_at(grid, 0, p[0]);
 }
 
+/* Sets the number of cells, at most a few for each vertex. Beyond MOST of them on an axis, the last holds the rest. */
+static int64_t lay_out(const skg_body_organ *o, vertex_grid *grid) {
+    enum { LEAST_CELLS = 4096, CELLS_OF_VERTEX = 64, MOST = 1 << 20 };
+    const double wanted = fmax(LEAST_CELLS, CELLS_OF_VERTEX * (double)o->vertices);
+    double cells;
+    grid->width = thickest / 2;
+    do {
+        grid->width *= 2;
+        cells = 1;
+        for (int k = 0; k < 3; k++) {
+            grid->low[k] = o->bounds[k];
+            grid->size[k] = 1 + (int64_t)fmin((o->bounds[3 + k] - o->bounds[k]) / grid->width, MOST);
+            cells *= (double)grid->size[k];
+        }
+    } while (cells > wanted && grid->width < 1e300);
+    return (int64_t)cells;
+}
+
 static skg_status fill_cells(const skg_body_organ *o, vertex_grid *grid) {
-    int64_t cells = 1;
-    for (int k = 0; k < 3; k++) {
-        grid->low[k] = o->bounds[k];
-        /* 1.6 m; the last cell holds what lies beyond */
-        grid->size[k] = 1 + (int64_t)fmin((o->bounds[3 + k] - o->bounds[k]) / thickest, 400);
-        cells *= grid->size[k];
-    }
+    const int64_t cells = lay_out(o, grid);
     SKG_TRY(skg_alloc(cells + 1, sizeof *grid->first, o->label, &grid->first));
     SKG_TRY(skg_alloc(o->vertices, sizeof *grid->list, o->label, &grid->list));
     for (int64_t i = 0; i < o->vertices; i++)

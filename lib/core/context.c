@@ -37,11 +37,11 @@ skg_status skg_context_enter(const skg_context *context) {
     if (context->process != (int64_t)getpid())
         return skg_fail(
             SKG_ERR_FORK,
-            "the context was made before a fork, and OpenCL does not survive one; make a new context in "
-            "the child process");
+            "the context was made before a fork, and OpenCL does not survive one; start the child process "
+            "by exec or spawn");
     char sentence[SKG_MAILBOX_SENTENCE];
     while (context->log.call && skg_mailbox_take(context->driver, sentence))
-        skg_log(context, SKG_LOG_WARNING, "OpenCL driver: %s", sentence);
+        skg_log(context, SKG_LOG_WARNING, "%s", sentence);
     return SKG_OK;
 }
 

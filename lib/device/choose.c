@@ -1,5 +1,6 @@
 #include "core/names.h"
 #include "device/device.h"
+#include "device/start.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -85,6 +86,7 @@ void skg_device_info_init_sized(void *info, int32_t size) {
 
 skg_status skg_device_count(int64_t *count) {
     SKG_NEEDS(count);
+    SKG_TRY(skg_opencl_start());
     found_device found[MOST_DEVICES];
     int32_t all = 0;
     SKG_TRY(find_devices(found, &all));
@@ -93,6 +95,7 @@ skg_status skg_device_count(int64_t *count) {
 }
 
 skg_status skg_device_get(int64_t index, skg_device_info *info) {
+    SKG_TRY(skg_opencl_start());
     found_device found[MOST_DEVICES];
     int32_t all = 0;
     SKG_TRY(find_devices(found, &all));

@@ -2,6 +2,7 @@
 #include "core/plain.h"
 #include "device/device.h"
 #include "device/program.h"
+#include "device/start.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -12,7 +13,9 @@
 void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t size, void *user) {
     (void)data;
     (void)size;
-    skg_mailbox_put(user, sentence);
+    char whole[SKG_MAILBOX_SENTENCE];
+    snprintf(whole, sizeof whole, "OpenCL driver: %s", sentence);
+    skg_mailbox_put(user, whole);
 }
 
 typedef struct {
@@ -74,10 +77,39 @@ static skg_status read_config(const char *config, wanted_device *wanted) {
     return config ? read_words(config, wanted) : SKG_OK;
 }
 
-/* Restricts the context to a sub-device of `threads` compute units, if the device has more. 0: all. */
+/* Leaves a warning for the context's log, which the caller has not set yet. */
+static void warn_of_workers(const skg_context *context, int32_t cpus) {
+    static const char *const variables[][2] = {{"Portable Computing Language", "POCL_MAX_PTHREAD_COUNT"},
+                                               {"Intel", "CL_CONFIG_CPU_TBB_NUM_WORKERS"},
+                                               {"rusticl", "LP_NUM_THREADS"}};
+    const skg_device_info *info = &context->device->info;
+    char sentence[SKG_MAILBOX_SENTENCE];
+    const char *variable = "the driver's variable for its number of threads";
+    for (size_t n = 0; n < sizeof variables / sizeof *variables; n++)
+        if (strstr(info->platform_name, variables[n][0])) variable = variables[n][1];
+    snprintf(sentence, sizeof sentence,
+             "%s has %" PRId32 " threads, but this process may run on %" PRId32
+             " of the CPUs; images are faster if %s is set to %" PRId32 " before the process starts",
+             info->name, info->compute_units, cpus, variable, cpus);
+    skg_mailbox_put(skg_mailbox_address(context->driver), sentence);
+}
+
+/* If the process may run on fewer CPUs than the device has compute units, work is divided for those CPUs. A sub-device
+ * would be slower: PoCL wakes every worker for each command, and only those of the sub-device may take it. Waking idle
+ * workers costs 15 % of a small image with 8 of them for each CPU, and doubles its time with 64: then there is a warning. */
+static void fit_to_cpus(skg_context *context) {
+    enum { MANY_WORKERS = 8 };
+    skg_device_info *info = &context->device->info;
+    const int32_t cpus = skg_opencl_cpu_count();
+    if (!info->is_cpu || cpus == 0 || cpus >= info->compute_units) return;
+    if (info->compute_units >= MANY_WORKERS * cpus) warn_of_workers(context, cpus);
+    info->compute_units = cpus;
+}
+
+/* Restricts the context to a sub-device of `threads` compute units, if the device has more. */
 static skg_status limit_threads(skg_context *context, int32_t threads) {
     skg_device *device = context->device;
-    if (threads == 0 || threads >= device->info.compute_units) return SKG_OK;
+    if (threads >= device->info.compute_units) return SKG_OK;
     cl_device_partition_property how[] = {CL_DEVICE_PARTITION_BY_COUNTS, threads,
                                           CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
     cl_device_id part = NULL;
@@ -107,6 +139,26 @@ static skg_status new_context(skg_context **context) {
     return status;
 }
 
+typedef struct {
+    skg_context *context;
+    const char *call; /* the last one */
+    cl_int code;
+} opening;
+
+/* Some drivers make their threads now. */
+static void open_queue(void *argument) {
+    opening *o = argument;
+    skg_device *device = o->context->device;
+    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
+    o->call = "clCreateContext";
+    device->cl = clCreateContext(properties, 1, &device->id, skg_driver_says,
+                                 skg_mailbox_address(o->context->driver), &o->code);
+    if (o->code != CL_SUCCESS) return;
+    o->call = "clCreateCommandQueue";
+    device->profiling = 1;
+    device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &o->code);
+}
+
 skg_status skg_context_create(const char *config, skg_context **context) {
     SKG_PLAIN;
     SKG_NEEDS(context);
@@ -115,20 +167,19 @@ skg_status skg_context_create(const char *config, skg_context **context) {
     skg_status status = SKG_OK;
     wanted_device wanted;
     SKG_TRY(read_config(config, &wanted));
+    SKG_TRY(skg_opencl_start());
     SKG_TRY(new_context(&made));
     skg_device *device = made->device;
-    cl_int code = CL_SUCCESS;
+    opening o = {.context = made};
     SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, &device->platform, &device->id,
                                       &device->info));
-    SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
+    if (wanted.threads > 0)
+        SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
+    else
+        fit_to_cpus(made);
     if (wanted.kernels[0]) SKG_TRY_CLEANUP(skg_copy_text(wanted.kernels, &device->kernel_dir));
-    cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
-    device->cl = clCreateContext(properties, 1, &device->id, skg_driver_says,
-                                 skg_mailbox_address(made->driver), &code);
-    SKG_CL_CLEANUP(code);
-    device->profiling = 1;
-    device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &code);
-    SKG_CL_CLEANUP(code);
+    SKG_TRY_CLEANUP(skg_opencl_call(open_queue, &o));
+    if (o.code != CL_SUCCESS) SKG_TRY_CLEANUP(skg_cl_fail(o.code, o.call, __FILE__, __LINE__));
     *context = made;
     return SKG_OK;
 cleanup:
@@ -148,6 +199,7 @@ skg_status skg_context_create_cl(cl_context cl, cl_device_id id, cl_command_queu
     cl_device_id queue_device = NULL;
     cl_command_queue_properties properties = 0;
     cl_platform_id platform = NULL;
+    SKG_TRY(skg_opencl_start());
     SKG_CL_TRY(clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof queue_context, &queue_context, NULL));
     SKG_CL_TRY(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof queue_device, &queue_device, NULL));
     SKG_CL_TRY(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, NULL));

@@ -19,7 +19,8 @@ typedef struct skg_device {
     skg_device_info info;
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
-    int64_t builds; /* programs compiled so far; a second scene with the same effects adds none */
+    int64_t builds;   /* programs compiled so far; a second scene with the same effects adds none */
+    int64_t launched; /* of these, how many there were when a job was last complete; later ones may be new */
 } skg_device;
 
 /* --- errors --- */

@@ -1,4 +1,5 @@
 #include "device/program.h"
+#include "device/signals.h"
 #include "device/sources.h"
 
 #include <errno.h>
@@ -111,7 +112,9 @@ static skg_status build(skg_context *context, int32_t files, const char *const *
     }
     *program = clCreateProgramWithSource(device->cl, (cl_uint)files, (const char **)sources, NULL, &code);
     SKG_CL_CLEANUP(code);
+    skg_signals_keep();
     code = clBuildProgram(*program, 1, &device->id, full, NULL, NULL);
+    skg_signals_restore();
     if (code != CL_SUCCESS) {
         status = build_failed(device, *program, code, key);
         clReleaseProgram(*program);

@@ -1,5 +1,7 @@
 #include "frame/job.h"
+
 #include "core/plain.h"
+#include "device/signals.h"
 
 skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
                           int64_t frames, skg_job **job) {
@@ -41,7 +43,11 @@ void skg_job_release(skg_job **job) {
 skg_status skg_job_complete(skg_job **job) {
     skg_job *done = *job;
     skg_context *context = done->machine->context;
+    const int first = context->device->launched < context->device->builds;
+    if (first) skg_signals_keep();
     const cl_int code = clWaitForEvents(1, &done->last);
+    if (first) skg_signals_restore();
+    context->device->launched = context->device->builds;
     done->finished = code == CL_SUCCESS;
     const skg_status status = code == CL_SUCCESS
                                   ? skg_report_work(done->recipe, context, &done->machine->geometry,

@@ -1,5 +1,7 @@
 #include "stage/kernels.h"
 
+#include "device/signals.h"
+
 #include <skiagraph/plan.h>
 
 #include <stdio.h>
@@ -47,8 +49,11 @@ void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, doubl
 skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
                           const size_t *global, const size_t *local, skg_stage_log *log) {
     cl_event event = NULL;
+    const int first = context->device->launched < context->device->builds; /* it may compile now */
+    if (first) skg_signals_keep();
     cl_int code = clEnqueueNDRangeKernel(context->device->queue, kernel, dimensions, NULL, global, local, 0,
                                          NULL, skg_stage_event(log, &event));
+    if (first) skg_signals_restore();
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clEnqueueNDRangeKernel", __FILE__, __LINE__);
         return skg_fail(code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES

@@ -130,10 +130,18 @@ START_TEST(affinity_is_left_alone_where_it_would_hurt) {
     ck_assert_ptr_nonnull(strstr(said, "- (not pinned: SLURM_JOB_ID says"));
     if (sysconf(_SC_NPROCESSORS_ONLN) > 1) { /* 0 is a core that every machine has */
         char line[256];
-        snprintf(line, sizeof line,
-                 "taskset -c 0 %s devices | grep -q 'not pinned: this process may run on some'", SKG_COMMAND);
+        snprintf(
+            line, sizeof line,
+            "taskset -c 0 env -u POCL_MAX_PTHREAD_COUNT %s devices | "
+            "grep -c -e 'not pinned: this process may run on 1 of ' -e 'POCL_MAX_PTHREAD_COUNT *1$' | grep -q 2",
+            SKG_COMMAND);
         ck_assert_int_eq(system(line), 0);
     }
+    ck_run(0, "OMP_PROC_BIND=true |devices");
+    ck_assert_ptr_nonnull(strstr(said, "- (not pinned: OMP_PROC_BIND binds threads"));
+    /* PoCL aborts if it pins a thread to a core that there is not. */
+    ck_run(0, "POCL_MAX_PTHREAD_COUNT=600 |devices");
+    ck_assert_ptr_nonnull(strstr(said, "- (not pinned: POCL_MAX_PTHREAD_COUNT asks for more threads"));
 }
 END_TEST
 

@@ -3,6 +3,7 @@
 #include "suite.h"
 #include "support/run.h"
 
+#include <locale.h>
 #include <string.h>
 
 static uint64_t hash_of_file(const char *folder, const char *name) {
@@ -104,4 +105,16 @@ void do_everything(everything *done) {
                   5 * hash_of_file(folder, "skin.ply");
     snprintf(command, sizeof command, "rm -r %s", folder);
     ck_assert_int_eq(system(command), 0);
+}
+
+int everything_comma(void) {
+    char folder[] = "/tmp/skg_locale_XXXXXX", command[160];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >%s/log 2>&1", folder,
+             folder);
+    const int made = system(command) >= 0 && setenv("LOCPATH", folder, 1) == 0 &&
+                     setlocale(LC_ALL, "de_DE.UTF-8") && strcmp(localeconv()->decimal_point, ",") == 0;
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    ck_assert_int_eq(system(command), 0);
+    return made;
 }

@@ -17,4 +17,7 @@ typedef struct {
 /* Needs run_context. */
 void do_everything(everything *done);
 
+/* Sets a German locale, made for this, for the whole process; returns 0 if this system has no means. */
+int everything_comma(void);
+
 #endif

@@ -42,6 +42,7 @@ const cli_item cli_environment[] = {
     {"POCL_AFFINITY",
      "1 pins PoCL's threads to cores. If it is not set, skiagraph sets it where the process has all cores to itself."},
     {"POCL_CACHE_DIR", "The folder in which PoCL keeps compiled kernels."},
-    {"POCL_MAX_PTHREAD_COUNT", "The largest number of PoCL's threads."},
+    {"POCL_MAX_PTHREAD_COUNT",
+     "The largest number of PoCL's threads. If it is not set, skiagraph sets it where the process may run on some of the cores only."},
     {"OCL_ICD_VENDORS", "The folder in which the OpenCL loader finds the platforms."},
     {NULL, NULL}};

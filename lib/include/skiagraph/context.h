@@ -7,10 +7,25 @@
  * may be used by different threads at the same time. Materials, spectra and responses never change and may be
  * shared by threads; so may meshes and scenes while nobody changes them. Reference counts are atomic.
  *
- * fork: OpenCL does not survive it. In the child process every call on a context that was made before returns
- * SKG_ERR_FORK, and releasing it frees host memory only. Make a new context there.
+ * fork: OpenCL does not survive it. In a child of a process in which the library has used OpenCL, every call that
+ * would use it (skg_context_create, skg_device_count, and calls on a context made before) returns SKG_ERR_FORK;
+ * releasing such a context frees host memory only. Start the child by exec or spawn, or fork before the first
+ * call. The library cannot know whether another library has started OpenCL before the fork; then its calls hang.
  *
- * The library never changes the environment of the process and never binds the caller's threads to cores. */
+ * Start: the first call that uses OpenCL starts the drivers of all platforms, in a thread made for this. The
+ * threads that drivers make then have the default floating-point environment, and no signals sent to the process
+ * are delivered to them. They may run on the CPUs of the thread that calls; where OpenMP has bound that thread
+ * (OMP_PROC_BIND, OMP_PLACES, GOMP_CPU_AFFINITY), on all CPUs of OpenMP's places. The caller's thread keeps its
+ * own CPUs, signal mask and floating-point environment.
+ *
+ * Signals: drivers install signal handlers of their own. The library restores the caller's handlers when a driver
+ * was started, when a program was compiled and when it first ran. A handler that another thread installs during
+ * such a call may be lost, and a signal that arrives during it may meet the driver's handler.
+ *
+ * dlclose: the library stays in memory, because threads of OpenMP and of drivers still need it.
+ *
+ * The library never changes the environment of the process and never binds the caller's threads to cores. PoCL
+ * sets HWLOC_PLUGINS_PATH when it is started. */
 #ifndef SKIAGRAPH_CONTEXT_H
 #define SKIAGRAPH_CONTEXT_H
 
@@ -28,10 +43,13 @@ typedef struct skg_context skg_context;
  *     config    words separated by blanks, or NULL:
  *                 device=cpu | gpu | PLATFORM:DEVICE | part of a device's name
  *                              (numbers as in skg_device_info)
- *                 threads=N    use N compute units, through a sub-device where the platform offers them
+ *                 threads=N    use N compute units, through a sub-device where the platform offers them;
+ *                              without it work is divided for the CPUs that the process may run on (see
+ *                              Start); if the driver has made 8 or more threads for each of these, the log
+ *                              has a warning that names the driver's environment variable
  *                 kernels=DIR  read the kernels from DIR instead of those built in, for development
  *     context   result; the caller releases it
- *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE, SKG_ERR_DEVICE
+ *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE, SKG_ERR_DEVICE, SKG_ERR_FORK
  *
  * Without device= the environment variable SKG_DEVICE decides; it holds such words, or the value of device=
  * alone. Without either the best device is taken: GPUs before CPUs, then the one with more compute units. The
@@ -78,7 +96,7 @@ typedef struct {
     int32_t is_gpu;
     /** 1: a CPU. */
     int32_t is_cpu;
-    /** Number of compute units. */
+    /** Number of compute units; of a context, those for which work is divided. */
     int32_t compute_units;
     /** 1: has fp64, which SKG_PRECISION_DOUBLE and SKG_TYPE_FLOAT64 need. */
     int32_t has_double;
@@ -112,10 +130,10 @@ static inline void skg_device_info_init(skg_device_info *info) {
     skg_device_info_init_sized(info, (int32_t)sizeof *info);
 }
 
-/** Number of devices over all platforms. None is no failure. */
+/** Number of devices over all platforms. None is no failure. Errors: SKG_ERR_FORK. */
 SKG_API skg_status skg_device_count(int64_t *count);
 
-/** The device with number 0 <= index < count. Errors: SKG_ERR_ARGUMENT. */
+/** The device with number 0 <= index < count. Errors: SKG_ERR_ARGUMENT, SKG_ERR_FORK. */
 SKG_API skg_status skg_device_get(int64_t index, skg_device_info *info);
 
 /** The device of a context. */

@@ -44,7 +44,7 @@ typedef int32_t skg_status;
     X(SKG_ERR_DEVICE_MEMORY, -12, "the device has not enough memory")                                        \
     X(SKG_ERR_BUILD, -13, "a kernel does not compile on this device")                                        \
     X(SKG_ERR_UNSUPPORTED, -14, "this device or version cannot do what was asked")                           \
-    X(SKG_ERR_FORK, -15, "the context was made before a fork; make a new one in the child")                  \
+    X(SKG_ERR_FORK, -15, "OpenCL was started before a fork; start the child process by exec or spawn")       \
     X(SKG_ERR_BREATHING, -16, "a body, link or breath is not usable")                                        \
     X(SKG_ERR_INTERNAL, -99, "a fault of the library itself")
 

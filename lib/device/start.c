@@ -1,0 +1,101 @@
+#include "device/start.h"
+
+#include "device/cpus.h"
+#include "device/device.h"
+#include "device/signals.h"
+
+#include <fenv.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <unistd.h>
+
+static atomic_llong starter; /* the process that has begun to start OpenCL; 0: none */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static int started;       /* guarded by the lock */
+static int32_t cpu_count; /* written once, before `started` */
+
+typedef struct {
+    void (*work)(void *argument);
+    void *argument;
+    skg_cpus caller, allowed;
+} errand;
+
+static void *run(void *argument) {
+    errand *e = argument;
+    fesetenv(FE_DFL_ENV);
+    skg_cpus_allowed(&e->caller, &e->allowed);
+    skg_cpus_set(&e->allowed);
+    e->work(e->argument);
+    return NULL;
+}
+
+/* Blocks what may be sent to the process from outside. A blocked signal of a fault would end the process without calling
+ * the handler that the caller may have for it. */
+static void block_signals(sigset_t *before) {
+    static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGABRT};
+    sigset_t all;
+    sigfillset(&all);
+    for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) sigdelset(&all, faults[n]);
+    pthread_sigmask(SIG_BLOCK, &all, before);
+}
+
+static skg_status call(errand *e) {
+    pthread_t thread;
+    sigset_t before;
+    skg_cpus_get(&e->caller);
+    skg_signals_keep();
+    block_signals(&before);
+    const int error = pthread_create(&thread, NULL, run, e);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (error == 0) pthread_join(thread, NULL);
+    skg_signals_restore();
+    if (error != 0)
+        return skg_fail(
+            SKG_ERR_DEVICE,
+            "no thread can be made in which to call OpenCL (%s); the process or its user may have too many",
+            strerror(error));
+    return SKG_OK;
+}
+
+skg_status skg_opencl_call(void (*work)(void *argument), void *argument) {
+    errand e = {.work = work, .argument = argument};
+    return call(&e);
+}
+
+/* Asks each platform for its devices: by then PoCL has its threads. Errors are left to those who ask again. */
+static void touch(void *nothing) {
+    enum { MOST = 32 };
+    cl_platform_id platforms[MOST];
+    cl_uint count = 0, devices = 0;
+    (void)nothing;
+    if (clGetPlatformIDs(MOST, platforms, &count) != CL_SUCCESS) return;
+    for (cl_uint n = 0; n < count && n < MOST; n++)
+        clGetDeviceIDs(platforms[n], CL_DEVICE_TYPE_ALL, 0, NULL, &devices);
+}
+
+skg_status skg_opencl_start(void) {
+    long long process = 0;
+    const long long self = (long long)getpid();
+    skg_status status = SKG_OK;
+    /* A child may have been forked while a thread of its parent held the lock; `starter` was set before that. */
+    if (!atomic_compare_exchange_strong(&starter, &process, self) && process != self)
+        return skg_fail(
+            SKG_ERR_FORK,
+            "OpenCL was started by the process that forked this one, and does not survive a fork; start the "
+            "child process by exec or spawn, or fork before the first call that uses OpenCL");
+    pthread_mutex_lock(&lock);
+    if (!started) {
+        errand e = {.work = touch};
+        status = call(&e);
+        cpu_count = skg_cpus_count(&e.allowed);
+        started = status == SKG_OK;
+    }
+    pthread_mutex_unlock(&lock);
+    return status;
+}
+
+int32_t skg_opencl_cpu_count(void) {
+    return cpu_count;
+}
