@@ -143,6 +143,20 @@ START_TEST(a_picture_of_a_scan_says_what_it_leaves_out) {
 }
 END_TEST
 
+START_TEST(noise_without_an_efficiency_is_warned_of) {
+    static const char lut[] = "--set 'Detector.EnergyResponse={\"LUT\": [[10, 10], [100, 60]]%s}'";
+    char with[128];
+    snprintf(with, sizeof with, lut, "");
+    ck_run(0, "image scene.json -o a.mha %s", with);
+    ck_assert_msg(!strstr(complained, "efficiency"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha --set Noise=true %s", with);
+    ck_assert_msg(strstr(complained, "gives no efficiency"), "%s", complained);
+    snprintf(with, sizeof with, lut, ", \"Meaning\": \"absorbed\"");
+    ck_run(0, "image scene.json -o a.mha --set Noise=true %s", with);
+    ck_assert_msg(!strstr(complained, "efficiency"), "%s", complained);
+}
+END_TEST
+
 START_TEST(strategies_give_the_same_bits) {
     double one[PIXELS], other[PIXELS];
     ck_run(0, "image scene.json -o a.mha --strategy copies");
@@ -376,6 +390,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, lengths_are_net_or_of_the_surface);
     tcase_add_test(tests, every_output_is_written);
     tcase_add_test(tests, a_picture_of_a_scan_says_what_it_leaves_out);
+    tcase_add_test(tests, noise_without_an_efficiency_is_warned_of);
     tcase_add_test(tests, strategies_give_the_same_bits);
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);

@@ -190,23 +190,76 @@ SKG_API skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_qu
  * detector: it records every photon with all its energy. */
 typedef struct skg_response skg_response;
 
+/** What the recorded energies of a table mean for noise. Means are the same for both. */
+enum skg_response_meaning {
+    /** The mean signal of a photon that arrives, in units of the energy that would give it. The share of the
+     * photons that give any signal is the table's efficiency; without one, every photon does. */
+    SKG_RESPONSE_MEANING_SIGNAL = 0,
+    /** The mean energy that a photon leaves in the detector, where it leaves either all or nothing: the share
+     * of the photons that are recorded is the recorded energy divided by the photon's own. */
+    SKG_RESPONSE_MEANING_ABSORBED = 1
+};
+
+/** A response by energy. Prepare with skg_response_table_init; set count and the first two arrays.
+ *
+ * Of the photons that arrive the share `efficiency` is recorded; the signals of these have the mean
+ * recorded_kev / efficiency and a mean square of the square of this over `swank`. A number N of photons that
+ * arrive gives a signal with the mean N recorded_kev and the variance
+ * N recorded_kev^2 / (efficiency swank). */
+typedef struct {
+    /** Set by skg_response_table_init. */
+    int32_t size;
+    /** enum skg_response_meaning */
+    int32_t meaning;
+    /** Number of energies, at least 2. */
+    int64_t count;
+    /** [count] keV, rising */
+    const double *energies_kev;
+    /** [count] mean recorded energy of a photon that arrives, keV, 0 to its own energy */
+    const double *recorded_kev;
+    /** [count] share of the photons that are recorded, 0 to 1, above 0 where recorded_kev is; NULL: 1 with
+     * SKG_RESPONSE_MEANING_SIGNAL. NULL with SKG_RESPONSE_MEANING_ABSORBED. */
+    const double *efficiency;
+    /** [count] Swank factor of the signals of recorded photons, above 0 to 1; NULL: 1 */
+    const double *swank;
+} skg_response_table;
+
+/** Prepares a response table of `size` bytes (export.h). */
+SKG_API void skg_response_table_init_sized(void *table, int32_t size);
+
+/** Prepares a response table. */
+static inline void skg_response_table_init(skg_response_table *table) {
+    skg_response_table_init_sized(table, (int32_t)sizeof *table);
+}
+
 /** Makes a response from a table.
+ *
+ *     table    its arrays are copied
+ *     method   linear interpolation; no values beyond the ends */
+SKG_API skg_status skg_response_create_table(const skg_response_table *table, skg_response **response);
+
+/** Makes a response from pulse-height distributions: how often a photon of an energy gives a pulse of a height.
  *
  *     count          number of energies, at least 2
  *     energies_kev   [count] keV, rising
- *     recorded_kev   [count] mean recorded energy of a photon in keV, 0 to its own energy
- *     efficiency     [count] fraction of the photons that are recorded, 0 to 1; NULL: recorded_kev divided by
- *                    energies_kev
- *     method         linear interpolation; no values beyond the ends */
-SKG_API skg_status skg_response_create_table(int64_t count, const double *energies_kev,
-                                             const double *recorded_kev, const double *efficiency,
-                                             skg_response **response);
+ *     heights        number of heights, at least 1
+ *     height_kev     [heights] keV, above 0, rising
+ *     probability    [count][heights] at least 0; a row sums to at most 1, and the rest gives no pulse
+ *     method         recorded energy, efficiency and Swank factor are the moments of a row: with sums over
+ *                    heights h of probability p, they are sum(p h), sum(p) and sum(p h)^2 / (sum(p) sum(p h^2)).
+ *                    Linear interpolation of these between the energies. */
+SKG_API skg_status skg_response_create_pulses(int64_t count, const double *energies_kev, int64_t heights,
+                                              const double *height_kev, const double *probability,
+                                              skg_response **response);
 
-/** Makes a response from a text file with two columns, energy and mean recorded energy.
+/** Makes a response from a text file with two to four columns: energy, mean recorded energy, efficiency, Swank
+ * factor.
  *
- *     unit     of both columns: "eV", "keV" or "MeV"
- *     errors   SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
-SKG_API skg_status skg_response_load(const char *path, const char *unit, skg_response **response);
+ *     unit      of the first two columns: "eV", "keV" or "MeV"
+ *     meaning   enum skg_response_meaning
+ *     errors    SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
+SKG_API skg_status skg_response_load(const char *path, const char *unit, int32_t meaning,
+                                     skg_response **response);
 
 /** Makes the response of a scintillator of a given thickness.
  *
@@ -236,6 +289,16 @@ SKG_API void skg_response_release(skg_response **response);
  *     efficiency     result: fraction of the photons that are recorded; may be NULL */
 SKG_API skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
                                     double *recorded_kev, double *efficiency);
+
+/** Gets the Swank factor of the signals of recorded photons: 1 if a recorded photon always gives the same
+ * signal. Efficiency times Swank factor is the detective quantum efficiency at spatial frequency 0 for this
+ * energy.
+ *
+ *     energy_kev   energy of the photon, keV
+ *     oblique      as of skg_response_get
+ *     swank        result: above 0 to 1 */
+SKG_API skg_status skg_response_swank_get(const skg_response *response, double energy_kev, double oblique,
+                                          double *swank);
 
 #ifdef __cplusplus
 }
