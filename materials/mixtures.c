@@ -1,4 +1,4 @@
-/* The tables elements.txt, tissues.txt, compounds.txt, schneider.txt and k_lines.txt. */
+/* The tables elements.txt, tissues.txt, compounds.txt, schneider.txt, k_lines.txt and l_lines.txt. */
 #include "tables.h"
 
 #include <math.h>
@@ -123,27 +123,34 @@ void write_mixtures(const char *folder, FILE *out) {
     fprintf(out, "};\nconst int32_t skg_hounsfield_count = %d;\n\n", tissue_count);
 }
 
-void write_k_shells(const char *folder, FILE *out) {
+/* An array of shells. first: numbers in front of the lines: the edge, and the yield if there is one. */
+static void write_shells(const char *folder, const char *file, const char *name, int first, int lines,
+                         FILE *out) {
     table t;
     int count = 0;
-    fprintf(out, "const skg_k_shell_row skg_k_shells[] = {\n");
-    table_open(&t, folder, "k_lines.txt");
+    fprintf(out, "const skg_shell_row skg_%s_shells[] = {\n", name);
+    table_open(&t, folder, file);
     while (table_next(&t)) {
-        double v[2 + 2 * SKG_K_LINES];
+        double v[2 + 2 * SKG_L_LINES];
         char *rest = t.text;
         long z = strtol(rest, &rest, 10);
-        for (int k = 0; k < 2 + 2 * SKG_K_LINES; k++) {
+        for (int k = 0; k < first + 2 * lines; k++) {
             char *end = rest;
             v[k] = strtod(rest, &end);
             if (end == rest) table_stop(&t, "numbers are missing");
             rest = end;
         }
-        fprintf(out, "{%ld, %.17g, %.17g, {", z, v[0], v[1]);
-        for (int k = 0; k < SKG_K_LINES; k++) fprintf(out, "%.17g, ", v[2 + 2 * k]);
+        fprintf(out, "{%ld, %.17g, %.17g, {", z, v[0], first == 2 ? v[1] : 1.0);
+        for (int k = 0; k < lines; k++) fprintf(out, "%.17g, ", v[first + 2 * k]);
         fprintf(out, "}, {");
-        for (int k = 0; k < SKG_K_LINES; k++) fprintf(out, "%.17g, ", v[3 + 2 * k]);
+        for (int k = 0; k < lines; k++) fprintf(out, "%.17g, ", v[first + 1 + 2 * k]);
         fprintf(out, "}},\n");
         count++;
     }
-    fprintf(out, "};\nconst int32_t skg_k_shell_count = %d;\n", count);
+    fprintf(out, "};\nconst int32_t skg_%s_shell_count = %d;\n", name, count);
+}
+
+void write_all_shells(const char *folder, FILE *out) {
+    write_shells(folder, "k_lines.txt", "k", 2, SKG_K_LINES, out);
+    write_shells(folder, "l_lines.txt", "l", 1, SKG_L_LINES, out);
 }

@@ -11,7 +11,8 @@ enum {
     SKG_PAIR = 3,
     SKG_PROCESSES = 4,
     SKG_LAST_ELEMENT = 92,
-    SKG_K_LINES = 6
+    SKG_K_LINES = 6,
+    SKG_L_LINES = 12
 };
 
 /* Twice the rest energy of the electron in keV (CODATA 2018): below it there is no pair production. */
@@ -52,11 +53,13 @@ typedef struct {
     int32_t first, count; /* skg_mass_fractions */
 } skg_hounsfield_row;
 
+/* A shell of an element, and the lines that its vacancies emit. */
 typedef struct {
     int32_t z;
-    double edge_kev, yield;
-    double line_kev[SKG_K_LINES], share[SKG_K_LINES]; /* of all K transitions; 0: no such line */
-} skg_k_shell_row;
+    double edge_kev;                                  /* of L: that of L3 */
+    double yield;                                     /* photons per vacancy; of L: 1 */
+    double line_kev[SKG_L_LINES], share[SKG_L_LINES]; /* of the yield; 0: no such line */
+} skg_shell_row;
 
 extern const skg_knot skg_knots[];
 extern const skg_element_row skg_elements[SKG_LAST_ELEMENT + 1]; /* by atomic number */
@@ -65,7 +68,9 @@ extern const skg_mixture_row skg_mixtures[];
 extern const int32_t skg_mixture_count;
 extern const skg_hounsfield_row skg_hounsfield_rows[];
 extern const int32_t skg_hounsfield_count;
-extern const skg_k_shell_row skg_k_shells[];
+extern const skg_shell_row skg_k_shells[];
 extern const int32_t skg_k_shell_count;
+extern const skg_shell_row skg_l_shells[];
+extern const int32_t skg_l_shell_count;
 
 #endif

@@ -33,7 +33,7 @@ void table_fields(table *t, int count, char **fields);
 void write_cross_sections(const char *folder, FILE *out);
 void write_elements(const char *folder, FILE *out);
 void write_mixtures(const char *folder, FILE *out);
-void write_k_shells(const char *folder, FILE *out);
+void write_all_shells(const char *folder, FILE *out);
 
 /* The first knot of each element, filled by write_cross_sections. The last knot lies before the first one of the next
  * element. */

@@ -4,12 +4,17 @@
 #include "setup/sections.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 static const skg_json_key response_keys[] = {
-    {"File", NULL, SKG_KEY_READ},
-    {"LUT", NULL, SKG_KEY_READ},
-    {"Unit", NULL, SKG_KEY_READ},
-    {"Energy", "Unit", SKG_KEY_READ}, /* files in use have this */
+    {"File", NULL, SKG_KEY_READ},    {"LUT", NULL, SKG_KEY_READ},      {"PulseHeights", NULL, SKG_KEY_READ},
+    {"Unit", NULL, SKG_KEY_READ},    {"Energy", "Unit", SKG_KEY_READ}, /* files in use have this */
+    {"Meaning", NULL, SKG_KEY_READ},
+};
+
+static const skg_json_key pulse_keys[] = {
+    {"Heights", NULL, SKG_KEY_READ},
+    {"Rows", NULL, SKG_KEY_READ},
 };
 
 static const skg_json_key scintillator_keys[] = {
@@ -17,55 +22,122 @@ static const skg_json_key scintillator_keys[] = {
     {"Density", NULL, SKG_KEY_READ},  {"Packing", NULL, SKG_KEY_READ},
 };
 
-static skg_status read_file(skg_setup_reader *reader, const skg_json_node *node, const char *unit) {
+/* The unit of energies, and what these mean for noise. */
+typedef struct {
+    const char *unit;
+    double kev;
+    int32_t meaning;
+} response_form;
+
+static skg_status read_form(const skg_json_object *response, response_form *form) {
+    static const char *const meanings[] = {
+        [SKG_RESPONSE_MEANING_SIGNAL] = "signal", [SKG_RESPONSE_MEANING_ABSORBED] = "absorbed"};
+    skg_json_node unit = skg_json_member(response, "Unit"), meaning = skg_json_member(response, "Meaning");
+    int64_t choice = SKG_RESPONSE_MEANING_SIGNAL;
+    *form = (response_form){.unit = "keV", .kev = 1};
+    if (meaning.value) SKG_TRY(skg_json_choice(&meaning, "meaning of a response", meanings, 2, &choice));
+    form->meaning = (int32_t)choice;
+    if (!unit.value) return SKG_OK;
+    SKG_TRY(skg_json_text(&unit, &form->unit));
+    skg_status status = skg_unit_of_energy(form->unit, &form->kev);
+    return skg_json_at(&unit, status);
+}
+
+static skg_status read_file(skg_setup_reader *reader, const skg_json_node *node, const response_form *form) {
     const char *name = NULL, *path = NULL;
     SKG_TRY(skg_json_text(node, &name));
     SKG_TRY(skg_setup_find_file(reader, name, &path));
-    return skg_json_at(node, skg_response_load(path, unit, &reader->setup->response));
+    return skg_json_at(node, skg_response_load(path, form->unit, form->meaning, &reader->setup->response));
 }
 
-/* [[10, 10], [20, 19.98], ...] */
-static skg_status read_rows(skg_setup_reader *reader, const skg_json_node *node, double kev) {
-    double *energies = NULL, *recorded = NULL;
-    int64_t count = 0;
+/* [[10, 10], [20, 19.98], ...]: energy, recorded energy, and in every row or none efficiency, Swank factor. */
+static skg_status read_rows(skg_setup_reader *reader, const skg_json_node *node, const response_form *form) {
+    static const char *const example =
+        "[energy, recorded energy], in every row or none also efficiency, Swank factor";
+    double *columns[4] = {NULL, NULL, NULL, NULL};
+    int64_t count = 0, width = 0;
+    skg_response_table table;
     skg_status status = SKG_OK;
+    skg_response_table_init(&table);
     SKG_TRY(skg_json_array(node, "[[10, 10], [20, 19.98]]", &count));
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "energy response", &energies));
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "energy response", &recorded));
+    skg_json_node first = skg_json_element(node, 0);
+    if (count > 0) SKG_TRY(skg_json_array(&first, example, &width));
+    width = width < 2 ? 2 : width > 4 ? 4 : width;
+    for (int64_t k = 0; k < width; k++)
+        SKG_TRY_CLEANUP(skg_alloc(count, sizeof(double), "energy response", &columns[k]));
     for (int64_t i = 0; i < count; i++) {
         skg_json_node row = skg_json_element(node, i);
-        double pair[2];
-        SKG_TRY_CLEANUP(skg_json_numbers(&row, "[energy, recorded energy]", 2, pair));
-        energies[i] = pair[0] * kev;
-        recorded[i] = pair[1] * kev;
+        double numbers[4];
+        SKG_TRY_CLEANUP(skg_json_numbers(&row, example, width, numbers));
+        for (int64_t k = 0; k < width; k++) columns[k][i] = numbers[k] * (k < 2 ? form->kev : 1);
     }
-    status = skg_response_create_table(count, energies, recorded, NULL, &reader->setup->response);
+    table.meaning = form->meaning, table.count = count;
+    table.energies_kev = columns[0], table.recorded_kev = columns[1];
+    table.efficiency = columns[2], table.swank = columns[3];
+    status = skg_response_create_table(&table, &reader->setup->response);
     status = skg_json_at(node, status);
 cleanup:
+    for (int k = 0; k < 4; k++) skg_free(&columns[k]);
+    return status;
+}
+
+/* {"Heights": [10, 20], "Rows": [[15, 0.1, 0.8], [30, ...]]}: each row has an energy and a probability for each height. */
+static skg_status read_pulses(skg_setup_reader *reader, const skg_json_node *node,
+                              const response_form *form) {
+    double *heights = NULL, *energies = NULL, *probability = NULL, *row = NULL;
+    int64_t height_count = 0, count = 0;
+    skg_json_object object;
+    skg_json_node height_node, row_node;
+    skg_status status = SKG_OK;
+    if (form->meaning != SKG_RESPONSE_MEANING_SIGNAL)
+        return skg_json_fail(node, SKG_ERR_FORMAT,
+                             "says how often a pulse has each height, so there is no Meaning");
+    SKG_TRY(skg_json_read_object(node, pulse_keys, sizeof pulse_keys / sizeof *pulse_keys, &object));
+    SKG_TRY(skg_json_need(&object, "Heights", "[10, 20, 30]", &height_node));
+    SKG_TRY(skg_json_need(&object, "Rows", "[[15, 0.1, 0.8, 0], [30, 0, 0.1, 0.7]]", &row_node));
+    SKG_TRY(skg_json_array(&height_node, "[10, 20, 30]", &height_count));
+    SKG_TRY(skg_json_array(&row_node, "[[15, 0.1, 0.8, 0], [30, 0, 0.1, 0.7]]", &count));
+    SKG_TRY_CLEANUP(skg_alloc(height_count + 1, sizeof *heights, "pulse heights", &heights));
+    SKG_TRY_CLEANUP(skg_alloc(height_count + 1, sizeof *row, "pulse heights", &row));
+    SKG_TRY_CLEANUP(skg_alloc(count + 1, sizeof *energies, "pulse heights", &energies));
+    SKG_TRY_CLEANUP(skg_alloc((count + 1) * (height_count + 1), sizeof *row, "pulse heights", &probability));
+    SKG_TRY_CLEANUP(skg_json_numbers(&height_node, "[10, 20, 30]", height_count, heights));
+    for (int64_t h = 0; h < height_count; h++) heights[h] *= form->kev;
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_node at = skg_json_element(&row_node, i);
+        SKG_TRY_CLEANUP(
+            skg_json_numbers(&at, "an energy and a probability for each height", height_count + 1, row));
+        energies[i] = row[0] * form->kev;
+        memcpy(probability + i * height_count, row + 1, (size_t)height_count * sizeof *row);
+    }
+    status = skg_response_create_pulses(count, energies, height_count, heights, probability,
+                                        &reader->setup->response);
+    status = skg_json_at(node, status);
+cleanup:
+    skg_free(&heights);
+    skg_free(&row);
     skg_free(&energies);
-    skg_free(&recorded);
+    skg_free(&probability);
     return status;
 }
 
 static skg_status read_response(skg_setup_reader *reader, const skg_json_node *node) {
     skg_json_object response;
-    const char *unit = "keV";
-    double kev = 1;
+    response_form form;
     SKG_TRY(
         skg_json_read_object(node, response_keys, sizeof response_keys / sizeof *response_keys, &response));
-    skg_json_node unit_node = skg_json_member(&response, "Unit");
-    if (unit_node.value) {
-        SKG_TRY(skg_json_text(&unit_node, &unit));
-        skg_status status = skg_unit_of_energy(unit, &kev);
-        SKG_TRY(skg_json_at(&unit_node, status));
-    }
+    SKG_TRY(read_form(&response, &form));
     skg_json_node file = skg_json_member(&response, "File"), rows = skg_json_member(&response, "LUT");
-    if (file.value && rows.value)
-        return skg_json_fail(node, SKG_ERR_FORMAT, "has both File and LUT; give one of them");
-    if (file.value) return read_file(reader, &file, unit);
-    if (rows.value) return read_rows(reader, &rows, kev);
-    return skg_json_fail(node, SKG_ERR_FORMAT,
-                         "has no table; give \"File\": \"response.txt\" or \"LUT\": [...]");
+    skg_json_node pulses = skg_json_member(&response, "PulseHeights");
+    if ((file.value != NULL) + (rows.value != NULL) + (pulses.value != NULL) > 1)
+        return skg_json_fail(node, SKG_ERR_FORMAT,
+                             "has several of File, LUT and PulseHeights; give one of them");
+    if (file.value) return read_file(reader, &file, &form);
+    if (rows.value) return read_rows(reader, &rows, &form);
+    if (pulses.value) return read_pulses(reader, &pulses, &form);
+    return skg_json_fail(
+        node, SKG_ERR_FORMAT,
+        "has no table; give \"File\": \"response.txt\", \"LUT\": [...] or \"PulseHeights\": {...}");
 }
 
 /* Thickness and Unit: a length, or mass per area. */

@@ -87,6 +87,16 @@ static skg_status list_views(skg_scan_section *scan, const skg_view *first) {
     return SKG_OK;
 }
 
+int64_t skg_scan_section_count(const skg_scan_section *scan) {
+    if (scan->projections > 0) return scan->projections;
+    if (!scan->has_step || !scan->has_final || scan->step == 0) return 0;
+    /* A step that reaches the final angle to within rounding reaches it. */
+    const double steps = (scan->final - scan->start) / scan->step, whole = floor(steps + 1e-9);
+    if (!(steps >= 0 && steps < INT32_MAX)) return 0;
+    const int reaches = fabs(steps - whole) <= 1e-9;
+    return (int64_t)whole + (reaches && !scan->include_last ? 0 : 1);
+}
+
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node) {
     skg_scan_section *scan = &reader->setup->scan;
     skg_json_object object;

@@ -33,6 +33,9 @@ skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *d
 /* Bounds of all vertices in the world, mm: least x, y, z, largest x, y, z. */
 skg_status skg_setup_bounds(const skg_scene *scene, double *bounds);
 
+/* Number of projections of a scan: as given, or as many steps as reach the final angle; 0: not defined. */
+int64_t skg_scan_section_count(const skg_scan_section *scan);
+
 /* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);
 void skg_breathing_section_free(skg_breathing_section *section);

@@ -258,6 +258,13 @@ skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view) {
     return skg_struct_write(&setup->view, sizeof setup->view, "skg_view", view);
 }
 
+skg_status skg_setup_projection_count_get(const skg_setup *setup, int64_t *count) {
+    SKG_NEEDS(setup);
+    SKG_NEEDS(count);
+    *count = setup->scan.present ? skg_scan_section_count(&setup->scan) : 1;
+    return SKG_OK;
+}
+
 skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options) {
     SKG_NEEDS(setup);
     skg_plan_options ours = {.size = sizeof ours};

@@ -1,7 +1,7 @@
 /* Ebel's model of a reflection target: H. Ebel, X-ray tube spectra, X-Ray Spectrom. 28 (1999) 255-266.
  *
- * All constants are those of the publication, for a continuum and lines per mAs and steradian; tube.c calibrates
- * both. */
+ * All constants are those of the publication, for a continuum and K lines per mAs and steradian; calibration.c
+ * calibrates both, and the L lines, for which this file has the overvoltage's function alone. */
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "material/material.h"
@@ -26,38 +26,50 @@ static double mean_depth(const skg_anode *anode, double u) {
 
 /* The share of the photons made in the target that leave it: (1 - exp(-chi)) / chi. The electrons arrive at 90
  * degrees less the angle of the anode, and the photons leave at that angle. */
-static double escape(const skg_anode *anode, double energy_kev, double u) {
+static double escape(const skg_anode *anode, double energy_kev, double u, double deeper) {
     double sections[SKG_PROCESSES], angle = anode->angle_deg * (SKG_PI / 180);
     skg_element_sections(anode->z, energy_kev, sections);
-    double chi = 2 * sections[SKG_PHOTO] * mean_depth(anode, u) * cos(angle) / sin(angle);
+    double chi = 2 * sections[SKG_PHOTO] * deeper * mean_depth(anode, u) * cos(angle) / sin(angle);
     /* Below 1e-8 the share is 1 in double precision, and 0/0 is avoided. */
     return chi < 1e-8 ? 1 : -expm1(-chi) / chi;
 }
 
-double skg_ebel_continuum(const skg_anode *anode, double energy_kev) {
+double skg_ebel_continuum(const skg_anode *anode, double energy_kev, double deeper) {
     double u = anode->kvp / energy_kev;
     if (!(u > 1)) return 0;
     double x = 1.109 - 0.00435 * anode->z + 0.00175 * anode->kvp;
-    return 1.35e9 * MM2_AT_1M * anode->z * pow(u - 1, x) * escape(anode, energy_kev, u);
+    return 1.35e9 * MM2_AT_1M * anode->z * pow(u - 1, x) * escape(anode, energy_kev, u, deeper);
 }
 
-static const skg_k_shell_row *k_shell(int32_t z) {
-    for (int32_t i = 0; i < skg_k_shell_count; i++)
-        if (skg_k_shells[i].z == z) return &skg_k_shells[i];
+static const skg_shell_row *find_shell(int32_t z, int32_t shell) {
+    const skg_shell_row *rows = shell == SKG_SHELL_K ? skg_k_shells : skg_l_shells;
+    const int32_t count = shell == SKG_SHELL_K ? skg_k_shell_count : skg_l_shell_count;
+    for (int32_t i = 0; i < count; i++)
+        if (rows[i].z == z) return &rows[i];
     return NULL;
 }
 
-double skg_ebel_line(const skg_anode *anode, int k, double *energy_kev, double *overvoltage) {
-    const skg_k_shell_row *shell = k_shell(anode->z);
-    *energy_kev = shell ? shell->line_kev[k] : 0;
-    *overvoltage = shell ? anode->kvp / shell->edge_kev : 0;
-    if (!shell || !(shell->line_kev[k] > 0) || !(anode->kvp > shell->edge_kev)) return 0;
-    double z = anode->z, kv = anode->kvp, u = *overvoltage, j = 0.0135 * z;
-    double stopping = u * log(u) + 1 - u; /* of the inverse stopping power, with a shell factor of 0.35 */
+double skg_ebel_overvoltage(const skg_anode *anode, int32_t shell) {
+    const skg_shell_row *row = find_shell(anode->z, shell);
+    return row ? anode->kvp / row->edge_kev : 0;
+}
+
+/* Vacancies times their yield, without calibration for L. */
+static double excited(const skg_anode *anode, const skg_shell_row *row, int32_t shell) {
+    double z = anode->z, kv = anode->kvp, u = kv / row->edge_kev, j = 0.0135 * z;
+    double stopping = u * log(u) + 1 - u; /* of the inverse stopping power */
+    if (shell == SKG_SHELL_L) return stopping;
     double inverse =
-        2 * 0.35 / z * stopping *
-        (1 + 16.05 * sqrt(j / shell->edge_kev) * (sqrt(u) * log(u) + 2 * (1 - sqrt(u))) / stopping);
+        2 * 0.35 / z * stopping * /* 2 electrons and a shell factor of 0.35 */
+        (1 + 16.05 * sqrt(j / row->edge_kev) * (sqrt(u) * log(u) + 2 * (1 - sqrt(u))) / stopping);
     double backscatter = 1 - 0.0081517 * z + 3.613e-5 * z * z + 0.009583 * z * exp(-u) + 0.001141 * kv;
-    return 5e13 * MM2_AT_1M * inverse * backscatter * shell->yield * shell->share[k] *
-           escape(anode, shell->line_kev[k], u);
+    return 5e13 * MM2_AT_1M * inverse * backscatter * row->yield;
+}
+
+double skg_ebel_line(const skg_anode *anode, int32_t shell, int line, double deeper, double *energy_kev) {
+    const skg_shell_row *row = find_shell(anode->z, shell);
+    *energy_kev = row ? row->line_kev[line] : 0;
+    if (!row || !(row->share[line] > 0) || !(anode->kvp > row->edge_kev)) return 0;
+    return excited(anode, row, shell) * row->share[line] *
+           escape(anode, row->line_kev[line], anode->kvp / row->edge_kev, deeper);
 }

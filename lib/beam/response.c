@@ -10,8 +10,10 @@
 
 struct skg_response {
     skg_refs refs;
-    int64_t count; /* rows of a table; 0: the response is a layer that absorbs */
-    double *energy_kev, *recorded_kev, *efficiency;
+    int64_t count;   /* rows of a table; 0: the response is a layer that absorbs */
+    int32_t meaning; /* of a table: SKG_RESPONSE_MEANING_... */
+    int32_t reserved;
+    double *energy_kev, *recorded_kev, *efficiency, *swank;
     skg_material *material; /* retained */
     double mm;              /* thickness at the full density of the material */
 };
@@ -20,45 +22,79 @@ struct skg_response {
  * digits. */
 static const double ROUNDING = 0.01;
 
-static skg_status check_table(int64_t count, const double *energies, const double *recorded,
-                              const double *efficiency) {
-    if (count < 2 || !energies || !recorded)
+void skg_response_table_init_sized(void *table, int32_t size) {
+    const skg_response_table defaults = {.meaning = SKG_RESPONSE_MEANING_SIGNAL};
+    skg_struct_init(table, size, &defaults, sizeof defaults);
+}
+
+static skg_status check_noise(const skg_response_table *t, int64_t i) {
+    if (t->efficiency && !(t->efficiency[i] >= 0 && t->efficiency[i] <= 1))
+        return skg_fail(SKG_ERR_BEAM, "energy response, row %" PRId64 ": efficiency %g; give 0 to 1", i + 1,
+                        t->efficiency[i]);
+    if (t->efficiency && t->recorded_kev[i] > 0 && !(t->efficiency[i] > 0))
+        return skg_fail(SKG_ERR_BEAM,
+                        "energy response, row %" PRId64
+                        ": %g keV recorded with efficiency 0; give more than 0",
+                        i + 1, t->recorded_kev[i]);
+    if (t->swank && !(t->swank[i] > 0 && t->swank[i] <= 1))
+        return skg_fail(SKG_ERR_BEAM,
+                        "energy response, row %" PRId64 ": Swank factor %g; give more than 0, up to 1", i + 1,
+                        t->swank[i]);
+    return SKG_OK;
+}
+
+static skg_status check_table(const skg_response_table *t) {
+    if (t->count < 2 || !t->energies_kev || !t->recorded_kev)
         return skg_fail(SKG_ERR_BEAM, "an energy response has at least two energies");
-    for (int64_t i = 0; i < count; i++) {
-        if (!(isfinite(energies[i]) && energies[i] >= 0) || (i > 0 && !(energies[i] > energies[i - 1])))
+    if (t->meaning != SKG_RESPONSE_MEANING_SIGNAL && t->meaning != SKG_RESPONSE_MEANING_ABSORBED)
+        return skg_fail(SKG_ERR_BEAM,
+                        "meaning %" PRId32
+                        " of an energy response is unknown; SKG_RESPONSE_MEANING_SIGNAL or "
+                        "SKG_RESPONSE_MEANING_ABSORBED",
+                        t->meaning);
+    if (t->meaning == SKG_RESPONSE_MEANING_ABSORBED && t->efficiency)
+        return skg_fail(SKG_ERR_BEAM,
+                        "an energy response of absorbed energies has its efficiency from these; leave the "
+                        "efficiencies out, or give the meaning \"signal\"");
+    for (int64_t i = 0; i < t->count; i++) {
+        const double kev = t->energies_kev[i], recorded = t->recorded_kev[i];
+        if (!(isfinite(kev) && kev >= 0) || (i > 0 && !(kev > t->energies_kev[i - 1])))
             return skg_fail(SKG_ERR_BEAM, "energy response, row %" PRId64 ": energies have to rise", i + 1);
-        if (!(recorded[i] >= 0 && recorded[i] <= energies[i] * (1 + ROUNDING)))
+        if (!(recorded >= 0 && recorded <= kev * (1 + ROUNDING)))
             return skg_fail(SKG_ERR_BEAM,
                             "energy response, row %" PRId64 ": %g keV recorded of a photon of %g keV; give 0 "
                             "to the energy of the photon",
-                            i + 1, recorded[i], energies[i]);
-        if (efficiency && !(efficiency[i] >= 0 && efficiency[i] <= 1))
-            return skg_fail(SKG_ERR_BEAM, "energy response, row %" PRId64 ": efficiency %g; give 0 to 1",
-                            i + 1, efficiency[i]);
+                            i + 1, recorded, kev);
+        SKG_TRY(check_noise(t, i));
     }
     return SKG_OK;
 }
 
 static skg_status copy(int64_t count, const double *from, double **to) {
+    if (!from) return SKG_OK;
     SKG_TRY(skg_alloc(count, sizeof(double), "energy response", to));
     memcpy(*to, from, (size_t)count * sizeof(double));
     return SKG_OK;
 }
 
-skg_status skg_response_create_table(int64_t count, const double *energies_kev, const double *recorded_kev,
-                                     const double *efficiency, skg_response **response) {
+skg_status skg_response_create_table(const skg_response_table *table, skg_response **response) {
     SKG_PLAIN;
-    SKG_NEEDS(response);
-    *response = NULL;
-    SKG_TRY(check_table(count, energies_kev, recorded_kev, efficiency));
+    skg_response_table ours;
     skg_response *made = NULL;
     skg_status status = SKG_OK;
+    SKG_NEEDS(response);
+    *response = NULL;
+    skg_response_table_init(&ours);
+    SKG_TRY(skg_struct_read(table, "skg_response_table", &ours, sizeof ours));
+    SKG_TRY(check_table(&ours));
     SKG_TRY(skg_alloc(1, sizeof *made, "energy response", &made));
     skg_refs_init(&made->refs);
-    made->count = count;
-    SKG_TRY_CLEANUP(copy(count, energies_kev, &made->energy_kev));
-    SKG_TRY_CLEANUP(copy(count, recorded_kev, &made->recorded_kev));
-    if (efficiency) SKG_TRY_CLEANUP(copy(count, efficiency, &made->efficiency));
+    made->count = ours.count;
+    made->meaning = ours.meaning;
+    SKG_TRY_CLEANUP(copy(ours.count, ours.energies_kev, &made->energy_kev));
+    SKG_TRY_CLEANUP(copy(ours.count, ours.recorded_kev, &made->recorded_kev));
+    SKG_TRY_CLEANUP(copy(ours.count, ours.efficiency, &made->efficiency));
+    SKG_TRY_CLEANUP(copy(ours.count, ours.swank, &made->swank));
     *response = made;
     return SKG_OK;
 cleanup:
@@ -66,20 +102,24 @@ cleanup:
     return status;
 }
 
-skg_status skg_response_load(const char *path, const char *unit, skg_response **response) {
+skg_status skg_response_load(const char *path, const char *unit, int32_t meaning, skg_response **response) {
     SKG_PLAIN;
     SKG_NEEDS(path);
     SKG_NEEDS(unit);
     SKG_NEEDS(response);
-    double kev = 1, *energies = NULL, *recorded = NULL;
-    int64_t count = 0;
+    double kev = 1, *columns[4] = {NULL, NULL, NULL, NULL};
+    int64_t count = 0, width = 0;
+    skg_response_table table;
     *response = NULL;
+    skg_response_table_init(&table);
     SKG_TRY(skg_unit_of_energy(unit, &kev));
-    SKG_TRY(skg_read_columns(path, NULL, &count, &energies, &recorded));
-    for (int64_t i = 0; i < count; i++) energies[i] *= kev, recorded[i] *= kev;
-    skg_status status = skg_response_create_table(count, energies, recorded, NULL, response);
-    skg_free(&energies);
-    skg_free(&recorded);
+    SKG_TRY(skg_read_columns_of(path, 2, 4, &count, &width, columns));
+    for (int64_t i = 0; i < count; i++) columns[0][i] *= kev, columns[1][i] *= kev;
+    table.meaning = meaning, table.count = count;
+    table.energies_kev = columns[0], table.recorded_kev = columns[1];
+    table.efficiency = columns[2], table.swank = columns[3];
+    const skg_status status = skg_response_create_table(&table, response);
+    for (int k = 0; k < 4; k++) skg_free(&columns[k]);
     if (status == SKG_ERR_BEAM) return skg_fail(status, "%s: %s", path, skg_last_error());
     return status;
 }
@@ -142,13 +182,28 @@ void skg_response_release(skg_response **response) {
         skg_free(&(*response)->energy_kev);
         skg_free(&(*response)->recorded_kev);
         skg_free(&(*response)->efficiency);
+        skg_free(&(*response)->swank);
         skg_material_release(&(*response)->material);
         skg_free(response);
     }
     *response = NULL;
 }
 
-static skg_status look_up(const skg_response *r, double energy_kev, double *recorded, double *efficiency) {
+int skg_response_assumes_efficiency(const skg_response *response) {
+    return response && response->count > 0 && response->meaning == SKG_RESPONSE_MEANING_SIGNAL &&
+           !response->efficiency;
+}
+
+/* What a detector makes of a photon of one energy. */
+typedef struct {
+    double recorded, efficiency, swank;
+} recording;
+
+static double between(const double *values, int64_t low, double part) {
+    return (1 - part) * values[low] + part * values[low + 1];
+}
+
+static skg_status look_up(const skg_response *r, double energy_kev, recording *found) {
     int64_t low = 0, high = r->count - 1;
     if (!(energy_kev >= r->energy_kev[0] && energy_kev <= r->energy_kev[high]))
         return skg_fail(SKG_ERR_BEAM,
@@ -162,29 +217,46 @@ static skg_status look_up(const skg_response *r, double energy_kev, double *reco
             high = middle;
     }
     double part = (energy_kev - r->energy_kev[low]) / (r->energy_kev[high] - r->energy_kev[low]);
-    *recorded = (1 - part) * r->recorded_kev[low] + part * r->recorded_kev[high];
-    *efficiency = r->efficiency ? (1 - part) * r->efficiency[low] + part * r->efficiency[high]
-                                : fmin(*recorded / energy_kev, 1);
+    found->recorded = between(r->recorded_kev, low, part);
+    if (r->meaning == SKG_RESPONSE_MEANING_ABSORBED)
+        found->efficiency = fmin(found->recorded / energy_kev, 1);
+    else if (r->efficiency)
+        found->efficiency = between(r->efficiency, low, part);
+    if (r->swank) found->swank = between(r->swank, low, part);
+    return SKG_OK;
+}
+
+static skg_status record(const skg_response *response, double energy_kev, double oblique, recording *found) {
+    *found = (recording){energy_kev, 1, 1};
+    if (!(energy_kev > 0))
+        return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV is not usable", energy_kev);
+    if (!(oblique >= 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "a path of %g thicknesses; give 1 or more", oblique);
+    if (!response) return SKG_OK;
+    if (response->count > 0) return look_up(response, energy_kev, found);
+    double per_cm = 0;
+    SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
+    found->efficiency = -expm1(-per_cm * response->mm / 10 * oblique);
+    found->recorded = energy_kev * found->efficiency;
     return SKG_OK;
 }
 
 skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
                             double *recorded_kev, double *efficiency) {
     SKG_PLAIN;
-    double recorded = energy_kev, seen = 1;
-    if (!(energy_kev > 0))
-        return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV is not usable", energy_kev);
-    if (!(oblique >= 1))
-        return skg_fail(SKG_ERR_ARGUMENT, "a path of %g thicknesses; give 1 or more", oblique);
-    if (response && response->count > 0) {
-        SKG_TRY(look_up(response, energy_kev, &recorded, &seen));
-    } else if (response) {
-        double per_cm = 0;
-        SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
-        seen = -expm1(-per_cm * response->mm / 10 * oblique);
-        recorded = energy_kev * seen;
-    }
-    if (recorded_kev) *recorded_kev = recorded;
-    if (efficiency) *efficiency = seen;
+    recording found;
+    SKG_TRY(record(response, energy_kev, oblique, &found));
+    if (recorded_kev) *recorded_kev = found.recorded;
+    if (efficiency) *efficiency = found.efficiency;
+    return SKG_OK;
+}
+
+skg_status skg_response_swank_get(const skg_response *response, double energy_kev, double oblique,
+                                  double *swank) {
+    SKG_PLAIN;
+    recording found;
+    SKG_NEEDS(swank);
+    SKG_TRY(record(response, energy_kev, oblique, &found));
+    *swank = found.swank;
     return SKG_OK;
 }

@@ -16,6 +16,9 @@ struct skg_spectrum {
 /* Makes a spectrum of `count` energies, which the caller fills. */
 skg_status skg_spectrum_make(int64_t count, skg_spectrum **spectrum);
 
+/* Whether a response says what is recorded, but not of how many photons: all are then taken as recorded. */
+int skg_response_assumes_efficiency(const skg_response *response);
+
 /* The transmission exp(-sum of mu times thickness) of filters at an energy. */
 skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed);
 
@@ -35,13 +38,31 @@ typedef struct {
     double kvp, angle_deg;
 } skg_anode;
 
-/* Bremsstrahlung photons per keV, mAs and mm2 at 1 m, without filters. Birch's continuum is a shape only: tube.c
- * scales it. */
-double skg_ebel_continuum(const skg_anode *anode, double energy_kev);
+/* Shells whose lines a tube emits. */
+enum { SKG_SHELL_K = 0, SKG_SHELL_L = 1 };
+
+/* Bremsstrahlung photons per keV, mAs and mm2 at 1 m, without filters, as published if deeper is 1. deeper: factor on the
+ * depth at which photons are made. Birch's continuum is a shape only: tube.c scales it. */
+double skg_ebel_continuum(const skg_anode *anode, double energy_kev, double deeper);
 double skg_birch_continuum(const skg_anode *anode, double energy_kev);
 
-/* Photons of K line k (of SKG_K_LINES) per mAs and mm2 at 1 m; 0 if there is no such line or the voltage is too low.
- * *overvoltage is the tube voltage over the energy of the K edge. */
-double skg_ebel_line(const skg_anode *anode, int k, double *energy_kev, double *overvoltage);
+/* Tube voltage over the energy of the shell's edge; 0: the element's shell is not in the tables. */
+double skg_ebel_overvoltage(const skg_anode *anode, int32_t shell);
+
+/* Photons of a line (of SKG_K_LINES or SKG_L_LINES) per mAs and mm2 at 1 m, those of L in an unknown unit; 0 if there is
+ * no such line or the voltage is too low. */
+double skg_ebel_line(const skg_anode *anode, int32_t shell, int line, double deeper, double *energy_kev);
+
+/* The same, calibrated (calibration.c). */
+double skg_tube_continuum(const skg_anode *anode, double energy_kev);
+double skg_tube_line(const skg_anode *anode, int32_t shell, int line, double *energy_kev);
+
+/* The range for which the calibration of an anode was made. z 0: this element has none, and has that of tungsten. */
+typedef struct {
+    int32_t z, reserved;
+    double kvp[2], angle_deg[2];
+} skg_tube_range;
+
+void skg_tube_range_find(int32_t z, skg_tube_range *range);
 
 #endif

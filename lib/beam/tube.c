@@ -48,19 +48,6 @@ static skg_status check_tube(const skg_tube *tube) {
     return check_value("an output's distance", tube->output_at_mm, 1e-3, 1e9, "mm");
 }
 
-/* Factors on Ebel's continuum and lines. u: tube voltage over K edge.
- *
- * They are fitted to the air kerma that SpekPy 2.5 gives for tungsten at 12 degrees behind 2.5 mm of aluminium,
- * and to the share of the K lines in the photons there: 1.6, 5.7, 8.7 and 11.2 % at 80, 100, 120 and 150 kV. As
- * published, the model is 45 to 60 % too high, and its lines are 4 to 5 times too weak. */
-static double continuum_factor(double kvp) {
-    return 0.688 * exp(-0.00133 * (kvp - 60));
-}
-
-static double line_factor(double kvp, double u) {
-    return continuum_factor(kvp) * 3.82 * pow(u - 1, -0.165);
-}
-
 /* The unfiltered continuum in bins. Birch's is still a shape without scale. */
 static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spectrum) {
     skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
@@ -74,21 +61,20 @@ static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spec
     for (int64_t i = 0; i < count; i++) {
         double low = first + (double)i * w, high = fmin(low + w, tube->kvp), middle = (low + high) / 2;
         s->energy_kev[i] = middle;
-        s->photons[i] = (high - low) * (model == SKG_TUBE_MODEL_EBEL
-                                            ? continuum_factor(tube->kvp) * skg_ebel_continuum(&anode, middle)
-                                            : skg_birch_continuum(&anode, middle));
+        s->photons[i] = (high - low) * (model == SKG_TUBE_MODEL_EBEL ? skg_tube_continuum(&anode, middle)
+                                                                     : skg_birch_continuum(&anode, middle));
     }
     return SKG_OK;
 }
 
-/* Adds each line to the bin that holds its energy. */
-static void add_lines(const skg_tube *tube, skg_spectrum *spectrum) {
-    skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
-    for (int k = 0; k < SKG_K_LINES; k++) {
-        double kev = 0, u = 0, photons = skg_ebel_line(&anode, k, &kev, &u);
+/* Adds the lines of a shell, each to the bin that holds its energy. */
+static void add_lines(const skg_tube *tube, int32_t shell, skg_spectrum *spectrum) {
+    const skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
+    const int lines = shell == SKG_SHELL_K ? SKG_K_LINES : SKG_L_LINES;
+    for (int k = 0; k < lines; k++) {
+        double kev = 0, photons = skg_tube_line(&anode, shell, k, &kev);
         int64_t i = (int64_t)((kev - SKG_LOWEST_KEV) / tube->bin_kev);
-        if (photons > 0 && i >= 0 && i < spectrum->count)
-            spectrum->photons[i] += photons * line_factor(tube->kvp, u);
+        if (photons > 0 && i >= 0 && i < spectrum->count) spectrum->photons[i] += photons;
     }
 }
 
@@ -124,22 +110,61 @@ static skg_status unfiltered(const skg_tube *tube, skg_spectrum **spectrum) {
         if (status != SKG_OK) goto cleanup;
         for (int64_t i = 0; i < (*spectrum)->count; i++) (*spectrum)->photons[i] *= wanted / own;
     }
-    add_lines(tube, *spectrum);
+    add_lines(tube, SKG_SHELL_K, *spectrum);
+    add_lines(tube, SKG_SHELL_L, *spectrum);
     return SKG_OK;
 cleanup:
     skg_spectrum_release(spectrum);
     return status;
 }
 
+/* Says what lies outside the range for which the model was compared with others. */
+static void warn_of_range(const skg_tube *tube, const skg_logger *log) {
+    const char *symbol = skg_elements[tube->anode].symbol;
+    skg_tube_range range;
+    skg_tube_range_find(tube->anode, &range);
+    if (range.z == 0) {
+        skg_logger_say(
+            log, SKG_LOG_WARNING,
+            "an anode of %s: the tube model is validated for W, Mo and Rh only; output and lines are "
+            "scaled as those of W",
+            symbol);
+        return;
+    }
+    if (tube->kvp < range.kvp[0] || tube->kvp > range.kvp[1])
+        skg_logger_say(log, SKG_LOG_WARNING,
+                       "%g kV: the tube model is validated from %g to %g kV only, with an anode of %s",
+                       tube->kvp, range.kvp[0], range.kvp[1], symbol);
+    if (tube->angle_deg < range.angle_deg[0] || tube->angle_deg > range.angle_deg[1])
+        skg_logger_say(
+            log, SKG_LOG_WARNING,
+            "an anode angle of %g degrees: the tube model is validated from %g to %g degrees only, with "
+            "an anode of %s",
+            tube->angle_deg, range.angle_deg[0], range.angle_deg[1], symbol);
+}
+
+/* The models are validated behind 0.5 mm of aluminium or as much of another metal, where next to nothing is left below
+ * SOFT_KEV. */
+static const double SOFT_KEV = 7, SOFT_SHARE = 0.01;
+
+static void warn_of_filters(const skg_tube *tube, const skg_spectrum *behind, const skg_logger *log) {
+    double soft = 0;
+    for (int64_t i = 0; i < behind->count && behind->energy_kev[i] < SOFT_KEV; i++)
+        soft += behind->photons[i] * skg_air_kerma(behind->energy_kev[i]);
+    const double share = soft / skg_spectrum_kerma(behind);
+    if (share > SOFT_SHARE)
+        skg_logger_say(
+            log, SKG_LOG_WARNING,
+            "%.2g %% of the air kerma is that of photons below %g keV, for which the tube model is not "
+            "validated; it is from 0.5 mm of aluminium on. Name all filters: none is assumed at %g kV",
+            100 * share, SOFT_KEV, tube->kvp);
+}
+
 static skg_status warn(const skg_tube *tube, const skg_spectrum *bare, const skg_spectrum *behind) {
     const skg_logger log = tube->context ? tube->context->log : (skg_logger){tube->log, tube->log_user};
     if (!log.call) return SKG_OK;
-    if (tube->kvp > 150 || tube->kvp < 20)
-        skg_logger_say(&log, SKG_LOG_WARNING, "%g kV: the tube model is validated from 20 to 150 kV only",
-                       tube->kvp);
-    if (tube->anode != TUNGSTEN)
-        skg_logger_say(&log, SKG_LOG_WARNING, "an anode of %s: the tube model is validated for W only",
-                       skg_elements[tube->anode].symbol);
+    warn_of_range(tube, &log);
+    warn_of_filters(tube, behind, &log);
     if (tube->kvp < 70) return SKG_OK;
     double kerma = 0, needed = 0, hvl = 0, second = 0;
     skg_material *aluminium = NULL;

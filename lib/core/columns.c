@@ -52,79 +52,121 @@ double skg_read_number(const char *text, const char **end) {
     return negative ? -value : value;
 }
 
+enum { MOST_COLUMNS = 8 };
+
 typedef struct {
     const char *path, *word;
+    int64_t least, most; /* numbers of a row */
+    int64_t width;       /* of the first row; 0: there is none yet */
     int64_t count, capacity, line;
-    double *first, *second;
-} columns;
+    double *columns[MOST_COLUMNS];
+} reading;
 
-static skg_status add_row(columns *c, double a, double b) {
-    if (c->count == c->capacity) {
-        int64_t capacity = c->capacity ? 2 * c->capacity : 256;
-        SKG_TRY(skg_realloc(capacity, sizeof(double), c->path, &c->first));
-        SKG_TRY(skg_realloc(capacity, sizeof(double), c->path, &c->second));
-        c->capacity = capacity;
+static skg_status add_row(reading *r, int64_t width, const double *numbers) {
+    if (r->count == r->capacity) {
+        int64_t capacity = r->capacity ? 2 * r->capacity : 256;
+        for (int64_t k = 0; k < width; k++)
+            SKG_TRY(skg_realloc(capacity, sizeof(double), r->path, &r->columns[k]));
+        r->capacity = capacity;
     }
-    c->first[c->count] = a;
-    c->second[c->count++] = b;
+    for (int64_t k = 0; k < width; k++) r->columns[k][r->count] = numbers[k];
+    r->count++;
     return SKG_OK;
 }
 
-static skg_status read_line(columns *c, const char *text) {
+/* Reads up to `most` numbers with blanks, a comma or a semicolon between them. *end points behind the last. */
+static int64_t read_numbers(const char *text, int64_t most, double *numbers, const char **end) {
+    int64_t width = 0;
+    for (*end = text; width < most; width++) {
+        const char *start = *end, *behind;
+        if (width > 0) {
+            while (isspace((unsigned char)*start)) start++;
+            if (*start == ',' || *start == ';') start++;
+        }
+        numbers[width] = skg_read_number(start, &behind);
+        if (behind == start || (width > 0 && start == *end)) break;
+        *end = behind;
+    }
+    while (isspace((unsigned char)**end)) ++*end;
+    return width;
+}
+
+static skg_status check_width(const reading *r, int64_t width, const char *rest) {
+    static const char *const words[] = {"no", "one", "two", "three", "four", "five", "six", "seven", "eight"};
+    const int more = *rest && *rest != '#';
+    if (width < r->least)
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": %s numbers were expected", r->path, r->line,
+                        words[r->least]);
+    if (more)
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are more than %s numbers", r->path,
+                        r->line, words[width]);
+    if (r->width && width != r->width)
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are %s numbers, but %s in the first row",
+                        r->path, r->line, words[width], words[r->width]);
+    return SKG_OK;
+}
+
+static skg_status read_line(reading *r, const char *text) {
+    double numbers[MOST_COLUMNS];
+    const char *rest;
     while (isspace((unsigned char)*text)) text++;
     if (!*text || *text == '#' || *text == '%') return SKG_OK;
-    if (c->word) {
-        const char *found = strstr(text, c->word);
+    if (r->word) {
+        const char *found = strstr(text, r->word);
         if (!found) return SKG_OK;
-        text = found + strlen(c->word);
-    } else if (c->count == 0 && isalpha((unsigned char)*text)) {
+        text = found + strlen(r->word);
+    } else if (r->count == 0 && isalpha((unsigned char)*text)) {
         return SKG_OK; /* a heading */
     }
-    const char *middle, *end;
-    double a = skg_read_number(text, &middle);
-    const char *second = middle;
-    while (isspace((unsigned char)*second)) second++;
-    if (*second == ',' || *second == ';') second++;
-    double b = skg_read_number(second, &end);
-    if (middle == text || end == second || second == middle)
-        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": two numbers were expected", c->path, c->line);
-    while (isspace((unsigned char)*end)) end++;
-    if (*end && *end != '#')
-        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are more than two numbers", c->path,
-                        c->line);
-    return add_row(c, a, b);
+    const int64_t width = read_numbers(text, r->most, numbers, &rest);
+    SKG_TRY(check_width(r, width, rest));
+    r->width = width;
+    return add_row(r, width, numbers);
+}
+
+static skg_status read_file(reading *r) {
+    char text[512];
+    skg_status status = SKG_OK;
+    FILE *file = fopen(r->path, "r");
+    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", r->path, strerror(errno));
+    while (status == SKG_OK && fgets(text, sizeof text, file)) {
+        r->line++;
+        if (strlen(text) + 1 == sizeof text)
+            status = skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", r->path, r->line);
+        else
+            status = read_line(r, text);
+    }
+    if (status == SKG_OK && ferror(file))
+        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", r->path, strerror(errno));
+    fclose(file);
+    if (status == SKG_OK && r->count == 0)
+        status = skg_fail(SKG_ERR_FORMAT, "%s: no line with two numbers%s%s", r->path,
+                          r->word ? " after " : "", r->word ? r->word : "");
+    for (int k = 0; k < MOST_COLUMNS && status != SKG_OK; k++) skg_free(&r->columns[k]);
+    return status;
 }
 
 skg_status skg_read_columns(const char *path, const char *word, int64_t *count, double **first,
                             double **second) {
-    columns c = {.path = path, .word = word};
-    char text[512];
-    skg_status status = SKG_OK;
+    reading r = {.path = path, .word = word, .least = 2, .most = 2};
     *count = 0;
     *first = *second = NULL;
-    FILE *file = fopen(path, "r");
-    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
-    while (status == SKG_OK && fgets(text, sizeof text, file)) {
-        c.line++;
-        if (strlen(text) + 1 == sizeof text)
-            status = skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", path, c.line);
-        else
-            status = read_line(&c, text);
-    }
-    if (status == SKG_OK && ferror(file))
-        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
-    fclose(file);
-    if (status == SKG_OK && c.count == 0)
-        status = skg_fail(SKG_ERR_FORMAT, "%s: no line with two numbers%s%s", path, word ? " after " : "",
-                          word ? word : "");
-    if (status != SKG_OK) {
-        skg_free(&c.first);
-        skg_free(&c.second);
-        return status;
-    }
-    *count = c.count;
-    *first = c.first;
-    *second = c.second;
+    SKG_TRY(read_file(&r));
+    *count = r.count;
+    *first = r.columns[0];
+    *second = r.columns[1];
+    return SKG_OK;
+}
+
+skg_status skg_read_columns_of(const char *path, int64_t least, int64_t most, int64_t *count, int64_t *width,
+                               double **columns) {
+    reading r = {.path = path, .least = least, .most = most};
+    *count = *width = 0;
+    for (int64_t k = 0; k < most; k++) columns[k] = NULL;
+    SKG_TRY(read_file(&r));
+    *count = r.count;
+    *width = r.width;
+    for (int64_t k = 0; k < most; k++) columns[k] = r.columns[k];
     return SKG_OK;
 }
 

@@ -17,6 +17,13 @@ skg_status skg_read_columns(const char *path, const char *word, int64_t *count, 
  * skipped. The caller frees the numbers. Errors as above. */
 skg_status skg_read_list(const char *path, int64_t *count, double **numbers);
 
+/* The same for rows of `least` to `most` numbers (at most 8), all of the same number, without a word.
+ *
+ * width     numbers of a row
+ * columns   [most] arrays of [count] that are allocated, NULL from `width` on; the caller frees them */
+skg_status skg_read_columns_of(const char *path, int64_t least, int64_t most, int64_t *count, int64_t *width,
+                               double **columns);
+
 /* Reads a number with a decimal point, whatever the locale. *end points behind it, or to text if there is none. */
 double skg_read_number(const char *text, const char **end);
 

@@ -1,5 +1,7 @@
 /* What a plan answers about itself. */
+#include "core/plain.h"
 #include "frame/plan.h"
+#include "spectral/rounding.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -20,6 +22,19 @@ skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
     skg_plan_report ours = plan->outcome.report;
     ours.device_bytes = skg_machine_bytes(&plan->machine);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
+}
+
+skg_status skg_plan_precision_bound_get(const skg_plan *plan, double *bound) {
+    SKG_PLAIN;
+    SKG_NEEDS(plan);
+    SKG_NEEDS(bound);
+    const skg_recipe *recipe = plan->recipe;
+    *bound = 0;
+    if (recipe->options.precision == SKG_PRECISION_HALF)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "no bound of the error is known for precision half; take single or double");
+    return skg_rounding_bound(recipe->scene, &recipe->view, &recipe->model,
+                              recipe->options.precision == SKG_PRECISION_DOUBLE, bound);
 }
 
 void skg_channel_init_sized(void *channel, int32_t size) {

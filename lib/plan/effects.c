@@ -1,4 +1,5 @@
 #include "plan/effects.h"
+#include "beam/spectrum.h"
 #include "core/names.h"
 #include "geometry/priority.h"
 #include "plan/costs.h"
@@ -32,14 +33,32 @@ static void set(const finding *f, int effect, int on, const char *format, ...) {
     state->on = on;
 }
 
+static void find_noise(const finding *f) {
+    const skg_plan_options *options = &f->recipe->options;
+    const int assumes = skg_response_assumes_efficiency(options->response);
+    if (!options->noise) {
+        set(f, SKG_EFFECT_NOISE, 0, "not asked for");
+        return;
+    }
+    if (skg_quantity_counts(options))
+        set(f, SKG_EFFECT_NOISE, 1, "asked for; photons are counted, so the variance is the mean%s",
+            assumes ? "; every photon is taken as recorded" : "");
+    else
+        set(f, SKG_EFFECT_NOISE, 1,
+            "asked for; Swank factor %g%s; photon by photon if fewer than %g are detected in a pixel%s",
+            options->swank, options->response ? " times that of the response" : "", SKG_FEW_PHOTONS,
+            assumes ? "; every photon is taken as recorded" : "");
+    if (assumes)
+        skg_log(
+            f->context, SKG_LOG_WARNING,
+            "noise with an energy response that gives no efficiency: every photon that arrives is taken as "
+            "recorded, so the noise is the least possible; give the efficiency as a third column, or Meaning "
+            "\"absorbed\" if photons leave either all of their energy or nothing");
+}
+
 static void find_detector(const finding *f) {
     const skg_plan_options *options = &f->recipe->options;
-    if (options->noise)
-        set(f, SKG_EFFECT_NOISE, 1,
-            "asked for; Swank factor %g; photon by photon if fewer than %g are detected in a pixel",
-            options->swank, SKG_FEW_PHOTONS);
-    else
-        set(f, SKG_EFFECT_NOISE, 0, "not asked for");
+    find_noise(f);
     if (f->blur)
         set(f, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(f->blur));
     else

@@ -145,13 +145,18 @@ static skg_status worth_of(const making *m, double energy, double *worth) {
 }
 
 /* The variance that a photon which arrives adds (docs/physics.md, Noise). It is recorded with the probability
- * `efficiency` and then adds worth / efficiency on average; the distribution of the scintillator's pulse heights
- * divides by the Swank factor. */
+ * `efficiency` and then adds worth / efficiency on average; the distribution of the pulse heights divides by the Swank
+ * factor. Counted photons all add 1, whatever the size of their signals. */
 static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
-    double efficiency = 1;
-    if (m->options->response) SKG_TRY(skg_response_get(m->options->response, energy, 1, NULL, &efficiency));
-    const double swank = skg_quantity_counts(m->options) ? 1 : m->options->swank;
-    *variance = efficiency > 0 ? worth * worth / (efficiency * swank) : 0;
+    const skg_response *response = m->options->response;
+    double efficiency = 1, swank = 1;
+    *variance = worth;
+    if (skg_quantity_counts(m->options)) return SKG_OK;
+    if (response) {
+        SKG_TRY(skg_response_get(response, energy, 1, NULL, &efficiency));
+        SKG_TRY(skg_response_swank_get(response, energy, 1, &swank));
+    }
+    *variance = efficiency > 0 ? worth * worth / (efficiency * swank * m->options->swank) : 0;
     return SKG_OK;
 }
 

@@ -9,7 +9,7 @@
 /* Rays along each side of the detector of the view, of those of further views, and of a part's own rectangle. A
  * thin part (a duct, a needle) gets more rays of its own until it is hit ENOUGH_HITS times, because its longest
  * chord may be missed otherwise. */
-enum { SIDE = 64, MORE_SIDE = 24, OWN_SIDE = 16, ENOUGH_HITS = 128 };
+enum { SIDE = SKG_TRACED_SIDE, MORE_SIDE = 24, OWN_SIDE = 16, ENOUGH_HITS = 128 };
 
 /* The factor on lengths that leaves a margin for later views, meshes and poses, which may differ a little. */
 static const double MARGIN = 1.25;
@@ -269,6 +269,49 @@ cleanup:
     skg_free(&grid.length);
     skg_free(&grid.count);
     if (status != SKG_OK) skg_ranges_release(ranges);
+    return status;
+}
+
+/* The longest length of a part along rays over its own rectangle. */
+static skg_status find_longest(const skg_scene_part_data *part, const skg_camera *camera,
+                               const skg_extent *extent, ray_grid *grid, double *longest) {
+    const skg_scale_part *r = &extent->scale;
+    const double low[2] = {fmax(r->low_column, -0.5), fmax(r->low_row, -0.5)};
+    const double high[2] = {fmin(r->high_column, (double)camera->columns - 0.5),
+                            fmin(r->high_row, (double)camera->rows - 0.5)};
+    *longest = 0;
+    lay_grid(grid, OWN_SIDE, low, high);
+    if (!(grid->column_step > 0 && grid->row_step > 0)) return SKG_OK;
+    SKG_TRY(measure(camera, part, extent->near_source, grid));
+    for (int64_t r_own = 0; r_own < grid->columns * grid->rows; r_own++)
+        *longest = fmax(*longest, MARGIN * grid->length[r_own]);
+    return SKG_OK;
+}
+
+skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const skg_model *model,
+                            skg_traced_part *traced, void *user) {
+    ray_grid grid = {0};
+    looking look = {.side = SIDE};
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_camera_make(view, NULL, 0, 0, &look.camera));
+    SKG_TRY_CLEANUP(skg_alloc(SIDE * SIDE, sizeof *grid.length, "rays", &grid.length));
+    SKG_TRY_CLEANUP(skg_alloc(SIDE * SIDE, sizeof *grid.count, "rays", &grid.count));
+    for (int64_t p = 0; p < scene->count; p++) {
+        const skg_scene_part_data *part = &scene->parts[p];
+        skg_extent extent;
+        double longest = 0;
+        if (model->first_contribution[p + 1] == model->first_contribution[p]) continue;
+        skg_extent_find(&look.camera, part->mesh, part->pose, &extent);
+        if (!extent.on_detector) continue;
+        SKG_TRY_CLEANUP(find_longest(part, &look.camera, &extent, &grid, &longest));
+        lay_over_detector(&grid, &look);
+        SKG_TRY_CLEANUP(measure(&look.camera, part, extent.near_source, &grid));
+        for (int64_t r = 0; r < look.rays; r++) longest = fmax(longest, MARGIN * grid.length[r]);
+        traced(user, p, grid.length, longest);
+    }
+cleanup:
+    skg_free(&grid.length);
+    skg_free(&grid.count);
     return status;
 }
 

@@ -22,4 +22,15 @@ skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t
                            const skg_model *model, skg_ranges *ranges);
 void skg_ranges_release(skg_ranges *ranges);
 
+/* Rays along each side of the detector. */
+enum { SKG_TRACED_SIDE = 64 };
+
+/* Receives the lengths of one part along the rays: [SKG_TRACED_SIDE][SKG_TRACED_SIDE] mm. longest: the longest that was
+ * found, with a margin of a quarter. */
+typedef void skg_traced_part(void *user, int64_t part, const double *lengths, double longest);
+
+/* Traces rays over the view's detector through each part that contributes to a plane and is seen. */
+skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const skg_model *model,
+                            skg_traced_part *traced, void *user);
+
 #endif

@@ -106,8 +106,11 @@ static truth sum_energies(int64_t count, const double *kev, const double *photon
         double per_cm = 0, recorded = kev[i], efficiency = 1;
         ck_skg(skg_material_attenuation_get(tissue, kev[i], &per_cm));
         if (options->response) ck_skg(skg_response_get(options->response, kev[i], 1, &recorded, &efficiency));
-        const double detected = photons[i] * exp(-0.1 * per_cm * THICKNESS) * efficiency * options->swank;
-        const double each = recorded / efficiency / options->swank;
+        double swank = 1;
+        ck_skg(skg_response_swank_get(options->response, kev[i], 1, &swank));
+        swank *= options->swank;
+        const double detected = photons[i] * exp(-0.1 * per_cm * THICKNESS) * efficiency * swank;
+        const double each = recorded / efficiency / swank;
         t.detected += detected;
         t.mean += detected * each;
         t.variance += detected * each * each;
@@ -151,6 +154,70 @@ START_TEST(two_energies_in_iodide) {
     options.precision = SKG_PRECISION_DOUBLE;
     check_two_energies(many, &options);
     check_two_energies(few, &options);
+}
+END_TEST
+
+/* The mean is the same, whatever a table means; the variance is that of its efficiency and second moment. */
+START_TEST(meanings_of_a_table) {
+    static const double e[2] = {30, 90}, recorded[2] = {24, 45}, efficiency[2] = {0.9, 0.7},
+                        swank[2] = {0.95, 0.6};
+    const double many[2] = {9000, 4000}, few[2] = {30, 10};
+    skg_plan_options options = noisy();
+    double variances[3];
+    for (int k = 0; k < 3; k++) {
+        skg_response_table table;
+        skg_response_table_init(&table);
+        table.count = 2, table.energies_kev = e, table.recorded_kev = recorded;
+        if (k == 1) table.meaning = SKG_RESPONSE_MEANING_ABSORBED;
+        if (k == 2) table.efficiency = efficiency, table.swank = swank;
+        ck_skg(skg_response_create_table(&table, &options.response));
+        variances[k] = sum_energies(2, two_kev, many, &options).variance;
+        check_two_energies(many, &options);
+        check_two_energies(few, &options);
+        skg_response_release(&options.response);
+    }
+    /* By hand for 40 and 80 keV: recorded 27.5 and 41.5 keV, efficiency 0.8667 and 0.7333, Swank 0.8917 and 0.6583. */
+    ck_assert_double_lt(variances[0], variances[1]);
+    double by_hand = 0;
+    for (int i = 0; i < 2; i++) {
+        double per_cm = 0;
+        const double r = i ? 41.5 : 27.5, both = i ? 0.7333333 * 0.6583333 : 0.8666667 * 0.8916667;
+        ck_skg(skg_material_attenuation_get(tissue, two_kev[i], &per_cm));
+        by_hand += many[i] * exp(-0.1 * per_cm * THICKNESS) * r * r / both;
+    }
+    ck_assert_double_eq_tol(variances[2] / by_hand, 1, 1e-6); /* the digits of the fractions above */
+}
+END_TEST
+
+/* Counted photons all add 1: the variance is the mean, sum N T eta, and neither signal nor Swank factor shows. */
+START_TEST(counted_photons_have_no_size) {
+    static double images[4 * PIXELS];
+    static const double e[2] = {30, 90}, recorded[2] = {24, 45}, efficiency[2] = {0.9, 0.7},
+                        swank[2] = {0.95, 0.6};
+    const double photons[2] = {900, 400}, edges[2] = {20, 200};
+    skg_response_table table;
+    skg_plan_options options = noisy();
+    double expected = 0;
+    skg_response_table_init(&table);
+    table.count = 2, table.energies_kev = e, table.recorded_kev = recorded;
+    table.efficiency = efficiency, table.swank = swank;
+    ck_skg(skg_response_create_table(&table, &options.response));
+    options.quantity = SKG_QUANTITY_PHOTONS, options.swank = 0.5;
+    options.bands = 1, options.band_kev = edges;
+    for (int i = 0; i < 2; i++) {
+        double per_cm = 0, seen = 0;
+        ck_skg(skg_material_attenuation_get(tissue, two_kev[i], &per_cm));
+        ck_skg(skg_response_get(options.response, two_kev[i], 1, NULL, &seen));
+        expected += photons[i] * exp(-0.1 * per_cm * THICKNESS) * seen;
+    }
+    skg_spectrum *spectrum = energies(2, two_kev, photons);
+    take(spectrum, &options, 9, 4, images);
+    const moments m = moments_of(4 * PIXELS, images);
+    /* Four standard errors of a mean and of a variance. */
+    ck_assert_double_eq_tol(m.mean, expected, 4 * sqrt(expected / (4 * PIXELS)));
+    ck_assert_double_eq_tol(m.variance, expected, 4 * expected * sqrt(2.0 / (4 * PIXELS)));
+    skg_response_release(&options.response);
+    skg_spectrum_release(&spectrum);
 }
 END_TEST
 
@@ -468,6 +535,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_test(tests, two_energies_in_iodide);
+    tcase_add_test(tests, meanings_of_a_table);
+    tcase_add_test(tests, counted_photons_have_no_size);
     tcase_add_test(tests, compressed_spectra);
     tcase_add_test(tests, few_photons_are_exact);
     tcase_add_test(tests, detective_quantum_efficiency);

@@ -49,12 +49,13 @@ static void iec(int32_t model, const char *label, double first_bar, double secon
 }
 
 START_TEST(ebel_agrees_with_ptb) {
-    iec(SKG_TUBE_MODEL_EBEL, "Ebel", 0.06, 0.05, 0.025);
+    iec(SKG_TUBE_MODEL_EBEL, "Ebel", 0.03, 0.03, 0.025);
 }
 END_TEST
 
+/* Birch's continuum is not calibrated but in its output: it is too hard towards 150 kV, which weaker lines once hid. */
 START_TEST(birch_agrees_with_ptb) {
-    iec(SKG_TUBE_MODEL_BIRCH, "Birch", 0.07, 0.05, 0.025);
+    iec(SKG_TUBE_MODEL_BIRCH, "Birch", 0.08, 0.06, 0.03);
 }
 END_TEST
 
@@ -80,9 +81,9 @@ START_TEST(iso_qualities) {
         if (getenv("SKG_LIST"))
             printf("%s: HVL1 %+.1f %%, HVL2 %+.1f %%, mean %.2f keV\n", name, 100 * (q.hvl1_mm_cu / hvl1 - 1),
                    100 * (q.hvl2_mm_cu / hvl2 - 1), q.mean_kev);
-        /* The model of the tube errs by up to 6 % against measured layers; mean energies are nominal to 0.5 keV. */
-        ck_assert_msg(fabs(q.hvl1_mm_cu / hvl1 - 1) <= 0.06, "%s: HVL1 %.4f mm Cu", name, q.hvl1_mm_cu);
-        ck_assert_msg(fabs(q.hvl2_mm_cu / hvl2 - 1) <= 0.05, "%s: HVL2 %.4f mm Cu", name, q.hvl2_mm_cu);
+        /* What the calibration is asked to reach for HVL1 in aluminium; mean energies are nominal to 0.5 keV. */
+        ck_assert_msg(fabs(q.hvl1_mm_cu / hvl1 - 1) <= 0.03, "%s: HVL1 %.4f mm Cu", name, q.hvl1_mm_cu);
+        ck_assert_msg(fabs(q.hvl2_mm_cu / hvl2 - 1) <= 0.03, "%s: HVL2 %.4f mm Cu", name, q.hvl2_mm_cu);
         for (size_t i = 0; i < sizeof nominal / sizeof *nominal; i++)
             if (strcmp(nominal[i].name, name) == 0) /* The model of the tube, as above. */
                 ck_assert_msg(fabs(q.mean_kev - nominal[i].mean) <= 0.5, "%s: mean %.2f keV", name,

@@ -185,33 +185,112 @@ START_TEST(response_of_cesium_iodide_in_print) {
 }
 END_TEST
 
+/* A table of three energies, 10 to 100 keV, of which tests change what they look at. */
+static skg_response_table three(void) {
+    static const double e[3] = {10, 50, 100}, r[3] = {10, 40, 60};
+    skg_response_table table;
+    skg_response_table_init(&table);
+    table.count = 3, table.energies_kev = e, table.recorded_kev = r;
+    return table;
+}
+
 START_TEST(response_tables) {
-    static const double e[3] = {10, 50, 100}, r[3] = {10, 40, 60}, eta[3] = {1, 0.9, 0.8};
+    static const double eta[3] = {1, 0.9, 0.8}, swank[3] = {1, 0.9, 0.7}, none[3] = {1, 0, 1};
     skg_response *t = NULL;
-    double recorded = 0, seen = 0;
-    ck_skg(skg_response_create_table(3, e, r, NULL, &t));
+    double recorded = 0, seen = 0, factor = 0;
+    skg_response_table table = three();
+    ck_skg(skg_response_create_table(&table, &t)); /* a signal: every photon is recorded */
+    ck_skg(skg_response_get(t, 30, 1, &recorded, &seen));
+    ck_assert_double_eq_tol(recorded, 25, 16 * DBL_EPSILON * 25);
+    ck_assert_double_eq(seen, 1);
+    ck_skg_fails(skg_response_get(t, 101, 1, &recorded, &seen), SKG_ERR_BEAM, "10 to 100 keV");
+    skg_response_release(&t);
+    table.meaning = SKG_RESPONSE_MEANING_ABSORBED;
+    ck_skg(skg_response_create_table(&table, &t)); /* all or nothing */
     ck_skg(skg_response_get(t, 30, 1, &recorded, &seen));
     ck_assert_double_eq_tol(recorded, 25, 16 * DBL_EPSILON * 25);
     ck_assert_double_eq_tol(seen, 25.0 / 30, 16 * DBL_EPSILON);
-    ck_skg_fails(skg_response_get(t, 101, 1, &recorded, &seen), SKG_ERR_BEAM, "10 to 100 keV");
+    ck_skg(skg_response_swank_get(t, 30, 1, &factor));
+    ck_assert_double_eq(factor, 1);
     skg_response_release(&t);
-    ck_skg(skg_response_create_table(3, e, r, eta, &t));
+    table.efficiency = eta;
+    ck_skg_fails(skg_response_create_table(&table, &t), SKG_ERR_BEAM, "leave the efficiencies out");
+    table.meaning = SKG_RESPONSE_MEANING_SIGNAL, table.swank = swank;
+    ck_skg(skg_response_create_table(&table, &t));
     ck_skg(skg_response_get(t, 75, 1, &recorded, &seen));
     ck_assert_double_eq_tol(seen, 0.85, 16 * DBL_EPSILON);
+    ck_skg(skg_response_swank_get(t, 75, 1, &factor));
+    ck_assert_double_eq_tol(factor, 0.8, 16 * DBL_EPSILON);
     skg_response_release(&t);
     ck_skg(skg_response_get(NULL, 75, 1, &recorded, &seen)); /* ideal */
+    ck_skg(skg_response_swank_get(NULL, 75, 1, &factor));
     ck_assert_double_eq(recorded, 75);
     ck_assert_double_eq(seen, 1);
-    ck_skg_fails(skg_response_create_table(2, e + 1, (double[2]){1, 102}, NULL, &t), SKG_ERR_BEAM, "row 2");
-    ck_skg_fails(skg_response_create_table(2, e, e + 1, NULL, &t), SKG_ERR_BEAM,
-                 "50 keV recorded of a photon of 10");
+    ck_assert_double_eq(factor, 1);
+    table.efficiency = none;
+    ck_skg_fails(skg_response_create_table(&table, &t), SKG_ERR_BEAM,
+                 "row 2: 40 keV recorded with efficiency 0");
+    table = three(), table.swank = none;
+    ck_skg_fails(skg_response_create_table(&table, &t), SKG_ERR_BEAM, "row 2: Swank factor 0");
+    table = three(), table.meaning = 2;
+    ck_skg_fails(skg_response_create_table(&table, &t), SKG_ERR_BEAM, "meaning 2");
+    table = three(), table.recorded_kev = (double[3]){1, 52, 3};
+    ck_skg_fails(skg_response_create_table(&table, &t), SKG_ERR_BEAM,
+                 "row 2: 52 keV recorded of a photon of 50");
+}
+END_TEST
+
+START_TEST(response_files) {
+    skg_response *t = NULL;
+    double recorded = 0, seen = 0, factor = 0;
     char path[] = "/tmp/skg_response_XXXXXX";
     write_file(path, "0.01 0.01\n0.1 0.06\n");
-    ck_skg(skg_response_load(path, "MeV", &t));
-    ck_skg(skg_response_get(t, 100, 1, &recorded, NULL));
+    ck_skg(skg_response_load(path, "MeV", SKG_RESPONSE_MEANING_ABSORBED, &t));
+    ck_skg(skg_response_get(t, 100, 1, &recorded, &seen));
     ck_assert_double_eq_tol(recorded, 60, 16 * DBL_EPSILON * 60);
+    ck_assert_double_eq_tol(seen, 0.6, 16 * DBL_EPSILON);
     skg_response_release(&t);
     unlink(path);
+    char other[] = "/tmp/skg_response_XXXXXX";
+    write_file(other, "E R eta A\n10, 10, 0.9, 1\n100, 60, 0.7, 0.8\n");
+    ck_skg(skg_response_load(other, "keV", SKG_RESPONSE_MEANING_SIGNAL, &t));
+    ck_skg(skg_response_get(t, 55, 1, &recorded, &seen));
+    ck_skg(skg_response_swank_get(t, 55, 1, &factor));
+    ck_assert_double_eq_tol(recorded, 35, 16 * DBL_EPSILON * 35);
+    ck_assert_double_eq_tol(seen, 0.8, 16 * DBL_EPSILON);
+    ck_assert_double_eq_tol(factor, 0.9, 16 * DBL_EPSILON);
+    skg_response_release(&t);
+    unlink(other);
+    char bad[] = "/tmp/skg_response_XXXXXX";
+    write_file(bad, "10 10 0.9\n100 60\n");
+    ck_skg_fails(skg_response_load(bad, "keV", SKG_RESPONSE_MEANING_SIGNAL, &t), SKG_ERR_FORMAT,
+                 "line 2: there are two numbers, but three in the first row");
+    unlink(bad);
+}
+END_TEST
+
+/* A quarter of the photons of 40 keV escape, a quarter leave 10 keV and half all of it; at 80 keV all leave 60. */
+START_TEST(pulse_heights) {
+    static const double e[2] = {40, 80}, h[3] = {10, 40, 60};
+    double p[6] = {0.25, 0.5, 0, 0, 0, 1}, recorded = 0, seen = 0, factor = 0;
+    skg_response *t = NULL;
+    ck_skg(skg_response_create_pulses(2, e, 3, h, p, &t));
+    ck_skg(skg_response_get(t, 40, 1, &recorded, &seen));
+    ck_skg(skg_response_swank_get(t, 40, 1, &factor));
+    ck_assert_double_eq_tol(recorded, 22.5, 16 * DBL_EPSILON * 22.5);
+    ck_assert_double_eq_tol(seen, 0.75, 16 * DBL_EPSILON);
+    ck_assert_double_eq_tol(factor, 22.5 * 22.5 / (0.75 * 825), 16 * DBL_EPSILON);
+    ck_skg(skg_response_get(t, 80, 1, &recorded, &seen));
+    ck_skg(skg_response_swank_get(t, 80, 1, &factor));
+    ck_assert_double_eq_tol(recorded, 60, 16 * DBL_EPSILON * 60);
+    ck_assert_double_eq_tol(seen * factor, 1, 16 * DBL_EPSILON);
+    skg_response_release(&t);
+    p[5] = 1.5;
+    ck_skg_fails(skg_response_create_pulses(2, e, 3, h, p, &t), SKG_ERR_BEAM, "row 2: a probability of 1.5");
+    p[5] = 1, p[3] = 0.5;
+    ck_skg_fails(skg_response_create_pulses(2, e, 3, h, p, &t), SKG_ERR_BEAM,
+                 "row 2: probabilities sum to 1.5");
+    ck_skg_fails(skg_response_create_pulses(2, e, 2, (double[2]){40, 40}, p, &t), SKG_ERR_BEAM, "height 2");
 }
 END_TEST
 
@@ -225,6 +304,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, filters_harden);
     tcase_add_test(tests, response_of_cesium_iodide_in_print);
     tcase_add_test(tests, response_tables);
+    tcase_add_test(tests, response_files);
+    tcase_add_test(tests, pulse_heights);
 }
 
 SKG_SUITE_MAIN("spectrum", add_tests)

@@ -14,7 +14,8 @@ typedef struct {
     double mm;
 } layer;
 
-static inline skg_spectrum *tube(int32_t model, double kvp, double angle, const layer *layers) {
+static inline skg_spectrum *tube_of(int32_t anode, int32_t model, double kvp, double angle,
+                                    const layer *layers) {
     skg_tube t;
     skg_filter filters[MOST_LAYERS];
     skg_material *materials[MOST_LAYERS];
@@ -28,6 +29,7 @@ static inline skg_spectrum *tube(int32_t model, double kvp, double angle, const 
     }
     skg_tube_init(&t);
     t.model = model;
+    t.anode = anode;
     t.kvp = kvp;
     t.angle_deg = angle;
     t.filters = filters;
@@ -37,13 +39,22 @@ static inline skg_spectrum *tube(int32_t model, double kvp, double angle, const 
     return spectrum;
 }
 
-static inline skg_quality quality(int32_t model, double kvp, double angle, const layer *layers) {
+static inline skg_spectrum *tube(int32_t model, double kvp, double angle, const layer *layers) {
+    return tube_of(74, model, kvp, angle, layers);
+}
+
+static inline skg_quality quality_of(int32_t anode, int32_t model, double kvp, double angle,
+                                     const layer *layers) {
     skg_quality q;
     skg_quality_init(&q);
-    skg_spectrum *spectrum = tube(model, kvp, angle, layers);
+    skg_spectrum *spectrum = tube_of(anode, model, kvp, angle, layers);
     ck_skg(skg_spectrum_quality_get(spectrum, &q));
     skg_spectrum_release(&spectrum);
     return q;
+}
+
+static inline skg_quality quality(int32_t model, double kvp, double angle, const layer *layers) {
+    return quality_of(74, model, kvp, angle, layers);
 }
 
 #endif

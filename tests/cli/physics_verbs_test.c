@@ -137,7 +137,7 @@ START_TEST(files_are_written) {
     ck_assert_int_eq(strncmp(text, "energy (keV),photons per mm2\n", 29), 0);
     ck_assert_int_eq(look_at_folder(0), 4);
     ck_run_fails(5, "none/a.png: cannot be written", "material Fe -o none/a.png");
-    ck_run_fails(5, "a.csv: cannot be written", "beam --kvp 60 -o /dev/null/a.csv");
+    ck_run_fails(5, "a.csv: cannot be written", "beam --kvp 60 --filter Al:2.5 -o /dev/null/a.csv");
     ck_run_fails(2, "-o a.tif: the extension is none of .csv, .png and .svg", "material Fe -o a.tif");
     ck_run_fails(2, "a plot needs a range of energies", "material Fe --energy 60 -o c.png");
     ck_assert_int_eq(look_at_folder(0), 4);

@@ -133,6 +133,30 @@ START_TEST(every_output_is_written) {
 }
 END_TEST
 
+START_TEST(a_picture_of_a_scan_says_what_it_leaves_out) {
+    ck_run(0, "image scene.json -o a.mha --set 'Scan={\"NumberOfProjections\": 12, \"AngleStep\": 30}'");
+    ck_assert_msg(strstr(complained, "this is one projection of 12"), "%s", complained);
+    ck_run(0, "lbuffer scene.json --part bone -o a.mha --set 'Scan={\"StartAngle\": 30}'");
+    ck_assert_msg(strstr(complained, "this is its first projection"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha");
+    ck_assert_msg(!strstr(complained, "Scan"), "%s", complained);
+}
+END_TEST
+
+START_TEST(noise_without_an_efficiency_is_warned_of) {
+    static const char lut[] = "--set 'Detector.EnergyResponse={\"LUT\": [[10, 10], [100, 60]]%s}'";
+    char with[128];
+    snprintf(with, sizeof with, lut, "");
+    ck_run(0, "image scene.json -o a.mha %s", with);
+    ck_assert_msg(!strstr(complained, "efficiency"), "%s", complained);
+    ck_run(0, "image scene.json -o a.mha --set Noise=true %s", with);
+    ck_assert_msg(strstr(complained, "gives no efficiency"), "%s", complained);
+    snprintf(with, sizeof with, lut, ", \"Meaning\": \"absorbed\"");
+    ck_run(0, "image scene.json -o a.mha --set Noise=true %s", with);
+    ck_assert_msg(!strstr(complained, "efficiency"), "%s", complained);
+}
+END_TEST
+
 START_TEST(strategies_give_the_same_bits) {
     double one[PIXELS], other[PIXELS];
     ck_run(0, "image scene.json -o a.mha --strategy copies");
@@ -168,6 +192,9 @@ static void check_plan(json_t *plan) {
     ck_assert(json_is_string(member(plan, "strategy")));
     ck_assert_int_ge(json_integer_value(member(member(plan, "tiles"), "count")), 1);
     ck_assert(json_number_value(member(plan, "bound")) == 0);
+    /* At most that of single precision: 1.25 times 3e-5 of exponents of 2.8 (docs/numerics.md). */
+    ck_assert_double_lt(json_number_value(member(plan, "bound_precision")), 1.25 * 3e-5 * 2.8);
+    ck_assert_double_gt(json_number_value(member(plan, "bound_precision")), 0);
     ck_assert_int_eq(json_integer_value(member(plan, "parts")), 2);
     ck_assert_int_eq(json_integer_value(member(plan, "triangles")), 24);
     ck_assert_int_eq(json_integer_value(member(plan, "bad_pixels")), 0);
@@ -362,6 +389,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, bands_are_channels);
     tcase_add_test(tests, lengths_are_net_or_of_the_surface);
     tcase_add_test(tests, every_output_is_written);
+    tcase_add_test(tests, a_picture_of_a_scan_says_what_it_leaves_out);
+    tcase_add_test(tests, noise_without_an_efficiency_is_warned_of);
     tcase_add_test(tests, strategies_give_the_same_bits);
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, plan_says_what_and_why);

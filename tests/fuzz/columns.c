@@ -17,7 +17,7 @@ static void use_spectrum(const char *path, const char *unit) {
 static void use_response(const char *path, const char *unit) {
     skg_response *response = NULL;
     double recorded, efficiency;
-    fuzz_expect_sentence(skg_response_load(path, unit, &response));
+    fuzz_expect_sentence(skg_response_load(path, unit, SKG_RESPONSE_MEANING_SIGNAL, &response));
     if (response) fuzz_expect_sentence(skg_response_get(response, 60, 1.1, &recorded, &efficiency));
     skg_response_release(&response);
 }

@@ -6,6 +6,7 @@ function node(room, object,   name) {
     sub(/.*\.dir\//, "", name)
     sub(/\.o$/, "", name)
     if (name ~ /^\// || name ~ /__\//) sub(/.*\//, "", name) # made at build time
+    sub(/^\.\//, "", name) # Ninja names them ./room/file
     sub(/^\.\.\//, "", name)
     name = stem(name)
     return index(name, room "/") == 1 ? name : room "/" name

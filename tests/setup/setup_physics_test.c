@@ -235,6 +235,51 @@ START_TEST(responses) {
 }
 END_TEST
 
+START_TEST(what_responses_mean_for_noise) {
+    const skg_response *r = NULL;
+    double seen = 0, factor = 0;
+    write_file("scene.json", good);
+    ck_skg(load_with("Detector.EnergyResponse={\"LUT\": [[10, 10], [100, 40]]}", NULL));
+    r = options().response;
+    ck_skg(skg_response_get(r, 55, 1, NULL, &seen));
+    ck_assert_double_eq(seen, 1);
+    ck_skg(load_with("Detector.EnergyResponse={\"LUT\": [[10, 10], [100, 40]], \"Meaning\": \"absorbed\"}",
+                     NULL));
+    r = options().response;
+    ck_skg(skg_response_get(r, 100, 1, NULL, &seen));
+    ck_assert_double_eq_tol(seen, 0.4, 16 * DBL_EPSILON);
+    ck_skg(load_with("Detector.EnergyResponse={\"LUT\": [[10, 10, 1, 1], [100, 40, 0.5, 0.8]]}", NULL));
+    r = options().response;
+    ck_skg(skg_response_get(r, 55, 1, NULL, &seen));
+    ck_skg(skg_response_swank_get(r, 55, 1, &factor));
+    ck_assert_double_eq_tol(seen, 0.75, 16 * DBL_EPSILON);
+    ck_assert_double_eq_tol(factor, 0.9, 16 * DBL_EPSILON);
+    ck_skg(
+        load_with("Detector.EnergyResponse={\"Unit\": \"MeV\", \"PulseHeights\": {\"Heights\": [0.01, 0.04], "
+                  "\"Rows\": [[0.04, 0.25, 0.5], [0.08, 0, 1]]}}",
+                  NULL));
+    r = options().response;
+    ck_skg(skg_response_get(r, 40, 1, NULL, &seen));
+    ck_assert_double_eq_tol(seen, 0.75, 16 * DBL_EPSILON);
+    static const char *const bad[][2] = {
+        {"{\"LUT\": [[10, 10], [100, 40]], \"Meaning\": \"energy\"}", "Meaning"},
+        {"{\"LUT\": [[10, 10, 1], [100, 40]]}", "LUT[1]"},
+        {"{\"LUT\": [[10, 10, 1], [100, 40, 1]], \"Meaning\": \"absorbed\"}", "leave the efficiencies out"},
+        {"{\"LUT\": [[10, 10], [100, 40]], \"PulseHeights\": {}}", "give one of them"},
+        {"{\"PulseHeights\": {\"Heights\": [10], \"Rows\": [[10, 0.5], [20, 1.5]]}}", "row 2"},
+        {"{\"PulseHeights\": {\"Heights\": [10], \"Rows\": [[10, 0.5, 1], [20, 1]]}}", "Rows[0]"},
+        {"{\"PulseHeights\": {\"Rows\": [[10, 0.5]]}}", "Heights"},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        char setting[256];
+        snprintf(setting, sizeof setting, "Detector.EnergyResponse=%s", bad[k][0]);
+        const skg_status status = load_with(setting, NULL);
+        ck_assert_int_ne(status, SKG_OK);
+        ck_assert_msg(strstr(skg_last_error(), bad[k][1]), "%s: %s", bad[k][0], skg_last_error());
+    }
+}
+END_TEST
+
 START_TEST(focal_spots) {
     write_file("scene.json", good);
     ck_skg(load());
@@ -368,6 +413,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, hounsfield_beyond_the_table_is_told_once);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
+    tcase_add_test(tests, what_responses_mean_for_noise);
     tcase_add_test(tests, focal_spots);
     tcase_add_test(tests, worlds);
     tcase_add_test(tests, line_and_point_spread);

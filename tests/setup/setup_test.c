@@ -284,6 +284,35 @@ START_TEST(scans_are_kept) {
     check_vector(setup->scan.axis, 0, 0, -1); /* up */
     check_vector(setup->view.source, 0, -400, 0);
     ck_assert_ptr_nonnull(strstr(setup->scan.folder, "/out"));
+    int64_t projections = 0;
+    ck_skg(skg_setup_projection_count_get(setup, &projections));
+    ck_assert_int_eq(projections, 200);
+}
+END_TEST
+
+START_TEST(projections_are_counted) {
+    static const struct {
+        const char *scan;
+        int64_t count;
+    } cases[] = {
+        {"", 1},
+        {"\"Scan\": {}, ", 0},
+        {"\"Scan\": {\"NumberOfProjections\": 7}, ", 7},
+        {"\"Scan\": {\"AngleStep\": 0.1, \"FinalAngle\": 360}, ", 3600},
+        {"\"Scan\": {\"AngleStep\": 0.1, \"FinalAngle\": 360, \"IncludeFinalAngle\": true}, ", 3601},
+        {"\"Scan\": {\"AngleStep\": 100, \"StartAngle\": 10, \"FinalAngle\": 360}, ", 4},
+        {"\"Scan\": {\"AngleStep\": -1, \"FinalAngle\": 360}, ", 0},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char with[256];
+        int64_t projections = -1;
+        snprintf(with, sizeof with, "%s\"Samples\"", cases[k].scan);
+        write_edited("\"Samples\"", with);
+        ck_skg(load());
+        ck_skg(skg_setup_projection_count_get(setup, &projections));
+        ck_assert_int_eq(projections, cases[k].count);
+        skg_setup_release(&setup);
+    }
 }
 END_TEST
 
@@ -408,6 +437,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, mesh_files);
     tcase_add_test(tests, open_meshes_are_flipped);
     tcase_add_test(tests, scans_are_kept);
+    tcase_add_test(tests, projections_are_counted);
     tcase_add_test(tests, a_scan_gives_its_first_projection);
     tcase_add_test(tests, options_are_given_on);
     tcase_add_test(tests, mends_and_priorities);

@@ -5,7 +5,9 @@ static const char *const text[] = {
     "precision; every effect, on or off, with the reason and an estimate of its cost; the time of each stage; "
     "parts that overlap; and what is not simulated.",
     cli_text_meshes,
-    "--json prints {effects, nodes, planes, strategy, tiles, bound, stages_ns, ...}. Each node is [keV, photons per "
+    "--json prints {effects, nodes, planes, strategy, tiles, bound, bound_precision, stages_ns, ...}: bound is "
+    "the error that fewer energies and planes make, bound_precision that of rounding in the precision (null with half); "
+    "both add up. Each node is [keV, photons per "
     "pixel]; the nodes can be given as the Beam of a scene with a Tolerance of 0.",
     NULL};
 

@@ -116,6 +116,13 @@ static json_t *tiles_json(const skg_plan_report *report) {
     return object;
 }
 
+/* What the precision may change; null if no bound is known. */
+static json_t *precision_bound_json(const skg_plan *plan) {
+    double bound = 0;
+    if (skg_plan_precision_bound_get(plan, &bound) != SKG_OK) return json_null();
+    return cli_json_number(bound);
+}
+
 json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     json_t *object = json_object();
@@ -129,6 +136,7 @@ json_t *cli_explain_json(const skg_plan *plan, const cli_session *session) {
     json_object_set_new(object, "strategy", cli_json_text(cli_flag_strategy.values[report.strategy].name));
     json_object_set_new(object, "tiles", tiles_json(&report));
     json_object_set_new(object, "bound", cli_json_number(report.bound));
+    json_object_set_new(object, "bound_precision", precision_bound_json(plan));
     json_object_set_new(object, "verified", json_integer(report.verified));
     json_object_set_new(object, "precision", cli_json_text(cli_flag_precision.values[report.precision].name));
     json_object_set_new(object, "device", cli_json_text(session->device.name));
@@ -227,6 +235,15 @@ static void print_beam(const cli_session *session) {
         printf("its quality is not known: %s\n", skg_last_error());
 }
 
+static void print_precision(const skg_plan *plan, const skg_plan_report *report) {
+    double bound = 0;
+    printf("precision  %s", cli_flag_precision.values[report->precision].name);
+    if (skg_plan_precision_bound_get(plan, &bound) == SKG_OK)
+        printf(": error of intensities at most %.2g", bound);
+    if (report->verified > 0) printf(", and %.2g by fewer energies", report->bound);
+    putchar('\n');
+}
+
 static void print_strategy(const skg_plan_report *report) {
     printf("strategy   %s: ", cli_flag_strategy.values[report->strategy].name);
     if (report->strategy != SKG_STRATEGY_TILES)
@@ -248,7 +265,7 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     print_beam(session);
     printf("device     %s, %.1f MiB used\n", session->device.name,
            (double)report.device_bytes / (1024.0 * 1024.0));
-    printf("precision  %s\n", cli_flag_precision.values[report.precision].name);
+    print_precision(plan, &report);
     print_strategy(&report);
     const int64_t closed = report.parts - report.leaky_parts;
     printf("planes     %" PRId64 " for %" PRId64 " %s, from %" PRId64 " %s of %" PRId64 " bits\n",

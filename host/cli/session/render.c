@@ -3,6 +3,7 @@
 #include "common/file.h"
 #include "common/json.h"
 #include "common/say.h"
+#include "manual/list.h"
 #include "session/explain.h"
 
 #include <inttypes.h>
@@ -183,6 +184,26 @@ static int allocate_frame(cli_rendering *rendering, skg_output *output) {
     return CLI_DONE;
 }
 
+static int has_verb(const char *name) {
+    for (int i = 0; cli_manuals[i]; i++)
+        if (strcmp(cli_manuals[i]->name, name) == 0) return 1;
+    return 0;
+}
+
+/* Says what a picture of a scan leaves out. */
+static void note_scan(const cli_session *session) {
+    int64_t projections = 1;
+    char sentence[160];
+    if (skg_setup_projection_count_get(session->setup, &projections) != SKG_OK || projections == 1) return;
+    int length = snprintf(sentence, sizeof sentence, "the scene has a Scan; this is its first projection");
+    if (projections > 1)
+        length = snprintf(sentence, sizeof sentence,
+                          "the scene has a Scan; this is one projection of %" PRId64, projections);
+    if (has_verb("scan"))
+        snprintf(sentence + length, sizeof sentence - (size_t)length, "; skiagraph scan makes all");
+    cli_log(SKG_LOG_NOTE, sentence, NULL);
+}
+
 int cli_render(cli_rendering *rendering) {
     cli_session *session = &rendering->session;
     cli_times times = {0};
@@ -193,6 +214,7 @@ int cli_render(cli_rendering *rendering) {
         exit_status = cli_range(rendering->arguments, &cli_flag_range, &rendering->picture.low,
                                 &rendering->picture.high);
     session->options.profile = times.repeats > 0;
+    if (exit_status == CLI_DONE) note_scan(session);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);
     if (exit_status == CLI_DONE) exit_status = name_channels(rendering, plan);
     if (exit_status == CLI_DONE) exit_status = allocate_frame(rendering, &output);

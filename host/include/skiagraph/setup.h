@@ -94,6 +94,9 @@ SKG_API skg_status skg_setup_spectrum_get(const skg_setup *setup, skg_spectrum *
 /** Gets the view; of a scan, that of the first projection. */
 SKG_API skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view);
 
+/** Gets the number of projections of the file's scan; 1 without a scan, 0 if its keys do not define it. */
+SKG_API skg_status skg_setup_projection_count_get(const skg_setup *setup, int64_t *count);
+
 /** Gets the options of a plan.
  *
  *     options   in and out: prepared with skg_plan_options_init; fields of which the file says nothing stay

@@ -70,19 +70,24 @@ SKG_API skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, in
 SKG_API skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor,
                                               skg_spectrum **scaled);
 
-/** Models of the spectrum of an X-ray tube. Both have the same characteristic lines. */
+/** Models of the spectrum of an X-ray tube. Both have the same characteristic lines and the same output. */
 enum skg_tube_model {
-    /** H. Ebel, X-Ray Spectrom. 28 (1999) 255: continuum and K lines of a reflection target. */
+    /** H. Ebel, X-Ray Spectrom. 28 (1999) 255: continuum and lines of a reflection target, calibrated. */
     SKG_TUBE_MODEL_EBEL = 0,
-    /** R. Birch and M. Marshall, Phys. Med. Biol. 24 (1979) 505: the continuum that the paper uses. */
+    /** R. Birch and M. Marshall, Phys. Med. Biol. 24 (1979) 505: the continuum that the paper uses. Its output
+     * alone is calibrated: half-value layers are up to 8 % too large towards 150 kV. */
     SKG_TUBE_MODEL_BIRCH = 1
 };
 
 /** An X-ray tube. Prepare with skg_tube_init; set kvp.
  *
- * Output and K lines are calibrated for tungsten with SpekPy 2.5: air kerma at 1 m behind 2.5 mm Al with a
- * target angle of 12 degrees is within 5 % of 48.9, 82.0, 118.9, 158.7 and 222.8 uGy/mAs at 60, 80, 100, 120
- * and 150 kV, with both models. There are no L lines, so the spectrum below 15 keV is not warranted. No
+ * Continuum, K lines and L lines of tungsten, molybdenum and rhodium are calibrated with SpekPy 2.5. Behind
+ * 2.5 mm Al, with tungsten at 12 degrees, air kerma at 1 m is within 2 % of 48.9, 82.0, 118.9, 158.7 and
+ * 222.8 uGy/mAs at 60, 80, 100, 120 and 150 kV, and the first half-value layer within 1 % of 2.082, 2.734,
+ * 3.458, 4.219 and 5.372 mm Al; behind 0.5 mm Al at 25 to 40 kV both are within 5 %; mammographic beams (Mo/Mo,
+ * Mo/Rh, Rh/Rh, W/Rh, W/Ag) are within 2 %. First half-value layers that PTB measured are reproduced within 3 %.
+ * What lies outside the range of the calibration is reported as a warning: other voltages and angles, other
+ * anodes, and filters so thin that more than 1 % of the air kerma is that of photons below 7 keV. No
  * inherent filtration is assumed; from 70 kV on, a beam softer than behind 2.5 mm Al (IEC 60601-1-3) is
  * reported as a warning. */
 typedef struct {
@@ -90,11 +95,12 @@ typedef struct {
     int32_t size;
     /** enum skg_tube_model; SKG_TUBE_MODEL_EBEL by default */
     int32_t model;
-    /** Tube voltage in kV, 10 to 450; validated from 20 to 150. */
+    /** Tube voltage in kV, 10 to 450; validated from 20 to 150 with W, from 20 to 49 with Mo and Rh. */
     double kvp;
-    /** Angle between the anode's face and the central ray, degrees, 3 to 60; 12 by default. */
+    /** Angle between the anode's face and the central ray, degrees, 3 to 60; 12 by default. Validated from 6 to
+     * 20 with W, from 12 to 20 with Mo and Rh. */
     double angle_deg;
-    /** Atomic number of the anode, 20 to 92; 74 by default, the only one that is validated. */
+    /** Atomic number of the anode, 20 to 92; 74 by default. Validated are 74, 42 and 45. */
     int32_t anode;
     /** 0 */
     int32_t reserved;
@@ -190,23 +196,76 @@ SKG_API skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_qu
  * detector: it records every photon with all its energy. */
 typedef struct skg_response skg_response;
 
+/** What the recorded energies of a table mean for noise. Means are the same for both. */
+enum skg_response_meaning {
+    /** The mean signal of a photon that arrives, in units of the energy that would give it. The share of the
+     * photons that give any signal is the table's efficiency; without one, every photon does. */
+    SKG_RESPONSE_MEANING_SIGNAL = 0,
+    /** The mean energy that a photon leaves in the detector, where it leaves either all or nothing: the share
+     * of the photons that are recorded is the recorded energy divided by the photon's own. */
+    SKG_RESPONSE_MEANING_ABSORBED = 1
+};
+
+/** A response by energy. Prepare with skg_response_table_init; set count and the first two arrays.
+ *
+ * Of the photons that arrive the share `efficiency` is recorded; the signals of these have the mean
+ * recorded_kev / efficiency and a mean square of the square of this over `swank`. A number N of photons that
+ * arrive gives a signal with the mean N recorded_kev and the variance
+ * N recorded_kev^2 / (efficiency swank). */
+typedef struct {
+    /** Set by skg_response_table_init. */
+    int32_t size;
+    /** enum skg_response_meaning */
+    int32_t meaning;
+    /** Number of energies, at least 2. */
+    int64_t count;
+    /** [count] keV, rising */
+    const double *energies_kev;
+    /** [count] mean recorded energy of a photon that arrives, keV, 0 to its own energy */
+    const double *recorded_kev;
+    /** [count] share of the photons that are recorded, 0 to 1, above 0 where recorded_kev is; NULL: 1 with
+     * SKG_RESPONSE_MEANING_SIGNAL. NULL with SKG_RESPONSE_MEANING_ABSORBED. */
+    const double *efficiency;
+    /** [count] Swank factor of the signals of recorded photons, above 0 to 1; NULL: 1 */
+    const double *swank;
+} skg_response_table;
+
+/** Prepares a response table of `size` bytes (export.h). */
+SKG_API void skg_response_table_init_sized(void *table, int32_t size);
+
+/** Prepares a response table. */
+static inline void skg_response_table_init(skg_response_table *table) {
+    skg_response_table_init_sized(table, (int32_t)sizeof *table);
+}
+
 /** Makes a response from a table.
+ *
+ *     table    its arrays are copied
+ *     method   linear interpolation; no values beyond the ends */
+SKG_API skg_status skg_response_create_table(const skg_response_table *table, skg_response **response);
+
+/** Makes a response from pulse-height distributions: how often a photon of an energy gives a pulse of a height.
  *
  *     count          number of energies, at least 2
  *     energies_kev   [count] keV, rising
- *     recorded_kev   [count] mean recorded energy of a photon in keV, 0 to its own energy
- *     efficiency     [count] fraction of the photons that are recorded, 0 to 1; NULL: recorded_kev divided by
- *                    energies_kev
- *     method         linear interpolation; no values beyond the ends */
-SKG_API skg_status skg_response_create_table(int64_t count, const double *energies_kev,
-                                             const double *recorded_kev, const double *efficiency,
-                                             skg_response **response);
+ *     heights        number of heights, at least 1
+ *     height_kev     [heights] keV, above 0, rising
+ *     probability    [count][heights] at least 0; a row sums to at most 1, and the rest gives no pulse
+ *     method         recorded energy, efficiency and Swank factor are the moments of a row: with sums over
+ *                    heights h of probability p, they are sum(p h), sum(p) and sum(p h)^2 / (sum(p) sum(p h^2)).
+ *                    Linear interpolation of these between the energies. */
+SKG_API skg_status skg_response_create_pulses(int64_t count, const double *energies_kev, int64_t heights,
+                                              const double *height_kev, const double *probability,
+                                              skg_response **response);
 
-/** Makes a response from a text file with two columns, energy and mean recorded energy.
+/** Makes a response from a text file with two to four columns: energy, mean recorded energy, efficiency, Swank
+ * factor.
  *
- *     unit     of both columns: "eV", "keV" or "MeV"
- *     errors   SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
-SKG_API skg_status skg_response_load(const char *path, const char *unit, skg_response **response);
+ *     unit      of the first two columns: "eV", "keV" or "MeV"
+ *     meaning   enum skg_response_meaning
+ *     errors    SKG_ERR_FILE; SKG_ERR_FORMAT with the line */
+SKG_API skg_status skg_response_load(const char *path, const char *unit, int32_t meaning,
+                                     skg_response **response);
 
 /** Makes the response of a scintillator of a given thickness.
  *
@@ -236,6 +295,16 @@ SKG_API void skg_response_release(skg_response **response);
  *     efficiency     result: fraction of the photons that are recorded; may be NULL */
 SKG_API skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
                                     double *recorded_kev, double *efficiency);
+
+/** Gets the Swank factor of the signals of recorded photons: 1 if a recorded photon always gives the same
+ * signal. Efficiency times Swank factor is the detective quantum efficiency at spatial frequency 0 for this
+ * energy.
+ *
+ *     energy_kev   energy of the photon, keV
+ *     oblique      as of skg_response_get
+ *     swank        result: above 0 to 1 */
+SKG_API skg_status skg_response_swank_get(const skg_response *response, double energy_kev, double oblique,
+                                          double *swank);
 
 #ifdef __cplusplus
 }

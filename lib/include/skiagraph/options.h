@@ -174,8 +174,9 @@ typedef struct {
     double tolerance;
     /** NULL: none */
     const skg_detector_blur *blur;
-    /** Swank factor of the scintillator, above 0 to 1: its pulse heights multiply the variance of the noise
-     * by 1 / swank. 1 (default): none. */
+    /** Swank factor of the detector at all energies, above 0 to 1, times that of the response: pulse heights
+     * multiply the variance of the noise by 1 / swank. 1 (default): none. No effect where photons are
+     * counted. */
     double swank;
     /** Added to the seed of each frame. */
     int64_t noise_seed;

@@ -112,6 +112,19 @@ static inline void skg_plan_report_init(skg_plan_report *report) {
 /** Gets the report of a plan. */
 SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report);
 
+/** Computes a bound of the error that the precision makes: the rounding of path lengths, exponents and
+ * exponentials. It adds to skg_plan_report.bound, the error of fewer energies and planes.
+ *
+ *     bound    result: of intensities, in the sense of skg_plan_options.tolerance: relative where more than
+ *              1e-6 of the flat field arrives, else in units of 1e-6 of the flat field. An attenuation,
+ *              -ln(I/I0), is off by as much. The rounding of what is shown to float is not part of it.
+ *     errors   SKG_ERR_UNSUPPORTED for SKG_PRECISION_HALF, for which no bound is known
+ *     method   rays from the plan's view to 64 x 64 points of its detector. Each part that a ray meets may
+ *              be wrong by the share of its longest path that docs/numerics.md states for the precision.
+ *              It does not hold at pixels whose ray lies in a face or passes a silhouette so closely that
+ *              rounding decides on which side. Takes as long as tracing these rays on the host. */
+SKG_API skg_status skg_plan_precision_bound_get(const skg_plan *plan, double *bound);
+
 /** Number of energies that a plan uses. */
 SKG_API skg_status skg_plan_node_count(const skg_plan *plan, int64_t *count);
 

@@ -44,7 +44,9 @@ enum skg_quantity {
     SKG_QUANTITY_PHOTONS = 2,
     /** I / I0 */
     SKG_QUANTITY_TRANSMISSION = 3,
-    /** -ln(I / I0) */
+    /** -ln(I / I0). An I / I0 below 2^-126, such as that of a noisy pixel without photons, counts as 2^-126
+     * where the logarithm is taken of a finished image (with noise, blur, electronic noise, steps or several
+     * rays a pixel): no attenuation is then above 126 ln 2 = 87.34. Without these it has no such limit. */
     SKG_QUANTITY_ATTENUATION = 4
 };
 
