@@ -1,0 +1,49 @@
+#!/bin/sh
+# usage: run.sh package|wheel SOURCE BUILD
+# package: what the build installs for Python, with an interpreter that has NumPy, cffi and pytest.
+# wheel:   pip builds a wheel of SOURCE and installs it into a virtual environment; needs the network, or pip's cache.
+set -eu
+what=$1 source=$2 build=$3
+stage=$build/python-$what
+rm -rf "$stage"
+mkdir -p "$stage"
+export PYTHONDONTWRITEBYTECODE=1
+skip() {
+    echo "skipped: $1"
+    exit 77
+}
+
+# The tests, from a folder that has nothing of the source. usage: run_tests PYTHON PACKAGE
+run_tests() {
+    cd "$stage"
+    "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" "$source/tests/python"
+    "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" --doctest-modules "$2"
+    if "$1" -c "import mypy" 2>/dev/null; then
+        "$1" -m mypy --strict --config-file "$source/pyproject.toml" --cache-dir "$stage/mypy" "$2"
+    fi
+}
+
+case $what in
+package)
+    for python in python3 /usr/bin/python3; do
+        if $python -c "import cffi, numpy, pytest, sys; sys.exit(sys.version_info < (3, 10))" 2>/dev/null; then
+            cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
+            PYTHONPATH=$stage/site run_tests $python "$stage/site/skiagraph"
+            exit
+        fi
+    done
+    skip "no Python 3.10 with NumPy, cffi and pytest (python3-numpy, python3-cffi, python3-pytest)"
+    ;;
+wheel)
+    python3 -m venv "$stage/venv" >"$stage/venv.log" 2>&1 || skip "no venv (python3-venv)"
+    python=$stage/venv/bin/python
+    $python -m pip install -q numpy cffi pytest mypy scikit-build-core trimesh meshio >"$stage/pip.log" 2>&1 ||
+        skip "pip found no packages: $(tail -n 1 "$stage/pip.log")"
+    $python -m pip wheel -q --no-build-isolation --no-deps -w "$stage/wheels" \
+        --config-settings=build-dir="$build/python-wheel-build" "$source" >"$stage/wheel.log" 2>&1 ||
+        { tail -n 20 "$stage/wheel.log"; exit 1; }
+    ls "$stage"/wheels/skiagraph-*-py3-none-linux_*.whl
+    $python -m pip install -q --no-deps "$stage"/wheels/*.whl
+    run_tests "$python" "$(cd "$stage" && $python -c 'import skiagraph; print(skiagraph.__path__[0])')"
+    ;;
+esac
