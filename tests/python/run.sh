@@ -19,7 +19,8 @@ run_tests() {
     "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" "$source/tests/python"
     "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" --doctest-modules "$2"
     if "$1" -c "import mypy" 2>/dev/null; then
-        "$1" -m mypy --strict --config-file "$source/pyproject.toml" --cache-dir "$stage/mypy" "$2"
+        MYPYPATH=${PYTHONPATH-} "$1" -m mypy --strict --config-file "$source/pyproject.toml" --cache-dir "$stage/mypy" \
+            -p skiagraph
     fi
 }
 
@@ -37,7 +38,7 @@ package)
 wheel)
     python3 -m venv "$stage/venv" >"$stage/venv.log" 2>&1 || skip "no venv (python3-venv)"
     python=$stage/venv/bin/python
-    $python -m pip install -q numpy cffi pytest mypy scikit-build-core trimesh meshio >"$stage/pip.log" 2>&1 ||
+    $python -m pip install -q numpy cffi pytest mypy scikit-build-core trimesh meshio gvxr >"$stage/pip.log" 2>&1 ||
         skip "pip found no packages: $(tail -n 1 "$stage/pip.log")"
     $python -m pip wheel -q --no-build-isolation --no-deps -w "$stage/wheels" \
         --config-settings=build-dir="$build/python-wheel-build" "$source" >"$stage/wheel.log" 2>&1 ||
