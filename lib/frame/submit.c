@@ -50,17 +50,22 @@ skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
     return skg_job_wait(&job);
 }
 
-skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                            const skg_frame *frames, const skg_output *output, skg_job **job) {
-    SKG_PLAIN;
-    SKG_TRY(begin("skg_plan_lengths", plan, job));
+static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t part, int32_t kind) {
     const int64_t parts = plan->recipe->scene->count;
     if (part < 0 || part >= parts)
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_lengths: part %" PRId64 " of %" PRId64, part, parts);
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: part %" PRId64 " of %" PRId64, call, part, parts);
     if (kind != SKG_LENGTHS_NET && kind != SKG_LENGTHS_SURFACE)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "lengths of kind %" PRId32 " are unknown; SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE",
                         kind);
+    return SKG_OK;
+}
+
+skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                            const skg_frame *frames, const skg_output *output, skg_job **job) {
+    SKG_PLAIN;
+    SKG_TRY(begin("skg_plan_lengths", plan, job));
+    SKG_TRY(check_lengths("skg_plan_lengths", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind};
     SKG_TRY(prepare(plan, &s, output));
     return submit(plan, &s, job);
@@ -69,7 +74,7 @@ skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t 
 /* --- into the caller's device memory */
 
 /* Checks that the images fit the buffer, and fills in where they begin. */
-static skg_status check_buffer(skg_submission *s, int64_t offset) {
+static skg_status check_buffer(const char *call, skg_submission *s, int64_t offset) {
     const skg_output *output = &s->output;
     const int64_t element = skg_submission_element(s);
     size_t bytes = 0;
@@ -77,8 +82,9 @@ static skg_status check_buffer(skg_submission *s, int64_t offset) {
     SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_CONTEXT, sizeof of, &of, NULL));
     if (of != s->machine->context->device->cl)
         return skg_fail(SKG_ERR_ARGUMENT,
-                        "skg_plan_submit_cl: the buffer is another OpenCL context's; make it in that of the "
-                        "plan (skg_context_create_cl)");
+                        "%s: the buffer is another OpenCL context's; make it in that of the plan "
+                        "(skg_context_create_cl)",
+                        call);
     SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL));
     if (offset < 0 || offset % element)
         return skg_fail(SKG_ERR_ARGUMENT,
@@ -93,26 +99,51 @@ static skg_status check_buffer(skg_submission *s, int64_t offset) {
     return SKG_OK;
 }
 
+/* The caller's events, and where it wants the last one. */
+typedef struct {
+    int32_t waits;
+    const cl_event *wait_list;
+    cl_event *done;
+} caller_events;
+
+static skg_status submit_cl(const char *call, skg_plan *plan, skg_submission *s, const skg_output *output,
+                            int64_t offset, const caller_events *events, skg_job **job) {
+    if (events->done) *events->done = NULL;
+    if (!s->buffer) return skg_fail(SKG_ERR_ARGUMENT, "%s: no buffer", call);
+    if (events->waits < 0 || (events->waits > 0 && !events->wait_list))
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId32 " events to wait for, but no list", call,
+                        events->waits);
+    SKG_TRY(prepare(plan, s, output));
+    SKG_TRY(check_buffer(call, s, offset));
+    if (events->waits > 0)
+        SKG_CL_TRY(clEnqueueBarrierWithWaitList(plan->context->device->queue, (cl_uint)events->waits,
+                                                events->wait_list, NULL));
+    SKG_TRY(submit(plan, s, job));
+    if (events->done) {
+        SKG_CL_TRY(clRetainEvent((*job)->last));
+        *events->done = (*job)->last;
+    }
+    return SKG_OK;
+}
+
 skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
                               const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
                               const cl_event *wait_list, cl_event *done, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit_cl", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1, .buffer = buffer};
-    if (done) *done = NULL;
-    if (!buffer) return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_submit_cl: no buffer");
-    if (waits < 0 || (waits > 0 && !wait_list))
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_plan_submit_cl: %" PRId32 " events to wait for, but no list",
-                        waits);
-    SKG_TRY(prepare(plan, &s, output));
-    SKG_TRY(check_buffer(&s, offset));
-    if (waits > 0)
-        SKG_CL_TRY(
-            clEnqueueBarrierWithWaitList(plan->context->device->queue, (cl_uint)waits, wait_list, NULL));
-    SKG_TRY(submit(plan, &s, job));
-    if (done) {
-        SKG_CL_TRY(clRetainEvent((*job)->last));
-        *done = (*job)->last;
-    }
-    return SKG_OK;
+    const caller_events given = {waits, wait_list, done};
+    return submit_cl("skg_plan_submit_cl", plan, &s, output, offset, &given, job);
+}
+
+skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                               const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                               int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
+                               skg_job **job) {
+    SKG_PLAIN;
+    SKG_TRY(begin("skg_plan_lengths_cl", plan, job));
+    SKG_TRY(check_lengths("skg_plan_lengths_cl", plan, part, kind));
+    skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind, .buffer = buffer};
+    const caller_events given = {waits, wait_list, done};
+    return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, &given, job);
 }

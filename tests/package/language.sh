@@ -14,9 +14,20 @@ need() {
 case $1 in
 fortran)
     need gfortran
-    # shellcheck disable=SC2046
-    gfortran -std=f2008 -Wall "$source/examples/first_image.f90" $(pkg-config --libs skiagraph) -o first_image_f
+    module=$(pkg-config --variable=fortran skiagraph)
+    if [ ! -e "$module" ]; then
+        echo "skipped: no Python made the module when this build was configured"
+        exit 77
+    fi
+    for program in "$3/fortran/every_call" "$source/examples/first_image" "$source/examples/thousand_images"; do
+        name=$(basename "$program")_f
+        # shellcheck disable=SC2046
+        gfortran -std=f2018 -Wall -Wno-unused-dummy-argument "$module" "$program.f90" $(pkg-config --libs skiagraph) -o "$name"
+    done
+    ./every_call_f
     ./first_image_f
+    sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/phantom.json" >small.json
+    ./thousand_images_f small.json marker
     ;;
 python)
     need python3

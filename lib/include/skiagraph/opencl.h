@@ -36,6 +36,13 @@ SKG_API skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_f
                                       const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
                                       const cl_event *wait_list, cl_event *done, skg_job **job);
 
+/** Starts frames of path lengths through one part that stay on the device: part and kind as of
+ * skg_plan_lengths, everything else as of skg_plan_submit_cl. */
+SKG_API skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                       const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                                       int64_t offset, int32_t waits, const cl_event *wait_list,
+                                       cl_event *done, skg_job **job);
+
 /** The code of the last OpenCL call that failed in the calling thread; CL_SUCCESS if none did. */
 SKG_API cl_int skg_last_cl_error(void);
 

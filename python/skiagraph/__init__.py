@@ -1,0 +1,32 @@
+"""Skiagraph: X-ray images of triangle meshes on any OpenCL device.
+
+>>> import skiagraph as sk
+>>> scene = sk.Scene({"Source": {"Position": [0, -40, 0, "cm"], "Shape": "PointSource",
+...                              "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+...                   "Detector": {"Position": [0, 10, 0, "cm"], "UpVector": [0, 0, -1],
+...                                "NumberOfPixels": [64, 48], "Size": [32, 24, "cm"]},
+...                   "Samples": [{"Label": "block", "Cube": [80, "mm"], "Material": ["mu", 0.2]}]})
+>>> image = scene.image("transmission")
+>>> image.shape, round(float(image.min()), 2)
+((48, 64), 0.2)
+
+Lengths are in mm, energies in keV, attenuation coefficients in 1/cm, densities in g/cm3, angles in degrees. A failure of
+the library is an Error, with a subclass for each status.
+"""
+from ._device import Device, RangeWarning, SkiagraphWarning, devices
+from ._interface import *
+from ._interface import __all__ as _errors
+from ._library import lib as _lib, text as _text
+from .beam import Beam, Response
+from .material import Material, element_number, materials
+from .matrices import rotate, translate
+from .mesh import Mesh
+from .part import Part
+from .report import Report
+from .scene import Scene
+from .thorax import thorax
+from .view import View
+
+__version__ = _text(_lib.skg_version())
+__all__ = [*_errors, "Beam", "Device", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scene",
+           "SkiagraphWarning", "View", "devices", "element_number", "materials", "rotate", "thorax", "translate"]

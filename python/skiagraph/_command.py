@@ -1,0 +1,44 @@
+"""The command, for what the library does not do. Private."""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+from typing import Any
+
+from ._interface import OutputError, UnsupportedError
+from ._source import Source
+
+
+def path() -> str:
+    """The command of the package, or else that of the system."""
+    inside = pathlib.Path(__file__).parent / "bin" / "skiagraph"
+    found = str(inside) if inside.exists() else shutil.which("skiagraph")
+    if not found:
+        raise UnsupportedError("the command skiagraph is not installed; it is part of the library's package")
+    return found
+
+
+def cost(source: Source, quick: bool) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
+        scene = source.path
+        if scene is None:
+            scene = os.path.join(folder, "scene.json")
+            pathlib.Path(scene).write_bytes(source.text)
+        words = [path(), "cost", scene, "--json", *(["--quick"] if quick else [])]
+        for setting in source.settings:
+            words += ["--set", setting]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise OutputError(done.stderr.strip() or done.stdout.strip() or f"skiagraph cost ended with {done.returncode}")
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def main() -> int:
+    """The command as a script of the package."""
+    return subprocess.call([path(), *sys.argv[1:]])

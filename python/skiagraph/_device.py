@@ -1,0 +1,206 @@
+"""Devices: a context of the library, its lock, and what it says."""
+from __future__ import annotations
+
+import atexit
+import contextlib
+import logging
+import os
+import sys
+import threading
+import warnings
+import weakref
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Any
+
+from ._interface import ArgumentError, ENUMS
+from ._library import as_dict, call, encode, ffi, filled, integer, lib, make, release, struct, text
+
+_log = logging.getLogger("skiagraph")
+_package = os.path.dirname(__file__)
+
+
+class SkiagraphWarning(UserWarning):
+    """The library warns of something that the caller should know about a result."""
+
+
+class RangeWarning(SkiagraphWarning):
+    """An image is valid, but left the range over which its error bound was verified."""
+
+
+def warn(sentence: str, category: type[Warning] = SkiagraphWarning) -> None:
+    """Warns at the line outside of this package that called it."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back and (os.path.dirname(frame.f_code.co_filename) == _package
+                            or frame.f_code.co_filename == contextlib.__file__):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, category, stacklevel=level)
+
+
+class Log:
+    """Collects what the library says during a call; deliver() passes it on."""
+
+    def __init__(self) -> None:
+        self._lines: list[tuple[int, str]] = []
+
+        def receive(level: int, sentence: Any, user: Any) -> None:
+            self._lines.append((level, text(sentence)))
+
+        self.function = ffi.callback("skg_log_function", receive)
+
+    def deliver(self) -> None:
+        """Warnings become Python's; notes and progress go to the logger "skiagraph"."""
+        lines, self._lines = self._lines, []
+        for level, sentence in lines:
+            if level != ENUMS["log_level"]["warning"]:
+                _log.log(logging.INFO if level == ENUMS["log_level"]["note"] else logging.DEBUG, "%s", sentence)
+        for level, sentence in lines:
+            if level == ENUMS["log_level"]["warning"]:
+                warn(sentence)
+
+
+class Device:
+    """An OpenCL device. Scenes share one unless they are given their own.
+
+    config: words such as "device=gpu", "device=cpu threads=4" or a part of a device's name; None: the environment
+    variable SKG_DEVICE, or else the best device.
+
+    Calls on scenes of a device queue: one thread computes at a time. Give scenes devices of their own to compute in
+    several threads at once. A device does not survive os.fork(): start processes with multiprocessing's "spawn".
+
+    >>> with Device("device=cpu") as device:
+    ...     device.info["is_cpu"]
+    1
+    """
+
+    def __init__(self, config: str | None = None) -> None:
+        self._config = config
+        self._lock = threading.RLock()
+        self._depth = 0
+        self._garbage: list[tuple[str, Any]] = []
+        self._unfinished: list[Any] = []
+        self._log = Log()
+        self._handle = ffi.NULL
+        _all.add(self)
+        word = ffi.NULL if config is None else encode(config, "config")
+        self._handle = make("skg_context_create", "skg_context", word)
+        call("skg_context_log_set", self._handle, self._log.function, ffi.NULL)
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """What OpenCL says of the device: name, compute units, memory and so on."""
+        with self.calls():
+            return filled("skg_device_info", "skg_context_device_get", self.handle)
+
+    @property
+    def handle(self) -> Any:
+        if self._handle == ffi.NULL:
+            raise ArgumentError("the device was closed")
+        return self._handle
+
+    @contextlib.contextmanager
+    def calls(self) -> Iterator[None]:
+        """Inside of it this thread alone calls the library with this device."""
+        with self._lock:
+            self._depth += 1
+            try:
+                if self._depth == 1:
+                    self._collect()
+                yield
+            finally:
+                self._depth -= 1
+                outermost = self._depth == 0
+        if outermost:
+            self._log.deliver()
+
+    def __enter__(self) -> Device:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
+        self.close()
+
+    def _collect(self) -> None:
+        """Frees what was dropped meanwhile. Jobs that nobody waited for have to end first."""
+        while self._unfinished:
+            job, _keep = self._unfinished[0]
+            lib.skg_job_wait(job)
+            self._unfinished.pop(0)
+        while self._garbage:
+            release(*self._garbage.pop())
+
+    def drop(self, kind: str, handle: Any) -> None:
+        """Releases a handle that belongs to this device, now or with the next call."""
+        self._garbage.append((kind, handle))
+
+    def abandon(self, job: Any, keep: Any) -> None:
+        """Takes a job that was not waited for, and what has to stay as long as it runs."""
+        self._unfinished.append((job, keep))
+
+    def close(self) -> None:
+        """Frees the device. Scenes that use it cannot be used any more."""
+        with self.calls():
+            self._collect()
+            handle, self._handle = self._handle, ffi.NULL
+            release("skg_context", handle)
+
+    def __del__(self) -> None:
+        if getattr(self, "_handle", ffi.NULL) != ffi.NULL and not sys.is_finalizing():
+            self.close()
+
+    def __repr__(self) -> str:
+        return f"<Device {self.info['name']}>" if self._handle != ffi.NULL else "<Device, closed>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return device_of, (self._config,)
+
+
+def device_of(device: Device | str | None) -> Device:
+    """This device, or the one that this process shares for a configuration."""
+    if isinstance(device, Device):
+        return device
+    if device is not None and not isinstance(device, str):
+        raise ArgumentError(f"device is a {type(device).__name__}; give a Device, its configuration or None")
+    with _shared_lock:
+        shared = _shared.get(device)
+        if shared is None or shared._handle == ffi.NULL:
+            shared = _shared[device] = Device(device)
+    return shared
+
+
+def devices() -> list[dict[str, Any]]:
+    """What OpenCL offers, a dictionary a device.
+
+    >>> all("name" in device for device in devices())
+    True
+    """
+    found = []
+    for i in range(integer("skg_device_count")):
+        info = struct("skg_device_info")
+        call("skg_device_get", i, info)
+        found.append(as_dict(info, "skg_device_info"))
+    return found
+
+
+_all: weakref.WeakSet[Device] = weakref.WeakSet()
+_shared: dict[str | None, Device] = {}
+_shared_lock = threading.Lock()
+
+
+def _forget() -> None:
+    """In a child process: locks may be held by threads that are not here, and devices are of no use."""
+    global _shared_lock
+    _shared_lock = threading.Lock()
+    for device in _all:
+        device._lock, device._depth = threading.RLock(), 0
+        device._garbage, device._unfinished = [], []
+    _shared.clear()
+
+
+def _close() -> None:
+    """At the end of the process, while the library is still there."""
+    _shared.clear()
+
+
+os.register_at_fork(after_in_child=_forget)
+atexit.register(_close)

@@ -1,0 +1,114 @@
+"""Batches of frames: submitted a few at a time, so that an interrupt is answered at once. Private."""
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._device import Device, RangeWarning, warn
+from ._interface import ENUMS, OK, RANGE, STALE
+from ._library import call, check, ffi, lib, struct, text
+from ._progress import Meter, Progress
+from .view import View
+
+# A chunk of frames takes about this long, s: two of them are under way when an interrupt comes.
+_CHUNK = 0.05
+# Longest sleep between two looks at a job, s.
+_NAP = 0.005
+
+
+@dataclass
+class Batch:
+    """Frames to compute. poses: [n, parts, 16] of the parts with these numbers."""
+
+    count: int
+    index: int = 0
+    parts: Sequence[int] = ()
+    poses: NDArray[np.float64] | None = None
+    views: list[View] = field(default_factory=list)
+    #: Completes a frame: what the breath changes.
+    complete: Callable[[Any], None] | None = None
+
+    def frames(self, first: int, count: int, keep: list[Any]) -> Any:
+        """The C frames first to first + count."""
+        frames = struct("skg_frame", count)
+        parts = ffi.new("int64_t[]", list(self.parts)) if self.parts else ffi.NULL
+        keep += [frames, parts]
+        for i in range(count):
+            frames[i].index = self.index + first + i
+            if self.poses is not None:
+                frames[i].pose_count, frames[i].pose_parts = len(self.parts), parts
+                frames[i].poses = ffi.cast("double *", self.poses[first + i].__array_interface__["data"][0])
+            if self.views:
+                keep.append(self.views[(first + i) % len(self.views)]._write(struct("skg_view")))
+                frames[i].view = keep[-1]
+            if self.complete:
+                self.complete(frames + i)
+        return frames
+
+
+class Stale(Exception):
+    """The plan cannot absorb what changed."""
+
+
+#: Starts frames: (count, frames, output, job) -> status.
+Submit = Callable[[int, Any, Any, Any], int]
+
+
+def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progress: Progress = False) -> None:
+    """Computes a batch into out, [frame][channel][row][column]. The device's calls are this thread's."""
+    meter = Meter(progress, batch.count)
+    started: list[tuple[Any, list[Any], int, float]] = []
+    size, sent, done, ranged = 1, 0, 0, ""
+    try:
+        while done < batch.count:
+            while sent < batch.count and len(started) < 2:
+                count = min(size, batch.count - sent)
+                job, keep = _start(submit, batch, sent, count, out)
+                started.append((job, keep, count, time.monotonic()))
+                sent += count
+            job, keep, count, begun = started[0]
+            _wait(job)
+            started.pop(0)
+            if check(lib.skg_job_wait(job)) == RANGE:
+                ranged = text(lib.skg_last_error())
+            seconds = max((time.monotonic() - begun) / (1 + len(started)), 1e-6)
+            size = max(1, min(2 * size, int(_CHUNK * count / seconds)))
+            done += count
+            meter.update(done)
+    finally:
+        for job, keep, _, _ in started:
+            device.abandon(job, (keep, out))
+    if ranged:
+        warn(ranged, RangeWarning)
+
+
+def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[Any]) -> tuple[Any, list[Any]]:
+    keep: list[Any] = []
+    output, job = struct("skg_output"), ffi.new("skg_job **")
+    part = out[first:first + count]
+    size = part.itemsize
+    output.type = ENUMS["type"][str(part.dtype)]
+    output.data = ffi.cast("void *", part.__array_interface__["data"][0])
+    output.frame_stride, output.channel_stride, output.row_stride = (
+        stride // size if extent > 1 else 0 for stride, extent in zip(part.strides[:3], part.shape[:3]))
+    status = check(submit(count, batch.frames(first, count, keep), output, job))
+    if status == STALE:
+        raise Stale(text(lib.skg_last_error()))
+    assert status in (OK, RANGE)
+    return job, keep
+
+
+def _wait(job: Any) -> None:
+    """Waits for a job with its eyes open: a signal is answered within a nap."""
+    done = ffi.new("int32_t *")
+    begun = time.monotonic()
+    while True:
+        call("skg_job_test", job[0], done)
+        if done[0]:
+            return
+        time.sleep(min(_NAP, max(2e-5, (time.monotonic() - begun) / 16)))

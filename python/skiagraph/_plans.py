@@ -1,0 +1,89 @@
+"""Plans of a scene, kept by their options. Private."""
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._device import Device
+from ._interface import OK, STALE
+from ._library import call, check, choice, ffi, fill, lib, make, struct
+from .beam import Beam
+from .view import View
+
+# Plans that are kept: each has memory on the device.
+_MOST = 4
+# Views of a batch for which the bound of a tolerance is verified.
+_VIEWS = 16
+
+
+class Plans:
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self._kept: OrderedDict[Any, Any] = OrderedDict()
+
+    def clear(self) -> None:
+        while self._kept:
+            self._device.drop("skg_plan", self._kept.popitem()[1])
+
+    def get(self, setup: Any, scene: Any, view: View, beam: Beam, options: Mapping[str, Any], anew: bool) -> Any:
+        """A plan of these options, with this view; anew: also if there is one."""
+        given = {name: value for name, value in options.items() if value is not None}
+        key = (view.shape, _key(given))
+        plan = self._kept.pop(key, None)
+        if plan is not None and not anew and check(lib.skg_plan_move(plan, view._write(struct("skg_view")))) == OK:
+            self._kept[key] = plan
+            return plan
+        if plan is not None:
+            self._device.drop("skg_plan", plan)
+        plan = self._make(setup, scene, view, beam, given)
+        self._kept[key] = plan
+        while len(self._kept) > _MOST:
+            self._device.drop("skg_plan", self._kept.popitem(last=False)[1])
+        return plan
+
+    def _make(self, setup: Any, scene: Any, view: View, beam: Beam, given: dict[str, Any]) -> Any:
+        keep: list[Any] = []
+        options = struct("skg_plan_options")
+        call("skg_setup_options_get", setup, options)
+        values = dict(given)
+        bands, views, blur = values.pop("bands", None), values.pop("views", None), values.pop("blur", None)
+        if bands is not None:
+            edges = np.atleast_1d(np.asarray(bands, dtype=float))
+            values.update(band_kev=edges, bands=len(edges) - 1)
+        if blur is not None:
+            values["blur"] = blur if not isinstance(blur, Mapping) else _blur(blur)
+        if views:
+            sample = views[::-(-len(views) // _VIEWS)]
+            written = struct("skg_view", len(sample))
+            for i, one in enumerate(sample):
+                one._write(written + i)
+            keep.append(written)
+            options.views, options.view_count = written, len(sample)
+        fill(options, "skg_plan_options", values, keep, "option")
+        return make("skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")),
+                    beam._handle, options)
+
+
+def _blur(blur: Mapping[str, Any]) -> dict[str, Any]:
+    """along_row and along_column, or point [rows][columns], with their numbers of samples."""
+    found = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in blur.items()}
+    if "point" in found:
+        rows, columns = np.atleast_2d(found["point"]).shape
+    else:
+        columns = len(found.get("along_row", ()))
+        rows = len(found.get("along_column", ()))
+    return {**found, "columns": columns, "rows": rows}
+
+
+def _key(value: Any) -> Any:
+    """Equal for equal options."""
+    if isinstance(value, Mapping):
+        return tuple(sorted((name, _key(item)) for name, item in value.items()))
+    if isinstance(value, (list, tuple)):
+        return tuple(_key(item) for item in value)
+    if isinstance(value, np.ndarray):
+        return value.shape, str(value.dtype), value.tobytes()
+    return value

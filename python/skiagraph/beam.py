@@ -1,0 +1,199 @@
+"""Beams, and what a detector records of them."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._device import Log
+from ._interface import ArgumentError
+from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, retained, struct
+from .material import Material, as_material
+
+#: mm of each material, by its name or the material.
+Layers = Union[Mapping[str, float], Mapping[Material, float]]
+
+
+class Beam:
+    """Photons by energy: how many would reach a pixel if nothing were in the way.
+
+    >>> Beam.mono(60, 1000)
+    <Beam: 1 energy, 60 keV on average, 1000 photons>
+    >>> beam = Beam.tube(100, filters={"Al": 2.5})
+    >>> 3 < beam.quality["hvl1_mm_al"] < 4
+    True
+    """
+
+    def __init__(self, kev: Any, photons: Any) -> None:
+        """energies in keV and photons per pixel, two lists alike."""
+        energies, counts = np.atleast_1d(kev), np.atleast_1d(photons)
+        if energies.shape != counts.shape or energies.ndim != 1:
+            raise ArgumentError(f"kev has the shape {energies.shape} and photons {counts.shape}; give two lists alike")
+        keep: list[Any] = []
+        self._handle = owned("skg_spectrum", make(
+            "skg_spectrum_create_bins", "skg_spectrum", len(energies), doubles(energies, "kev", keep),
+            doubles(counts, "photons", keep)))
+
+    @classmethod
+    def _of(cls, handle: Any) -> Beam:
+        made = cls.__new__(cls)
+        made._handle = handle
+        return made
+
+    @classmethod
+    def _made(cls, name: str, *arguments: Any) -> Beam:
+        return cls._of(owned("skg_spectrum", make(name, "skg_spectrum", *arguments)))
+
+    @classmethod
+    def _borrowed(cls, handle: Any) -> Beam:
+        return cls._of(retained("skg_spectrum", handle))
+
+    @classmethod
+    def mono(cls, kev: float, photons: float) -> Beam:
+        """One energy in keV, photons per pixel."""
+        return cls._made("skg_spectrum_create_mono", float(kev), float(photons))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], unit: str = "keV") -> Beam:
+        """A text file of energies and photons per pixel, or a GATE macro."""
+        return cls._made("skg_spectrum_load", encode(path, "path"), encode(unit, "unit"))
+
+    @classmethod
+    def tube(cls, kvp: float, filters: Layers | None = None, *,
+             target_angle: float | None = None, mas: float | None = None, **fields: Any) -> Beam:
+        """The spectrum of an X-ray tube.
+
+        kvp: kV. filters: mm of each material, all that are in the beam. target_angle: degrees. mas: mA s.
+        fields: others of the library's skg_tube, such as anode, model, distance_mm and pixel_mm2.
+        """
+        keep: list[Any] = []
+        tube, log = struct("skg_tube"), Log()
+        layers = filters or {}
+        given = {**fields, "kvp": kvp, "angle_deg": target_angle, "mas": mas}
+        fill(tube, "skg_tube", given, keep, "the field of a tube")
+        if layers:
+            tube.filters, tube.filter_count = _filters(layers, keep), len(layers)
+        tube.log = log.function
+        made = cls._made("skg_spectrum_create_tube", tube)
+        log.deliver()
+        return made
+
+    def filtered(self, filters: Layers) -> Beam:
+        """The beam behind mm of each material."""
+        keep: list[Any] = []
+        return Beam._made("skg_spectrum_create_filtered", self._handle, len(filters), _filters(filters, keep))
+
+    def scaled(self, factor: float) -> Beam:
+        """All photon numbers multiplied by a factor."""
+        return Beam._made("skg_spectrum_create_scaled", self._handle, float(factor))
+
+    def _bins(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        count = integer("skg_spectrum_bin_count", self._handle)
+        kev, photons = ffi.new("double[]", count), ffi.new("double[]", count)
+        for i in range(count):
+            call("skg_spectrum_bin_get", self._handle, i, kev + i, photons + i)
+        return np.array(list(kev)), np.array(list(photons))
+
+    @property
+    def energies(self) -> NDArray[np.float64]:
+        """keV, rising."""
+        return self._bins()[0]
+
+    @property
+    def photons(self) -> NDArray[np.float64]:
+        """Photons per pixel at each energy."""
+        return self._bins()[1]
+
+    @property
+    def quality(self) -> dict[str, float]:
+        """Mean energy, half-value layers, air kerma and more."""
+        return filled("skg_quality", "skg_spectrum_quality_get", self._handle)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the spectrum with Matplotlib, and returns the axes."""
+        if axes is None:
+            try:
+                from matplotlib import pyplot
+            except ImportError:
+                raise ArgumentError("plot() needs Matplotlib, which is not installed; use energies and photons") \
+                    from None
+            axes = pyplot.subplots()[1]
+        kev, photons = self._bins()
+        if len(kev) == 1:
+            axes.vlines(kev, 0, photons)
+        else:
+            axes.step(kev, photons, where="mid")
+        axes.set(xlabel="energy / keV", ylabel="photons", xlim=(0, None), ylim=(0, None))
+        return axes
+
+    def __repr__(self) -> str:
+        kev, photons = self._bins()
+        plural = "energy" if len(kev) == 1 else "energies"
+        return (f"<Beam: {len(kev)} {plural}, {np.average(kev, weights=photons):g} keV on average, "
+                f"{photons.sum():g} photons>")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Beam, self._bins()
+
+
+def _filters(layers: Layers, keep: list[Any]) -> Any:
+    made = struct("skg_filter", len(layers))
+    for i, (material, thickness) in enumerate(layers.items()):
+        keep.append(as_material(material))
+        made[i].material = keep[-1]._handle
+        made[i].thickness_mm = float(thickness)
+    keep.append(made)
+    return made
+
+
+class Response:
+    """What a detector records of a photon: mean recorded energy in keV, and the fraction that is recorded.
+
+    >>> round(Response.scintillator("CsI", 0.6).at(60)[0])
+    53
+    """
+
+    def __init__(self, kev: Any, recorded_kev: Any, efficiency: Any = None) -> None:
+        """A table at rising energies; efficiency: by default recorded_kev / kev."""
+        keep: list[Any] = []
+        lists = [np.atleast_1d(a) for a in (kev, recorded_kev, kev if efficiency is None else efficiency)]
+        if len({a.shape for a in lists}) > 1 or lists[0].ndim != 1:
+            raise ArgumentError(f"the lists have the shapes {[a.shape for a in lists]}; give lists alike")
+        pointers = [doubles(a, "a response", keep) for a in lists]
+        if efficiency is None:
+            pointers[2] = ffi.NULL
+        self._make("skg_response_create_table", len(lists[0]), *pointers)
+
+    def _make(self, name: str, *arguments: Any) -> None:
+        self._handle = owned("skg_response", make(name, "skg_response", *arguments))
+
+    @classmethod
+    def _made(cls, name: str, *arguments: Any) -> Response:
+        made = cls.__new__(cls)
+        made._make(name, *arguments)
+        return made
+
+    @classmethod
+    def scintillator(cls, material: Material | str, thickness_mm: float, packing: float = 1) -> Response:
+        """A scintillator of this thickness, of which the share `packing` is filled."""
+        return cls._made("skg_response_create_scintillator", as_material(material)._handle, float(thickness_mm),
+                         float(packing))
+
+    @classmethod
+    def screen(cls, material: Material | str, mg_cm2: float) -> Response:
+        """A scintillator of this mass per area."""
+        return cls._made("skg_response_create_screen", as_material(material)._handle, float(mg_cm2))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], unit: str = "keV") -> Response:
+        """A text file of photon energies and mean recorded energies."""
+        return cls._made("skg_response_load", encode(path, "path"), encode(unit, "unit"))
+
+    def at(self, kev: float, oblique: float = 1) -> tuple[float, float]:
+        """Recorded energy in keV and efficiency of photons of this energy."""
+        recorded, efficiency = ffi.new("double *"), ffi.new("double *")
+        call("skg_response_get", self._handle, float(kev), float(oblique), recorded, efficiency)
+        return float(recorded[0]), float(efficiency[0])

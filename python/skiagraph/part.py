@@ -1,0 +1,94 @@
+"""Parts of a scene."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays
+from ._library import call, ffi, struct, text
+from .material import Material, as_material
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+
+class Part:
+    """A part of a scene: a mesh with its material, where it stands, and what it lies inside."""
+
+    def __init__(self, scene: Scene, number: int) -> None:
+        self._scene = scene
+        self._number = number
+
+    def _get(self) -> Any:
+        part = struct("skg_part")
+        call("skg_scene_part_get", self._scene._parts_handle, self._number, part)
+        return part
+
+    @property
+    def label(self) -> str:
+        with self._scene._calls():
+            return text(self._get().label)
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """The 4 x 4 matrix from the mesh to the world, mm; read-only. Assign another one to move the part."""
+        with self._scene._calls():
+            part = self._get()  # its arrays live as long as this name
+            made = np.array(list(part.pose)).reshape(4, 4)
+        made.flags.writeable = False
+        return made
+
+    @pose.setter
+    def pose(self, value: Any) -> None:
+        pose = _arrays.matrix(value, "pose")
+        with self._scene._calls():
+            call("skg_scene_pose_set", self._scene._parts_handle, self._number,
+                 ffi.cast("double *", ffi.from_buffer(pose)))
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh, which other parts may share."""
+        with self._scene._calls():
+            return self._scene._mesh(self._get().mesh)
+
+    @property
+    def material(self) -> Material:
+        """What it is made of. Assign a Material or a name."""
+        with self._scene._calls():
+            return self._scene._material(self._number, self._get().material)
+
+    @material.setter
+    def material(self, value: Any) -> None:
+        material = as_material(value)
+        with self._scene._calls():
+            call("skg_scene_material_set", self._scene._parts_handle, self._number, material._handle)
+            self._scene._materials[self._number] = material
+
+    @property
+    def density(self) -> float:
+        """g/cm3; 0 if it is unknown or has no meaning. Assign another one: the matter stays."""
+        return self.material.density
+
+    @density.setter
+    def density(self, value: float) -> None:
+        self.material = self.material.at_density(value)
+
+    @property
+    def inside(self) -> str | None:
+        """The label of the part that it lies inside and displaces; None: none."""
+        with self._scene._calls():
+            parent = int(self._get().inside)
+        return None if parent < 0 else Part(self._scene, parent).label
+
+    @property
+    def priority(self) -> int:
+        """Where parts overlap, the one with the highest priority displaces the others."""
+        with self._scene._calls():
+            return int(self._get().priority)
+
+    def __repr__(self) -> str:
+        inside = self.inside
+        return f"<Part {self.label!r}: {self.material.name}" + (f", inside {inside!r}>" if inside else ">")

@@ -1,0 +1,77 @@
+"""What a plan decided, and why."""
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ._library import call, ffi, filled, integer, listed
+
+
+class Report(Mapping[str, Any]):
+    """A plan's decisions, as a mapping and as text: what is simulated, what is not, and why.
+
+    The keys are the fields of the library's skg_plan_report, and `effects`, `channels`, `energies`, `overlaps` and
+    `stages`.
+    """
+
+    def __init__(self, plan: Any, labels: list[str]) -> None:
+        found = filled("skg_plan_report", "skg_plan_report_get", plan)
+        found["effects"] = listed("skg_effect", "skg_plan_effect", plan)
+        for effect in found["effects"]:
+            effect["on"] = bool(effect["on"])
+        found["channels"] = listed("skg_channel", "skg_plan_channel", plan)
+        found["energies"] = _energies(plan)
+        found["overlaps"] = listed("skg_overlap", "skg_plan_overlap", plan)
+        for overlap in found["overlaps"]:
+            overlap["part"], overlap["other"] = labels[overlap["part"]], labels[overlap["other"]]
+        found["stages"] = listed("skg_stage", "skg_plan_stage", plan)
+        self._found = found
+
+    def __getitem__(self, key: str) -> Any:
+        return self._found[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def _summary(self) -> list[tuple[str, str]]:
+        f = self._found
+        return [("scene", f"{f['parts']} parts ({f['leaky_parts']} leaky), {f['triangles']} triangles"),
+                ("precision", f["precision"]), ("strategy", f["strategy"]),
+                ("planes", f"{f['planes']} of {f['plane_bits']} bits"),
+                ("energies", f"{f['nodes']} of {f['bins']}, error at most {f['bound']:.2g}"),
+                ("rays per pixel", str(f["samples"]))]
+
+    def __str__(self) -> str:
+        lines = [f"{name:<15} {value}" for name, value in self._summary()]
+        lines.append("effects, with their estimated cost in frames of this scene without effects")
+        lines += [f"  {'on' if e['on'] else 'off':<3} {e['name']:<22} {e['cost']:+9.2f}  {e['reason']}"
+                  for e in self._found["effects"]]
+        lines += [f"  {o['part']} {'leaves its parent' if o['protrudes'] else 'overlaps'} {o['other']}: "
+                  f"{o['volume']:.4g} mm3" for o in self._found["overlaps"]]
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        on = [e["name"] for e in self._found["effects"] if e["on"]]
+        return f"<Report: {', '.join(on) or 'no effects'}>"
+
+    def _repr_html_(self) -> str:
+        summary = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
+                          for name, value in self._summary())
+        effects = "".join(f"<tr><td>{'on' if e['on'] else 'off'}</td><td>{html.escape(e['name'])}</td>"
+                          f"<td>{e['cost']:+.2f}</td><td>{html.escape(e['reason'])}</td></tr>"
+                          for e in self._found["effects"])
+        return (f"<table>{summary}</table><table><tr><th></th><th>effect</th><th>cost</th><th>reason</th></tr>"
+                f"{effects}</table>")
+
+
+def _energies(plan: Any) -> list[tuple[float, float]]:
+    """(keV, photons per pixel) of each energy that is used."""
+    kev, photons, found = ffi.new("double *"), ffi.new("double *"), []
+    for i in range(integer("skg_plan_node_count", plan)):
+        call("skg_plan_node_get", plan, i, kev, photons, ffi.NULL)
+        found.append((float(kev[0]), float(photons[0])))
+    return found

@@ -1,0 +1,27 @@
+"""The generated thorax, for trials and lessons without patient data."""
+from __future__ import annotations
+
+import os
+
+from ._library import call, encode, fill, make, release, struct
+
+
+def thorax(folder: str | os.PathLike[str], triangles: int | None = None) -> str:
+    """Writes the meshes and the scene file of a thorax into a folder that exists; returns the path of the file.
+
+    triangles: about how many, 10,000 or more.
+
+    >>> import tempfile
+    >>> from skiagraph import Scene
+    >>> with tempfile.TemporaryDirectory() as folder, Scene(thorax(folder, 10000)) as scene:
+    ...     scene.breathe(phase=0.5)["amplitude"] < 0.1
+    True
+    """
+    options = struct("skg_thorax_options")
+    fill(options, "skg_thorax_options", {"triangles": triangles}, [], "option")
+    made = make("skg_thorax_create", "skg_thorax", options)
+    try:
+        call("skg_thorax_save", made, encode(folder, "folder"))
+    finally:
+        release("skg_thorax", made)
+    return os.path.join(os.fspath(folder), "thorax.json")

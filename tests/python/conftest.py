@@ -1,0 +1,29 @@
+import numpy as np
+import pytest
+
+import skiagraph as sk
+
+SIDE = 48
+MU = 0.2
+
+
+@pytest.fixture
+def view():
+    return sk.View(source=(0, 0, -1000), detector=(0, 0, 200), column_step=(2, 0, 0), row_step=(0, 2, 0),
+                   pixels=(SIDE + 16, SIDE))
+
+
+@pytest.fixture
+def scene(view):
+    """A cube of 40 mm with a ball inside."""
+    made = sk.Scene()
+    made.add("block", sk.Mesh.cube(40), material=sk.Material.mu(MU))
+    made.add("ball", sk.Mesh.sphere(10, 64), material=sk.Material.mu(0.5), inside="block")
+    made.view = view
+    made.beam = sk.Beam.mono(60, 1000)
+    return made
+
+
+@pytest.fixture
+def poses():
+    return np.stack([sk.translate(x, 0, 0) for x in np.linspace(-5, 5, 7)])

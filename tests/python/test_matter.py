@@ -1,0 +1,163 @@
+"""Meshes, materials, beams and matrices."""
+import types
+
+import numpy as np
+import pytest
+
+import skiagraph as sk
+from skiagraph.mesh import as_mesh
+
+VERTICES = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+FACES = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+def volume_of(value):
+    return as_mesh(value).health["volume"]
+
+
+@pytest.mark.parametrize("positions", [np.float64, np.float32, np.int16])
+@pytest.mark.parametrize("corners", [np.int32, np.int64, np.uint8])
+def test_arrays_of_any_type(positions, corners):
+    mesh = sk.Mesh(VERTICES.astype(positions), FACES.astype(corners))
+    assert mesh.health["volume"] == pytest.approx(1 / 6, rel=1e-15)  # a few roundings
+    assert (mesh.vertices == VERTICES).all() and (mesh.faces == FACES).all()
+
+
+def test_strided_and_reversed_arrays():
+    wide = np.zeros((4, 7))
+    wide[:, 2:5] = VERTICES
+    assert volume_of((wide[:, 2:5], FACES)) == volume_of((VERTICES, FACES))
+    assert volume_of((VERTICES[::-1], 3 - FACES)) == pytest.approx(1 / 6, rel=1e-15)
+    assert volume_of((np.asfortranarray(VERTICES), np.asfortranarray(FACES))) == volume_of((VERTICES, FACES))
+
+
+def test_units():
+    assert sk.Mesh(VERTICES, FACES, unit_mm=10).health["volume"] == pytest.approx(1000 / 6, rel=1e-14)  # roundings
+
+
+@pytest.mark.parametrize("vertices, faces, words", [
+    (VERTICES[:, :2], FACES, "vertices has the shape (4, 2) and the type float64"),
+    (VERTICES, FACES[0], "faces has the shape (3,)"),
+    (VERTICES, FACES + 0.5, "faces has the shape (4, 3) and the type float64; give whole numbers"),
+    (VERTICES, FACES + 2**40, "numbers beyond 2147483647"),
+    ([["a", "b", "c"]], FACES, "real numbers"),
+    (VERTICES + 1j, FACES, "complex128"),
+])
+def test_wrong_arrays_are_named(vertices, faces, words):
+    with pytest.raises(sk.ArgumentError) as caught:
+        sk.Mesh(vertices, faces)
+    assert words in str(caught.value)
+
+
+def test_corners_out_of_range_are_the_librarys():
+    with pytest.raises(sk.MeshError):
+        sk.Mesh(VERTICES, FACES + 1)
+
+
+def test_meshes_of_other_packages():
+    trimesh = types.SimpleNamespace(vertices=VERTICES, faces=FACES)
+    meshio = types.SimpleNamespace(points=VERTICES, cells_dict={"triangle": FACES, "line": np.zeros((1, 2), int)})
+    pyvista = types.SimpleNamespace(points=VERTICES.astype(np.float32),
+                                    faces=np.hstack([np.full((4, 1), 3), FACES]).ravel())
+    for value in (trimesh, meshio, pyvista):
+        assert volume_of(value) == pytest.approx(1 / 6, rel=1e-7)  # floats
+    meshio.cells_dict["quad"] = np.zeros((1, 4), int)
+    with pytest.raises(sk.ArgumentError, match="quad"):
+        as_mesh(meshio)
+    pyvista.faces = np.array([4, 0, 1, 2, 3])
+    with pytest.raises(sk.ArgumentError, match="triangulate"):
+        as_mesh(pyvista)
+    with pytest.raises(sk.ArgumentError, match="mesh is a int"):
+        as_mesh(3)
+
+
+def test_trimesh_itself():
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(radius=10)
+    assert volume_of(ball) == pytest.approx(ball.volume, rel=1e-12)  # summed in another order
+
+
+def test_meshio_itself():
+    meshio = pytest.importorskip("meshio")
+    assert volume_of(meshio.Mesh(VERTICES, [("triangle", FACES)])) == pytest.approx(1 / 6, rel=1e-15)  # roundings
+
+
+def test_files_keep_the_bits(tmp_path):
+    mesh = sk.Mesh(VERTICES / 3, FACES)
+    mesh.save(tmp_path / "tetrahedron.ply")
+    assert (as_mesh(tmp_path / "tetrahedron.ply").vertices == mesh.vertices).all()
+    assert sk.Mesh.load(tmp_path / "tetrahedron.ply", unit_mm=3).name == "tetrahedron.ply"
+
+
+def test_offsets_outlive_the_mesh():
+    offsets = sk.Mesh(VERTICES, FACES).offsets
+    assert offsets.shape == (4, 3) and offsets.dtype == np.float32
+    assert np.ptp(offsets, axis=0).tolist() == [1, 1, 1]
+
+
+def test_materials():
+    water = sk.Material("water")
+    # NIST: 0.2059 cm2/g at 60 keV, to four digits
+    assert water.attenuation(60) == pytest.approx(0.2059, abs=5e-5)
+    assert water.attenuation([30, 60]).shape == (2,)
+    assert water.coefficients(60)["total"] == pytest.approx(float(water.attenuation(60)), rel=1e-15)  # density 1
+    assert water.hounsfield(70) == pytest.approx(0, abs=1e-9)  # roundings of 1000
+    assert sk.Material.hu(52).density > 1
+    assert sk.Material("Fe").edges == pytest.approx([7.112], abs=1e-3)  # K edge, keV, to the table's digits
+    assert "Fe" in sk.Material("Fe").elements
+    assert sk.Material.table([10, 100], [1, 0.1]).attenuation(10) == 1
+    assert sk.Material.mixture({"H": 0.112, 8: 0.888}, 1).elements.keys() == {"H", "O"}
+
+
+def test_by_mass_or_by_atoms():
+    with pytest.raises(sk.MaterialError, match="100"):
+        sk.Material("Ti90Al6V4")
+    assert sk.Material("Ti90Al6V4", by="mass", density=4.43).elements["Ti"] == pytest.approx(0.9, abs=1e-12)  # roundings
+    with pytest.raises(sk.ArgumentError, match="'weight'"):
+        sk.Material("H2O", by="weight")
+
+
+def test_beams():
+    beam = sk.Beam.tube(100, filters={"Al": 2.5}, target_angle=12, mas=2)
+    twice = sk.Beam.tube(100, filters={sk.Material("Al"): 2.5})
+    assert beam.photons.sum() == pytest.approx(2 * twice.photons.sum(), rel=1e-12)  # summed in another order
+    assert beam.filtered({"Cu": 0.1}).quality["mean_kev"] > beam.quality["mean_kev"]
+    assert beam.scaled(0.5).photons.sum() == pytest.approx(twice.photons.sum(), rel=1e-12)  # likewise
+    with pytest.warns(sk.SkiagraphWarning, match="2.5 mm"):
+        sk.Beam.tube(100)
+    with pytest.raises(sk.BeamError, match="kV"):
+        sk.Beam.tube(1)
+    with pytest.raises(sk.ArgumentError, match="the field of a tube 'anod' is unknown; did you mean 'anode'"):
+        sk.Beam.tube(80, {"Al": 3}, anod=74)
+    with pytest.raises(sk.ArgumentError, match=r"kev has the shape \(2,\) and photons \(1,\)"):
+        sk.Beam([1, 2], [3])
+
+
+def test_plots_with_matplotlib():
+    pytest.importorskip("matplotlib").use("Agg")
+    axes = sk.Beam.tube(100, {"Al": 2.5}).plot()
+    assert "keV" in axes.get_xlabel()
+
+
+def test_matrices():
+    turn = sk.rotate((1, 1, 0), 180, about=(0, 0, 5))
+    np.testing.assert_allclose(turn @ (1, 0, 5, 1), (0, 1, 5, 1), atol=1e-12)  # roundings of 5
+    with pytest.raises(sk.ArgumentError, match="'w'"):
+        sk.rotate("w", 1)
+    with pytest.raises(sk.ArgumentError, match="no direction"):
+        sk.rotate((0, 0, 0), 1)
+    with pytest.raises(sk.ArgumentError, match=r"axis has the shape \(2,\)"):
+        sk.rotate((0, 1), 1)
+
+
+def test_views(view):
+    view.check()
+    assert sk.translate(0, 0, 0) @ view == view
+    moved = sk.translate(1, 2, 3) @ view
+    assert moved != view and moved.source.tolist() == [1, 2, -997] and moved.column_step.tolist() == [2, 0, 0]
+    view.row_step = view.column_step
+    with pytest.raises(sk.SceneError, match="parallel"):
+        view.check()
+    view.projection = "fish-eye"
+    with pytest.raises(sk.ArgumentError, match="'fish-eye'"):
+        view.check()

@@ -1,0 +1,159 @@
+"""Scenes and their parts: reading, changing, failing, breathing."""
+import json
+
+import numpy as np
+import pytest
+
+import skiagraph as sk
+
+DICTIONARY = {
+    "Source": {"Position": [0, -40, 0, "cm"], "Shape": "PointSource",
+               "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+    "Detector": {"Position": [0, 10, 0, "cm"], "UpVector": [0, 0, -1], "NumberOfPixels": [32, 24],
+                 "Size": [32, 24, "cm"]},
+    "Samples": [{"Label": "skin", "Cube": [80, "mm"], "Material": ["mu", 0.2], "Type": "outer"},
+                {"Label": "bone", "Path": "bone.ply", "Unit": "mm", "Material": "bone cortical icru44"}],
+}
+
+
+@pytest.fixture
+def path(tmp_path):
+    sk.Mesh.sphere(20, 32).save(tmp_path / "bone.ply")
+    made = tmp_path / "scene.json"
+    made.write_text(json.dumps(DICTIONARY))
+    return made
+
+
+def test_a_file_is_read(path):
+    with sk.Scene(path) as scene:
+        assert [part.label for part in scene] == ["skin", "bone"]
+        assert len(scene) == 2 and "bone" in scene and "liver" not in scene
+        assert scene["BONE"].inside == "skin" and scene["skin"].inside is None
+        assert scene["bone"].density == pytest.approx(1.92, abs=0.01)  # the table's two decimals
+        assert scene.view.source.tolist() == [0, -400, 0]
+        assert scene.view.pixels == (32, 24) and scene.view.shape == (24, 32)
+        assert scene.beam.energies.tolist() == [60]
+        assert scene.image().shape == (24, 32)
+    with pytest.raises(sk.ArgumentError, match="closed"):
+        scene.image()
+
+
+def test_settings_and_dictionaries(path):
+    small = sk.Scene(path, settings={"Detector.NumberOfPixels": [8, 4]})
+    assert small.image().shape == (4, 8)
+    assert sk.Scene(path, settings=["Detector.NumberOfPixels=[4, 4]"]).image().shape == (4, 4)
+    given = {**DICTIONARY, "Samples": DICTIONARY["Samples"][:1]}
+    assert sk.Scene(given).image().shape == (24, 32)
+    assert len(sk.Scene({"Samples": given["Samples"]})) == 1
+    assert len(sk.Scene()) == 0
+
+
+def test_failures_have_their_sentences(path, tmp_path):
+    with pytest.raises(sk.FileError, match="nowhere.json"):
+        sk.Scene(tmp_path / "nowhere.json")
+    with pytest.raises(sk.FormatError, match="line 1"):
+        (tmp_path / "bad.json").write_text("{,}")
+        sk.Scene(tmp_path / "bad.json")
+    with pytest.raises(sk.MaterialError, match="unobtainium"):
+        sk.Material("unobtainium")
+    with pytest.raises(sk.SceneError, match="liver"):
+        sk.Scene(path)["liver"]
+    with pytest.raises(sk.SceneError, match="assign a View"):
+        sk.Scene().image()
+    with pytest.raises(sk.ArgumentError, match="no JSON"):
+        sk.Scene({"Samples": object()})
+    with pytest.raises(sk.ArgumentError, match="scene is a int"):
+        sk.Scene(3)
+    with pytest.raises(sk.ArgumentError, match="label of a part is a int"):
+        sk.Scene(path)[0]
+    assert sk.FileError.status == -3 and sk.FileError.status_name == "SKG_ERR_FILE"
+    assert issubclass(sk.FileError, sk.Error)
+
+
+def test_no_device_is_a_sentence():
+    with pytest.raises(sk.NoDeviceError):
+        sk.Device("device=a-device-that-nobody-has")
+    assert sk.Device("device=cpu threads=1").info["compute_units"] == 1
+
+
+def test_poses(scene):
+    part = scene["ball"]
+    assert (part.pose == np.eye(4)).all()
+    part.pose = sk.rotate("x", 30) @ sk.translate(1, 2, 3)
+    np.testing.assert_array_equal(part.pose, sk.rotate("x", 30) @ sk.translate(1, 2, 3))
+    with pytest.raises(ValueError):
+        part.pose[0, 3] = 5  # a copy: an assignment would be lost
+    with pytest.raises(sk.ArgumentError, match=r"pose has the shape \(3, 3\) and the type float64"):
+        part.pose = np.eye(3)
+    with pytest.raises(sk.ArgumentError, match="real numbers"):
+        part.pose = np.full((4, 4), "x")
+    with pytest.raises(sk.SceneError, match="singular"):
+        part.pose = np.diag([0, 1, 1, 1.0])
+    with pytest.raises(sk.ArgumentError, match=r"poses\['ball'\] has the shape \(2, 3\)"):
+        scene.images(poses={"ball": np.zeros((2, 3))})
+
+
+def test_matter(scene):
+    part = scene["ball"]
+    part.material = "water"
+    assert part.material.name == "Water, Liquid"
+    part.density = 2
+    assert part.density == 2
+    # mu is proportional to the density; 16 roundings
+    assert part.material.attenuation(60) == pytest.approx(2 * sk.Material("water").attenuation(60), rel=16 * 2.2e-16)
+    with pytest.raises(sk.ArgumentError, match="material is a int"):
+        part.material = 3
+
+
+def test_vertices_move(scene):
+    before = scene.lengths("block", "surface")
+    mesh = scene["block"].mesh
+    assert mesh is scene["block"].mesh and mesh.version == 1
+    mesh.vertices = mesh.vertices * (1, 1, 0.5)
+    assert mesh.version == 2
+    half = scene.lengths("block", "surface")
+    assert half.max() == pytest.approx(before.max() / 2, rel=1e-2)  # the rays are not quite along z
+    mesh.offsets[:] *= (1, 1, 2)
+    mesh.moved()
+    np.testing.assert_allclose(scene.lengths("block", "surface"), before, atol=3e-5 * 40)  # single precision
+    with pytest.raises(sk.ArgumentError, match="the mesh has"):
+        mesh.vertices = mesh.vertices[:-1]
+
+
+def test_a_plan_explains_itself(scene):
+    report = scene.plan(noise=True)
+    assert report["parts"] == 2 and report["precision"] == "single" and report["nodes"] == 1
+    effects = {effect["name"]: effect for effect in report["effects"]}
+    assert effects["quantum noise"]["on"] is True and effects["blur"]["on"] is False
+    assert effects["blur"]["reason"] in str(report)
+    assert "<table>" in report._repr_html_() and "quantum noise" in repr(report)
+    assert dict(report)["energies"] == [(60, 1000)]
+    assert report["channels"][0]["unit"] == "keV per pixel"
+    assert "<td>ball</td>" in scene._repr_html_()
+
+
+def test_overlaps_have_labels(scene):
+    with pytest.warns(sk.SkiagraphWarning, match="other"):
+        scene.add("other", sk.Mesh.cube(10), material="water", pose=sk.translate(20, 0, 0))
+        report = scene.plan()
+    assert {report["overlaps"][0]["part"], report["overlaps"][0]["other"]} == {"block", "other"}
+
+
+def test_breath(tmp_path):
+    with sk.Scene(sk.thorax(tmp_path, 10000), settings={"Detector.NumberOfPixels": [32, 32]}) as scene:
+        rest = scene["liver"].mesh.vertices
+        state = scene.breathe(phase=0)
+        assert state["amplitude"] == 1 and np.isnan(state["time_s"])
+        inhaled, image = scene["liver"].mesh.vertices, scene.image()
+        assert (inhaled - rest)[:, 2].mean() < -3  # it descends by some mm
+        scene.breathe(time=1)
+        scene.breathe(phase=0)
+        assert (scene["liver"].mesh.vertices == inhaled).all() and (scene.image() == image).all()
+        assert scene.images(poses={"spine": np.eye(4)[None]}).shape[0] == 1 if "spine" in scene else True
+    with pytest.raises(sk.ArgumentError, match="one of them"):
+        sk.Scene().breathe()
+
+
+def test_a_scene_without_organs_does_not_breathe(scene):
+    with pytest.raises(sk.BreathingError):
+        scene.breathe(phase=0)
