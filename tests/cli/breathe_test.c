@@ -221,7 +221,7 @@ START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(3, "has a Transform",
                  "breathe thorax.json -o f --set Samples.liver.Transform='[[\"Scaling\",1,1,2]]'");
     ck_run_fails(3, "Patern", "breathe thorax.json -o f --set Breathing='{\"Patern\":\"quiet\"}'");
-    ck_run_fails(5, "cannot be made", "breathe thorax.json -o thorax.json");
+    ck_run_fails(5, "thorax.json: is the input", "breathe thorax.json -o thorax.json");
 }
 END_TEST
 
