@@ -59,13 +59,14 @@
 #define SKG_ARGUMENTS_HITS_LIST(X) \
     X(HITS_LIST, frame) X(HITS_LIST, corners) X(HITS_LIST, projected) X(HITS_LIST, parts) X(HITS_LIST, blocks) \
     X(HITS_LIST, slots) X(HITS_LIST, shifts) X(HITS_LIST, counts) X(HITS_LIST, starts) X(HITS_LIST, hits) \
-    X(HITS_LIST, fill)
+    X(HITS_LIST, window) X(HITS_LIST, doing)
 
 #define SKG_ARGUMENTS_HITS_SOURCE_PLANE(X) \
     X(HITS_SOURCE_PLANE, frame) X(HITS_SOURCE_PLANE, corners) X(HITS_SOURCE_PLANE, projected) \
     X(HITS_SOURCE_PLANE, parts) X(HITS_SOURCE_PLANE, blocks) X(HITS_SOURCE_PLANE, vertices) \
     X(HITS_SOURCE_PLANE, slots) X(HITS_SOURCE_PLANE, shifts) X(HITS_SOURCE_PLANE, counts) \
-    X(HITS_SOURCE_PLANE, starts) X(HITS_SOURCE_PLANE, hits) X(HITS_SOURCE_PLANE, fill)
+    X(HITS_SOURCE_PLANE, starts) X(HITS_SOURCE_PLANE, hits) X(HITS_SOURCE_PLANE, window) \
+    X(HITS_SOURCE_PLANE, doing)
 
 #define SKG_ARGUMENTS_HITS_PLACE(X) \
     X(HITS_PLACE, pixels) X(HITS_PLACE, counts) X(HITS_PLACE, starts) X(HITS_PLACE, total)

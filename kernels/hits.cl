@@ -15,18 +15,28 @@ typedef struct {
 } skg_listed;
 
 typedef struct {
-    __global const int *slots;       /* [parts] -1: the part does not compete */
+    __global const int *slots;       /* [parts] -1: the part does not compete; see SKG_HITS_OTHER */
     __global const skg_real *shifts; /* [slots] the part's reference minus the common one */
     __global int *counts;            /* [rows][columns] */
     __global const uint *starts;
     __global skg_listed *hits;
-    int fill; /* 0: hits are only counted */
+    int doing; /* SKG_HITS_... */
 } skg_lists;
+
+/* The slot of a part whose hits this launch takes; -1: it does not take them. */
+static int skg_slot_of(const skg_lists *lists, int part) {
+    const int slot = lists->slots[part];
+    const int other = slot >= SKG_HITS_OTHER;
+    return slot < 0 || other != (lists->doing / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
+}
 
 /* Counts or lists one hit. q: its depth as skg_depth returns it. */
 static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, skg_real reference, int enters) {
+    const int is_counting = (lists->doing & SKG_HITS_LIST) == 0;
+    /* Where no winner is, starts are 0 while hits are counted, and SKG_MOST_HITS once they have their places. */
+    if (lists->doing & SKG_HITS_OF_OTHERS && lists->starts[pixel] == (is_counting ? 0 : SKG_MOST_HITS)) return;
     const int place = atomic_inc(&lists->counts[pixel]);
-    if (!lists->fill) return;
+    if (is_counting) return;
 #if SKG_PARALLEL
     const skg_real depth = q + lists->shifts[slot];
 #else
@@ -37,23 +47,24 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
 
 #define SKG_LIST_ARGUMENTS                                                                                            \
     __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
-        __global skg_listed *hits, int fill
+        __global skg_listed *hits, int4 window, int doing
 
-/* Each work-item takes every get_global_size(1)-th row of one triangle. */
+/* Each work-item takes every get_global_size(1)-th row of one triangle. window: columns from, rows from, columns to, rows
+ * to; nothing is listed outside. */
 __kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
                             __global const skg_part_entry *parts, __global const int *blocks, SKG_LIST_ARGUMENTS) {
-    const skg_lists lists = {slots, shifts, counts, starts, hits, fill};
+    const skg_lists lists = {slots, shifts, counts, starts, hits, doing};
     const int triangle = (int)get_global_id(0);
     if (triangle >= frame.triangles) return;
     skg_range range;
     skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
-    const int slot = slots[range.number];
+    const int slot = skg_slot_of(&lists, range.number);
     if (slot < 0) return;
     const skg_real reference = parts[range.number].reference;
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (!skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), &box)) return;
+    if (!skg_bounds(a, b, c, skg_window(&range, window.x, window.y, window.z, window.w), &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {
@@ -82,7 +93,7 @@ __kernel void skg_hits_place(int pixels, __global int *counts, __global uint *st
     const int pixel = (int)get_global_id(0);
     if (pixel >= pixels) return;
     const int count = counts[pixel];
-    starts[pixel] = count ? skg_add_hits(total, (uint)count) : 0;
+    starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_MOST_HITS;
     counts[pixel] = 0;
 }
 
@@ -162,8 +173,9 @@ __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entr
 #define SKG_SOURCE_KERNEL skg_hits_source_plane
 #define SKG_SOURCE_ARGUMENTS SKG_LIST_ARGUMENTS
 #define SKG_SOURCE_BEGIN(range)                                                                                       \
-    const skg_lists lists = {slots, shifts, counts, starts, hits, fill};                                              \
-    const int slot = slots[range.number];                                                                             \
+    const skg_lists lists = {slots, shifts, counts, starts, hits, doing};                                             \
+    const int slot = skg_slot_of(&lists, range.number);                                                               \
     if (slot < 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                        \
+    if ((row) >= window.y && (row) < window.w && (column) >= window.x && (column) < window.z)                         \
     skg_list(&lists, slot, (row) * frame.columns + (column), q, p->reference, (factor) < 0)

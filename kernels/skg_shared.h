@@ -97,6 +97,14 @@ typedef struct {
 } skg_hit_count;
 #define SKG_MOST_HITS 0xffffffffu
 
+/* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
+#define SKG_HITS_OTHER 0x10000
+
+/* What a launch that lists hits does, summed: counts those of winners; lists instead of counting; takes the others. */
+#define SKG_HITS_COUNT 0
+#define SKG_HITS_LIST 1
+#define SKG_HITS_OF_OTHERS 2
+
 /* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
  * the pixel of `centre`. */
 #define SKG_RAY_MEMBERS(real)                                                                                \

@@ -2,6 +2,7 @@
 #include "common/args.h"
 #include "common/interrupt.h"
 #include "common/json.h"
+#include "common/overwrite.h"
 #include "common/say.h"
 #include "manual/help.h"
 #include "manual/list.h"
@@ -46,7 +47,8 @@ static int run_verb(const cli_verb *verb, int count, char **words) {
         cli_catch_signals();
         guard_outputs(&arguments);
         cli_set_quiet(cli_given(&arguments, &cli_flag_quiet));
-        exit_status = verb->run(&arguments);
+        exit_status = cli_check_overwrites(&arguments);
+        if (exit_status == CLI_DONE) exit_status = verb->run(&arguments);
     }
     cli_arguments_free(&arguments);
     return exit_status;

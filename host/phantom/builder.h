@@ -16,6 +16,7 @@ struct skg_thorax {
         double density; /* g/cm3; 0: that of the tables */
         int64_t inside;
         skg_mesh *mesh;
+        int32_t through; /* 1: it passes through others on purpose */
     } * part;
 };
 

@@ -15,6 +15,7 @@ skg_status skg_thorax_needle(skg_thorax *thorax) {
     skg_mesh_arrays arrays = {0};
     skg_status status = skg_shape_tube("needle", 2, ring, 0.36, 8, &arrays);
     if (status == SKG_OK) status = skg_thorax_add(thorax, "needle", 0, -1, &arrays);
+    if (status == SKG_OK) thorax->part[thorax->parts - 1].through = 1;
     skg_mesh_arrays_free(&arrays);
     return status;
 }

@@ -31,6 +31,7 @@ static void write_sample(const skg_thorax *thorax, int64_t i, FILE *f) {
         fprintf(f, "\"Material\": \"%s\"", thorax->part[i].material);
     else
         fprintf(f, "\"Material\": [\"HU\", %g]", thorax->part[i].hounsfield);
+    if (thorax->part[i].through) fprintf(f, ", \"Through\": true");
     if (thorax->part[i].density > 0) fprintf(f, ", \"Density\": %g", thorax->part[i].density);
     fprintf(f, i + 1 < thorax->parts ? "},\n" : "}\n");
 }

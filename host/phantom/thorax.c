@@ -75,6 +75,7 @@ skg_status skg_thorax_part_get(const skg_thorax *thorax, int64_t number, skg_tho
                         thorax->parts - 1);
     skg_thorax_part ours;
     skg_thorax_part_init(&ours);
+    ours.through = thorax->part[number].through;
     ours.inside = thorax->part[number].inside;
     ours.mesh = thorax->part[number].mesh;
     ours.label = thorax->part[number].label;

@@ -39,6 +39,7 @@ static const skg_json_key sample_keys[] = {
     {"SpecularColor", NULL, SKG_KEY_IGNORED},
     {"Shininess", NULL, SKG_KEY_IGNORED},
     {"Priority", NULL, SKG_KEY_READ},
+    {"Through", NULL, SKG_KEY_READ},
 };
 
 /* What the second pass needs to know of a sample. */
@@ -123,6 +124,23 @@ static skg_status choose_label(const skg_setup_reader *reader, const skg_json_ob
                            "another sample has the label %s, so this one is called \"%s\"", label, numbered);
 }
 
+/* Priority, or Through: a part that passes through others on purpose has the highest. */
+static skg_status read_priority(const skg_json_object *sample, int32_t *priority) {
+    const skg_json_node node = skg_json_member(sample, "Priority"),
+                        through = skg_json_member(sample, "Through");
+    int64_t number = 0;
+    int32_t passes = 0;
+    if (node.value) SKG_TRY(skg_json_integer(&node, INT32_MIN, INT32_MAX - 1, &number));
+    if (through.value) SKG_TRY(skg_json_flag(&through, &passes));
+    if (passes && node.value)
+        return skg_json_fail(
+            &through, SKG_ERR_FORMAT,
+            "a sample that passes through others has the highest priority; give Through or Priority, "
+            "not both");
+    *priority = passes ? INT32_MAX : (int32_t)number;
+    return SKG_OK;
+}
+
 /* The sample's part, with everything but its parent. */
 static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sample, skg_mesh_cache *cache,
                             int64_t *id) {
@@ -131,10 +149,7 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     int32_t flip = 0;
     char numbered[512];
     skg_part_init(&part);
-    const skg_json_node priority = skg_json_member(sample, "Priority");
-    int64_t number = 0;
-    if (priority.value) SKG_TRY(skg_json_integer(&priority, INT32_MIN, INT32_MAX, &number));
-    part.priority = (int32_t)number;
+    SKG_TRY(read_priority(sample, &part.priority));
     SKG_TRY(read_flag(sample, "FlipNormals", &flip));
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_setup_read_shape(reader, sample, flip, cache, &part.mesh, own));

@@ -51,17 +51,38 @@ static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
-/* Repair of leaky meshes, and whether parts are clipped at their parents. */
-static skg_status read_repair(skg_setup *setup, const skg_json_object *top) {
-    static const char *const names[] = {
-        [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
-    const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
-    if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
-    if (!repair.value) return SKG_OK;
+/* One word of Repair: what to do about leaky meshes, or that inverted components are turned. */
+static skg_status read_repair_word(skg_setup *setup, const skg_json_node *node) {
+    enum { ORIENTATION = 3 };
+    static const char *const names[] = {[SKG_REPAIR_NONE] = "none",
+                                        [SKG_REPAIR_NEIGHBOURS] = "neighbours",
+                                        [SKG_REPAIR_EXACT] = "exact",
+                                        [ORIENTATION] = "orientation"};
     int64_t choice = 0;
-    SKG_TRY(skg_json_choice(&repair, "repair", names, 3, &choice));
+    SKG_TRY(skg_json_choice(node, "repair", names, 4, &choice));
+    if (choice == ORIENTATION) {
+        setup->orient = 1;
+        return SKG_OK;
+    }
+    if (setup->has_repair)
+        return skg_json_fail(node, SKG_ERR_FORMAT, "a repair of leaky meshes was chosen before");
     setup->has_repair = 1;
     setup->repair = (int32_t)choice;
+    return SKG_OK;
+}
+
+/* Repair of meshes, and whether parts are clipped at their parents. */
+static skg_status read_repair(skg_setup *setup, const skg_json_object *top) {
+    const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
+    int64_t count = 0;
+    if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
+    if (!repair.value) return SKG_OK;
+    if (!json_is_array(repair.value)) return read_repair_word(setup, &repair);
+    SKG_TRY(skg_json_array(&repair, "[\"exact\", \"orientation\"]", &count));
+    for (int64_t i = 0; i < count; i++) {
+        const skg_json_node word = skg_json_element(&repair, i);
+        SKG_TRY(read_repair_word(setup, &word));
+    }
     return SKG_OK;
 }
 

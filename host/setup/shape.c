@@ -76,6 +76,23 @@ cleanup:
     return status;
 }
 
+/* Turns the inverted components of a mesh, if it has some. */
+static skg_status orient(const skg_setup_reader *reader, const skg_json_node *node, skg_mesh **mesh) {
+    skg_mesh_nesting nesting;
+    skg_mesh *oriented = NULL;
+    char place[256];
+    skg_mesh_nesting_init(&nesting);
+    SKG_TRY(skg_mesh_nesting_get(*mesh, &nesting));
+    if (nesting.inverted == 0) return SKG_OK;
+    SKG_TRY(skg_mesh_create_oriented(reader->context, *mesh, &oriented));
+    skg_mesh_release(mesh);
+    *mesh = oriented;
+    skg_json_place(node, place, sizeof place);
+    skg_log(reader->context, SKG_LOG_NOTE, "%s: %" PRId64 " of %" PRId64 " components turned", place,
+            nesting.inverted, nesting.components);
+    return SKG_OK;
+}
+
 static skg_status load(skg_setup_reader *reader, const skg_json_object *sample, const skg_json_node *node,
                        int32_t flip, skg_mesh_cache *cache, skg_mesh **mesh) {
     const char *name = NULL, *path = NULL;
@@ -94,6 +111,7 @@ static skg_status load(skg_setup_reader *reader, const skg_json_object *sample, 
     }
     SKG_TRY(skg_json_at(node, skg_mesh_load(reader->context, path, unit_mm, mesh)));
     if (flip) SKG_TRY(turn_inside_out(reader, node, mesh));
+    if (reader->setup->orient) SKG_TRY(orient(reader, node, mesh));
     return remember(cache, path, unit_mm, flip, *mesh);
 }
 

@@ -84,6 +84,7 @@ struct skg_setup {
     skg_breathing_section breathing;
     int32_t precision, has_precision;
     int32_t repair, has_repair, clip;
+    int32_t orient; /* 1: inverted components of meshes are turned */
     int32_t band_weight, has_band_weight;
     double tolerance; /* negative: not given */
 };

@@ -92,7 +92,7 @@ static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work
     pass->clip = recipe->options.clip;
     if (!recipe->priority_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
         return SKG_OK;
-    SKG_TRY(skg_priority_find(recipe->scene, pass->clip, pass->extents, &pass->priority));
+    SKG_TRY(skg_priority_find(recipe->scene, pass->clip, &pass->camera, pass->extents, &pass->priority));
     for (int64_t s = 0; s < pass->priority.count; s++)
         pass->kernels.source_plane |= pass->extents[pass->priority.parts[s]].near_source;
     return SKG_OK;

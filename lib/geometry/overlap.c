@@ -10,110 +10,9 @@
 enum { SIDE = 256 };
 
 typedef struct {
-    double depth;
-    int32_t part, sign;
-} column_hit;
-
-typedef struct {
-    double low[3], high[3], step[2];
-    int64_t *first;   /* [SIDE * SIDE + 1] hits of each column */
-    column_hit *hits; /* NULL while counting */
-} columns;
-
-typedef struct {
     int64_t slots, used;
     skg_overlap_pair *table; /* a hash table with linear probing; part < 0: the slot is free */
 } pair_table;
-
-/* --- columns --- */
-
-/* Columns are off the corner of their cell by an irrational part of it (the square roots of 3 and 2 less 1), so that
- * faces along the axes and shared vertices are rarely met exactly. Where they are, the half-open rule below still
- * balances the hits. */
-static double column_place(const columns *grid, int axis, int64_t index) {
-    return grid->low[axis] +
-           ((double)index + (axis ? 0.4142135623730951 : 0.7320508075688772)) * grid->step[axis];
-}
-
-/* The x at which the edge from a to b crosses y. The end with the lower y comes first, so that both triangles at
- * an edge get the same bits. */
-static double crossing(const double *a, const double *b, double y) {
-    if (a[1] > b[1] || (a[1] == b[1] && a[0] > b[0])) {
-        const double *swap = a;
-        a = b, b = swap;
-    }
-    return a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-}
-
-/* Adds the hits of one triangle by the scan-crossing rule of the kernels, in double. */
-static void add_triangle(columns *grid, int32_t part, const double *a, const double *b, const double *c) {
-    const double *p[3] = {a, b, c};
-    double lo = fmin(a[1], fmin(b[1], c[1])), hi = fmax(a[1], fmax(b[1], c[1]));
-    double ab[3], ac[3], normal[3];
-    skg_add_scaled(b, -1, a, ab);
-    skg_add_scaled(c, -1, a, ac);
-    skg_cross(ab, ac, normal);
-    int64_t row = (int64_t)fmax(0, floor((lo - grid->low[1]) / grid->step[1]) - 1);
-    for (; row < SIDE; row++) {
-        double y = column_place(grid, 1, row), x[2];
-        int found = 0, downward[2];
-        if (y < lo) continue;
-        if (y >= hi) break;
-        for (int e = 0; e < 3 && found < 2; e++) {
-            const double *from = p[e], *to = p[(e + 1) % 3];
-            if ((from[1] <= y) == (to[1] <= y)) continue;
-            downward[found] = from[1] > to[1];
-            x[found++] = crossing(from, to, y);
-        }
-        if (found < 2) continue;
-        int first = x[0] <= x[1] ? 0 : 1;
-        int64_t column = (int64_t)fmax(0, floor((x[first] - grid->low[0]) / grid->step[0]) - 1);
-        for (; column < SIDE; column++) {
-            double at = column_place(grid, 0, column);
-            if (at < x[first]) continue;
-            if (at >= x[1 - first]) break;
-            int64_t cell = row * SIDE + column;
-            if (grid->hits) {
-                double depth = normal[2] != 0
-                                   ? a[2] - ((at - a[0]) * normal[0] + (y - a[1]) * normal[1]) / normal[2]
-                                   : a[2];
-                /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and
-                 * the ray enters. */
-                grid->hits[grid->first[cell]] = (column_hit){depth, part, downward[first] ? -1 : 1};
-            }
-            grid->first[cell]++;
-        }
-    }
-}
-
-static void add_all(columns *grid, int64_t count, const skg_solid *solids) {
-    for (int64_t i = 0; i < count; i++)
-        for (int64_t t = 0; t < solids[i].triangles; t++) {
-            const int32_t *corner = solids[i].corners + 3 * t;
-            const double *at = solids[i].positions;
-            add_triangle(grid, (int32_t)i, at + 3 * (int64_t)corner[0], at + 3 * (int64_t)corner[1],
-                         at + 3 * (int64_t)corner[2]);
-        }
-}
-
-/* Counts the hits of each column, sums the counts, and fills: the hits of column c are those from grid->first[c] to
- * grid->first[c + 1] - 1. */
-static skg_status gather(columns *grid, int64_t count, const skg_solid *solids) {
-    const int64_t cells = (int64_t)SIDE * SIDE;
-    SKG_TRY(skg_alloc(cells + 1, sizeof *grid->first, "overlap columns", &grid->first));
-    add_all(grid, count, solids);
-    int64_t sum = 0;
-    for (int64_t c = 0; c <= cells; c++) {
-        int64_t here = grid->first[c];
-        grid->first[c] = sum;
-        sum += here;
-    }
-    SKG_TRY(skg_alloc(sum, sizeof *grid->hits, "overlap hits", &grid->hits));
-    add_all(grid, count, solids);
-    memmove(grid->first + 1, grid->first, (size_t)cells * sizeof *grid->first);
-    grid->first[0] = 0;
-    return SKG_OK;
-}
 
 /* --- pairs --- */
 
@@ -157,21 +56,13 @@ static skg_status add_chord(pair_table *pairs, int32_t kind, int64_t part, int64
 
 /* --- sweep --- */
 
-static int by_depth(const void *a, const void *b) {
-    const column_hit *left = a, *right = b;
-    if (left->depth != right->depth) return left->depth < right->depth ? -1 : 1;
-    /* At touching surfaces the ray leaves one part before it enters the other, so that they do not overlap. */
-    if (left->sign != right->sign) return left->sign < right->sign ? -1 : 1;
-    return left->part < right->part ? -1 : left->part > right->part;
-}
-
 typedef struct {
     int32_t *depth;  /* [parts] how deep the column is inside each part */
     int32_t *active; /* parts with depth > 0 */
     int64_t count;
 } sweep_state;
 
-static void pass(sweep_state *state, const column_hit *hit) {
+static void pass(sweep_state *state, const skg_column_hit *hit) {
     int32_t before = state->depth[hit->part], after = before + hit->sign;
     state->depth[hit->part] = after;
     if (before <= 0 && after > 0) state->active[state->count++] = hit->part;
@@ -201,18 +92,18 @@ static skg_status judge(const sweep_state *state, const skg_solid *solids, pair_
     return SKG_OK;
 }
 
-static skg_status sweep(const columns *grid, const skg_solid *solids, sweep_state *state, pair_table *pairs) {
+static skg_status sweep(skg_columns *grid, const skg_solid *solids, sweep_state *state, pair_table *pairs) {
     const double area = grid->step[0] * grid->step[1];
     /* Touching surfaces differ by rounding, which is far below this share of the depth of the scene. */
     const double least = 1e-9 * (grid->high[2] - grid->low[2]);
     for (int64_t cell = 0; cell < (int64_t)SIDE * SIDE; cell++) {
         int64_t first = grid->first[cell], end = grid->first[cell + 1];
-        qsort(grid->hits + first, (size_t)(end - first), sizeof *grid->hits, by_depth);
+        skg_columns_sort(grid, cell);
         for (int64_t h = first; h < end; h++) {
             pass(state, &grid->hits[h]);
             if (h + 1 == end) break;
             double from = grid->hits[h].depth, to = grid->hits[h + 1].depth;
-            double place[3] = {column_place(grid, 0, cell % SIDE), column_place(grid, 1, cell / SIDE),
+            double place[3] = {skg_column_place(grid, 0, cell % SIDE), skg_column_place(grid, 1, cell / SIDE),
                                (from + to) / 2};
             if (to - from > least) SKG_TRY(judge(state, solids, pairs, place, to - from, area));
         }
@@ -229,27 +120,17 @@ static int worst_first(const void *a, const void *b) {
     return left->other < right->other ? -1 : left->other > right->other;
 }
 
-static void bound(columns *grid, int64_t count, const skg_solid *solids) {
-    for (int k = 0; k < 3; k++) grid->low[k] = HUGE_VAL, grid->high[k] = -HUGE_VAL;
-    for (int64_t i = 0; i < count; i++)
-        for (int64_t v = 0; solids[i].triangles > 0 && v < 3 * solids[i].vertices; v++) {
-            grid->low[v % 3] = fmin(grid->low[v % 3], solids[i].positions[v]);
-            grid->high[v % 3] = fmax(grid->high[v % 3], solids[i].positions[v]);
-        }
-    for (int k = 0; k < 2; k++) grid->step[k] = (grid->high[k] - grid->low[k]) / SIDE;
-}
-
 skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pair_count,
                              skg_overlap_pair **pairs) {
-    columns grid = {0};
+    skg_columns grid = {.side = SIDE};
     sweep_state state = {0};
     pair_table found = {0};
     skg_status status = SKG_OK;
     *pair_count = 0;
     *pairs = NULL;
-    bound(&grid, count, solids);
+    skg_columns_bound(&grid, count, solids);
     if (!(grid.step[0] > 0 && grid.step[1] > 0)) return SKG_OK; /* no solid has an extent */
-    SKG_TRY_CLEANUP(gather(&grid, count, solids));
+    SKG_TRY_CLEANUP(skg_columns_gather(&grid, count, solids));
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *state.depth, "overlap sweep", &state.depth));
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *state.active, "overlap sweep", &state.active));
     SKG_TRY_CLEANUP(sweep(&grid, solids, &state, &found));
@@ -259,8 +140,7 @@ skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pa
     *pairs = found.table;
     found.table = NULL;
 cleanup:
-    skg_free(&grid.first);
-    skg_free(&grid.hits);
+    skg_columns_free(&grid);
     skg_free(&state.depth);
     skg_free(&state.active);
     skg_free(&found.table);

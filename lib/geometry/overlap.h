@@ -8,15 +8,7 @@
 #ifndef SKG_OVERLAP_H
 #define SKG_OVERLAP_H
 
-#include "core/core.h"
-
-/* A closed part in world coordinates (mm). */
-typedef struct {
-    int64_t vertices, triangles;
-    const double *positions; /* [vertices][3] */
-    const int32_t *corners;  /* [triangles][3] */
-    int64_t inside;          /* the parent's number, or -1 */
-} skg_solid;
+#include "geometry/columns.h"
 
 enum { SKG_OVERLAP_SIBLINGS = 0, SKG_OVERLAP_PROTRUDES = 1 };
 

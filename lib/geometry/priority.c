@@ -1,5 +1,7 @@
 #include "geometry/priority.h"
 
+#include "skg_shared.h"
+
 static int may_win(const skg_scene_part_data *part, const skg_scene_part_data *over) {
     return part->inside == over->inside && part->priority > over->priority && part->mesh->closed &&
            over->mesh->closed;
@@ -37,36 +39,79 @@ static int meet(const skg_extent *a, const skg_extent *b) {
            p->low_depth <= q->high_depth && q->low_depth <= p->high_depth;
 }
 
+/* Whether a part wins over none. With clipping any part may make another fall, by its absence. */
+static int is_other(const skg_scene *scene, int32_t clip, int64_t part) {
+    if (clip) return 0;
+    for (int64_t q = 0; q < scene->count; q++)
+        if (may_win(&scene->parts[part], &scene->parts[q])) return 0;
+    return 1;
+}
+
 enum { LISTED = 1, MAY_FALL = 2 };
 
-static void mark_rivals(const skg_scene *scene, int32_t clip, const skg_extent *extents, int32_t *marks) {
+static int wins(const skg_scene *scene, const skg_extent *extents, int64_t part, int64_t over) {
+    return may_win(&scene->parts[part], &scene->parts[over]) && meet(&extents[part], &extents[over]);
+}
+
+/* Widens the window by the pixels where two parts may meet. */
+static void add_to_window(const skg_camera *camera, const skg_extent *a, const skg_extent *b,
+                          int32_t window[4]) {
+    int32_t p[4], q[4];
+    skg_extent_pixels(camera, a, p);
+    skg_extent_pixels(camera, b, q);
+    for (int k = 0; k < 4; k += 2) {
+        const int32_t from = p[k] > q[k] ? p[k] : q[k], to = p[k + 1] < q[k + 1] ? p[k + 1] : q[k + 1];
+        window[k] = from < window[k] ? from : window[k];
+        window[k + 1] = to > window[k + 1] ? to : window[k + 1];
+    }
+}
+
+static void mark_rivals(const skg_scene *scene, int32_t clip, const skg_camera *camera,
+                        const skg_extent *extents, int32_t *marks, int32_t window[4]) {
+    const int32_t size[2] = {(int32_t)camera->rows, (int32_t)camera->columns};
+    for (int k = 0; k < 2; k++) window[2 * k] = size[k], window[2 * k + 1] = 0;
     for (int64_t p = 0; p < scene->count; p++) {
         const int64_t parent = clipped_to(scene, clip, p);
         if (parent >= 0 && extents[p].on_detector) {
             marks[p] |= LISTED | MAY_FALL;
             marks[parent] |= LISTED;
+            for (int k = 0; k < 2; k++) window[2 * k] = 0, window[2 * k + 1] = size[k];
         }
         for (int64_t q = 0; q < scene->count; q++)
-            if (may_win(&scene->parts[p], &scene->parts[q]) && meet(&extents[p], &extents[q])) {
+            if (wins(scene, extents, p, q)) {
                 marks[p] |= LISTED;
                 marks[q] |= LISTED | MAY_FALL;
+                add_to_window(camera, &extents[p], &extents[q], window);
             }
     }
+    for (int k = 0; k < 2; k++) window[2 * k + 1] = window[2 * k + 1] < size[k] ? window[2 * k + 1] : size[k];
 }
 
-/* The level of a part below the world. On the way up the part is marked if one of its ancestors may fall. */
-static int64_t level_of(const skg_scene *scene, const skg_extent *extents, int64_t part, int32_t *marks) {
+/* Whether a part may lie where its ancestor `up` falls: anywhere if that is clipped, otherwise where a part that wins over
+ * it is. */
+static int may_share(const skg_scene *scene, int32_t clip, const skg_extent *extents, int64_t part,
+                     int64_t up) {
+    if (clipped_to(scene, clip, up) >= 0) return extents[part].on_detector;
+    for (int64_t q = 0; q < scene->count; q++)
+        if (wins(scene, extents, q, up) && meet(&extents[q], &extents[part])) return 1;
+    return 0;
+}
+
+/* The level of a part below the world. On the way up the part is marked if it may fall with one of its ancestors. */
+static int64_t level_of(const skg_scene *scene, int32_t clip, const skg_extent *extents, int64_t part,
+                        int32_t *marks) {
     int64_t level = 0;
     for (int64_t up = scene->parts[part].inside; up >= 0; up = scene->parts[up].inside) {
         level++;
-        if (marks[up] & MAY_FALL && scene->parts[part].mesh->closed && extents[part].on_detector)
+        if (marks[up] & MAY_FALL && !(marks[part] & LISTED) && scene->parts[part].mesh->closed &&
+            may_share(scene, clip, extents, part, up))
             marks[part] |= LISTED;
     }
     return level;
 }
 
-skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
-                             skg_priority *priority) {
+skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_camera *camera,
+                             const skg_extent *extents, skg_priority *priority) {
     int32_t *marks = NULL;
     int64_t *levels = NULL, deepest = 0;
     skg_status status = SKG_OK;
@@ -74,14 +119,17 @@ skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_ext
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *marks, "priorities", &marks));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *levels, "priorities", &levels));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *priority->parts, "priorities", &priority->parts));
-    mark_rivals(scene, clip, extents, marks);
+    mark_rivals(scene, clip, camera, extents, marks, priority->window);
     for (int64_t p = 0; p < scene->count; p++) {
-        levels[p] = level_of(scene, extents, p, marks);
+        levels[p] = level_of(scene, clip, extents, p, marks);
         deepest = levels[p] > deepest ? levels[p] : deepest;
     }
     for (int64_t level = 0; level <= deepest; level++)
         for (int64_t p = 0; p < scene->count; p++)
-            if (levels[p] == level && marks[p] & LISTED) priority->parts[priority->count++] = p;
+            if (levels[p] == level && marks[p] & LISTED) {
+                priority->parts[priority->count++] = p;
+                priority->others += is_other(scene, clip, p);
+            }
 cleanup:
     skg_free(&marks);
     skg_free(&levels);
@@ -125,4 +173,6 @@ void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priorit
         for (int64_t up = scene->parts[part].inside; up >= 0; up = scene->parts[up].inside)
             if (slots[up] >= 0) add_to_set(entry + 2 + words, slots[up]);
     }
+    for (int64_t s = 0; s < priority->count; s++)
+        if (is_other(scene, clip, priority->parts[s])) slots[priority->parts[s]] += SKG_HITS_OTHER;
 }

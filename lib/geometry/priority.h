@@ -13,16 +13,20 @@
 #include "scene/scene.h"
 
 typedef struct {
-    int64_t count;  /* of parts that compete, or fall with a part that does */
+    int64_t count; /* of parts that compete, or fall with a part that does */
+    int64_t
+        others; /* of these that win over none, and are not clipped; their hits matter where a winner is */
     int64_t *parts; /* [count] numbers of the parts, parents before children */
+    /* Pixels where parts may compete: rows from, to, columns from, to. The whole detector if children are clipped. */
+    int32_t window[4];
 } skg_priority;
 
 /* Whether any parts of a scene can ever compete. */
 int skg_priority_possible(const skg_scene *scene, int32_t clip);
 
-/* The parts that compete for these extents [parts of the scene]. */
-skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_extent *extents,
-                             skg_priority *priority);
+/* The parts that compete for these extents [parts of the scene], and where. */
+skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_camera *camera,
+                             const skg_extent *extents, skg_priority *priority);
 void skg_priority_release(skg_priority *priority);
 
 /* The number of competitors that the kernels of hits.cl are compiled for, and the ints of one entry of their
@@ -32,7 +36,7 @@ int64_t skg_priority_entry(const skg_priority *priority);
 
 /* Fills the tables of hits.cl.
  *
- * slots   [parts of the scene] the competitor that a part is, or -1
+ * slots   [parts of the scene] the competitor that a part is, plus SKG_HITS_OTHER if it wins over none; or -1
  * table   [competitors][entry] part, slot of the parent that it is clipped to or -1, the set of slots that displace
  *         it, the set of slots of its ancestors */
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,

@@ -3,6 +3,8 @@
 #include "core/vector.h"
 #include "image/image.h"
 
+#include <skiagraph/version.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -58,7 +60,8 @@ static void write_header(const skg_picture *picture, FILE *stream) {
     const skg_view *view = picture->view;
     skg_picture_title(picture, title, sizeof title);
     fprintf(stream,
-            "ObjectType = Image\nNDims = %d\nComment = %s\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n"
+            "ObjectType = Image\nNDims = %d\nComment = %s; skiagraph " SKG_VERSION
+            "\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n"
             "CompressedData = False\n",
             view ? 3 : 2, title, host_is_big_endian() ? "True" : "False");
     if (view)

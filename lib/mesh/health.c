@@ -56,7 +56,10 @@ static skg_status weld(skg_mesh *mesh) {
 
 /* The welded corners of a triangle. Returns 0 if two of them are the same vertex. */
 static int welded(const skg_mesh *mesh, int64_t triangle, uint32_t corner[3]) {
-    for (int k = 0; k < 3; k++) corner[k] = (uint32_t)mesh->weld[mesh->corners[3 * triangle + k]];
+    for (int k = 0; k < 3; k++) {
+        const int32_t given = mesh->corners[3 * triangle + k];
+        corner[k] = (uint32_t)(mesh->weld ? mesh->weld[given] : given);
+    }
     return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
 }
 
@@ -206,9 +209,10 @@ static skg_status count_duplicates(skg_mesh *mesh) {
     return SKG_OK;
 }
 
-/* Counts the components by union-find over the welded vertices that triangles use. */
-static skg_status count_components(skg_mesh *mesh) {
+/* Union-find over the welded vertices that triangles use. */
+skg_status skg_mesh_components(const skg_mesh *mesh, int32_t *number, int64_t *count) {
     int32_t *parent = NULL; /* -1: not used so far */
+    *count = 0;
     SKG_TRY(skg_alloc(mesh->vertices, sizeof *parent, mesh->name, &parent));
     for (int64_t v = 0; v < mesh->vertices; v++) parent[v] = -1;
     for (int64_t t = 0; t < mesh->triangles; t++) {
@@ -217,12 +221,24 @@ static skg_status count_components(skg_mesh *mesh) {
         welded(mesh, t, corner);
         for (int k = 0; k < 3; k++) {
             int32_t v = (int32_t)corner[k];
-            if (parent[v] < 0) parent[v] = v, mesh->health.components++;
+            if (parent[v] < 0) parent[v] = v, ++*count;
             root[k] = root_of(parent, v);
         }
         for (int k = 1; k < 3; k++) {
-            mesh->health.components -= root_of(parent, root[0]) != root_of(parent, root[k]);
+            *count -= root_of(parent, root[0]) != root_of(parent, root[k]);
             join(parent, root[0], root[k]);
+        }
+    }
+    if (number) { /* roots are replaced by -2 - number, in the order of their first triangles */
+        int32_t next = 0;
+        for (int64_t t = 0; t < mesh->triangles; t++) {
+            uint32_t corner[3];
+            welded(mesh, t, corner);
+            number[t] = root_of(parent, (int32_t)corner[0]);
+        }
+        for (int64_t t = 0; t < mesh->triangles; t++) {
+            if (parent[number[t]] >= 0) parent[number[t]] = -2 - next++;
+            number[t] = -2 - parent[number[t]];
         }
     }
     skg_free(&parent);
@@ -271,7 +287,7 @@ skg_status skg_mesh_examine(skg_mesh *mesh) {
     SKG_TRY(weld(mesh));
     SKG_TRY(examine_edges(mesh));
     SKG_TRY(count_duplicates(mesh));
-    SKG_TRY(count_components(mesh));
+    SKG_TRY(skg_mesh_components(mesh, NULL, &health->components));
     mesh->orientation = 1;
     skg_mesh_measure(mesh, health);
     mesh->closed = health->closed;

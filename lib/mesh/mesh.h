@@ -40,6 +40,11 @@ skg_status skg_mesh_examine(skg_mesh *mesh);
  * multiplicity   how often an edge runs in one direction: coincident copies weld into one component */
 skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root, int32_t multiplicity);
 
+/* Numbers the pieces that are connected through welded vertices, in the order of their first triangles.
+ *
+ * number   [triangles] result: the piece of each triangle; may be NULL */
+skg_status skg_mesh_components(const skg_mesh *mesh, int32_t *number, int64_t *count);
+
 /* Volume (times orientation), area, bounds and degenerate triangles for the present positions. */
 void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health);
 

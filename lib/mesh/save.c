@@ -41,11 +41,12 @@ static void write_ply(const skg_mesh *mesh, FILE *stream) {
     int size = fits_float(mesh) ? 4 : 8;
     const char *type = size == 4 ? "float" : "double";
     unsigned char record[3 * 8];
-    fprintf(stream,
-            "ply\nformat binary_little_endian 1.0\ncomment positions in mm\nelement vertex %" PRId64
-            "\nproperty %s x\nproperty %s y\nproperty %s z\nelement face %" PRId64
-            "\nproperty list uchar int vertex_indices\nend_header\n",
-            mesh->vertices, type, type, type, mesh->triangles);
+    fprintf(
+        stream,
+        "ply\nformat binary_little_endian 1.0\ncomment skiagraph: positions in mm\nelement vertex %" PRId64
+        "\nproperty %s x\nproperty %s y\nproperty %s z\nelement face %" PRId64
+        "\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh->vertices, type, type, type, mesh->triangles);
     for (int64_t i = 0; i < mesh->vertices; i++) {
         double p[3];
         skg_mesh_vertex(mesh, i, p);
@@ -76,7 +77,7 @@ static void normal_of(float corner[3][3], float normal[3]) {
 }
 
 static void write_stl(const skg_mesh *mesh, FILE *stream) {
-    unsigned char record[84] = "binary STL, mm"; /* must not begin with "solid" */
+    unsigned char record[84] = "skiagraph: binary STL, mm"; /* must not begin with "solid" */
     put(record + 80, (uint64_t)mesh->triangles, 4);
     fwrite(record, 84, 1, stream);
     memset(record, 0, sizeof record);

@@ -104,7 +104,7 @@ static skg_status find_places(const finding *f) {
     else
         set(f, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
     if (recipe->priority_possible)
-        SKG_TRY_CLEANUP(skg_priority_find(scene, recipe->options.clip, extents, &priority));
+        SKG_TRY_CLEANUP(skg_priority_find(scene, recipe->options.clip, &camera, extents, &priority));
     set_priority(f, priority.count);
     skg_costs_estimate(recipe, f->blur, extents, f->outcome);
 cleanup:

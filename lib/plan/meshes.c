@@ -1,5 +1,8 @@
 #include "plan/meshes.h"
 
+#include "core/context.h"
+#include "geometry/nesting.h"
+
 #include <inttypes.h>
 #include <stdlib.h>
 
@@ -59,6 +62,24 @@ skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene 
         return skg_fail(SKG_ERR_MESH,
                         "part %s: vertex %" PRId64 " of mesh %s is not finite; no image was made",
                         scene->parts[part].label, mesh->first_bad, mesh->name);
+    }
+    return SKG_OK;
+}
+
+skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_scene *scene,
+                                const skg_context *context) {
+    for (int64_t i = 0; i < meshes->count; i++) {
+        skg_mesh_nesting nesting;
+        char text[1024];
+        SKG_TRY(skg_nesting_find(meshes->meshes[i], &nesting, NULL));
+        SKG_TRY(skg_mesh_nesting_describe(&nesting, sizeof text, text));
+        if (!*text) continue;
+        int64_t part = 0;
+        while (meshes->of_part[part] != i) part++;
+        skg_log(context, SKG_LOG_WARNING, "part %s: %s%s", scene->parts[part].label, text,
+                nesting.inverted > 0
+                    ? ". \"Repair\": \"orientation\" in a scene file turns inverted components"
+                    : "");
     }
     return SKG_OK;
 }

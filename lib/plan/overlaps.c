@@ -52,7 +52,9 @@ skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_context *context
     skg_solid *solids = NULL;
     double **positions = NULL;
     skg_status status = SKG_OK;
-    if (!recipe->options.overlaps || scene->count < 2) return SKG_OK;
+    if (!recipe->options.overlaps) return SKG_OK;
+    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, scene, context));
+    if (scene->count < 2) return SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *solids, "overlap check", &solids));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *positions, "overlap check", &positions));
     for (int64_t i = 0; i < scene->count; i++)

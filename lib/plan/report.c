@@ -43,8 +43,9 @@ static void report_negative(const skg_context *context, int32_t pixels, skg_outc
     outcome->report.negative_pixels = pixels;
     if (pixels > 0)
         skg_log(context, SKG_LOG_WARNING,
-                "%" PRId32 " %s a negative exponent: more was subtracted for children than their parent "
-                "has there; see the overlaps that the plan lists",
+                "%" PRId32
+                " %s a negative exponent: more is subtracted than is there, by a part that leaves its "
+                "parent or by an inverted component of a mesh; see the warnings of the plan",
                 pixels, skg_plural(pixels, "pixel has", "pixels have"));
 }
 

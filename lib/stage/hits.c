@@ -109,40 +109,49 @@ cleanup:
     return status;
 }
 
+/* Columns from, rows from, columns to, rows to, as skg_window takes them. */
+static cl_int4 window_of(const hits_run *run) {
+    const int32_t *pixels = run->pass->priority.window;
+    return (cl_int4){.s = {pixels[2], pixels[0], pixels[3], pixels[1]}};
+}
+
 /* The arguments by which both kernels take the lists. */
-#define LIST_ARGUMENTS(kernel, lists, fill)                                                                  \
+#define LIST_ARGUMENTS(kernel, lists, place, doing)                                                          \
     SKG_ARGUMENT(kernel, slots, (lists)->slots.memory),                                                      \
         SKG_ARGUMENT(kernel, shifts, (lists)->shifts.memory),                                                \
         SKG_ARGUMENT(kernel, counts, (lists)->counts.memory),                                                \
         SKG_ARGUMENT(kernel, starts, (lists)->starts.memory),                                                \
-        SKG_ARGUMENT(kernel, hits, (lists)->hits.memory), SKG_ARGUMENT(kernel, fill, fill)
+        SKG_ARGUMENT(kernel, hits, (lists)->hits.memory), SKG_ARGUMENT(kernel, window, place),               \
+        SKG_ARGUMENT(kernel, doing, doing)
 
-/* Lists the hits of triangles in front of the source. fill: 0 counts them, 1 lists them. */
-static skg_status list_hits(const hits_run *run, cl_int fill) {
+/* Lists the hits of triangles in front of the source. doing: SKG_HITS_... */
+static skg_status list_hits(const hits_run *run, cl_int doing) {
+    const cl_int4 window = window_of(run);
     const skg_argument arguments[SKG_HITS_LIST_ARGUMENTS] = {
         SKG_TRIANGLE_ARGUMENTS(HITS_LIST, run->raster->frame, run->geometry),
-        LIST_ARGUMENTS(HITS_LIST, run->memory, fill),
+        LIST_ARGUMENTS(HITS_LIST, run->memory, window, doing),
     };
     return list_with(run, "skg_hits_list", SKG_HITS_LIST_ARGUMENTS, arguments,
                      run->context->device->info.is_gpu ? ROWS_AT_ONCE : 1);
 }
 
 /* Lists the hits of triangles that reach the source's plane. */
-static skg_status list_hits_at_source(const hits_run *run, cl_int fill) {
+static skg_status list_hits_at_source(const hits_run *run, cl_int doing) {
+    const cl_int4 window = window_of(run);
     const skg_argument arguments[SKG_HITS_SOURCE_PLANE_ARGUMENTS] = {
         SKG_TRIANGLE_ARGUMENTS(HITS_SOURCE_PLANE, run->raster->frame, run->geometry),
         SKG_ARGUMENT(HITS_SOURCE_PLANE, vertices, run->geometry->offsets.memory),
-        LIST_ARGUMENTS(HITS_SOURCE_PLANE, run->memory, fill),
+        LIST_ARGUMENTS(HITS_SOURCE_PLANE, run->memory, window, doing),
     };
     const size_t rows = (size_t)run->raster->frame.rows;
     return list_with(run, "skg_hits_source_plane", SKG_HITS_SOURCE_PLANE_ARGUMENTS, arguments,
                      (rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS);
 }
 
-static skg_status list_all(const hits_run *run, cl_int fill) {
+static skg_status list_all(const hits_run *run, cl_int doing) {
     const skg_kernel_options *kernels = &run->raster->options.kernels;
-    SKG_TRY(list_hits(run, fill));
-    return kernels->source_plane && !kernels->parallel ? list_hits_at_source(run, fill) : SKG_OK;
+    SKG_TRY(list_hits(run, doing));
+    return kernels->source_plane && !kernels->parallel ? list_hits_at_source(run, doing) : SKG_OK;
 }
 
 /* Gives each pixel its stretch of the list, and counts all hits. */
@@ -223,9 +232,15 @@ skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_
     SKG_TRY(reserve(&run, &memory->hits, 16, "hits of parts with priorities"));
     SKG_CL_TRY(clEnqueueFillBuffer(run.context->device->queue, memory->counts.memory, &none, sizeof none, 0,
                                    (size_t)pixels, 0, NULL, NULL));
-    SKG_TRY(list_all(&run, 0));
+    SKG_TRY(list_all(&run, SKG_HITS_COUNT));
+    if (pass->priority.others > 0) {
+        SKG_CL_TRY(clEnqueueCopyBuffer(run.context->device->queue, memory->counts.memory,
+                                       memory->starts.memory, 0, 0, (size_t)pixels, 0, NULL, NULL));
+        SKG_TRY(list_all(&run, SKG_HITS_COUNT + SKG_HITS_OF_OTHERS));
+    }
     SKG_TRY(place_hits(&run));
     SKG_TRY(reserve_hits(&run));
-    SKG_TRY(list_all(&run, 1));
+    SKG_TRY(list_all(&run, SKG_HITS_LIST));
+    if (pass->priority.others > 0) SKG_TRY(list_all(&run, SKG_HITS_LIST + SKG_HITS_OF_OTHERS));
     return settle(&run);
 }

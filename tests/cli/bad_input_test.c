@@ -77,6 +77,27 @@ START_TEST(outputs_that_cannot_be_written) {
 }
 END_TEST
 
+START_TEST(files_of_the_user_stay) {
+    static const char *const ours[] = {"b.png", "b.mha", "b.tif"};
+    char text[64];
+    write_text("a.png", "mine");
+    ck_run_fails(5, "a.png: exists beside the input scene.json and was not written by skiagraph",
+                 "image scene.json -o a.png");
+    ck_run_fails(5, "exists beside the input", "image ./scene.json -o \"$PWD/a.png\"");
+    read_back("a.png", text, sizeof text);
+    ck_assert_str_eq(text, "mine");
+    ck_run_fails(5, "scene.json: is the input", "image scene.json -o ./scene.json");
+    for (int i = 0; i < 3; i++)
+        for (int again = 0; again < 2; again++) ck_run(0, "image scene.json -o %s", ours[i]);
+    /* Beside no input, a file is the caller's to replace. */
+    write_text("c.png", "mine");
+    ck_run(0, "beam --kvp 90 --filter Al:3 -o c.png");
+    ck_run_fails(2, "frames.mp4: .mp4 files are not written here", "breathe scene.json -o frames.mp4");
+    ck_run_fails(2, "frames.GIF: .gif files are not written here", "thorax -o frames.GIF");
+    ck_assert(!has_file("frames.mp4") && !has_file("frames.GIF"));
+}
+END_TEST
+
 START_TEST(no_device) {
     ck_run_fails(4, "no OpenCL device fits device=quantum", "image scene.json -o a.mha --device quantum");
     ck_run_fails(4, "no OpenCL device", "OCL_ICD_VENDORS=/dev/null |plan scene.json");
@@ -148,6 +169,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down_scene);
     tcase_add_test(tests, usage);
     tcase_add_test(tests, outputs_that_cannot_be_written);
+    tcase_add_test(tests, files_of_the_user_stay);
     tcase_add_test(tests, no_device);
     tcase_add_test(tests, scene_files);
     tcase_add_test(tests, detectors_and_sources);

@@ -128,6 +128,17 @@ START_TEST(conflicts_are_reported) { /* too deep a breath for stiff organs */
 }
 END_TEST
 
+/* The needle passes through skin and liver: it displaces them, and nothing is warned of. */
+START_TEST(the_needle_passes_in_silence) {
+    ck_run(0, "image thorax.json %s --quantity attenuation -o t.mha", SMALL);
+    ck_assert_str_eq(complained, "");
+    ck_run(0, "image thorax.json %s --quantity attenuation -o t.mha --set Samples.needle.Through=false",
+           SMALL);
+    ck_assert_ptr_nonnull(strstr(complained, "skin with needle"));
+    ck_run_fails(3, "give Through or Priority, not both", "plan thorax.json --set Samples.needle.Priority=3");
+}
+END_TEST
+
 /* Phase 0.25 is the second of four frames of a breath, and the last of one frame a second from phase 0.25 on.
  */
 START_TEST(a_phase_alone_is_the_phase_in_sequence) {
@@ -221,13 +232,14 @@ START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(3, "has a Transform",
                  "breathe thorax.json -o f --set Samples.liver.Transform='[[\"Scaling\",1,1,2]]'");
     ck_run_fails(3, "Patern", "breathe thorax.json -o f --set Breathing='{\"Patern\":\"quiet\"}'");
-    ck_run_fails(5, "cannot be made", "breathe thorax.json -o thorax.json");
+    ck_run_fails(5, "thorax.json: is the input", "breathe thorax.json -o thorax.json");
 }
 END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_thorax, tear_down_thorax);
     tcase_add_test(tests, the_liver_is_on_the_left);
+    tcase_add_test(tests, the_needle_passes_in_silence);
     tcase_add_test(tests, a_phase_alone_is_the_phase_in_sequence);
     tcase_add_test(tests, a_moment_alone_is_the_moment_in_sequence);
     tcase_add_test(tests, conflicts_are_reported);

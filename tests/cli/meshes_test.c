@@ -90,11 +90,50 @@ START_TEST(bad_meshes_are_refused) {
 }
 END_TEST
 
+/* The box with a second one beside it, of 4 mm, at x = 28 to 32; its faces are turned inward. */
+static const char inverted[] =
+    "v 28 3 3\nv 32 3 3\nv 28 7 3\nv 32 7 3\nv 28 3 7\nv 32 3 7\nv 28 7 7\nv 32 7 7\n"
+    "f 10 12 11 9\nf 15 16 14 13\nf 13 14 10 9\nf 12 16 15 11\nf 11 15 13 9\nf 14 16 12 10\n";
+
+START_TEST(inverted_components_are_turned) {
+    char text[1024];
+    snprintf(text, sizeof text, "%s%s", box, inverted);
+    write_text("two.obj", text);
+    ck_run(1, "mesh two.obj");
+    ck_assert_ptr_nonnull(strstr(said, "1 of 2 components is inverted: number 2 (12 triangles, near ("));
+    ck_assert_ptr_nonnull(
+        strstr(said, "faces inward in the open, where lengths become negative. --fix -o FILE"));
+    ck_run(1, "mesh two.obj --json");
+    json_t *object = said_json(), *file = json_array_get(member(object, "files"), 0);
+    ck_assert_int_eq(json_integer_value(json_object_get(file, "inverted_components")), 1);
+    json_decref(object);
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json");
+    check_range(-4, 10, 40 * 2e-4 + 1e-5); /* the margin is that of rays from the side, as above */
+    ck_assert_ptr_nonnull(strstr(complained, "part two: 1 of 2 components is inverted"));
+    ck_assert_ptr_nonnull(strstr(complained, "\"Repair\": \"orientation\""));
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json --set Repair=orientation");
+    check_range(0, 10, 40 * 2e-4 + 1e-5);
+    ck_assert_ptr_null(strstr(complained, "inverted"));
+    ck_assert_ptr_nonnull(strstr(complained, "1 of 2 components turned"));
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --quiet --set 'Repair=[\"exact\", \"orientation\"]'");
+    ck_run_fails(3, "chosen before",
+                 "lbuffer two.obj --material Al -o l.mha --quiet --set 'Repair=[\"exact\", \"none\"]'");
+    ck_run(0, "mesh two.obj --fix -o turned.ply");
+    ck_assert_ptr_nonnull(strstr(said, "volume 8064 mm3"));
+    ck_assert_ptr_nonnull(strstr(said, "wrote turned.ply"));
+    ck_run(0, "mesh turned.ply");
+    ck_run_fails(2, "--fix and -o go together", "mesh two.obj --fix");
+    ck_run_fails(2, "--fix and -o go together", "mesh two.obj -o a.ply");
+    ck_run_fails(2, "written as .ply or .stl", "mesh two.obj --fix -o a.obj");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_box, tear_down);
     tcase_add_test(tests, a_mesh_needs_no_scene);
     tcase_add_test(tests, a_mesh_is_seen_from_any_side);
     tcase_add_test(tests, several_meshes);
+    tcase_add_test(tests, inverted_components_are_turned);
     tcase_add_loop_test(tests, bad_meshes_are_refused, 0, sizeof bad / sizeof *bad);
 }
 

@@ -90,7 +90,7 @@ START_TEST(metaimage_keeps_bits_and_place) {
     ck_assert_int_eq(read_mha(path, header, sizeof header, data, sizeof data), PIXELS * 8);
     ck_assert_int_eq(memcmp(data, doubles, PIXELS * 8), 0);
     ck_assert_ptr_nonnull(strstr(header, "ElementType = MET_DOUBLE\n"));
-    ck_assert_ptr_nonnull(strstr(header, "Comment = energy (keV per pixel)\n"));
+    ck_assert_ptr_nonnull(strstr(header, "Comment = energy (keV per pixel); skiagraph "));
     ck_assert_ptr_nonnull(strstr(header, "DimSize = 7 5 1\n"));
     read_field(header, "\nElementSpacing", 3, numbers);
     ck_assert(fabs(numbers[0] - 0.5) < 4 * DBL_EPSILON && numbers[1] == 0.25 && numbers[2] == 1);

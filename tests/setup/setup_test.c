@@ -362,6 +362,12 @@ START_TEST(mends_and_priorities) {
     write_edited("\"Opacity\": 0.4", "\"priority\": -3");
     ck_skg(load());
     ck_assert_int_eq(part_at(0).priority, -3);
+    write_edited("\"Opacity\": 0.4", "\"Through\": true");
+    ck_skg(load());
+    ck_assert_int_eq(part_at(0).priority, INT32_MAX);
+    write_edited("\"Opacity\": 0.4", "\"Priority\": -3, \"Through\": false");
+    ck_skg(load());
+    ck_assert_int_eq(part_at(0).priority, -3);
     ck_assert_int_eq(part_at(1).priority, 0);
     ck_skg(skg_setup_options_get(setup, &options));
     ck_assert_int_eq(options.repair, SKG_REPAIR_NEIGHBOURS); /* what the file does not say stays */

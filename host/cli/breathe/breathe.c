@@ -8,6 +8,7 @@
 #include "common/file.h"
 #include "common/interrupt.h"
 #include "common/json.h"
+#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "session/explain.h"
@@ -223,12 +224,26 @@ static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) 
     return exit_status;
 }
 
+/* Nothing beside the scene is overwritten that this command did not write. */
+static int check_files(const cli_arguments *arguments, const sequence *s) {
+    int exit_status = CLI_DONE;
+    for (int64_t i = -2; i < s->frames && exit_status == CLI_DONE; i++) {
+        char *path = i < 0 ? cli_path_in(s->place, "%s", i == -2 ? "motion.csv" : "contact.png")
+                           : cli_path_in(s->place, "frame-%04" PRId64 ".png", i);
+        exit_status =
+            path ? cli_check_overwrite(arguments, path) : cli_error(CLI_DEVICE, "out of host memory");
+        free(path);
+    }
+    return exit_status;
+}
+
 static int work(const cli_arguments *arguments, fluoroscopy *f) {
     sequence s;
     int exit_status = read_flags(arguments, f, &s);
     if (exit_status == CLI_DONE && !is_one(&s)) exit_status = cli_make_folder(s.place);
     if (exit_status == CLI_DONE && s.meshes) exit_status = cli_make_folder(s.meshes);
     if (exit_status == CLI_DONE) exit_status = prepare(arguments, f, &s);
+    if (exit_status == CLI_DONE && !is_one(&s)) exit_status = check_files(arguments, &s);
     if (exit_status == CLI_DONE && f->low == 0 && f->high == 0) exit_status = find_range(f, &s);
     if (exit_status == CLI_DONE) exit_status = run_sequence(f, &s);
     if (exit_status != CLI_DONE) return exit_status;
@@ -242,7 +257,7 @@ static int work(const cli_arguments *arguments, fluoroscopy *f) {
 }
 
 int cli_breathe(const cli_arguments *arguments) {
-    fluoroscopy f = {0};
+    fluoroscopy f = {.arguments = arguments};
     int exit_status = work(arguments, &f);
     for (int i = 0; i < 2; i++) free(f.image[i]);
     free(f.outline);

@@ -5,6 +5,7 @@
 #include "session/session.h"
 
 typedef struct {
+    const cli_arguments *arguments;
     cli_session session;
     skg_motion *motion;
     skg_plan *plan;

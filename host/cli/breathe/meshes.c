@@ -1,6 +1,7 @@
 #include "breathe/meshes.h"
 
 #include "common/file.h"
+#include "common/overwrite.h"
 #include "common/say.h"
 
 #include <inttypes.h>
@@ -38,13 +39,13 @@ static int write_ply(const char *path, int64_t vertices, const double *now, cons
     if (!bytes) return cli_error(CLI_DEVICE, "out of host memory for %s", path);
     unsigned char *to =
         bytes +
-        snprintf((char *)bytes, LONGEST_HEADER,
-                 "ply\nformat binary_little_endian 1.0\ncomment mm; displacement from the scene's own "
-                 "mesh\nelement vertex %" PRId64
-                 "\nproperty double x\nproperty double y\nproperty double z\nproperty float "
-                 "displacement\nelement face %" PRId64
-                 "\nproperty list uchar int vertex_indices\nend_header\n",
-                 vertices, triangles);
+        snprintf(
+            (char *)bytes, LONGEST_HEADER,
+            "ply\nformat binary_little_endian 1.0\ncomment skiagraph: mm; displacement from the scene's own "
+            "mesh\nelement vertex %" PRId64
+            "\nproperty double x\nproperty double y\nproperty double z\nproperty float "
+            "displacement\nelement face %" PRId64 "\nproperty list uchar int vertex_indices\nend_header\n",
+            vertices, triangles);
     for (int64_t i = 0; i < vertices; i++) to = put_vertex(to, now + 3 * i, rest + 3 * i);
     for (int64_t t = 0; t < triangles; t++) {
         to = put(to, 3, 1);
@@ -68,12 +69,14 @@ static int write_part(const fluoroscopy *f, int64_t part, const char *label, con
     } else {
         for (char *c = path + strlen(folder) + 1; *c; c++)
             if (*c == '/' || *c == ' ') *c = '-';
+        exit_status = cli_check_overwrite(f->arguments, path);
         if (status == SKG_OK) status = skg_mesh_positions_get(mesh, now, 0);
         if (status == SKG_OK) status = skg_motion_rest_get(f->motion, part, now + 3 * vertices);
         if (status == SKG_OK) status = skg_mesh_triangles_get(mesh, corners, 0);
-        exit_status = status != SKG_OK
-                          ? cli_fail(status)
-                          : write_ply(path, vertices, now, now + 3 * vertices, triangles, corners);
+        if (exit_status == CLI_DONE)
+            exit_status = status != SKG_OK
+                              ? cli_fail(status)
+                              : write_ply(path, vertices, now, now + 3 * vertices, triangles, corners);
     }
     free(now);
     free(corners);

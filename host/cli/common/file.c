@@ -43,8 +43,24 @@ int cli_has_extension(const char *path, const char *extension) {
     return length > its && strcasecmp(path + length - its, extension) == 0;
 }
 
+/* Refuses a new folder that is named like a film or a picture. */
+static int check_folder_name(const char *folder) {
+    static const char *const extensions[] = {
+        ".gif", ".mp4", ".webm", ".avi",  ".mov", ".mkv", ".mpg",  ".mpeg", ".m4v", ".apng", ".ogv",
+        ".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tif", ".tiff", ".svg",  ".mha", ".dcm",  ".pdf"};
+    for (size_t e = 0; e < sizeof extensions / sizeof *extensions; e++)
+        if (cli_has_extension(folder, extensions[e]))
+            return cli_error(
+                CLI_USAGE,
+                "%s: %s files are not written here, and a folder of this name would be taken for one; name "
+                "a folder without extension",
+                folder, extensions[e]);
+    return CLI_DONE;
+}
+
 int cli_make_folder(const char *folder) {
     struct stat found;
+    if (stat(folder, &found) != 0 && check_folder_name(folder) != CLI_DONE) return CLI_USAGE;
     if (mkdir(folder, 0777) == 0) return CLI_DONE;
     int reason = errno;
     if (stat(folder, &found) == 0 && S_ISDIR(found.st_mode)) return CLI_DONE;

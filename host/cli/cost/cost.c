@@ -2,6 +2,7 @@
 
 #include "common/file.h"
 #include "common/json.h"
+#include "common/overwrite.h"
 #include "common/say.h"
 #include "cost/advice.h"
 #include "cost/data.h"
@@ -16,12 +17,28 @@
 #include <string.h>
 #include <unistd.h>
 
+/* The path of the table beside a page: "cost.csv" for "cost.html". The caller frees it; NULL if memory is
+ * exhausted. */
+static char *table_beside(const char *path) {
+    const size_t stem = strlen(path) - strlen(".html");
+    char *beside = malloc(stem + sizeof ".csv");
+    if (beside) sprintf(beside, "%.*s.csv", (int)stem, path);
+    return beside;
+}
+
 /* Checks before the long computation that every -o can be written. */
 static int check_outputs(const cli_arguments *arguments) {
     const char *path;
     for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_cost_output, i)); i++) {
         if (!cli_has_extension(path, ".html") && !cli_has_extension(path, ".csv"))
             return cli_error(CLI_USAGE, "-o %s: its extension is neither .html nor .csv", path);
+        if (cli_has_extension(path, ".html")) {
+            char *beside = table_beside(path);
+            const int exit_status =
+                beside ? cli_check_overwrite(arguments, beside) : cli_error(CLI_DEVICE, "out of host memory");
+            free(beside);
+            if (exit_status != CLI_DONE) return exit_status;
+        }
         const char *slash = strrchr(path, '/');
         char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
         if (!folder) return cli_error(CLI_DEVICE, "out of host memory");
@@ -38,15 +55,6 @@ static int write_csv(const cost_study *study, const char *path) {
     int exit_status = cli_write_file(path, text, strlen(text));
     free(text);
     return exit_status;
-}
-
-/* The path of the table beside a page: "cost.csv" for "cost.html". The caller frees it; NULL if memory is
- * exhausted. */
-static char *table_beside(const char *path) {
-    const size_t stem = strlen(path) - strlen(".html");
-    char *beside = malloc(stem + sizeof ".csv");
-    if (beside) sprintf(beside, "%.*s.csv", (int)stem, path);
-    return beside;
 }
 
 static int write_output(const cost_study *study, const char *path) {

@@ -20,6 +20,7 @@ const char *const cli_text[] = {
     "A SCENE is a JSON file in the schema of gVirtualXray (Source, Detector, Samples, Scan) with keys of "
     "Skiagraph's own, such as Parent, Precision, Tolerance, Breathing and Noise. The SCENE - is read from standard "
     "input.",
+    "A file that exists beside an input, or in a folder below it, is overwritten only if skiagraph wrote it.",
     NULL};
 
 const cli_item cli_other_verbs[] = {{"help", "this text, or that of a VERB"},

@@ -63,7 +63,7 @@ extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick;
 extern const cli_flag cli_flag_devices_warm;
-extern const cli_flag cli_flag_mesh_unit;
+extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output;
 extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_flag_material_list,
     cli_flag_material_naive;
 extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_angle, cli_flag_beam_anode,

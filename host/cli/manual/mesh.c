@@ -7,19 +7,31 @@ static const cli_item units[] = {{"um", "micrometre"}, {"mm", "millimetre (the d
 const cli_flag cli_flag_mesh_unit = {"--unit", "UNIT", "The unit of the numbers in the files.", units,
                                      CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_mesh_fix = {
+    "--fix", NULL, "Turns inverted components and writes the mesh, in mm, to the file of -o.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_mesh_output = {"-o", "FILE", "With --fix: the file to write, .ply or .stl.", NULL,
+                                       CLI_NAMES_FILE};
+
 static const char *const text[] = {
     "Reads meshes (STL, PLY, OBJ and every other format that Assimp reads) and reports whether each is closed. "
     "Path lengths through a closed mesh are exact on every ray; a mesh that is not closed is leaky. A closed mesh "
     "whose triangles all face inward is turned outward.",
+    "A component inside another is a cavity and has to face inward; one in the open has to face outward. Components "
+    "whose orientation contradicts their place are inverted: they make lengths negative or count them twice. A cavity "
+    "that leaves its solid cannot be turned; it has to be mended where the mesh was made.",
     "A file that cannot be read is reported, and the files after it are read all the same.",
-    "--json prints {files: [{file, closed, triangles, vertices, open_edges, volume_mm3, area_mm2, bounds, ...}]}.",
+    "--json prints {files: [{file, closed, triangles, vertices, open_edges, volume_mm3, area_mm2, bounds, "
+    "inverted_components, leaving_cavities, ...}]}.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_mesh_unit, &cli_flag_json, &cli_flag_quiet, NULL};
+static const cli_flag *const flags[] = {&cli_flag_mesh_unit, &cli_flag_mesh_fix, &cli_flag_mesh_output,
+                                        &cli_flag_json,      &cli_flag_quiet,    NULL};
 
 static const cli_item examples[] = {
     {"skiagraph mesh liver.stl lungs.ply", "reports the health of two meshes"},
     {"skiagraph mesh part.obj --unit m", "reads positions in metres"},
+    {"skiagraph mesh phantom.stl --fix -o turned.ply", "turns inverted components"},
     {NULL, NULL}};
 
 const cli_manual cli_manual_mesh = {.name = "mesh",
@@ -31,4 +43,4 @@ const cli_manual cli_manual_mesh = {.name = "mesh",
                                     .names = CLI_NAMES_FILE,
                                     .flags = flags,
                                     .examples = examples,
-                                    .check = "a mesh is leaky"};
+                                    .check = "a mesh is leaky or has inverted components"};

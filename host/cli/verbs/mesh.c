@@ -1,5 +1,6 @@
 #include "verbs/verbs.h"
 
+#include "common/file.h"
 #include "common/json.h"
 #include "common/say.h"
 
@@ -9,7 +10,7 @@
 
 static const double units_mm[] = {1e-3, 1, 10, 100, 1000}; /* by the values of --unit */
 
-static json_t *health_json(const char *path, const skg_mesh_health *health) {
+static json_t *health_json(const char *path, const skg_mesh_health *health, const skg_mesh_nesting *nesting) {
     json_t *object = json_object();
     json_object_set_new(object, "file", cli_json_text(path));
     json_object_set_new(object, "triangles", json_integer(health->triangles));
@@ -25,6 +26,12 @@ static json_t *health_json(const char *path, const skg_mesh_health *health) {
     json_object_set_new(object, "nonmanifold_edges", json_integer(health->nonmanifold_edges));
     json_object_set_new(object, "degenerate_triangles", json_integer(health->degenerate_triangles));
     json_object_set_new(object, "duplicate_triangles", json_integer(health->duplicate_triangles));
+    json_object_set_new(object, "inverted_components", json_integer(nesting->inverted));
+    if (nesting->inverted)
+        json_object_set_new(object, "inverted_position_mm", cli_json_numbers(nesting->inverted_place, 3));
+    json_object_set_new(object, "leaving_cavities", json_integer(nesting->leaving));
+    if (nesting->leaving)
+        json_object_set_new(object, "leaving_position_mm", cli_json_numbers(nesting->leaving_place, 3));
     if (!health->closed) {
         json_object_set_new(object, "first_open_vertex", json_integer(health->first_open_vertex));
         json_object_set_new(object, "first_open_position_mm",
@@ -53,36 +60,66 @@ static void print_health(const char *path, const skg_mesh_health *health) {
                health->degenerate_triangles, health->duplicate_triangles, health->nonmanifold_edges);
 }
 
-static skg_status examine(const char *path, double unit_mm, skg_mesh_health *health) {
-    skg_mesh *mesh = NULL;
+static void print_nesting(const skg_mesh_nesting *nesting) {
+    char text[1024];
+    if (skg_mesh_nesting_describe(nesting, sizeof text, text) != SKG_OK || !*text) return;
+    printf("  %s%s\n", text, nesting->inverted ? ". --fix -o FILE turns inverted components" : "");
+}
+
+/* Loads a mesh and examines it. fixed: NULL, or where it is written with its inverted components turned. */
+static skg_status examine(const char *path, double unit_mm, const char *fixed, skg_mesh_health *health,
+                          skg_mesh_nesting *nesting) {
+    skg_mesh *mesh = NULL, *oriented = NULL;
     skg_mesh_health_init(health);
+    skg_mesh_nesting_init(nesting);
     skg_status status = skg_mesh_load(NULL, path, unit_mm, &mesh);
-    if (status == SKG_OK) status = skg_mesh_health_get(mesh, health);
+    if (status == SKG_OK && fixed) status = skg_mesh_create_oriented(NULL, mesh, &oriented);
+    if (status == SKG_OK && fixed) status = skg_mesh_save(oriented, fixed);
+    const skg_mesh *examined = fixed ? oriented : mesh;
+    if (status == SKG_OK) status = skg_mesh_health_get(examined, health);
+    if (status == SKG_OK) status = skg_mesh_nesting_get(examined, nesting);
     skg_mesh_release(&mesh);
+    skg_mesh_release(&oriented);
     return status;
+}
+
+/* The file of -o, which goes with --fix and one mesh. */
+static int read_fix(const cli_arguments *arguments, const char **fixed) {
+    *fixed = cli_value(arguments, &cli_flag_mesh_output);
+    if (!*fixed && !cli_given(arguments, &cli_flag_mesh_fix)) return CLI_DONE;
+    if (!*fixed || !cli_given(arguments, &cli_flag_mesh_fix) || arguments->operand_count != 1)
+        return cli_error(CLI_USAGE,
+                         "mesh: --fix and -o go together, with one mesh: mesh FILE --fix -o OTHER");
+    if (!cli_has_extension(*fixed, ".stl") && !cli_has_extension(*fixed, ".ply"))
+        return cli_error(CLI_USAGE, "%s: a mesh is written as .ply or .stl", *fixed);
+    return CLI_DONE;
 }
 
 /* Examines every file. Returns the exit status of the first that cannot be read. */
 int cli_mesh(const cli_arguments *arguments) {
     int32_t chosen = 1;
+    const char *fixed = NULL;
     int exit_status = cli_choice(arguments, &cli_flag_mesh_unit, &chosen);
+    if (exit_status == CLI_DONE) exit_status = read_fix(arguments, &fixed);
     if (exit_status != CLI_DONE) return exit_status;
     json_t *list = cli_given(arguments, &cli_flag_json) ? json_array() : NULL;
-    int failure = CLI_DONE, all_closed = 1;
+    int failure = CLI_DONE, all_healthy = 1;
     for (int i = 0; i < arguments->operand_count; i++) {
         const char *path = arguments->operands[i];
         skg_mesh_health health;
-        skg_status status = examine(path, units_mm[chosen], &health);
+        skg_mesh_nesting nesting;
+        skg_status status = examine(path, units_mm[chosen], fixed, &health, &nesting);
         if (status != SKG_OK) {
             int its = cli_fail(status);
             if (failure == CLI_DONE) failure = its;
             continue;
         }
-        all_closed = all_closed && health.closed;
+        all_healthy = all_healthy && health.closed && nesting.inverted == 0 && nesting.leaving == 0;
         if (list)
-            json_array_append_new(list, health_json(path, &health));
+            json_array_append_new(list, health_json(path, &health, &nesting));
         else if (!cli_is_quiet())
-            print_health(path, &health);
+            print_health(path, &health), print_nesting(&nesting);
+        if (fixed && !list && !cli_is_quiet()) printf("wrote %s\n", fixed);
     }
     if (list) {
         json_t *object = json_object();
@@ -90,5 +127,5 @@ int cli_mesh(const cli_arguments *arguments) {
         exit_status = cli_json_print(object);
         if (exit_status != CLI_DONE) return exit_status;
     }
-    return failure != CLI_DONE ? failure : all_closed ? CLI_DONE : CLI_CHECK_FAILED;
+    return failure != CLI_DONE ? failure : all_healthy ? CLI_DONE : CLI_CHECK_FAILED;
 }

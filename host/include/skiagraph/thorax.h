@@ -52,8 +52,9 @@ SKG_API void skg_thorax_release(skg_thorax **thorax);
 typedef struct {
     /** Set by skg_thorax_part_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 1: it passes through other parts on purpose, as the needle does. Give it a higher priority than theirs
+     * (skg_part.priority): it then displaces them. */
+    int32_t through;
     /** Number of the part that it lies inside; -1: none. */
     int64_t inside;
     /** Closed, outward. */

@@ -188,6 +188,73 @@ static inline void skg_mesh_health_init(skg_mesh_health *health) {
 /** Gets the health of a mesh. */
 SKG_API skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health);
 
+/** How the components of a closed mesh lie in each other. The library fills it; prepare with
+ * skg_mesh_nesting_init.
+ *
+ * Components are pieces that are connected through shared vertices. One that lies in the open faces outward and
+ * adds its length to that of a ray. One inside another is a cavity: it faces inward and subtracts. A component
+ * whose orientation contradicts its place is called inverted: an inward one in the open gives negative lengths,
+ * an outward one inside another counts twice. */
+typedef struct {
+    /** Set by skg_mesh_nesting_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of components; 0 if the mesh is leaky, and then all else is 0, too. */
+    int64_t components;
+    /** Number of inverted components. skg_mesh_create_oriented turns them. */
+    int64_t inverted;
+    /** Number of the first inverted component, in the order of their first triangles; -1: none. */
+    int64_t first_inverted;
+    /** Its number of triangles. */
+    int64_t inverted_triangles;
+    /** 1: it faces inward in the open; 0: outward, inside another. */
+    int32_t inverted_inward;
+    /** 0 */
+    int32_t reserved_2;
+    /** A point inside of it, mm. */
+    double inverted_place[3];
+    /** Number of cavities that lie inside another component for the most part but leave it somewhere. There,
+     * lengths are negative, and turning cannot mend it. */
+    int64_t leaving;
+    /** Number of the cavity that leaves its solid farthest; -1: none. */
+    int64_t first_leaving;
+    /** The length of its longest stretch outside, along z, mm. */
+    double leaving_length;
+    /** The middle of that stretch, mm. */
+    double leaving_place[3];
+} skg_mesh_nesting;
+
+/** Prepares a skg_mesh_nesting of `size` bytes (export.h). */
+SKG_API void skg_mesh_nesting_init_sized(void *nesting, int32_t size);
+
+/** Prepares a skg_mesh_nesting. */
+static inline void skg_mesh_nesting_init(skg_mesh_nesting *nesting) {
+    skg_mesh_nesting_init_sized(nesting, (int32_t)sizeof *nesting);
+}
+
+/** Finds components whose orientation contradicts their nesting, by winding numbers along 64 x 64 lines through
+ * each component. Of a mesh with more than 1000 components, the 1000 largest by volume are examined.
+ *
+ *     nesting   result
+ *     errors    SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
+SKG_API skg_status skg_mesh_nesting_get(const skg_mesh *mesh, skg_mesh_nesting *nesting);
+
+/** Writes what is wrong with the nesting of a mesh in a sentence, such as "1 of 3 components is inverted: number 2
+ * (312 triangles, near (1, 2, 3) mm) faces inward in the open, where lengths become negative".
+ *
+ *     nesting   from skg_mesh_nesting_get
+ *     length    bytes of `text`, at least 1; a longer sentence is cut, 512 are enough
+ *     text      result: ends with a 0; empty if nothing is wrong */
+SKG_API skg_status skg_mesh_nesting_describe(const skg_mesh_nesting *nesting, int64_t length, char *text);
+
+/** Makes a mesh in which inverted components are turned. Vertices and the order of triangles stay; the second
+ * and third corner of turned triangles are exchanged.
+ *
+ *     context    receives a warning about a cavity that leaves its solid; may be NULL
+ *     oriented   result; the caller releases it */
+SKG_API skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented);
+
 /** Gets the mesh's name, valid as long as the mesh. */
 SKG_API skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name);
 

@@ -1,0 +1,41 @@
+/* A grid of columns along z through closed surfaces, with the signed hits along each. Private. */
+#ifndef SKG_COLUMNS_H
+#define SKG_COLUMNS_H
+
+#include "core/core.h"
+
+/* A closed surface (mm): a part in world coordinates, or a component of a mesh. */
+typedef struct {
+    int64_t vertices, triangles;
+    const double *positions; /* [vertices][3] */
+    const int32_t *corners;  /* [triangles][3] */
+    int64_t inside;          /* the parent's number, or -1 */
+} skg_solid;
+
+typedef struct {
+    double depth;       /* mm, along z */
+    int32_t part, sign; /* the solid's number; 1: the column enters it, -1: it leaves */
+} skg_column_hit;
+
+typedef struct {
+    int64_t side; /* columns along x and along y; set by the caller */
+    double low[3], high[3], step[2];
+    int64_t *first; /* [side * side + 1] hits of each column */
+    skg_column_hit *hits;
+} skg_columns;
+
+/* Sets the bounds to those of the solids. The grid is empty where a step is not above 0. */
+void skg_columns_bound(skg_columns *grid, int64_t count, const skg_solid *solids);
+
+/* Finds the hits of each column: those of cell row * side + column are hits[first[cell]] to hits[first[cell + 1] - 1],
+ * in no order. Free the columns also after a failure. */
+skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids);
+void skg_columns_free(skg_columns *grid);
+
+/* Sorts the hits of a cell by depth. */
+void skg_columns_sort(skg_columns *grid, int64_t cell);
+
+/* Where column `index` of an axis (0: x, 1: y) is, mm. */
+double skg_column_place(const skg_columns *grid, int axis, int64_t index);
+
+#endif
