@@ -171,8 +171,8 @@ skg_status skg_read_columns_of(const char *path, int64_t least, int64_t most, in
 }
 
 /* Appends the numbers of a line. */
-static skg_status read_numbers(const char *path, int64_t line, const char *text, int64_t *count,
-                               double **numbers) {
+static skg_status read_listed(const char *path, int64_t line, const char *text, int64_t *count,
+                              double **numbers) {
     static const char separators[] = " \t\r\n,;";
     for (text += strspn(text, separators); *text && *text != '#' && *text != '%';
          text += strspn(text, separators)) {
@@ -198,7 +198,7 @@ skg_status skg_read_list(const char *path, int64_t *count, double **numbers) {
         if (strlen(text) + 1 == sizeof text)
             status = skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", path, line);
         else
-            status = read_numbers(path, line, text, count, numbers);
+            status = read_listed(path, line, text, count, numbers);
     }
     if (status == SKG_OK && ferror(file))
         status = skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
