@@ -1,0 +1,109 @@
+#include "hard/bodies.h"
+
+#include "support/random.h"
+
+#include <math.h>
+
+const char *const hard_names[HARD_KINDS] = {"sphere",    "blob",  "torus", "shell",
+                                            "octahedra", "slabs", "sliver"};
+
+/* Every body fits a sphere of this radius around the origin, in mm. */
+static const double extent = 80;
+
+skg_view hard_view(int64_t size, uint64_t number) {
+    skg_view view;
+    skg_view_init(&view);
+    view.projection = number % 2 ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
+    view.columns = view.rows = size;
+    view.source[2] = -1000;
+    view.centre[2] = 200;
+    view.column_step[0] = view.row_step[1] = 2.5 * extent / (double)size;
+    return view;
+}
+
+/* Moves a vertex across the beam onto the ray of the nearest pixel, give or take `ulps` units in the last place of a
+ * float, as the library stores it. */
+static void pull_onto_ray(double *p, const skg_view *view, int ulps, uint64_t *seed) {
+    const double depth = (p[2] - view->source[2]) / (view->centre[2] - view->source[2]);
+    const double scale = view->projection == SKG_PROJECTION_POINT ? depth : 1;
+    for (int k = 0; k < 2; k++) {
+        const double step = (k == 0 ? view->column_step[0] : view->row_step[1]) * scale;
+        const double middle = 0.5 * (double)(view->columns - 1);
+        float x = (float)((round(p[k] / step + middle) - middle) * step);
+        for (int64_t u = draw_below(seed, 2 * ulps + 1) - ulps; u != 0; u += u < 0 ? 1 : -1)
+            x = nextafterf(x, u < 0 ? -INFINITY : INFINITY);
+        p[k] = (double)x;
+    }
+}
+
+/* A turn about a random axis through the origin, by Rodrigues' formula. */
+static void turn(solid *s, uint64_t *seed) {
+    const double z = draw(seed, -1, 1), around = draw(seed, 0, 6.28), across = sqrt(1 - z * z);
+    const double a[3] = {across * cos(around), across * sin(around), z}, angle = draw(seed, 0, 6.28);
+    const double c = cos(angle), sine = sin(angle), d = 1 - c;
+    const double m[12] = {
+        c + a[0] * a[0] * d,           a[0] * a[1] * d - a[2] * sine, a[0] * a[2] * d + a[1] * sine, 0,
+        a[1] * a[0] * d + a[2] * sine, c + a[1] * a[1] * d,           a[1] * a[2] * d - a[0] * sine, 0,
+        a[2] * a[0] * d - a[1] * sine, a[2] * a[1] * d + a[0] * sine, c + a[2] * a[2] * d,           0};
+    solid_move(s, m);
+}
+
+/* Plates whose faces lean from the ray by a small angle, each turned about the beam. */
+static solid slabs(uint64_t *seed) {
+    enum { SLABS = 12 };
+    solid all = {0};
+    for (int n = 0; n < SLABS; n++) {
+        solid one = solid_box(draw(seed, 20, 50), draw(seed, 0.01, 8), draw(seed, 10, 50));
+        const double lean = pow(10, draw(seed, -7, 0)), round = draw(seed, 0, 6.28);
+        const double c = cos(lean), sine = sin(lean), cr = cos(round), sr = sin(round);
+        const double m[12] = {cr, -sr * c, sr * sine,  draw(seed, -25, 25),
+                              sr, cr * c,  -cr * sine, draw(seed, -25, 25),
+                              0,  sine,    c,          draw(seed, -10, 10)};
+        solid_move(&one, m);
+        if (n == 0) {
+            all = one;
+        } else {
+            solid_add(&all, &one);
+            solid_free(&one);
+        }
+    }
+    return all;
+}
+
+static solid raw_body(int kind, const skg_view *view, uint64_t *seed) {
+    /* Triangles of 3 to 20 pixels: smaller ones would fold up when their corners go to the same rays. */
+    const int around = (int)((double)view->columns * draw(seed, 0.06, 0.18)), down = around / 2;
+    solid s;
+    switch (kind) {
+    case HARD_SPHERE:
+        return solid_sphere(extent, around, down);
+    case HARD_BLOB:
+        return solid_blob(0.8 * extent, around, down, draw_bits(seed));
+    case HARD_TORUS:
+        return solid_torus(0.7 * extent, 0.3 * extent, around, down);
+    case HARD_SHELL:
+        return solid_shell(extent, draw(seed, 0.6, 0.9) * extent, around, down);
+    case HARD_OCTAHEDRA:
+        return solid_octahedra(2000, view, (int)draw_below(seed, 3), 1 + (int)draw_below(seed, 2),
+                               draw_bits(seed));
+    case HARD_SLABS:
+        return slabs(seed);
+    default: {
+        s = solid_sphere(extent, around, down);
+        const double flat = pow(10, draw(seed, -2, -0.5)), m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, flat, 0};
+        solid_move(&s, m);
+        return s;
+    }
+    }
+}
+
+solid hard_body(int kind, const skg_view *view, uint64_t number) {
+    uint64_t seed = number * HARD_KINDS + (uint64_t)kind + 1;
+    solid s = raw_body(kind, view, &seed);
+    if (kind == HARD_SLABS || kind == HARD_OCTAHEDRA) return s;
+    turn(&s, &seed);
+    const int ulps = (int)draw_below(&seed, 3);
+    for (int64_t n = 0; n < s.vertices && kind != HARD_SLIVER; n++)
+        pull_onto_ray(s.positions + 3 * n, view, ulps, &seed);
+    return s;
+}

@@ -1,0 +1,17 @@
+/* Adversarial bodies: corners on the rays of pixels give or take some ulps, faces nearly along the rays, slivers. */
+#ifndef BENCH_HARD_BODIES_H
+#define BENCH_HARD_BODIES_H
+
+#include "support/shapes.h"
+
+enum { HARD_SPHERE, HARD_BLOB, HARD_TORUS, HARD_SHELL, HARD_OCTAHEDRA, HARD_SLABS, HARD_SLIVER, HARD_KINDS };
+
+extern const char *const hard_names[HARD_KINDS];
+
+/* size x size pixels, point source or parallel beam by turns of `number`. */
+skg_view hard_view(int64_t size, uint64_t number);
+
+/* The body `number` of this kind before that view; another one for each number. */
+solid hard_body(int kind, const skg_view *view, uint64_t number);
+
+#endif
