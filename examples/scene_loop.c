@@ -1,6 +1,6 @@
 /* Loads a scene file, moves one part of it step by step, and reads the lengths of the rays through that part.
  *
- *     cc scene_loop.c $(pkg-config --cflags --libs skiagraph) -lm -o scene_loop && ./scene_loop phantom.json marker */
+ *     cc scene_loop.c $(pkg-config --cflags --libs skiagraph) -lm -o scene_loop && ./scene_loop scenes/phantom.json marker */
 #include <skiagraph/skiagraph.h>
 
 #include <stdio.h>

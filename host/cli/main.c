@@ -47,6 +47,7 @@ static int run_verb(const cli_verb *verb, int count, char **words) {
         cli_catch_signals();
         guard_outputs(&arguments);
         cli_set_quiet(cli_given(&arguments, &cli_flag_quiet));
+        cli_set_verbose(cli_given(&arguments, &cli_flag_verbose));
         exit_status = cli_check_overwrites(&arguments);
         if (exit_status == CLI_DONE) exit_status = verb->run(&arguments);
     }

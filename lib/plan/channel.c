@@ -1,6 +1,7 @@
 #include "plan/channel.h"
 #include "geometry/camera.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 
 static const char *const quantity_names[] = {"energy", "fluence", "photons", "transmission", "attenuation"};
@@ -18,6 +19,19 @@ skg_status skg_channel_names_create(const skg_plan_options *options, int32_t cha
             snprintf(name->text, sizeof name->text, "%s from %g to %g keV", quantity_names[options->quantity],
                      options->band_kev[c], options->band_kev[c + 1]);
     }
+    return SKG_OK;
+}
+
+skg_status skg_quantity_get(int32_t quantity, const char **name, const char **unit) {
+    enum { QUANTITIES = sizeof quantity_names / sizeof *quantity_names };
+    if (name) *name = NULL;
+    if (unit) *unit = NULL;
+    if (quantity < 0 || quantity >= QUANTITIES)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_quantity_get: there is no quantity %" PRId32 "; 0 to %d are known", quantity,
+                        QUANTITIES - 1);
+    if (name) *name = quantity_names[quantity];
+    if (unit) *unit = quantity_units[quantity];
     return SKG_OK;
 }
 

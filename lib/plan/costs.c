@@ -16,7 +16,8 @@ typedef struct {
     const skg_recipe *recipe;
     const skg_blur *blur; /* NULL: none */
     double pixels;
-    double hits; /* of a pass, per pixel */
+    double hits;   /* of a pass, per pixel */
+    double listed; /* of these, hits that are listed for priorities */
     double passes;
 } counts;
 
@@ -30,7 +31,17 @@ static double hits_of(const counts *c, const skg_extent *extent) {
     return 2 * fmax(width, 0) * fmax(height, 0) / c->pixels;
 }
 
-static counts count(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents) {
+/* The same, in the window of a priority. */
+static double listed_of(const counts *c, const skg_extent *extent, const int32_t window[4]) {
+    const skg_scale_part *r = &extent->scale;
+    if (!extent->on_detector) return 0;
+    const double width = fmin(r->high_column, window[3]) - fmax(r->low_column, window[2]);
+    const double height = fmin(r->high_row, window[1]) - fmax(r->low_row, window[0]);
+    return 2 * fmax(width, 0) * fmax(height, 0) / c->pixels;
+}
+
+static counts count(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
+                    const skg_priority *priority) {
     counts c = {.recipe = recipe,
                 .blur = blur,
                 .pixels = (double)recipe->view.columns * (double)recipe->view.rows,
@@ -38,6 +49,8 @@ static counts count(const skg_recipe *recipe, const skg_blur *blur, const skg_ex
     for (int64_t p = 0; p < recipe->scene->count; p++)
         if (recipe->model.first_contribution[p + 1] > recipe->model.first_contribution[p])
             c.hits += hits_of(&c, &extents[p]);
+    for (int64_t s = 0; s < priority->count; s++)
+        c.listed += listed_of(&c, &extents[priority->parts[s]], priority->window);
     return c;
 }
 
@@ -79,7 +92,7 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_REPAIR:
         return c->passes * (double)recipe->leaky_count * REPAIRED;
     case SKG_EFFECT_PRIORITY:
-        return c->passes * c->hits * LISTED;
+        return c->passes * c->listed * LISTED;
     case SKG_EFFECT_NOISE:
         return c->passes * channels * (nodes + DEVIATE);
     case SKG_EFFECT_BLUR:
@@ -94,9 +107,9 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
 }
 
 void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
-                        skg_outcome *outcome) {
+                        const skg_priority *priority, skg_outcome *outcome) {
     const skg_model *model = &recipe->model;
-    const counts c = count(recipe, blur, extents);
+    const counts c = count(recipe, blur, extents, priority);
     const double set_up = TRIANGLE * (double)outcome->report.triangles / c.pixels;
     const double plain = set_up + c.hits * SKG_COST_OF_CONTRIBUTION + attenuation(model, 1, 1);
     const double pass =

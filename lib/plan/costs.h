@@ -3,11 +3,12 @@
 #define SKG_COSTS_H
 
 #include "geometry/extent.h"
+#include "geometry/priority.h"
 #include "plan/outcome.h"
 #include "stage/blur.h"
 
 /* Fills the costs of the outcome's effects. blur: NULL for none; extents: [parts] at the recipe's view. */
 void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
-                        skg_outcome *outcome);
+                        const skg_priority *priority, skg_outcome *outcome);
 
 #endif

@@ -106,7 +106,7 @@ static skg_status find_places(const finding *f) {
     if (recipe->priority_possible)
         SKG_TRY_CLEANUP(skg_priority_find(scene, recipe->options.clip, &camera, extents, &priority));
     set_priority(f, priority.count);
-    skg_costs_estimate(recipe, f->blur, extents, f->outcome);
+    skg_costs_estimate(recipe, f->blur, extents, &priority, f->outcome);
 cleanup:
     skg_priority_release(&priority);
     skg_free(&extents);

@@ -207,6 +207,15 @@ skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part
     return skg_struct_write(&ours, sizeof ours, "skg_part", part);
 }
 
+skg_status skg_scene_label_get(const skg_scene *scene, int64_t id, const char **label) {
+    SKG_NEEDS(scene);
+    SKG_NEEDS(label);
+    *label = NULL;
+    SKG_TRY(check_id(scene, id, __func__));
+    *label = scene->parts[id].label;
+    return SKG_OK;
+}
+
 skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id) {
     SKG_NEEDS(scene);
     SKG_NEEDS(label);

@@ -26,7 +26,7 @@ fortran)
     done
     ./every_call_f
     ./first_image_f
-    sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/phantom.json" >small.json
+    sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/scenes/phantom.json" >small.json
     ./thousand_images_f small.json marker
     ;;
 python)

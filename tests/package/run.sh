@@ -18,7 +18,7 @@ for name in first_image hundred_poses scene_loop; do
     # shellcheck disable=SC2046
     cc -std=c11 -Wall -Wextra -Werror "$source/examples/$name.c" $(pkg-config --cflags --libs skiagraph) -lm -o $name
     case $name in
-    scene_loop) ./$name "$source/examples/phantom.json" marker ;;
+    scene_loop) ./$name "$source/examples/scenes/phantom.json" marker ;;
     *) ./$name ;;
     esac
 done

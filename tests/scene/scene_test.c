@@ -53,6 +53,11 @@ START_TEST(parts_come_back_as_they_went_in) {
     ck_assert_int_eq(id, 1);
     skg_part_init(&read);
     ck_skg(skg_scene_part_get(scene, 1, &read));
+    const char *its = NULL;
+    ck_skg(skg_scene_label_get(scene, 1, &its));
+    ck_assert_str_eq(its, read.label);
+    ck_skg_fails(skg_scene_label_get(scene, 99, &its), SKG_ERR_SCENE, "99");
+    ck_assert_ptr_null(its);
     ck_assert_int_eq(read.inside, 0);
     ck_assert_ptr_eq(read.mesh, cube);
     ck_assert_ptr_eq(read.material, water);

@@ -93,6 +93,7 @@ static int find_range(fluoroscopy *f, const sequence *s) {
     int64_t *bin = calloc(RANGE_BINS, sizeof *bin), total = 0, sum = 0;
     const int64_t looks = s->frames < RANGE_FRAMES ? s->frames : RANGE_FRAMES;
     int exit_status = bin ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+    cli_progress_begin("looking for the range of grey, frames", looks);
     for (int64_t k = 0; k < looks && exit_status == CLI_DONE; k++) {
         exit_status = pose(f, s, k * s->frames / looks);
         if (exit_status == CLI_DONE) exit_status = make_image(f, 0);
@@ -102,7 +103,9 @@ static int find_range(fluoroscopy *f, const sequence *s) {
             bin[at < RANGE_BINS ? (int)at : RANGE_BINS - 1]++;
             total++;
         }
+        cli_progress_step(k + 1);
     }
+    cli_progress_end();
     f->low = 0, f->high = RANGE_HIGHEST;
     for (int b = 0; b < RANGE_BINS && exit_status == CLI_DONE; b++) {
         if (sum <= total / 50) f->low = b * RANGE_HIGHEST / RANGE_BINS;
@@ -119,6 +122,7 @@ static int run_sequence(fluoroscopy *f, sequence *s) {
     const double start = cli_now_ms();
     int exit_status = pose(f, s, 0);
     s->pose_ms = cli_now_ms() - start;
+    cli_progress_begin("timing without writing, frames", s->frames);
     for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
         exit_status = fluoroscopy_start_image(f, (int)(i % 2), &job);
         if (exit_status != CLI_DONE) break;
@@ -127,8 +131,10 @@ static int run_sequence(fluoroscopy *f, sequence *s) {
         s->pose_ms += cli_now_ms() - posing;
         int waited = fluoroscopy_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
+        cli_progress_step(i + 1);
     }
     s->sequence_ms = cli_now_ms() - start;
+    cli_progress_end();
     return exit_status;
 }
 
@@ -155,17 +161,21 @@ static int write_sequence(fluoroscopy *f, const sequence *s) {
     motion_table table = {0};
     contact_sheet sheet = {0};
     char *motion = cli_path_in(s->place, "motion.csv"), *contact = cli_path_in(s->place, "contact.png");
-    const double start = cli_now_ms();
     int exit_status = motion && contact ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
     if (exit_status == CLI_DONE) exit_status = table_open(motion, &table);
     if (exit_status == CLI_DONE) exit_status = sheet_create(f, s->frames, &sheet);
+    cli_progress_begin("writing, frames", s->frames);
     for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
         exit_status = write_frame(f, s, i, &table, &sheet);
-        cli_progress("frames", i + 1, s->frames, start);
+        if (exit_status != CLI_DONE) break;
+        cli_keep("%" PRId64 " of %" PRId64 " frames are in %s, with their lines in motion.csv", i + 1,
+                 s->frames, s->place);
+        cli_progress_step(i + 1);
     }
-    if (exit_status == CLI_DONE) exit_status = table_close(&table);
+    cli_progress_end();
+    const int closed = table_close(&table);
+    if (exit_status == CLI_DONE) exit_status = closed;
     if (exit_status == CLI_DONE) exit_status = sheet_write(f, &sheet, contact);
-    table_discard(&table);
     free(sheet.values);
     free(motion);
     free(contact);

@@ -5,19 +5,10 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 int table_open(const char *path, motion_table *table) {
-    *table = (motion_table){0};
-    size_t capacity = strlen(path) + 32;
-    table->path = malloc(capacity);
-    table->temporary = malloc(capacity);
-    if (!table->path || !table->temporary) return cli_error(CLI_DEVICE, "out of host memory");
-    snprintf(table->path, capacity, "%s", path);
-    snprintf(table->temporary, capacity, "%s.part-%ld", path, (long)getpid());
-    table->stream = fopen(table->temporary, "w");
+    *table = (motion_table){.path = path, .stream = fopen(path, "w")};
     if (!table->stream) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
     fputs("t_s,phase,amplitude,thoracic,diaphragmatic,lung_ml,tidal_ml,lung_hu,diaphragm_left_mm,"
           "diaphragm_right_mm,liver_x_mm,liver_y_mm,liver_z_mm,liver_volume_ratio,flipped_triangles,"
@@ -57,23 +48,14 @@ int table_add(const fluoroscopy *f, double time_s, motion_table *table) {
             m.diaphragm_mm[0], m.diaphragm_mm[1], m.liver_mm[0], m.liver_mm[1], m.liver_mm[2],
             m.liver_volume_ratio, m.flipped_triangles, m.conflict_mm, m.broken_links, s.needle_mm);
     write_conflict(&m, table->stream);
-    return CLI_DONE;
+    if (fflush(table->stream) == 0) return CLI_DONE;
+    return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", table->path, strerror(errno));
 }
 
 int table_close(motion_table *table) {
-    int failed = ferror(table->stream) | fclose(table->stream);
+    if (!table->stream) return CLI_DONE;
+    const int failed = ferror(table->stream) | fclose(table->stream);
     table->stream = NULL;
-    if (failed || rename(table->temporary, table->path) != 0)
-        return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", table->path, strerror(errno));
-    return CLI_DONE;
-}
-
-void table_discard(motion_table *table) {
-    if (table->stream) {
-        fclose(table->stream);
-        remove(table->temporary);
-    }
-    free(table->path);
-    free(table->temporary);
-    *table = (motion_table){0};
+    return failed ? cli_error(CLI_OUTPUT, "%s: cannot be written: %s", table->path, strerror(errno))
+                  : CLI_DONE;
 }

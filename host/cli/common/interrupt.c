@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,6 +19,25 @@ static pthread_t writer;
 static char folders[MOST_FOLDERS][LONGEST_PATH];
 static volatile sig_atomic_t folder_count;
 static char suffix[32]; /* of unfinished files */
+
+/* Two sentences, so that the handler reads a whole one while the other is written. */
+static char kept[2][LONGEST_PATH] = {"no output was written", ""};
+static volatile sig_atomic_t kept_now;
+
+void cli_keep(const char *format, ...) {
+    va_list arguments;
+    const int next = 1 - kept_now;
+    va_start(arguments, format);
+    vsnprintf(kept[next], sizeof kept[next], format, arguments);
+    va_end(arguments);
+    kept_now = next;
+}
+
+/* Nothing can be done if it fails. */
+static void say(const char *text) {
+    const ssize_t written = write(STDERR_FILENO, text, strlen(text));
+    (void)written;
+}
 
 static int is_unfinished(const char *name) {
     const size_t length = strlen(name), its = strlen(suffix);
@@ -45,6 +65,9 @@ static void end(int number) {
         return;
     }
     for (int f = 0; f < folder_count; f++) clear_folder(folders[f]);
+    say("\nskiagraph: interrupted; ");
+    say(kept[kept_now]);
+    say("\n");
     signal(number, SIG_DFL);
     raise(number); /* is delivered when the handler returns */
 }

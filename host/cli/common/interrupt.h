@@ -9,4 +9,8 @@ void cli_catch_signals(void);
 /* Guards the folder that holds `path`, and `path` itself if it is a folder. */
 void cli_guard_output(const char *path);
 
+/* What the handler says after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
+ * written". */
+void cli_keep(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 #endif

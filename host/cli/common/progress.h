@@ -1,4 +1,4 @@
-/* Time, and the line that shows how far a long computation has come. */
+/* Time, and the line that shows how far a long computation is. */
 #ifndef SKG_CLI_PROGRESS_H
 #define SKG_CLI_PROGRESS_H
 
@@ -7,8 +7,18 @@
 /* Milliseconds of a clock that never goes back. */
 double cli_now_ms(void);
 
-/* On a terminal, from the first second on: "12 of 200 frames, 3.4 per second, 55 s left". start_ms:
- * cli_now_ms at the beginning. The line is erased when done == total. */
-void cli_progress(const char *things, int64_t done, int64_t total, double start_ms);
+/* Begins a computation. If it takes longer than two seconds and standard error is a terminal, a line there shows it,
+ * renewed by a thread of its own: "frames: 12 of 200, 3.4 per second, 55 s left"; without a total, "planning, 5 s".
+ * There is one at a time: one that begins ends the one before.
+ *
+ * what    what is done or counted; a text that lives as long as the computation
+ * total   how many things there are; 0: not known */
+void cli_progress_begin(const char *what, int64_t total);
+
+/* `done` things are done by now. */
+void cli_progress_step(int64_t done);
+
+/* Ends the computation and erases the line. Does nothing if there is none. */
+void cli_progress_end(void);
 
 #endif

@@ -1,10 +1,15 @@
 #include "common/say.h"
 
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-static int is_quiet;
+enum { WIDTH = 78 };
+
+static int is_quiet, is_verbose;
+static int has_line; /* 1: a line is shown; guarded by `terminal`, as is standard error */
+static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER;
 static cli_failure first; /* of this run */
 
 void cli_set_quiet(int quiet) {
@@ -13,6 +18,43 @@ void cli_set_quiet(int quiet) {
 
 int cli_is_quiet(void) {
     return is_quiet;
+}
+
+void cli_set_verbose(int verbose) {
+    is_verbose = verbose;
+}
+
+/* Makes room for a sentence. end_sentence follows. */
+static void begin_sentence(void) {
+    pthread_mutex_lock(&terminal);
+    if (has_line) fprintf(stderr, "\r%*s\r", WIDTH, "");
+    has_line = 0;
+}
+
+static void end_sentence(void) {
+    fputc('\n', stderr);
+    pthread_mutex_unlock(&terminal);
+}
+
+void cli_show_line(const char *line) {
+    pthread_mutex_lock(&terminal);
+    if (line)
+        fprintf(stderr, "\r%-*.*s", WIDTH, WIDTH, line);
+    else if (has_line)
+        fprintf(stderr, "\r%*s\r", WIDTH, "");
+    has_line = line != NULL;
+    pthread_mutex_unlock(&terminal);
+}
+
+void cli_tell(const char *format, ...) {
+    if (!is_verbose) return;
+    va_list arguments;
+    va_start(arguments, format);
+    begin_sentence();
+    fputs("skiagraph: ", stderr);
+    vfprintf(stderr, format, arguments);
+    end_sentence();
+    va_end(arguments);
 }
 
 const cli_failure *cli_first_failure(void) {
@@ -32,9 +74,10 @@ int cli_error(int exit_status, const char *given, ...) {
     const char *format = given ? given : ""; /* gcc's sanitizer build takes a null format for possible */
     va_list arguments;
     va_start(arguments, given);
+    begin_sentence();
     fputs("skiagraph: ", stderr);
     vfprintf(stderr, format, arguments); /* whole, whatever its length */
-    fputc('\n', stderr);
+    end_sentence();
     va_end(arguments);
     va_start(arguments, given);
     if (vsnprintf(sentence, sizeof sentence, format, arguments) < 0) *sentence = '\0';
@@ -78,16 +121,26 @@ void cli_warn(const char *format, ...) {
     if (is_quiet) return;
     va_list arguments;
     va_start(arguments, format);
+    begin_sentence();
     fputs("skiagraph: warning: ", stderr);
     vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    end_sentence();
+    va_end(arguments);
+}
+
+void cli_note(const char *format, ...) {
+    if (is_quiet) return;
+    va_list arguments;
+    va_start(arguments, format);
+    begin_sentence();
+    fputs("skiagraph: note: ", stderr);
+    vfprintf(stderr, format, arguments);
+    end_sentence();
     va_end(arguments);
 }
 
 void cli_log(int32_t level, const char *sentence, void *user) {
     (void)user;
-    if (level == SKG_LOG_WARNING)
-        cli_warn("%s", sentence);
-    else if (level == SKG_LOG_NOTE && !is_quiet)
-        fprintf(stderr, "skiagraph: note: %s\n", sentence);
+    if (level == SKG_LOG_WARNING) cli_warn("%s", sentence);
+    if (level == SKG_LOG_NOTE) cli_note("%s", sentence);
 }

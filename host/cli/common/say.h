@@ -27,10 +27,21 @@ int cli_exit_status(skg_status status);
 /* Prints "skiagraph: warning: sentence", unless --quiet. */
 void cli_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Prints "skiagraph: note: sentence", unless --quiet. */
+void cli_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 /* A skg_log_function that prints warnings and notes, unless --quiet. */
 void cli_log(int32_t level, const char *sentence, void *user);
 
 void cli_set_quiet(int quiet);
 int cli_is_quiet(void);
+
+/* With --verbose, cli_tell prints "skiagraph: sentence" on standard error: what was loaded, chosen and compiled. */
+void cli_set_verbose(int verbose);
+void cli_tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Shows a line at the bottom of a terminal until the next sentence, the next line, or NULL, which erases it. May be
+ * called by any thread. */
+void cli_show_line(const char *line);
 
 #endif

@@ -225,17 +225,18 @@ static int measure(cost_study *study, cost_point *point, double *image, int *kee
 }
 
 static int measure_all(cost_study *study, double *image) {
-    const double begun = cli_now_ms();
     const int count = study->count;
     int exit_status = CLI_DONE;
     study->count = 0;
+    cli_progress_begin("settings", count);
     for (int i = 0; exit_status == CLI_DONE && i < count; i++) {
         int keep = 0;
         cost_point point = study->points[i];
         exit_status = measure(study, &point, image, &keep);
         if (keep) study->points[study->count++] = point;
-        cli_progress("settings", i + 1, count, begun);
+        cli_progress_step(i + 1);
     }
+    cli_progress_end();
     return exit_status;
 }
 

@@ -1,7 +1,8 @@
 #include "manual/manual.h"
 
 const cli_flag cli_flag_beam_kvp = {
-    "--kvp", "KV", "The tube voltage, 10 to 450 kV; validated from 20 to 150 kV (Mo, Rh: to 49 kV).", NULL, CLI_NAMES_NOTHING};
+    "--kvp", "KV", "The tube voltage, 10 to 450 kV; validated from 20 to 150 kV (Mo, Rh: to 49 kV).", NULL,
+    CLI_NAMES_NOTHING};
 const cli_flag cli_flag_beam_filter = {
     "--filter", "MATERIAL:MM",
     "A filter of the beam with its thickness in mm, or in another unit that follows: Al:2.5, Cu:100um. May be repeated. Give every filter, the inherent one included: "

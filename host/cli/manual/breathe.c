@@ -51,6 +51,7 @@ static const cli_flag *const flags[] = {&cli_flag_breathe_output,
                                         &cli_flag_set,
                                         &cli_flag_lenient,
                                         &cli_flag_json,
+                                        &cli_flag_verbose,
                                         &cli_flag_quiet,
                                         NULL};
 

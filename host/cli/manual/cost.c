@@ -20,9 +20,9 @@ static const char *const text[] = {
     "idle machine.",
     "--json prints {references, points, advice, notes, ...}; advice names points by their number.", NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_cost_output, &cli_flag_cost_quick, &cli_flag_device,
-                                        &cli_flag_strategy,    &cli_flag_set,        &cli_flag_lenient,
-                                        &cli_flag_json,        &cli_flag_quiet,      NULL};
+static const cli_flag *const flags[] = {
+    &cli_flag_cost_output, &cli_flag_cost_quick, &cli_flag_device,  &cli_flag_strategy, &cli_flag_set,
+    &cli_flag_lenient,     &cli_flag_json,       &cli_flag_verbose, &cli_flag_quiet,    NULL};
 
 static const cli_item examples[] = {
     {"skiagraph cost scene.json -o cost.html", "writes cost.html and cost.csv and prints the table"},

@@ -52,6 +52,11 @@ const cli_flag cli_flag_lenient = {
 
 const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_verbose = {
+    "--verbose", NULL,
+    "Says on standard error what was loaded, chosen and compiled: device, parts, beam, and every effect that is on.",
+    NULL, CLI_NAMES_NOTHING};
+
 const cli_flag cli_flag_json = {
     "--json", NULL,
     "Prints one JSON object on standard output; after a failure {error: {status, message, where}}.", NULL,

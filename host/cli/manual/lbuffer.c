@@ -36,6 +36,7 @@ static const cli_flag *const flags[] = {&cli_flag_lbuffer_part,
                                         &cli_flag_set,
                                         &cli_flag_lenient,
                                         &cli_flag_json,
+                                        &cli_flag_verbose,
                                         &cli_flag_quiet,
                                         NULL};
 

@@ -24,6 +24,7 @@ static const cli_flag *const flags[] = {&cli_flag_meshes_material,
                                         &cli_flag_set,
                                         &cli_flag_lenient,
                                         &cli_flag_json,
+                                        &cli_flag_verbose,
                                         &cli_flag_quiet,
                                         NULL};
 

@@ -9,11 +9,33 @@
 #include <math.h>
 #include <stdio.h>
 
+/* What was chosen, for --verbose. The kernels are compiled, or taken from the cache, while the plan is made. */
+static void tell_plan(const skg_plan *plan, double plan_ms) {
+    skg_plan_report report;
+    int64_t effects = 0;
+    skg_plan_report_init(&report);
+    if (skg_plan_report_get(plan, &report) != SKG_OK || skg_plan_effect_count(plan, &effects) != SKG_OK)
+        return;
+    cli_tell("planned and compiled in %.0f ms: strategy %s, precision %s, %" PRId64 " nodes, %" PRId64
+             " planes",
+             plan_ms, cli_flag_strategy.values[report.strategy].name,
+             cli_flag_precision.values[report.precision].name, report.nodes, report.planes);
+    for (int64_t i = 0; i < effects; i++) {
+        skg_effect effect;
+        skg_effect_init(&effect);
+        if (skg_plan_effect_get(plan, i, &effect) == SKG_OK && effect.on)
+            cli_tell("on: %s: %s", effect.name, effect.reason);
+    }
+}
+
 int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) {
     double start = cli_now_ms();
+    cli_progress_begin("planning", 0);
     skg_status status = skg_plan_create(session->context, session->scene, &session->view, session->spectrum,
                                         &session->options, plan);
+    cli_progress_end();
     *plan_ms = cli_now_ms() - start;
+    if (status == SKG_OK) tell_plan(*plan, *plan_ms);
     if (status == SKG_OK) return CLI_DONE;
     int exit_status = cli_fail(status);
     return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;

@@ -45,17 +45,19 @@ int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, co
     times->frame_ms = calloc((size_t)times->repeats + 1, sizeof *times->frame_ms);
     if (!times->frame_ms) return cli_error(CLI_DEVICE, "out of host memory");
     double start = cli_now_ms();
-    const double begun = start;
+    cli_progress_begin("first image", 0);
     skg_status status = frame(plan, output, user);
     times->first_ms = cli_now_ms() - start;
+    if (times->repeats) cli_progress_begin("frames", times->repeats);
     for (int64_t i = 0; status >= SKG_OK && i < times->repeats; i++) {
         start = cli_now_ms();
         status = frame(plan, output, user);
         times->frame_ms[i] = cli_now_ms() - start;
         skg_status noted = status < SKG_OK ? status : note_stages(plan, times);
         if (noted < SKG_OK) status = noted;
-        cli_progress("frames", i + 1, times->repeats, begun);
+        cli_progress_step(i + 1);
     }
+    cli_progress_end();
     return cli_end_image(status, NULL);
 }
 

@@ -68,10 +68,7 @@ static int read_filters(const cli_arguments *arguments, json_t *list) {
     }
     if (json_array_size(list) > 0) return CLI_DONE;
     json_array_append_new(list, json_pack("[s,f,s]", "Al", DEFAULT_FILTER_MM, "mm"));
-    if (!cli_is_quiet())
-        fprintf(stderr,
-                "skiagraph: note: the beam is filtered by %g mm of aluminium; --filter changes that\n",
-                DEFAULT_FILTER_MM);
+    cli_note("the beam is filtered by %g mm of aluminium; --filter changes that", DEFAULT_FILTER_MM);
     return CLI_DONE;
 }
 

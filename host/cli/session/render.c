@@ -1,6 +1,7 @@
 #include "session/render.h"
 
 #include "common/file.h"
+#include "common/interrupt.h"
 #include "common/json.h"
 #include "common/say.h"
 #include "manual/list.h"
@@ -62,11 +63,15 @@ int cli_check_outputs(const cli_arguments *arguments) {
 
 /* Writes every file that can be written. Returns the exit status of the first that cannot. */
 static int write_files(const cli_rendering *rendering) {
-    int failure = CLI_DONE;
+    int failure = CLI_DONE, written = 0;
     const char *path;
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
         skg_status status = skg_picture_write(&rendering->picture, path);
-        if (status == SKG_OK) continue;
+        if (status == SKG_OK) {
+            written++;
+            cli_keep("outputs written: %d; the last one is %s", written, path);
+            continue;
+        }
         int its = cli_fail(status);
         if (failure == CLI_DONE) failure = status == SKG_ERR_UNSUPPORTED ? CLI_OUTPUT : its;
     }

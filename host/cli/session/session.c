@@ -1,9 +1,11 @@
 #include "session/session.h"
 
 #include "common/device.h"
+#include "common/progress.h"
 #include "common/say.h"
 #include "session/meshes.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -38,7 +40,9 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, int
     if (!text) source.path = session->path;
     source.lenient = cli_given(arguments, &cli_flag_lenient);
     source.lengths_only = lengths_only;
+    cli_progress_begin("reading the scene", 0);
     if (exit_status == CLI_DONE) status = skg_setup_create(session->context, &source, &session->setup);
+    cli_progress_end();
     free(settings);
     free(text);
     if (exit_status != CLI_DONE) return exit_status;
@@ -52,6 +56,29 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, int
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
+/* What was loaded, for --verbose. */
+static void tell_scene(const cli_session *session) {
+    int64_t parts = 0, bins = 0;
+    if (skg_scene_part_count(session->scene, &parts) != SKG_OK) return;
+    for (int64_t i = 0; i < parts; i++) {
+        skg_part part;
+        skg_mesh_health health;
+        const char *mesh = "", *material = "";
+        skg_part_init(&part);
+        skg_mesh_health_init(&health);
+        if (skg_scene_part_get(session->scene, i, &part) != SKG_OK ||
+            skg_mesh_name_get(part.mesh, &mesh) != SKG_OK ||
+            skg_mesh_health_get(part.mesh, &health) != SKG_OK ||
+            skg_material_name_get(part.material, &material) != SKG_OK)
+            return;
+        cli_tell("part %s: mesh %s of %" PRId64 " triangles, %s; material %s", part.label, mesh,
+                 health.triangles, health.closed ? "closed" : "leaky", material);
+    }
+    if (skg_spectrum_bin_count(session->spectrum, &bins) == SKG_OK)
+        cli_tell("beam of %" PRId64 " energies; detector of %" PRId64 " x %" PRId64 " pixels", bins,
+                 session->view.columns, session->view.rows);
+}
+
 int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_session *session) {
     char tolerance[64] = "";
     int32_t precision = -1, strategy = SKG_STRATEGY_AUTO;
@@ -62,7 +89,10 @@ int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_sessi
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_strategy, &strategy);
     if (exit_status == CLI_DONE)
         exit_status = cli_open_context(arguments, &session->context, &session->device);
+    if (exit_status == CLI_DONE)
+        cli_tell("device %s, driver %s", session->device.name, session->device.driver);
     if (exit_status == CLI_DONE) exit_status = load_scene(arguments, tolerance, lengths_only, session);
+    if (exit_status == CLI_DONE) tell_scene(session);
     if (precision >= 0) session->options.precision = precision;
     session->options.strategy = strategy;
     return exit_status;

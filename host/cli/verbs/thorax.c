@@ -1,7 +1,9 @@
 #include "verbs/verbs.h"
 
 #include "common/file.h"
+#include "common/interrupt.h"
 #include "common/json.h"
+#include "common/progress.h"
 #include "common/say.h"
 
 #include <inttypes.h>
@@ -45,8 +47,11 @@ int cli_thorax(const cli_arguments *arguments) {
     int exit_status = cli_integer(arguments, &cli_flag_thorax_triangles, 10000, 20000000, &options.triangles);
     if (exit_status == CLI_DONE) exit_status = cli_make_folder(folder);
     if (exit_status != CLI_DONE) return exit_status;
+    cli_progress_begin("generating and writing the thorax", 0);
+    cli_keep("the files in %s are whole; the last one, thorax.json, was not written", folder);
     skg_status status = skg_thorax_create(&options, &thorax);
     if (status == SKG_OK) status = skg_thorax_save(thorax, folder);
+    cli_progress_end();
     exit_status = status == SKG_OK ? count_all(thorax, &parts, &triangles) : cli_fail(status);
     if (exit_status == CLI_DONE) exit_status = print(arguments, folder, parts, triangles);
     skg_thorax_release(&thorax);

@@ -200,6 +200,17 @@ typedef struct {
     int32_t reserved;
 } skg_plan_options;
 
+/** Gets the name and the unit of a quantity.
+ *
+ *     quantity   enum skg_quantity
+ *     name       result: "energy", "fluence", "photons", "transmission" or "attenuation"; may be NULL
+ *     unit       result: "keV per pixel", "keV/mm2", "photons per pixel", "I/I0" or "-ln(I/I0)"; may be NULL.
+ *                Both are constant
+ *     errors     SKG_ERR_ARGUMENT if there is no such quantity
+ *
+ * Path lengths (skg_plan_lengths) are in mm. */
+SKG_API skg_status skg_quantity_get(int32_t quantity, const char **name, const char **unit);
+
 /** Prepares the options of a plan, of `size` bytes (export.h). */
 SKG_API void skg_plan_options_init_sized(void *options, int32_t size);
 

@@ -77,6 +77,9 @@ SKG_API skg_status skg_scene_part_count(const skg_scene *scene, int64_t *count);
  * caller. */
 SKG_API skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part);
 
+/** Gets the label of part 0 <= id < count, valid as long as the scene. */
+SKG_API skg_status skg_scene_label_get(const skg_scene *scene, int64_t id, const char **label);
+
 /** Finds a part by its label: the one with exactly this label, or else the only one that differs in case
  * alone. Errors: SKG_ERR_SCENE with the nearest label. */
 SKG_API skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id);
