@@ -8,7 +8,7 @@ if(SKG_STATIC)
   install(EXPORT skiagraph-static-targets NAMESPACE skiagraph:: DESTINATION ${cmake_files})
 endif()
 install(DIRECTORY lib/include/skiagraph host/include/skiagraph DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 install(FILES ${skiagraph_BINARY_DIR}/include/skiagraph/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/skiagraph)
 configure_package_config_file(cmake/skiagraph-config.cmake.in ${skiagraph_BINARY_DIR}/skiagraph-config.cmake
   INSTALL_DESTINATION ${cmake_files})
