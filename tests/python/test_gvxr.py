@@ -36,7 +36,7 @@ def cube(label="cube", edge=3, mu=0.2):
     gvxr.setMu(label, mu, "cm-1")
 
 
-def test_values_are_in_its_units():
+def test_values_are_in_its_units(tmp_path):
     set_up()
     cube()
     gvxr.useParallelBeam()
@@ -45,6 +45,10 @@ def test_values_are_in_its_units():
     assert image.max() == 80 and image.min() == pytest.approx(80 * np.exp(-0.6), rel=1e-4)  # the same, in the exponent
     assert gvxr.computeXRayImage(False).max() == 1000
     assert (gvxr.getLastLBuffer() == lengths).all()
+    gvxr.saveLastXRayImage(str(tmp_path / "image.mha"))
+    gvxr.saveLastLBuffer(str(tmp_path / "lengths.mha"))
+    assert b"MeV per pixel" in (tmp_path / "image.mha").read_bytes()[:1000]
+    assert (tmp_path / "lengths.mha").read_bytes().endswith(lengths.tobytes())
     assert gvxr.getUnitOfEnergy("keV") == 1e-3 and gvxr.getUnitOfLength("cm") == 10
 
 

@@ -217,8 +217,13 @@ def test_pictures_are_written(scene, tmp_path):
     assert (tmp_path / "ball.png").read_bytes()[1:4] == b"PNG"
     scene.save(tmp_path / "ball.mha", scene.image("attenuation"), "attenuation")
     header = (tmp_path / "ball.mha").read_bytes()[:1000]
-    assert b"DimSize = 64 48" in header
-    with pytest.raises(sk.ArgumentError, match="give .row, column."):
+    assert b"DimSize = 64 48" in header and b"attenuation" in header
+    scene.save(tmp_path / "lengths.tif", scene.lengths("ball"), "lengths")
+    assert b"path length" in (tmp_path / "lengths.tif").read_bytes()
+    scene.beam = sk.Beam([30, 60], [1, 1])
+    scene.save(tmp_path / "bands.mha", scene.image("photons", bands=[20, 40, 80]), "photons", bands=[20, 40, 80])
+    assert b"from 20 to 40 keV" in (tmp_path / "bands.mha").read_bytes()[:1000]
+    with pytest.raises(sk.ArgumentError, match="row, column"):
         scene.save(tmp_path / "line.png", np.zeros(3))
     with pytest.raises(sk.OutputError):
         scene.save(tmp_path / "nowhere" / "ball.png", scene.image())
