@@ -85,7 +85,7 @@ def test_a_change_shows():
 def test_a_scan_turns_the_meshes(tmp_path):
     set_up()
     cube(edge=1)
-    gvxr.translateNode("cube", 1, 0, 0, "cm")
+    gvxr.translateNode("cube", 1, 0.5, 0, "cm")
     gvxr.computeCTAcquisition(str(tmp_path / "scan"), "", 4, 0, False, 360, 2, 0, 0, 0, "mm", 0, 0, 1)
     scan = gvxr.getLastProjectionSet()
     assert scan.shape == (4, 24, 32) and scan.max() == 1 and gvxr.getAngleSetCT() == (0, 90, 180, 270)

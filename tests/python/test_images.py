@@ -121,6 +121,12 @@ def test_images_leave_by_dlpack(scene):
     assert np.shares_memory(other, image)
 
 
+def test_an_output_by_dlpack(scene):
+    wide = np.zeros((SIDE, 100), np.float32)
+    scene.image(out=OnlyDlpack(wide[:, :SIDE + 16]))
+    assert (wide[:, :SIDE + 16] == scene.image()).all() and (wide[:, SIDE + 16:] == 0).all()
+
+
 @pytest.mark.parametrize("out, words", [
     (np.empty((3, 4), np.float32), "out has the shape (3, 4) and the type float32"),
     (np.empty((SIDE, SIDE + 16), np.int32), "the type int32"),
@@ -200,6 +206,19 @@ def test_a_scene_that_changes_needs_no_care(scene, view):
     scene.view = sk.View(source=(0, 0, -1000), detector=(0, 0, 200), column_step=(2, 0, 0), row_step=(0, 2, 0),
                          pixels=(8, 4))
     assert scene.image().shape == (4, 8)
+
+
+def test_another_beam_and_other_matter_need_no_care(scene):
+    first = scene.image("transmission", tolerance=1e-3)
+    scene.beam = sk.Beam.tube(80, {"Al": 2.5})
+    scene["ball"].material = "water"
+    second = scene.image("transmission", tolerance=1e-3)
+    assert not (second == first).all()
+    scene["ball"].material = "bone cortical icru44"  # the plan is stale
+    third = scene.image("transmission", tolerance=1e-3)
+    assert third.min() < second.min()
+    scene.beam = sk.Beam.tube(40, {"Al": 2.5})
+    assert scene.image("transmission", tolerance=1e-3).min() < third.min()
 
 
 def test_a_range_that_is_left_warns(scene):

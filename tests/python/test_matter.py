@@ -67,6 +67,9 @@ def test_meshes_of_other_packages():
     pyvista.faces = np.array([4, 0, 1, 2, 3])
     with pytest.raises(sk.ArgumentError, match="triangulate"):
         as_mesh(pyvista)
+    pyvista.faces = np.tile([4, 0, 1, 2, 3], 4)
+    with pytest.raises(sk.ArgumentError, match="triangulate"):
+        as_mesh(pyvista)
     with pytest.raises(sk.ArgumentError, match="mesh is a int"):
         as_mesh(3)
 
@@ -155,6 +158,9 @@ def test_views(view):
     assert sk.translate(0, 0, 0) @ view == view
     moved = sk.translate(1, 2, 3) @ view
     assert moved != view and moved.source.tolist() == [1, 2, -997] and moved.column_step.tolist() == [2, 0, 0]
+    view.projection = "parallel_from_infinity"
+    assert (sk.translate(1, 2, 3) @ view).source.tolist() == [0, 0, -1000]  # a direction
+    view.projection = "point"
     view.row_step = view.column_step
     with pytest.raises(sk.SceneError, match="parallel"):
         view.check()
