@@ -9,6 +9,7 @@ import pytest
 
 import skiagraph as sk
 from skiagraph import gvxr
+from skiagraph.gvxr import json2gvxr
 from skiagraph.gvxr.calls import CALLS
 
 HERE = pathlib.Path(__file__).parent
@@ -178,6 +179,20 @@ def test_scene_files(tmp_path):
     gvxr.removeMeshAndChildren("bone")
     with pytest.raises(sk.SceneError, match="keeps its meshes"):
         gvxr.computeXRayImage()
+
+
+def test_scene_files_by_json2gvxr(tmp_path):
+    path = pathlib.Path(__file__).parents[2] / "examples" / "phantom.json"
+    with pytest.raises(sk.FileError, match="nowhere.json"):
+        json2gvxr.initGVXR(str(tmp_path / "nowhere.json"))
+    json2gvxr.initGVXR(str(path), "EGL")
+    json2gvxr.initSourceGeometry()
+    json2gvxr.initSpectrum(verbose=0)
+    json2gvxr.initDetector(str(path))
+    json2gvxr.initSamples(verbose=0)
+    assert (gvxr.computeXRayImage() == sk.Scene(path).image(unit="MeV")).all()
+    with pytest.raises(sk.UnsupportedError, match="computeCTAcquisition"):
+        json2gvxr.doCTScan()
 
 
 def test_every_call_is_here_or_refused():
