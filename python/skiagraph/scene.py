@@ -34,7 +34,8 @@ class Scene:
 
     scene: the path of a scene file; a dictionary with the same keys, of which any may be missing; None: nothing yet.
     settings: changes of the file before it is read, {"Detector.NumberOfPixels": [64, 64]} or ["KEY=VALUE"].
-    device: a Device, its configuration, or None for the one that the process shares.
+    device: a Device, its configuration, or None for the one that the process shares. lenient: what can be passed over in
+    a file is a warning, not an error. lengths_only: only lengths() are wanted, so beam and materials may be missing.
 
     >>> from skiagraph import Beam, Mesh, Scene, View, translate
     >>> scene = Scene()
@@ -53,9 +54,10 @@ class Scene:
     """
 
     def __init__(self, scene: str | os.PathLike[str] | Mapping[str, Any] | None = None, *,
-                 settings: Mapping[str, Any] | Sequence[str] = (), device: Device | str | None = None) -> None:
+                 settings: Mapping[str, Any] | Sequence[str] = (), device: Device | str | None = None,
+                 lenient: bool = False, lengths_only: bool = False) -> None:
         self._kept: _source.Kept | None = None
-        self._open(_source.source_of(scene, settings), device, None)
+        self._open(_source.source_of(scene, settings, lenient, lengths_only), device, None)
 
     def _open(self, source: _source.Source, device: Device | str | None, elsewhere: Mapping[str, str] | None) -> None:
         self._device = device_of(device)

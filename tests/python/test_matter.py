@@ -31,6 +31,13 @@ def test_strided_and_reversed_arrays():
     assert volume_of((np.asfortranarray(VERTICES), np.asfortranarray(FACES))) == volume_of((VERTICES, FACES))
 
 
+def test_components_that_face_the_wrong_way():
+    two = sk.Mesh(np.vstack([VERTICES, VERTICES + 5]), np.vstack([FACES, 4 + FACES[:, ::-1]]))
+    assert two.nesting["inverted"] == 1
+    assert two.oriented().nesting["inverted"] == 0
+    assert two.oriented().health["volume"] == pytest.approx(2 / 6, rel=1e-14)  # a few roundings
+
+
 def test_units():
     assert sk.Mesh(VERTICES, FACES, unit_mm=10).health["volume"] == pytest.approx(1000 / 6, rel=1e-14)  # roundings
 

@@ -49,6 +49,21 @@ def test_settings_and_dictionaries(path):
     assert len(sk.Scene()) == 0
 
 
+def test_files_that_others_wrote(path):
+    text = json.loads(path.read_text())
+    text["Samples"][0]["Flavour"] = "vanilla"
+    with pytest.raises(sk.FormatError, match="Flavour"):
+        sk.Scene(text)
+    text["Samples"].pop()
+    with pytest.warns(sk.SkiagraphWarning, match="Flavour"):
+        assert sk.Scene(text, lenient=True).image().shape == (24, 32)
+    del text["Samples"][0]["Flavour"], text["Source"]["Beam"], text["Samples"][0]["Material"]
+    with pytest.raises(sk.Error):
+        sk.Scene(text)
+    with pytest.warns(sk.SkiagraphWarning):
+        assert sk.Scene(text, lengths_only=True).lengths("skin").max() > 80
+
+
 def test_failures_have_their_sentences(path, tmp_path):
     with pytest.raises(sk.FileError, match="nowhere.json"):
         sk.Scene(tmp_path / "nowhere.json")
