@@ -1,14 +1,20 @@
-# Library, headers, command, and what pkg-config and find_package(skiagraph) need.
+# Library, headers, command, and what pkg-config and find_package(skiagraph) need. Components are those of the packages
+# (packaging.cmake): what is not said here belongs to dev.
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 set(cmake_files ${CMAKE_INSTALL_LIBDIR}/cmake/skiagraph)
-install(TARGETS skiagraph EXPORT skiagraph-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS skiagraph EXPORT skiagraph-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  COMPONENT library NAMELINK_COMPONENT dev)
+install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT library)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(EXPORT skiagraph-targets NAMESPACE skiagraph:: DESTINATION ${cmake_files})
 if(SKG_STATIC)
   install(TARGETS skiagraph_static EXPORT skiagraph-static-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT skiagraph-static-targets NAMESPACE skiagraph:: DESTINATION ${cmake_files})
 endif()
 install(DIRECTORY lib/include/skiagraph host/include/skiagraph DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 install(FILES ${skiagraph_BINARY_DIR}/include/skiagraph/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/skiagraph)
 configure_package_config_file(cmake/skiagraph-config.cmake.in ${skiagraph_BINARY_DIR}/skiagraph-config.cmake
   INSTALL_DESTINATION ${cmake_files})
@@ -31,5 +37,5 @@ foreach(name skiagraph skiagraph-opencl)
 endforeach()
 if(TARGET skiagraph_command)
   set_target_properties(skiagraph_command PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  install(TARGETS skiagraph_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS skiagraph_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
 endif()

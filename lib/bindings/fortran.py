@@ -91,7 +91,7 @@ def parameter(name, kind, before, structs):
     if plain in structs:
         array = constant and before == "count"
         return f"type({plain}), {intent}, optional :: {name}" + ("(*)" if array else "")
-    array = constant or name in ARRAYS
+    array = constant or name in ARRAYS or plain == "char"
     return f"{SCALARS[plain]}, {intent}, optional :: {name}" + ("(*)" if array else "")
 
 

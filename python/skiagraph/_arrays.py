@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._interface import ArgumentError
+from ._library import ffi
 
 
 def describe(array: NDArray[Any]) -> str:
@@ -83,13 +84,24 @@ def output(out: Any, shape: tuple[int, ...], what: str = "out") -> NDArray[Any]:
     return array
 
 
+def _writable(array: NDArray[Any]) -> NDArray[Any]:
+    """The same memory of the caller, who offers it as an output; NumPy marks what it has from DLPack as read-only."""
+    if not array.size:
+        return array
+    if min(array.strides, default=0) < 0:
+        raise BufferError("its strides are negative")
+    last = sum((extent - 1) * stride for extent, stride in zip(array.shape, array.strides))
+    memory = ffi.buffer(ffi.cast("char *", array.__array_interface__["data"][0]), last + array.itemsize)
+    return np.ndarray(array.shape, array.dtype, memory, strides=array.strides)
+
+
 def _shared(out: Any, what: str) -> NDArray[Any]:
     """An array on the same memory, by the buffer protocol or DLPack."""
     if isinstance(out, np.ndarray):
         return out
     try:
         if hasattr(out, "__dlpack__"):
-            return np.from_dlpack(out)
+            return _writable(np.from_dlpack(out))
         return np.asarray(memoryview(out))
     except (TypeError, BufferError, RuntimeError) as error:
         raise ArgumentError(f"{what} is a {type(out).__name__}, which shares no memory: {error}") from None

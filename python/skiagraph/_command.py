@@ -30,6 +30,8 @@ def cost(source: Source, quick: bool) -> dict[str, Any]:
             scene = os.path.join(folder, "scene.json")
             pathlib.Path(scene).write_bytes(source.text)
         words = [path(), "cost", scene, "--json", *(["--quick"] if quick else [])]
+        if source.lenient:
+            words.append("--lenient")
         for setting in source.settings:
             words += ["--set", setting]
         done = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -19,6 +19,8 @@ class Source:
     path: str | None
     partial: bool
     settings: list[str]
+    lenient: bool = False
+    lengths_only: bool = False
     #: name in the text -> (path, its size and time when the scene was read)
     files: dict[str, tuple[str, tuple[int, int]]] = field(default_factory=dict)
 
@@ -28,7 +30,7 @@ class Source:
         source = struct("skg_setup_source")
         source.text = _chars(self.text, keep)
         source.path = _chars(encode(self.path, "path"), keep) if self.path else ffi.NULL
-        source.partial = self.partial
+        source.partial, source.lenient, source.lengths_only = self.partial, self.lenient, self.lengths_only
         source.settings, source.setting_count = _texts(self.settings, keep), len(self.settings)
         if elsewhere:
             source.file_names, source.file_paths = _texts(elsewhere, keep), _texts(elsewhere.values(), keep)
@@ -51,8 +53,11 @@ class Source:
             if _stamp(path) != stamp:
                 raise FileError(f"{path}: changed since the scene was read, so the scene cannot be pickled")
             files[name] = pathlib.Path(path).read_bytes()
-        return {"text": self.text, "path": self.path, "partial": self.partial, "settings": self.settings,
-                "files": files}
+        return {"files": files, **{name: getattr(self, name) for name in _KEPT}}
+
+
+#: What a source is made of, but for its files.
+_KEPT = ("text", "path", "partial", "settings", "lenient", "lengths_only")
 
 
 class Kept:
@@ -66,15 +71,15 @@ class Kept:
             path.parent.mkdir()
             path.write_bytes(data)
             self.elsewhere[name] = str(path)
-        self.source = Source(content["text"], content["path"], content["partial"], content["settings"])
+        self.source = Source(**{name: content[name] for name in _KEPT})
 
 
-def source_of(scene: Any, settings: Any) -> Source:
+def source_of(scene: Any, settings: Any, lenient: bool, lengths_only: bool) -> Source:
     """The source of a path, a dictionary or nothing."""
     words = _settings(settings)
     if scene is None or isinstance(scene, Mapping):
         try:
-            return Source(json.dumps(scene or {}, allow_nan=False).encode(), None, True, words)
+            return Source(json.dumps(scene or {}, allow_nan=False).encode(), None, True, words, lenient, lengths_only)
         except (TypeError, ValueError) as error:
             raise ArgumentError(f"the scene is no JSON: {error}") from None
     if not isinstance(scene, (str, os.PathLike)):
@@ -85,7 +90,7 @@ def source_of(scene: Any, settings: Any) -> Source:
     except OSError:
         call("skg_setup_load", ffi.NULL, encode(path, "path"), 0, ffi.NULL, ffi.new("skg_setup **"))
         raise
-    return Source(found, path, False, words)
+    return Source(found, path, False, words, lenient, lengths_only)
 
 
 def _settings(settings: Any) -> list[str]:

@@ -144,6 +144,15 @@ class Mesh:
         """Is it closed? Volume in mm3, area in mm2, bounds and more."""
         return filled("skg_mesh_health", "skg_mesh_health_get", self._handle)
 
+    @property
+    def nesting(self) -> dict[str, Any]:
+        """How the components of a closed mesh lie in each other, and which of them face the wrong way."""
+        return filled("skg_mesh_nesting", "skg_mesh_nesting_get", self._handle)
+
+    def oriented(self) -> Mesh:
+        """A mesh in which the components that face the wrong way are turned."""
+        return Mesh._made("skg_mesh_create_oriented", ffi.NULL, self._handle)
+
     def __repr__(self) -> str:
         health = self.health
         state = "closed" if health["closed"] else f"leaky ({health['open_edges']} open edges)"

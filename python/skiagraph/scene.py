@@ -20,6 +20,7 @@ from ._progress import Progress
 from .beam import Beam
 from .material import Material, as_material
 from .mesh import Mesh, as_mesh
+from ._picture import write_picture
 from .part import Part
 from .report import Report
 from .view import View, as_views
@@ -33,7 +34,8 @@ class Scene:
 
     scene: the path of a scene file; a dictionary with the same keys, of which any may be missing; None: nothing yet.
     settings: changes of the file before it is read, {"Detector.NumberOfPixels": [64, 64]} or ["KEY=VALUE"].
-    device: a Device, its configuration, or None for the one that the process shares.
+    device: a Device, its configuration, or None for the one that the process shares. lenient: what can be passed over in
+    a file is a warning, not an error. lengths_only: only lengths() are wanted, so beam and materials may be missing.
 
     >>> from skiagraph import Beam, Mesh, Scene, View, translate
     >>> scene = Scene()
@@ -52,9 +54,10 @@ class Scene:
     """
 
     def __init__(self, scene: str | os.PathLike[str] | Mapping[str, Any] | None = None, *,
-                 settings: Mapping[str, Any] | Sequence[str] = (), device: Device | str | None = None) -> None:
+                 settings: Mapping[str, Any] | Sequence[str] = (), device: Device | str | None = None,
+                 lenient: bool = False, lengths_only: bool = False) -> None:
         self._kept: _source.Kept | None = None
-        self._open(_source.source_of(scene, settings), device, None)
+        self._open(_source.source_of(scene, settings, lenient, lengths_only), device, None)
 
     def _open(self, source: _source.Source, device: Device | str | None, elsewhere: Mapping[str, str] | None) -> None:
         self._device = device_of(device)
@@ -288,27 +291,19 @@ class Scene:
 
     def save(self, path: str | os.PathLike[str], image: Any, quantity: str = "energy", *, display: str = "radiograph",
              range: tuple[float, float] | None = None, **options: Any) -> None:
-        """Writes an image of this scene as .png, .tif or .mha. options: those that it was computed with."""
-        array = np.ascontiguousarray(_arrays.numbers(image, "image"))
-        if array.dtype not in (np.dtype(np.float32), np.dtype(np.float64)) or array.ndim not in (2, 3):
-            raise ArgumentError(f"image has {_arrays.describe(array)}; give [row, column] or [channel, row, column] of "
-                                "float32 or float64")
+        """Writes an image of this scene as .png, .tif or .mha.
+
+        quantity: what it holds, or "lengths" for path lengths. display: "radiograph" or "transmission", and range: the
+        values of black and white, of a .png. options: those that the image was computed with.
+        """
         with self._calls():
+            view = self.view
+            if quantity == "lengths":
+                write_picture(path, image, names=["path length"], unit="mm", view=view, display=display, range=range)
+                return
             channels = listed("skg_channel", "skg_plan_channel", self._plan({"quantity": quantity, **options}))
-            picture, keep = struct("skg_picture"), [ffi.new("char[]", c["name"].encode()) for c in channels]
-            keep.append(ffi.new("char[]", channels[0]["unit"].encode()))
-            picture.name, picture.unit, picture.flat_field = keep[0], keep[-1], channels[0]["flat_field"]
-            picture.type = choice("type", str(array.dtype), "the type")
-            picture.rows, picture.columns = array.shape[-2:]
-            picture.channels = array.shape[0] if array.ndim == 3 else 1
-            picture.data = ffi.cast("void *", ffi.from_buffer(array))
-            picture.quantity = choice("quantity", quantity, "quantity")
-            picture.display = choice("display", display, "display")
-            picture.low, picture.high = range or (0, 0)
-            view = self.view._write(struct("skg_view"))
-            if self.view.shape == array.shape[-2:]:
-                picture.view = view
-            call("skg_picture_write", picture, encode(path, "path"))
+            write_picture(path, image, names=[c["name"] for c in channels], unit=channels[0]["unit"],
+                          flat_field=channels[0]["flat_field"], quantity=quantity, view=view, display=display, range=range)
 
     # Breath
 

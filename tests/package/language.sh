@@ -1,5 +1,5 @@
 #!/bin/sh
-# The installed tree that run.sh left behind, used from another language. usage: language.sh fortran|python SOURCE BUILD
+# The installed tree that run.sh left behind, used from another language. usage: language.sh fortran|cpp|mpi|python SOURCE BUILD
 set -eu
 source=$2
 stage=$3/package-test
@@ -28,6 +28,28 @@ fortran)
     ./first_image_f
     sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/scenes/phantom.json" >small.json
     ./thousand_images_f small.json marker
+    ;;
+cpp)
+    need g++
+    # shellcheck disable=SC2046
+    g++ -std=c++20 -Wall -Wextra -Wpedantic -Werror "$source/examples/first_image.cpp" $(pkg-config --cflags --libs skiagraph) \
+        -o first_image_cpp
+    ./first_image_cpp
+    ;;
+mpi)
+    need mpicc
+    need mpirun
+    # shellcheck disable=SC2046
+    mpicc -std=c11 -Wall -Wextra "$source/examples/mpi_scan.c" $(pkg-config --cflags --libs skiagraph) -lm -o mpi_scan
+    sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/phantom.json" >small.json
+    # Open MPI shall run as root as well, and look for no other machine.
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_plm=isolated
+    # The same numbers, whatever the number of processes.
+    for processes in 1 2; do
+        mpirun --oversubscribe -n $processes ./mpi_scan small.json >projections-$processes.txt
+    done
+    cmp projections-1.txt projections-2.txt
+    grep -c degrees projections-1.txt
     ;;
 python)
     need python3

@@ -14,11 +14,11 @@ cd "$stage/work"
 
 echo "pkg-config:"
 pkg-config --validate skiagraph
-for name in first_image hundred_poses scene_loop; do
+for name in first_image hundred_poses scene_loop registration; do
     # shellcheck disable=SC2046
     cc -std=c11 -Wall -Wextra -Werror "$source/examples/$name.c" $(pkg-config --cflags --libs skiagraph) -lm -o $name
     case $name in
-    scene_loop) ./$name "$source/examples/scenes/phantom.json" marker ;;
+    scene_loop | registration) ./$name "$source/examples/scenes/phantom.json" marker ;;
     *) ./$name ;;
     esac
 done

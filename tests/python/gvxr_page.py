@@ -6,7 +6,8 @@ HEAD = """# Scripts of gVXR
 `from skiagraph import gvxr` instead of `from gvxrPython3 import gvxr` runs a script that was written for gVXR 2.1, as far as
 its tutorials go. The module was written from gVXR's documentation. Its values are in gVXR's units: MeV per pixel, cm of path
 length, matrices of 16 numbers column by column in mm. A call that is refused raises `skiagraph.UnsupportedError` with the
-reason. `gvxr.loadSceneFile(path)` reads a scene file, as gVXR's module `json2gvxr` does.
+reason. `from skiagraph.gvxr import json2gvxr` has `initGVXR` and the other `init...` calls that read a scene file;
+`json2gvxr.doCTScan` is refused, `gvxr.computeCTAcquisition` takes the angles.
 
 ```python
 from skiagraph import gvxr

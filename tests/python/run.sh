@@ -29,7 +29,7 @@ package)
     for python in python3 /usr/bin/python3; do
         if $python -c "import cffi, numpy, pytest, sys; sys.exit(sys.version_info < (3, 10))" 2>/dev/null; then
             cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
-            PYTHONPATH=$stage/site run_tests $python "$stage/site/skiagraph"
+            PATH=$build/bin:$PATH PYTHONPATH=$stage/site run_tests $python "$stage/site/skiagraph"
             exit
         fi
     done

@@ -9,6 +9,7 @@ import pytest
 
 import skiagraph as sk
 from skiagraph import gvxr
+from skiagraph.gvxr import json2gvxr
 from skiagraph.gvxr.calls import CALLS
 
 HERE = pathlib.Path(__file__).parent
@@ -36,7 +37,7 @@ def cube(label="cube", edge=3, mu=0.2):
     gvxr.setMu(label, mu, "cm-1")
 
 
-def test_values_are_in_its_units():
+def test_values_are_in_its_units(tmp_path):
     set_up()
     cube()
     gvxr.useParallelBeam()
@@ -45,6 +46,10 @@ def test_values_are_in_its_units():
     assert image.max() == 80 and image.min() == pytest.approx(80 * np.exp(-0.6), rel=1e-4)  # the same, in the exponent
     assert gvxr.computeXRayImage(False).max() == 1000
     assert (gvxr.getLastLBuffer() == lengths).all()
+    gvxr.saveLastXRayImage(str(tmp_path / "image.mha"))
+    gvxr.saveLastLBuffer(str(tmp_path / "lengths.mha"))
+    assert b"MeV per pixel" in (tmp_path / "image.mha").read_bytes()[:1000]
+    assert (tmp_path / "lengths.mha").read_bytes().endswith(lengths.tobytes())
     assert gvxr.getUnitOfEnergy("keV") == 1e-3 and gvxr.getUnitOfLength("cm") == 10
 
 
@@ -81,7 +86,7 @@ def test_a_change_shows():
 def test_a_scan_turns_the_meshes(tmp_path):
     set_up()
     cube(edge=1)
-    gvxr.translateNode("cube", 1, 0, 0, "cm")
+    gvxr.translateNode("cube", 1, 0.5, 0, "cm")
     gvxr.computeCTAcquisition(str(tmp_path / "scan"), "", 4, 0, False, 360, 2, 0, 0, 0, "mm", 0, 0, 1)
     scan = gvxr.getLastProjectionSet()
     assert scan.shape == (4, 24, 32) and scan.max() == 1 and gvxr.getAngleSetCT() == (0, 90, 180, 270)
@@ -174,6 +179,20 @@ def test_scene_files(tmp_path):
     gvxr.removeMeshAndChildren("bone")
     with pytest.raises(sk.SceneError, match="keeps its meshes"):
         gvxr.computeXRayImage()
+
+
+def test_scene_files_by_json2gvxr(tmp_path):
+    path = pathlib.Path(__file__).parents[2] / "examples" / "phantom.json"
+    with pytest.raises(sk.FileError, match="nowhere.json"):
+        json2gvxr.initGVXR(str(tmp_path / "nowhere.json"))
+    json2gvxr.initGVXR(str(path), "EGL")
+    json2gvxr.initSourceGeometry()
+    json2gvxr.initSpectrum(verbose=0)
+    json2gvxr.initDetector(str(path))
+    json2gvxr.initSamples(verbose=0)
+    assert (gvxr.computeXRayImage() == sk.Scene(path).image(unit="MeV")).all()
+    with pytest.raises(sk.UnsupportedError, match="computeCTAcquisition"):
+        json2gvxr.doCTScan()
 
 
 def test_every_call_is_here_or_refused():

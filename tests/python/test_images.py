@@ -121,6 +121,12 @@ def test_images_leave_by_dlpack(scene):
     assert np.shares_memory(other, image)
 
 
+def test_an_output_by_dlpack(scene):
+    wide = np.zeros((SIDE, 100), np.float32)
+    scene.image(out=OnlyDlpack(wide[:, :SIDE + 16]))
+    assert (wide[:, :SIDE + 16] == scene.image()).all() and (wide[:, SIDE + 16:] == 0).all()
+
+
 @pytest.mark.parametrize("out, words", [
     (np.empty((3, 4), np.float32), "out has the shape (3, 4) and the type float32"),
     (np.empty((SIDE, SIDE + 16), np.int32), "the type int32"),
@@ -202,6 +208,19 @@ def test_a_scene_that_changes_needs_no_care(scene, view):
     assert scene.image().shape == (4, 8)
 
 
+def test_another_beam_and_other_matter_need_no_care(scene):
+    first = scene.image("transmission", tolerance=1e-3)
+    scene.beam = sk.Beam.tube(80, {"Al": 2.5})
+    scene["ball"].material = "water"
+    second = scene.image("transmission", tolerance=1e-3)
+    assert not (second == first).all()
+    scene["ball"].material = "bone cortical icru44"  # the plan is stale
+    third = scene.image("transmission", tolerance=1e-3)
+    assert third.min() < second.min()
+    scene.beam = sk.Beam.tube(40, {"Al": 2.5})
+    assert scene.image("transmission", tolerance=1e-3).min() < third.min()
+
+
 def test_a_range_that_is_left_warns(scene):
     scene.beam = sk.Beam.tube(80, {"Al": 2.5})
     scene["block"].material = "water"
@@ -217,8 +236,13 @@ def test_pictures_are_written(scene, tmp_path):
     assert (tmp_path / "ball.png").read_bytes()[1:4] == b"PNG"
     scene.save(tmp_path / "ball.mha", scene.image("attenuation"), "attenuation")
     header = (tmp_path / "ball.mha").read_bytes()[:1000]
-    assert b"DimSize = 64 48" in header
-    with pytest.raises(sk.ArgumentError, match="give .row, column."):
+    assert b"DimSize = 64 48" in header and b"attenuation" in header
+    scene.save(tmp_path / "lengths.tif", scene.lengths("ball"), "lengths")
+    assert b"path length" in (tmp_path / "lengths.tif").read_bytes()
+    scene.beam = sk.Beam([30, 60], [1, 1])
+    scene.save(tmp_path / "bands.mha", scene.image("photons", bands=[20, 40, 80]), "photons", bands=[20, 40, 80])
+    assert b"from 20 to 40 keV" in (tmp_path / "bands.mha").read_bytes()[:1000]
+    with pytest.raises(sk.ArgumentError, match="row, column"):
         scene.save(tmp_path / "line.png", np.zeros(3))
     with pytest.raises(sk.OutputError):
         scene.save(tmp_path / "nowhere" / "ball.png", scene.image())

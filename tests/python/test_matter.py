@@ -31,6 +31,13 @@ def test_strided_and_reversed_arrays():
     assert volume_of((np.asfortranarray(VERTICES), np.asfortranarray(FACES))) == volume_of((VERTICES, FACES))
 
 
+def test_components_that_face_the_wrong_way():
+    two = sk.Mesh(np.vstack([VERTICES, VERTICES + 5]), np.vstack([FACES, 4 + FACES[:, ::-1]]))
+    assert two.nesting["inverted"] == 1
+    assert two.oriented().nesting["inverted"] == 0
+    assert two.oriented().health["volume"] == pytest.approx(2 / 6, rel=1e-14)  # a few roundings
+
+
 def test_units():
     assert sk.Mesh(VERTICES, FACES, unit_mm=10).health["volume"] == pytest.approx(1000 / 6, rel=1e-14)  # roundings
 
@@ -65,6 +72,9 @@ def test_meshes_of_other_packages():
     with pytest.raises(sk.ArgumentError, match="quad"):
         as_mesh(meshio)
     pyvista.faces = np.array([4, 0, 1, 2, 3])
+    with pytest.raises(sk.ArgumentError, match="triangulate"):
+        as_mesh(pyvista)
+    pyvista.faces = np.tile([4, 0, 1, 2, 3], 4)
     with pytest.raises(sk.ArgumentError, match="triangulate"):
         as_mesh(pyvista)
     with pytest.raises(sk.ArgumentError, match="mesh is a int"):
@@ -155,6 +165,9 @@ def test_views(view):
     assert sk.translate(0, 0, 0) @ view == view
     moved = sk.translate(1, 2, 3) @ view
     assert moved != view and moved.source.tolist() == [1, 2, -997] and moved.column_step.tolist() == [2, 0, 0]
+    view.projection = "parallel_from_infinity"
+    assert (sk.translate(1, 2, 3) @ view).source.tolist() == [0, 0, -1000]  # a direction
+    view.projection = "point"
     view.row_step = view.column_step
     with pytest.raises(sk.SceneError, match="parallel"):
         view.check()

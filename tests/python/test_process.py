@@ -130,6 +130,7 @@ def test_an_interrupt_ends_a_batch(scene):
     with pytest.raises(KeyboardInterrupt):
         scene.images(poses={"ball": np.eye(4)[None].repeat(100000, 0)}, progress=interrupt)
     assert not seen
+    assert scene._device._unfinished  # nobody waited for what is under way
     assert (scene.image() == expected).all()
 
 

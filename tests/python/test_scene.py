@@ -1,5 +1,6 @@
 """Scenes and their parts: reading, changing, failing, breathing."""
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -46,6 +47,21 @@ def test_settings_and_dictionaries(path):
     assert sk.Scene(given).image().shape == (24, 32)
     assert len(sk.Scene({"Samples": given["Samples"]})) == 1
     assert len(sk.Scene()) == 0
+
+
+def test_files_that_others_wrote(path):
+    text = json.loads(path.read_text())
+    text["Samples"][0]["Flavour"] = "vanilla"
+    with pytest.raises(sk.FormatError, match="Flavour"):
+        sk.Scene(text)
+    text["Samples"].pop()
+    with pytest.warns(sk.SkiagraphWarning, match="Flavour"):
+        assert sk.Scene(text, lenient=True).image().shape == (24, 32)
+    del text["Samples"][0]["Flavour"], text["Source"]["Beam"], text["Samples"][0]["Material"]
+    with pytest.raises(sk.Error):
+        sk.Scene(text)
+    with pytest.warns(sk.SkiagraphWarning):
+        assert sk.Scene(text, lengths_only=True).lengths("skin").max() > 80
 
 
 def test_failures_have_their_sentences(path, tmp_path):
@@ -149,9 +165,32 @@ def test_breath(tmp_path):
         scene.breathe(time=1)
         scene.breathe(phase=0)
         assert (scene["liver"].mesh.vertices == inhaled).all() and (scene.image() == image).all()
-        assert scene.images(poses={"spine": np.eye(4)[None]}).shape[0] == 1 if "spine" in scene else True
+        still = {"skin": np.eye(4)[None].repeat(2, 0)}
+        assert (scene.images(poses=still) == image).all()  # frames of a batch breathe too
     with pytest.raises(sk.ArgumentError, match="one of them"):
         sk.Scene().breathe()
+
+
+def test_costs_are_the_commands(path):
+    if not shutil.which("skiagraph"):
+        pytest.skip("the command skiagraph is not on the path")
+    scene = sk.Scene(path, settings={"Detector.NumberOfPixels": [8, 8]})
+    cost = scene.cost(quick=True)
+    assert {"points", "advice"} <= cost.keys()
+    scene["bone"].material = "water"
+    with pytest.raises(sk.SceneError, match="was changed"):
+        scene.cost()
+
+
+def test_the_declarations_are_the_librarys():
+    """Every function of the list is in the library that was loaded, and every struct has the size that it expects."""
+    from skiagraph._library import ffi, lib
+
+    names = [name for name in dir(lib) if name.startswith("skg_")]
+    assert len(names) > 150 and all(getattr(lib, name) for name in names)
+    view = ffi.new("skg_view *")
+    lib.skg_view_init_sized(view, ffi.sizeof("skg_view"))
+    assert view.size == ffi.sizeof("skg_view")
 
 
 def test_a_scene_without_organs_does_not_breathe(scene):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._interface import ArgumentError, SceneError
+from .._picture import write_picture
 from ..material import Material
 from ..matrices import rotate
 from ..mesh import Mesh
@@ -87,19 +88,19 @@ def getLastLBuffer() -> NDArray[np.float32]:
 
 def saveLastXRayImage(aFileName: str, useCompression: bool = True) -> None:
     """.png, .tif or .mha, in MeV. Never compressed, except PNG."""
-    _save(aFileName, getLastXRayImage())
+    _save(aFileName, getLastXRayImage(), "energy", "MeV per pixel")
 
 
 def saveLastLBuffer(aFileName: str, useCompression: bool = True) -> None:
     """.png, .tif or .mha, in cm."""
-    _save(aFileName, getLastLBuffer())
+    _save(aFileName, getLastLBuffer(), "path length", "cm")
 
 
 saveLastPathLength = saveLastLBuffer
 
 
-def _save(path: str, image: NDArray[np.float32]) -> None:
-    world.scene(False).save(path, image)
+def _save(path: str, image: NDArray[np.float32], name: str, unit: str) -> None:
+    write_picture(path, image, names=[name], unit=unit, view=world.scene(False).view)
 
 
 def _scan(angles: Sequence[float], axis: Sequence[float], centre: Sequence[float], integrate: bool,
@@ -134,7 +135,7 @@ def computeCTAcquisition(aProjectionOutputPath: str, aScreenshotOutputPath: str,
     if aProjectionOutputPath:
         os.makedirs(aProjectionOutputPath, exist_ok=True)
         for i, image in enumerate(images):
-            _save(os.path.join(aProjectionOutputPath, f"projection-{i:05}.tif"), image)
+            _save(os.path.join(aProjectionOutputPath, f"projection-{i:05}.tif"), image, "projection", "")
 
 
 def getLastProjectionSet() -> NDArray[np.float32]:
@@ -148,4 +149,4 @@ def getAngleSetCT() -> tuple[float, ...]:
 
 def saveLastProjectionSet(aFileName: str, useCompression: bool = True) -> None:
     """One file with a page or channel a projection."""
-    _save(aFileName, getLastProjectionSet())
+    _save(aFileName, getLastProjectionSet(), "projection", "")

@@ -1,0 +1,40 @@
+"""Image files. Private."""
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _arrays
+from ._interface import ArgumentError
+from ._library import call, choice, encode, ffi, struct
+from .view import View
+
+
+def write_picture(path: str | os.PathLike[str], image: Any, *, names: Sequence[str], unit: str, view: View | None = None,
+                  flat_field: float = 0, quantity: str = "energy", display: str = "radiograph",
+                  range: tuple[float, float] | None = None) -> None:
+    """[row, column] or [channel, row, column]; one name, or one a channel. flat_field 0: shown as it is."""
+    array = np.ascontiguousarray(_arrays.numbers(image, "image"))
+    if array.dtype not in (np.dtype(np.float32), np.dtype(np.float64)) or array.ndim not in (2, 3):
+        raise ArgumentError(f"image has {_arrays.describe(array)}; give [row, column] or [channel, row, column] of "
+                            "float32 or float64")
+    keep: list[Any] = [ffi.new("char[]", word.encode()) for word in (*names, unit)]
+    picture = struct("skg_picture")
+    picture.name, picture.unit, picture.flat_field = keep[0], keep[-1], flat_field
+    picture.type = choice("type", str(array.dtype), "the type")
+    picture.rows, picture.columns = array.shape[-2:]
+    picture.channels = array.shape[0] if array.ndim == 3 else 1
+    if len(names) > 1 and len(names) == picture.channels:
+        keep.append(ffi.new("const char *[]", keep[:len(names)]))
+        picture.channel_names = keep[-1]
+    picture.data = ffi.cast("void *", ffi.from_buffer(array))
+    picture.quantity = choice("quantity", quantity, "quantity")
+    picture.display = choice("display", display, "display")
+    picture.low, picture.high = range or (0, 0)
+    if view is not None and view.shape == array.shape[-2:]:
+        keep.append(view._write(struct("skg_view")))
+        picture.view = keep[-1]
+    call("skg_picture_write", picture, encode(path, "path"))
