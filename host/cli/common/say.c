@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static int is_quiet;
 static cli_failure first; /* of this run */
@@ -90,4 +91,6 @@ void cli_log(int32_t level, const char *sentence, void *user) {
         cli_warn("%s", sentence);
     else if (level == SKG_LOG_NOTE && !is_quiet)
         fprintf(stderr, "skiagraph: note: %s\n", sentence);
+    else if (level == SKG_LOG_PROGRESS && !is_quiet && isatty(STDERR_FILENO))
+        fprintf(stderr, "skiagraph: %s\n", sentence);
 }
