@@ -159,9 +159,7 @@ static void open_queue(void *argument) {
     device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &o->code);
 }
 
-skg_status skg_context_create(const char *config, skg_context **context) {
-    SKG_PLAIN;
-    SKG_NEEDS(context);
+skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index) {
     *context = NULL;
     skg_context *made = NULL;
     skg_status status = SKG_OK;
@@ -171,8 +169,8 @@ skg_status skg_context_create(const char *config, skg_context **context) {
     SKG_TRY(new_context(&made));
     skg_device *device = made->device;
     opening o = {.context = made};
-    SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, &device->platform, &device->id,
-                                      &device->info));
+    SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, without, &device->platform,
+                                      &device->id, &device->info, index));
     if (wanted.threads > 0)
         SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
     else

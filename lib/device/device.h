@@ -26,6 +26,8 @@ typedef struct skg_device {
     skg_digest identity;   /* of the device and its driver */
     char *store;           /* folder in which compiled programs are kept; "": none */
     int32_t recompiles;    /* 1: the driver compiles again when it is asked for a compiled program */
+    int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
+    uint32_t passed;       /* bit n: test n of lib/trial */
     int32_t compile_noted; /* 1: the log has been told that kernels are compiled */
     int64_t compile_ms;    /* time that compiling has taken */
 } skg_device;
@@ -95,9 +97,14 @@ skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t by
 
 /* --- choosing (choose.c) --- */
 
-/* Chooses the device for the words of a config, and fills info. */
-skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_device_id *device,
-                             skg_device_info *info);
+/* Chooses the device for the words of a config, and fills info. without: bit n is set if device n is not wanted; index: the
+ * number of the one that is chosen. A device that has failed the test of what every plan needs is passed over, unless it
+ * is the only one that fits; its user then hears why. */
+skg_status skg_device_choose(const char *wanted, uint64_t without, cl_platform_id *platform,
+                             cl_device_id *device, skg_device_info *info, int32_t *index);
+
+/* Opens a device as skg_context_create does, but tests nothing. */
+skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index);
 
 /* Fills in what programs are kept under. To be called once platform and id are set. */
 skg_status skg_device_identify(skg_device *device);

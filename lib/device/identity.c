@@ -76,7 +76,6 @@ static void add_environment(skg_digester *digester) {
 skg_digest skg_identity_of(cl_platform_id platform, cl_device_id device) {
     skg_digester digester;
     cl_device_type type = 0;
-    cl_device_id whole = NULL;
     skg_digest_start(&digester);
     skg_digest_add_text(&digester, SKG_VERSION);
     add_platform_text(&digester, platform, CL_PLATFORM_NAME);
@@ -86,9 +85,6 @@ skg_digest skg_identity_of(cl_platform_id platform, cl_device_id device) {
     add_device_text(&digester, device, CL_DEVICE_VERSION);
     add_device_text(&digester, device, CL_DRIVER_VERSION);
     add_device_text(&digester, device, CL_DEVICE_EXTENSIONS);
-    if (clGetDeviceInfo(device, CL_DEVICE_PARENT_DEVICE, sizeof whole, &whole, NULL) != CL_SUCCESS)
-        whole = NULL;
-    skg_digest_add_text(&digester, whole ? "part of a device" : "");
     if (clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL) != CL_SUCCESS) type = 0;
     if (type & CL_DEVICE_TYPE_CPU) add_processor(&digester);
     add_environment(&digester);
@@ -99,7 +95,8 @@ skg_status skg_device_identify(skg_device *device) {
     char path[SKG_STORE_PATH];
     skg_store_find(path);
     /* Oclgrind compiles with the options of its command line, which nobody else knows. */
-    if (skg_platform_is(device->platform, "Oclgrind")) path[0] = '\0';
+    device->simulates = skg_platform_is(device->platform, "Oclgrind");
+    if (device->simulates) path[0] = '\0';
     device->identity = skg_identity_of(device->platform, device->id);
     device->recompiles = skg_platform_is(device->platform, "Portable Computing Language");
     return skg_copy_text(path, &device->store);

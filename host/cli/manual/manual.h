@@ -48,8 +48,8 @@ extern const cli_flag cli_flag_help; /* of every verb */
 
 /* Flags that several verbs take. */
 extern const cli_flag cli_flag_device, cli_flag_precision, cli_flag_tolerance, cli_flag_strategy,
-    cli_flag_set, cli_flag_lenient, cli_flag_quiet, cli_flag_json, cli_flag_output, cli_flag_plot, cli_flag_repeat,
-    cli_flag_range;
+    cli_flag_set, cli_flag_lenient, cli_flag_quiet, cli_flag_json, cli_flag_output, cli_flag_plot,
+    cli_flag_repeat, cli_flag_range;
 
 /* Flags of verbs that take meshes instead of a scene. */
 extern const cli_flag cli_flag_meshes_material, cli_flag_meshes_kvp, cli_flag_meshes_kev,
@@ -62,7 +62,7 @@ extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_
     cli_flag_image_band_weight;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick;
-extern const cli_flag cli_flag_devices_warm;
+extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;
 extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output;
 extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_flag_material_list,
     cli_flag_material_naive;
