@@ -95,7 +95,7 @@ static skg_sum skg_border_mean(const skg_frame_args *frame, __global const skg_s
     long valid = 0, whole = 0, rest = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int j = max(row - reach, 0); j <= min(row + reach, frame->rows - 1); j++) {
-            const int step = abs(j - row) == reach ? 1 : 2 * reach;
+            const int step = (int)abs(j - row) == reach ? 1 : 2 * reach;
             for (int i = column - reach; i <= column + reach; i += step) {
                 if (i < 0 || i >= frame->columns || skg_gap(frame, marks, j, i)) continue;
                 if (pass == 0) {

@@ -1,6 +1,9 @@
 #include "core/names.h"
 #include "device/device.h"
+#include "device/identity.h"
 #include "device/start.h"
+#include "device/store.h"
+#include "device/verdict.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -124,35 +127,64 @@ static int fits(const char *wanted, const skg_device_info *info) {
     return 0;
 }
 
-/* GPUs come before other devices; then the number of compute units decides. */
-static int better(const skg_device_info *a, const skg_device_info *b) {
-    if (a->is_gpu != b->is_gpu) return a->is_gpu > b->is_gpu;
-    return a->compute_units > b->compute_units;
+/* What the choice knows of a device. */
+typedef struct {
+    skg_device_info info;
+    skg_verdict verdict; /* of the test "core" */
+    int32_t known;       /* 1: the verdict is known */
+    int32_t doubtful;    /* 1: not tested, and of a kind that is known to compute wrongly */
+} candidate;
+
+/* Mesa's software rasteriser reports the vector lanes of a processor as its units, and with Rusticl 22 it returns black
+ * images. */
+static void look_up(const found_device *found, const char *store, candidate *one) {
+    const skg_digest identity = skg_identity_of(found->platform, found->device);
+    one->known = skg_verdict_known(store, &identity, SKG_TEST_OF_ALL, &one->verdict);
+    one->doubtful = !one->known && strstr(one->info.name, "llvmpipe") != NULL;
 }
 
-skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_device_id *device,
-                             skg_device_info *info) {
+/* Devices that failed come last, then those in doubt. GPUs come before other devices. Then the measured speed decides if
+ * both are measured, otherwise the number of compute units. */
+static int better(const candidate *a, const candidate *b) {
+    const int a_failed = a->known && !a->verdict.good, b_failed = b->known && !b->verdict.good;
+    if (a_failed != b_failed) return b_failed;
+    if (a->doubtful != b->doubtful) return b->doubtful;
+    if (a->info.is_gpu != b->info.is_gpu) return a->info.is_gpu > b->info.is_gpu;
+    if (a->known && b->known && a->verdict.score > 0 && b->verdict.score > 0)
+        return a->verdict.score > b->verdict.score;
+    return a->info.compute_units > b->info.compute_units;
+}
+
+skg_status skg_device_choose(const char *wanted, uint64_t without, cl_platform_id *platform,
+                             cl_device_id *device, skg_device_info *info, int32_t *index) {
     found_device found[MOST_DEVICES];
+    candidate best = {0};
+    char store[SKG_STORE_PATH];
     int32_t all = 0, chosen = -1;
     SKG_TRY(find_devices(found, &all));
     if (all == 0)
         return skg_fail(SKG_ERR_NO_DEVICE,
                         "no OpenCL device on this machine; install a driver, for instance PoCL "
                         "(apt-get install pocl-opencl-icd)");
+    skg_store_find(store);
     for (int32_t i = 0; i < all; i++) {
-        skg_device_info one;
+        candidate one = {0};
         SKG_TRY(skg_device_inform(found[i].platform_number, found[i].device_number, found[i].platform,
-                                  found[i].device, &one));
-        if (!fits(wanted, &one) || (chosen >= 0 && !better(&one, info))) continue;
+                                  found[i].device, &one.info));
+        if (!fits(wanted, &one.info) || without >> i & 1) continue;
+        look_up(&found[i], store, &one);
+        if (chosen >= 0 && !better(&one, &best)) continue;
         chosen = i;
-        *info = one;
+        best = one;
     }
     if (chosen < 0)
         return skg_fail(SKG_ERR_NO_DEVICE,
                         "no OpenCL device fits device=%s; `skiagraph devices` lists what there is (%" PRId32
                         ")",
-                        wanted, all);
+                        wanted ? wanted : "auto", all);
     *platform = found[chosen].platform;
     *device = found[chosen].device;
+    *info = best.info;
+    *index = chosen;
     return SKG_OK;
 }

@@ -159,9 +159,7 @@ static void open_queue(void *argument) {
     device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &o->code);
 }
 
-skg_status skg_context_create(const char *config, skg_context **context) {
-    SKG_PLAIN;
-    SKG_NEEDS(context);
+skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index) {
     *context = NULL;
     skg_context *made = NULL;
     skg_status status = SKG_OK;
@@ -171,8 +169,8 @@ skg_status skg_context_create(const char *config, skg_context **context) {
     SKG_TRY(new_context(&made));
     skg_device *device = made->device;
     opening o = {.context = made};
-    SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, &device->platform, &device->id,
-                                      &device->info));
+    SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, without, &device->platform,
+                                      &device->id, &device->info, index));
     if (wanted.threads > 0)
         SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
     else
@@ -180,6 +178,7 @@ skg_status skg_context_create(const char *config, skg_context **context) {
     if (wanted.kernels[0]) SKG_TRY_CLEANUP(skg_copy_text(wanted.kernels, &device->kernel_dir));
     SKG_TRY_CLEANUP(skg_opencl_call(open_queue, &o));
     if (o.code != CL_SUCCESS) SKG_TRY_CLEANUP(skg_cl_fail(o.code, o.call, __FILE__, __LINE__));
+    SKG_TRY_CLEANUP(skg_device_identify(device));
     *context = made;
     return SKG_OK;
 cleanup:
@@ -211,18 +210,18 @@ skg_status skg_context_create_cl(cl_context cl, cl_device_id id, cl_command_queu
     skg_context *made = NULL;
     SKG_TRY(new_context(&made));
     skg_device *device = made->device;
-    skg_status status = skg_device_inform(-1, -1, platform, id, &device->info);
-    if (status != SKG_OK) {
-        skg_context_release(&made);
-        return status;
-    }
     device->platform = platform;
     device->profiling = (properties & CL_QUEUE_PROFILING_ENABLE) != 0;
     clRetainDevice(id), device->id = id;
     clRetainContext(cl), device->cl = cl;
     clRetainCommandQueue(queue), device->queue = queue;
-    *context = made;
-    return SKG_OK;
+    skg_status status = skg_device_inform(-1, -1, platform, id, &device->info);
+    if (status == SKG_OK) status = skg_device_identify(device);
+    if (status != SKG_OK)
+        skg_context_release(&made);
+    else
+        *context = made;
+    return status;
 }
 
 void skg_context_release(skg_context **context) {
@@ -232,11 +231,13 @@ void skg_context_release(skg_context **context) {
     if (!skg_unref(&last->refs)) return;
     skg_device *device = last->device;
     int ours = last->process == (int64_t)getpid(); /* a child process must not call OpenCL */
+    if (ours) skg_programs_keep(device);
     skg_programs_release(device, ours);
     if (ours && device->queue) clReleaseCommandQueue(device->queue);
     if (ours && device->cl) clReleaseContext(device->cl);
     if (ours && device->id) clReleaseDevice(device->id); /* does nothing unless it is a sub-device */
     skg_free(&device->kernel_dir);
+    skg_free(&device->store);
     skg_mailbox_release(&last->driver);
     skg_free(&last->device);
     skg_free(&last);

@@ -5,6 +5,7 @@
 #define SKG_DEVICE_H
 
 #include "core/context.h"
+#include "core/digest.h"
 
 #include <skiagraph/opencl.h>
 
@@ -19,8 +20,16 @@ typedef struct skg_device {
     skg_device_info info;
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
-    int64_t builds;   /* programs compiled so far; a second scene with the same effects adds none */
-    int64_t launched; /* of these, how many there were when a job was last complete; later ones may be new */
+    int64_t builds;        /* programs compiled so far; a second scene with the same effects adds none */
+    int64_t launched;      /* programs that there were when a job was last complete; later ones may be new */
+    int64_t loads;         /* programs taken from the user's folder so far */
+    skg_digest identity;   /* of the device and its driver */
+    char *store;           /* folder in which compiled programs are kept; "": none */
+    int32_t recompiles;    /* 1: the driver compiles again when it is asked for a compiled program */
+    int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
+    uint32_t passed;       /* bit n: test n of lib/trial */
+    int32_t compile_noted; /* 1: the log has been told that kernels are compiled */
+    int64_t compile_ms;    /* time that compiling has taken */
 } skg_device;
 
 /* --- errors --- */
@@ -59,6 +68,9 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program);
 
+/* To be called when a job is done: the programs have been launched, and are kept in the user's folder. */
+void skg_programs_launched(skg_context *context);
+
 /* Makes a kernel of such a program. The caller releases it with clReleaseKernel. */
 skg_status skg_kernel_create(cl_program program, const char *name, cl_kernel *kernel);
 
@@ -85,9 +97,17 @@ skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t by
 
 /* --- choosing (choose.c) --- */
 
-/* Chooses the device for the words of a config, and fills info. */
-skg_status skg_device_choose(const char *wanted, cl_platform_id *platform, cl_device_id *device,
-                             skg_device_info *info);
+/* Chooses the device for the words of a config, and fills info. without: bit n is set if device n is not wanted; index: the
+ * number of the one that is chosen. A device that has failed the test of what every plan needs is passed over, unless it
+ * is the only one that fits; its user then hears why. */
+skg_status skg_device_choose(const char *wanted, uint64_t without, cl_platform_id *platform,
+                             cl_device_id *device, skg_device_info *info, int32_t *index);
+
+/* Opens a device as skg_context_create does, but tests nothing. */
+skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index);
+
+/* Fills in what programs are kept under. To be called once platform and id are set. */
+skg_status skg_device_identify(skg_device *device);
 
 /* Fills info with what OpenCL reports on a device. */
 skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_platform_id platform,

@@ -1,6 +1,8 @@
 #include "device/program.h"
+#include "device/binaries.h"
 #include "device/signals.h"
 #include "device/sources.h"
+#include "device/watch.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -11,6 +13,9 @@ struct skg_program {
     struct skg_program *next;
     char *key; /* files and options */
     cl_program program;
+    skg_digest digest; /* what it is kept under */
+    int32_t launched;  /* 1: a job that may have used it is done */
+    int32_t kept;      /* 1: it is in the user's folder */
 };
 
 enum { MOST_FILES = 16 };
@@ -94,12 +99,41 @@ static skg_status build_failed(const skg_device *device, cl_program program, cl_
     return status;
 }
 
+typedef struct {
+    cl_program program;
+    cl_device_id id;
+    const char *options;
+    cl_int code;
+} compilation;
+
+static void compile(void *data) {
+    compilation *work = data;
+    work->code = clBuildProgram(work->program, 1, &work->id, work->options, NULL, NULL);
+}
+
+static skg_status build_sources(skg_context *context, int32_t files, char *const *sources,
+                                const char *options, const char *key, cl_program *program) {
+    skg_device *device = context->device;
+    cl_int code = CL_SUCCESS;
+    *program = clCreateProgramWithSource(device->cl, (cl_uint)files, (const char **)sources, NULL, &code);
+    if (code != CL_SUCCESS) return skg_cl_fail(code, "clCreateProgramWithSource", __FILE__, __LINE__);
+    compilation work = {*program, device->id, options, CL_SUCCESS};
+    skg_signals_keep();
+    skg_watch(context, compile, &work);
+    skg_signals_restore();
+    if (work.code == CL_SUCCESS) return SKG_OK;
+    const skg_status status = build_failed(device, *program, work.code, key);
+    clReleaseProgram(*program);
+    *program = NULL;
+    return status;
+}
+
+/* Makes the program of an entry from what was kept, or from its sources. */
 static skg_status build(skg_context *context, int32_t files, const char *const *names, const char *options,
-                        const char *key, cl_program *program) {
+                        const char *key, struct skg_program *entry) {
     skg_device *device = context->device;
     char *sources[MOST_FILES] = {0};
     char full[2048];
-    cl_int code = CL_SUCCESS;
     skg_status status = SKG_OK;
     if (files > MOST_FILES) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", key);
     for (int32_t i = 0; i < files; i++) SKG_TRY_CLEANUP(load_source(device, names[i], &sources[i]));
@@ -110,18 +144,15 @@ static skg_status build(skg_context *context, int32_t files, const char *const *
         status = skg_fail(SKG_ERR_INTERNAL, "%s: the options are too long", key);
         goto cleanup;
     }
-    *program = clCreateProgramWithSource(device->cl, (cl_uint)files, (const char **)sources, NULL, &code);
-    SKG_CL_CLEANUP(code);
-    skg_signals_keep();
-    code = clBuildProgram(*program, 1, &device->id, full, NULL, NULL);
-    skg_signals_restore();
-    if (code != CL_SUCCESS) {
-        status = build_failed(device, *program, code, key);
-        clReleaseProgram(*program);
-        *program = NULL;
-        goto cleanup;
+    entry->digest = skg_binary_key(device, files, sources, full);
+    entry->program = skg_binary_load(device, &entry->digest, full);
+    entry->kept = entry->program != NULL;
+    if (entry->kept) {
+        device->loads++;
+    } else {
+        SKG_TRY_CLEANUP(build_sources(context, files, sources, full, key, &entry->program));
+        device->builds++;
     }
-    device->builds++;
 cleanup:
     for (int32_t i = 0; i < files && i < MOST_FILES; i++) skg_free(&sources[i]);
     return status;
@@ -141,7 +172,7 @@ skg_status skg_program_get(skg_context *context, int32_t files, const char *cons
             return SKG_OK;
         }
     skg_status status = skg_alloc(1, sizeof *entry, "program", &entry);
-    if (status == SKG_OK) status = build(context, files, names, options, key, &entry->program);
+    if (status == SKG_OK) status = build(context, files, names, options, key, entry);
     if (status != SKG_OK) {
         skg_free(&entry);
         skg_free(&key);
@@ -152,6 +183,25 @@ skg_status skg_program_get(skg_context *context, int32_t files, const char *cons
     device->programs = entry;
     *program = entry->program;
     return SKG_OK;
+}
+
+static void keep(const skg_device *device, struct skg_program *entry) {
+    if (entry->kept || !entry->launched) return;
+    entry->kept = 1;
+    if (device->store[0] && skg_binary_pays(device, &entry->digest))
+        skg_binary_save(device, &entry->digest, entry->program);
+}
+
+void skg_programs_launched(skg_context *context) {
+    const skg_device *device = context->device;
+    for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
+        entry->launched = 1;
+        if (!device->recompiles) keep(device, entry);
+    }
+}
+
+void skg_programs_keep(const skg_device *device) {
+    for (struct skg_program *entry = device->programs; entry; entry = entry->next) keep(device, entry);
 }
 
 void skg_programs_release(skg_device *device, int ours) {

@@ -1,5 +1,4 @@
 /* Makes a plan: a recipe, a machine for it, and what is known before the first frame. */
-#include "core/plain.h"
 #include "frame/adapt.h"
 #include "frame/assemble.h"
 #include "frame/frame.h"
@@ -26,14 +25,9 @@ static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, s
     return skg_effects_find(plan->recipe, plan->context, machine->blur, outcome);
 }
 
-skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
-                           skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
-    SKG_PLAIN;
-    SKG_TRY(skg_context_enter(context));
-    SKG_NEEDS(plan);
+skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
+                         const skg_plan_options *options, skg_plan **plan) {
     *plan = NULL;
-    SKG_NEEDS(scene);
-    SKG_NEEDS(spectrum);
     if (scene->count == 0)
         return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_add");
     SKG_TRY(skg_view_check(view));

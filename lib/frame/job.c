@@ -43,12 +43,14 @@ void skg_job_release(skg_job **job) {
 skg_status skg_job_complete(skg_job **job) {
     skg_job *done = *job;
     skg_context *context = done->machine->context;
-    const int first = context->device->launched < context->device->builds;
+    const int64_t programs = context->device->builds + context->device->loads;
+    const int first = context->device->launched < programs;
     if (first) skg_signals_keep();
     const cl_int code = clWaitForEvents(1, &done->last);
     if (first) skg_signals_restore();
-    context->device->launched = context->device->builds;
+    context->device->launched = programs;
     done->finished = code == CL_SUCCESS;
+    if (done->finished) skg_programs_launched(context);
     const skg_status status = code == CL_SUCCESS
                                   ? skg_report_work(done->recipe, context, &done->machine->geometry,
                                                     &done->results, &done->staging.log, done->outcome)

@@ -247,6 +247,10 @@ OBJECT(cl_command_queue, clCreateCommandQueue,
 OBJECT(cl_program, clCreateProgramWithSource,
        (cl_context context, cl_uint count, const char **texts, const size_t *lengths, cl_int *code),
        (context, count, texts, lengths, code))
+OBJECT(cl_program, clCreateProgramWithBinary,
+       (cl_context context, cl_uint count, const cl_device_id *devices, const size_t *lengths,
+        const unsigned char **binaries, cl_int *loaded, cl_int *code),
+       (context, count, devices, lengths, binaries, loaded, code))
 OBJECT(cl_kernel, clCreateKernel, (cl_program program, const char *name, cl_int *code), (program, name, code))
 OBJECT(cl_mem, clCreateBuffer, (cl_context context, cl_mem_flags flags, size_t size, void *host, cl_int *code),
        (context, flags, size, host, code))
@@ -270,6 +274,8 @@ CODE(clGetEventProfilingInfo, (cl_event of, cl_profiling_info what, size_t size,
      (of, what, size, value, used))
 CODE(clGetKernelInfo, (cl_kernel kernel, cl_kernel_info what, size_t size, void *value, size_t *used),
      (kernel, what, size, value, used))
+CODE(clGetProgramInfo, (cl_program program, cl_program_info what, size_t size, void *value, size_t *used),
+     (program, what, size, value, used))
 CODE(clGetMemObjectInfo, (cl_mem memory, cl_mem_info what, size_t size, void *value, size_t *used),
      (memory, what, size, value, used))
 CODE(clFlush, (cl_command_queue queue), (queue))

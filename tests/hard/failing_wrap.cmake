@@ -1,8 +1,8 @@
 # The calls that failing_calls.c stands in for.
 set(SKG_WRAPPED malloc calloc realloc free json_loads json_loadb
-  clCreateSubDevices clCreateContext clCreateCommandQueue clCreateProgramWithSource clCreateKernel clCreateBuffer clBuildProgram
+  clCreateSubDevices clCreateContext clCreateCommandQueue clCreateProgramWithSource clCreateProgramWithBinary clCreateKernel clCreateBuffer clBuildProgram
   clSetKernelArg clGetPlatformIDs clGetPlatformInfo clGetDeviceIDs clGetDeviceInfo clGetCommandQueueInfo clGetEventInfo clGetEventProfilingInfo
-  clGetKernelInfo clGetMemObjectInfo clFlush clFinish clWaitForEvents clEnqueueNDRangeKernel clEnqueueFillBuffer
+  clGetKernelInfo clGetProgramInfo clGetMemObjectInfo clFlush clFinish clWaitForEvents clEnqueueNDRangeKernel clEnqueueFillBuffer
   clEnqueueReadBuffer clEnqueueReadBufferRect clEnqueueWriteBuffer clEnqueueBarrierWithWaitList
   clEnqueueMarkerWithWaitList clReleaseContext clReleaseCommandQueue clReleaseProgram clReleaseKernel
   clReleaseMemObject clReleaseEvent clRetainContext clRetainCommandQueue clRetainEvent)

@@ -3,7 +3,7 @@ function stem(path) { sub(/\.[a-z]+$/, "", path); return path }
 # An object's file, as room/file without ending.
 function node(room, object,   name) {
     name = object
-    sub(/.*\.dir\//, "", name)
+    sub(/.*\.dir\/(\.\/)?/, "", name) # Ninja writes X.dir/./file
     sub(/\.o$/, "", name)
     if (name ~ /^\// || name ~ /__\//) sub(/.*\//, "", name) # made at build time
     sub(/^\.\//, "", name) # Ninja names them ./room/file

@@ -41,7 +41,7 @@ mpi)
     need mpirun
     # shellcheck disable=SC2046
     mpicc -std=c11 -Wall -Wextra "$source/examples/mpi_scan.c" $(pkg-config --cflags --libs skiagraph) -lm -o mpi_scan
-    sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/phantom.json" >small.json
+    sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/scenes/phantom.json" >small.json
     # Open MPI shall run as root as well, and look for no other machine.
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_plm=isolated
     # The same numbers, whatever the number of processes.

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { WIDTH = 78 };
 
@@ -143,4 +144,5 @@ void cli_log(int32_t level, const char *sentence, void *user) {
     (void)user;
     if (level == SKG_LOG_WARNING) cli_warn("%s", sentence);
     if (level == SKG_LOG_NOTE) cli_note("%s", sentence);
+    if (level == SKG_LOG_PROGRESS && isatty(STDERR_FILENO)) cli_note("%s", sentence);
 }

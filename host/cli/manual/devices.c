@@ -6,20 +6,31 @@ const cli_flag cli_flag_devices_warm = {
     "scene files. Jobs that follow find the kernels in the driver's cache. May be repeated.",
     NULL, CLI_NAMES_SCENE};
 
+const cli_flag cli_flag_devices_test = {
+    "--test", NULL, "Instead of listing devices, tests every device with all kernels, and prints a table.",
+    NULL, CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Lists every OpenCL device. The device that is chosen has a star: the one of --device, otherwise that of the "
-    "environment variable SKG_DEVICE, otherwise by the rule \"GPUs before CPUs, more compute units first\".",
+    "environment variable SKG_DEVICE, otherwise by the rule \"GPUs before CPUs, then the faster one\", or the one with more compute units if they were not "
+    "measured.",
+    "The first time that a device with its driver is used, a small scene with known path lengths is rendered on it. "
+    "A device that computes wrongly is refused. --test repeats this for every device and for all kernels, and prints a "
+    "table; the results are kept in SKG_CACHE_DIR. Compiling all kernels may take minutes. The exit status is 1 if a "
+    "device computes wrongly or its driver fails.",
     "Then lists the environment variables that change how devices work.",
     "--json prints {devices: [{device, name, platform, kind, chosen, ...}], environment, affinity}; with --warm, {device, "
-    "warm: [{scene, seconds}]}.",
+    "warm: [{scene, seconds}]}; with --test, {devices: [{device, name, platform, driver, tests: [{name, verdict, seconds, "
+    "score, reason}]}]}, where verdict is right, wrong, unsupported or failed.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_device, &cli_flag_devices_warm, &cli_flag_json,
-                                        &cli_flag_quiet, NULL};
+static const cli_flag *const flags[] = {&cli_flag_device, &cli_flag_devices_test, &cli_flag_devices_warm,
+                                        &cli_flag_json,   &cli_flag_quiet,        NULL};
 
 static const cli_item examples[] = {
     {"skiagraph devices", "lists the devices"},
     {"skiagraph devices --device cpu", "shows which device \"cpu\" names"},
+    {"skiagraph devices --test", "tests all kernels on every device"},
     {"skiagraph devices --warm scenes/", "compiles what the scenes of a folder need, before a batch of jobs"},
     {NULL, NULL}};
 
@@ -29,4 +40,5 @@ const cli_manual cli_manual_devices = {.name = "devices",
                                        .text = text,
                                        .flags = flags,
                                        .examples = examples,
+                                       .check = "with --test, a device computes wrongly or its driver fails",
                                        .has_device = 1};

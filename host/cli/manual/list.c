@@ -40,6 +40,9 @@ const cli_item cli_environment[] = {
     {"SKG_DEVICE", "The device to use if --device is not given, in the same words."},
     {"SKG_KERNEL_DIR",
      "A folder from which the kernels are read instead of those built in, for development."},
+    {"SKG_CACHE_DIR",
+     "The folder in which compiled kernels and the results of device tests are kept; none keeps nothing. If it is not "
+     "set, it is skiagraph in XDG_CACHE_HOME, or .cache/skiagraph in HOME."},
     {"POCL_AFFINITY",
      "1 pins PoCL's threads to cores. If it is not set, skiagraph sets it where the process has all cores to itself."},
     {"POCL_CACHE_DIR", "The folder in which PoCL keeps compiled kernels."},

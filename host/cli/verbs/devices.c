@@ -5,6 +5,7 @@
 #include "common/json.h"
 #include "common/say.h"
 #include "manual/list.h"
+#include "verbs/device_tests.h"
 #include "verbs/warm.h"
 
 #include <stdio.h>
@@ -101,6 +102,8 @@ int cli_devices(const cli_arguments *arguments) {
     skg_context *context = NULL;
     skg_device_info best;
     int64_t count = 0;
+    if (cli_given(arguments, &cli_flag_devices_test))
+        return cli_device_tests(cli_given(arguments, &cli_flag_json));
     if (cli_given(arguments, &cli_flag_devices_warm)) return cli_warm(arguments);
     int exit_status = cli_open_context(arguments, &context, &best);
     if (exit_status != CLI_DONE) return exit_status;

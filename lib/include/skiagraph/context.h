@@ -3,6 +3,13 @@
  *
  * Making a context takes about 200 ms, and the first plan on it compiles kernels. Make one and keep it.
  *
+ * Compiled kernels are kept for later processes in the folder that the environment variable SKG_CACHE_DIR names, by
+ * default skiagraph in $XDG_CACHE_HOME or .cache/skiagraph in $HOME; SKG_CACHE_DIR=none keeps nothing. The folder has to
+ * belong to the user, and nobody else may write to it. It is made if need be, and holds at most 256 MiB. A folder that
+ * cannot be used is no failure: kernels are compiled then. Kernels are kept when the first job that used them is done.
+ * PoCL would have to compile them a second time for that; there, the second process that uses a kernel keeps it when
+ * its context is released. When compiling takes longer than a second, the log gets a line of level SKG_LOG_PROGRESS.
+ *
  * Threads: a context, and the plans and jobs made on it, are used by one thread at a time. Different contexts
  * may be used by different threads at the same time. Materials, spectra and responses never change and may be
  * shared by threads; so may meshes and scenes while nobody changes them. Reference counts are atomic.
@@ -52,8 +59,15 @@ typedef struct skg_context skg_context;
  *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE, SKG_ERR_DEVICE, SKG_ERR_FORK
  *
  * Without device= the environment variable SKG_DEVICE decides; it holds such words, or the value of device=
- * alone. Without either the best device is taken: GPUs before CPUs, then the one with more compute units. The
- * environment variable SKG_KERNEL_DIR stands for kernels=. */
+ * alone. Without either the best device is taken: GPUs before CPUs, then the faster one if both were measured,
+ * otherwise the one with more compute units. The environment variable SKG_KERNEL_DIR stands for kernels=.
+ *
+ * Some drivers compute wrongly and report no error. The first time that a device with its driver is used, a small
+ * scene whose path lengths are known is rendered, its speed is measured, and the verdict is kept in SKG_CACHE_DIR.
+ * A device that fails is refused with a sentence, and the next one that the words allow is taken, with a warning.
+ * Kernels that not every plan needs are tested when skg_plan_create needs them first; if they fail, it returns
+ * SKG_ERR_DEVICE. Where nothing can be kept, every context tests its device. Not tested are a device that is given
+ * to skg_context_create_cl, as far as every plan's kernels are concerned, simulators, and kernels from kernels=. */
 SKG_API skg_status skg_context_create(const char *config, skg_context **context);
 
 /** Adds an owner to a context. */
@@ -135,6 +149,54 @@ SKG_API skg_status skg_device_count(int64_t *count);
 
 /** The device with number 0 <= index < count. Errors: SKG_ERR_ARGUMENT, SKG_ERR_FORK. */
 SKG_API skg_status skg_device_get(int64_t index, skg_device_info *info);
+
+/** What a test found out about a device. */
+enum skg_test_verdict {
+    /** The kernels compute wrongly. */
+    SKG_TEST_WRONG = 0,
+    /** Every pixel is what it has to be. */
+    SKG_TEST_RIGHT = 1,
+    /** The device lacks what the kernels need: fp64. */
+    SKG_TEST_UNSUPPORTED = 2,
+    /** The driver returned an error, or could not compile the kernels. */
+    SKG_TEST_FAILED = 3
+};
+
+/** The result of a test. The library fills it; prepare with skg_device_test_init. */
+typedef struct {
+    /** Set by skg_device_test_init. */
+    int32_t size;
+    /** enum skg_test_verdict */
+    int32_t verdict;
+    /** Time that the test took, with compiling, in seconds. */
+    double seconds;
+    /** Of the first test: images of 512 x 512 pixels and 300 triangles per second. Otherwise 0. */
+    double score;
+    /** What was tested, such as "strategy tiles". */
+    char name[32];
+    /** What is wrong; "" if nothing is. */
+    char reason[256];
+} skg_device_test;
+
+/** Prepares a skg_device_test of `size` bytes (export.h). */
+SKG_API void skg_device_test_init_sized(void *result, int32_t size);
+
+/** Prepares a skg_device_test. */
+static inline void skg_device_test_init(skg_device_test *result) {
+    skg_device_test_init_sized(result, (int32_t)sizeof *result);
+}
+
+/** Number of tests that a device can be put to. */
+SKG_API skg_status skg_device_test_count(int64_t *count);
+
+/** Tests a device now, whatever was found before, and keeps the verdict.
+ *
+ *     device   number of the device, as for skg_device_get
+ *     test     0 <= test < count. The first one covers what every plan needs
+ *     result   also filled if the device computes wrongly or the driver fails, which is no error of this call
+ *     method   a scene of boxes whose path lengths are known from a formula, on a detector of 64 x 64 pixels
+ *     errors   SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
+SKG_API skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *result);
 
 /** The device of a context. */
 SKG_API skg_status skg_context_device_get(skg_context *context, skg_device_info *info);

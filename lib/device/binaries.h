@@ -1,0 +1,23 @@
+/* Compiled programs that are kept in the user's folder (store.h), so that a device compiles each of them once. Private
+ * to lib/device. */
+#ifndef SKG_BINARIES_H
+#define SKG_BINARIES_H
+
+#include "device/device.h"
+
+/* The key of a program: its sources, its options and the device. */
+skg_digest skg_binary_key(const skg_device *device, int32_t count, char *const *sources, const char *options);
+
+/* The program that was kept under this key, ready for use. NULL: there is none, or the driver rejects it, in which case
+ * it is removed. */
+cl_program skg_binary_load(skg_device *device, const skg_digest *key, const char *options);
+
+/* Keeps a program. It should have been launched: PoCL adds the machine code of a kernel then. */
+void skg_binary_save(const skg_device *device, const skg_digest *key, cl_program program);
+
+/* Whether it is worth the time to keep this program now. PoCL has a cache of its own, and compiles every kernel a second
+ * time when it is asked for the program; so the second process that uses the program keeps it, and one that is used once
+ * costs nothing. */
+int skg_binary_pays(const skg_device *device, const skg_digest *key);
+
+#endif

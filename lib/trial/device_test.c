@@ -1,0 +1,67 @@
+/* The tests of a device, one by one. */
+#include "core/plain.h"
+#include "device/device.h"
+#include "trial/trial.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+void skg_device_test_init_sized(void *result, int32_t size) {
+    const skg_device_test defaults = {0};
+    skg_struct_init(result, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_device_test_count(int64_t *count) {
+    SKG_NEEDS(count);
+    *count = SKG_TRIALS;
+    return SKG_OK;
+}
+
+/* What a call that failed means for the verdict: memory and arguments are not the device's fault. */
+static skg_status take_failure(skg_status status, skg_device_test *result) {
+    if (status == SKG_ERR_MEMORY || status == SKG_ERR_ARGUMENT) return status;
+    result->verdict = status == SKG_ERR_UNSUPPORTED ? SKG_TEST_UNSUPPORTED : SKG_TEST_FAILED;
+    snprintf(result->reason, sizeof result->reason, "%s", skg_last_error());
+    result->reason[strcspn(result->reason, "\n")] = '\0'; /* the first line of a build log */
+    return SKG_OK;
+}
+
+static skg_status run_test(const skg_device_info *info, skg_trial_number number, skg_device_test *result) {
+    char config[64];
+    skg_context *context = NULL;
+    skg_finding finding;
+    int32_t index = 0;
+    snprintf(config, sizeof config, "device=%" PRId32 ":%" PRId32, info->platform, info->device);
+    skg_status status = skg_context_open(config, 0, &context, &index);
+    if (status == SKG_OK) status = skg_trial_again(context, number, &finding);
+    if (status == SKG_OK) {
+        result->verdict = finding.good ? SKG_TEST_RIGHT : SKG_TEST_WRONG;
+        result->score = finding.score;
+        memcpy(result->reason, finding.reason, sizeof result->reason);
+    } else {
+        status = take_failure(status, result);
+    }
+    skg_context_release(&context);
+    return status;
+}
+
+skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *result) {
+    SKG_PLAIN;
+    SKG_NEEDS(result);
+    struct timespec start, end;
+    skg_device_info info;
+    skg_device_test ours;
+    if (test < 0 || test >= SKG_TRIALS)
+        return skg_fail(SKG_ERR_ARGUMENT, "test %" PRId64 " of %d (counted from 0)", test, SKG_TRIALS);
+    skg_device_info_init(&info);
+    skg_device_test_init(&ours);
+    SKG_TRY(skg_device_get(device, &info));
+    snprintf(ours.name, sizeof ours.name, "%s", skg_trial_get((skg_trial_number)test)->name);
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    SKG_TRY(run_test(&info, (skg_trial_number)test, &ours));
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    ours.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    return skg_struct_write(&ours, sizeof ours, "skg_device_test", result);
+}

@@ -1,0 +1,49 @@
+/* skg_plan_create: a plan whose kernels were tested on this device. */
+#include "core/plain.h"
+#include "frame/plan.h"
+#include "trial/trial.h"
+
+#include <skiagraph/plan.h>
+
+/* The tests of what a plan uses. */
+static uint32_t tests_of(const skg_plan *plan) {
+    const skg_recipe *recipe = plan->recipe;
+    const skg_effect_state *effects = plan->outcome.effects;
+    static const struct {
+        int effect;
+        skg_trial_number test;
+    } of_effects[] = {
+        {SKG_EFFECT_ENERGIES, SKG_TRIAL_ENERGIES}, {SKG_EFFECT_SOURCE_PLANE, SKG_TRIAL_SOURCE_PLANE},
+        {SKG_EFFECT_LEAKY, SKG_TRIAL_LEAKY},       {SKG_EFFECT_PRIORITY, SKG_TRIAL_PRIORITY},
+        {SKG_EFFECT_NOISE, SKG_TRIAL_NOISE},       {SKG_EFFECT_BLUR, SKG_TRIAL_BLUR}};
+    static const skg_trial_number of_strategies[] = {[SKG_STRATEGY_AUTO] = SKG_TRIAL_CORE,
+                                                     [SKG_STRATEGY_COPIES] = SKG_TRIAL_COPIES,
+                                                     [SKG_STRATEGY_TILES] = SKG_TRIAL_TILES,
+                                                     [SKG_STRATEGY_ATOMICS] = SKG_TRIAL_ATOMICS};
+    uint32_t tests = UINT32_C(1) << of_strategies[recipe->strategy];
+    if (recipe->options.precision == SKG_PRECISION_DOUBLE) tests |= UINT32_C(1) << SKG_TRIAL_DOUBLE;
+    if (recipe->options.precision == SKG_PRECISION_HALF) tests |= UINT32_C(1) << SKG_TRIAL_HALF;
+    for (size_t i = 0; i < sizeof of_effects / sizeof *of_effects; i++)
+        if (effects[of_effects[i].effect].on) tests |= UINT32_C(1) << of_effects[i].test;
+    return tests;
+}
+
+skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
+                           skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
+    SKG_PLAIN;
+    SKG_TRY(skg_context_enter(context));
+    SKG_NEEDS(plan);
+    *plan = NULL;
+    SKG_NEEDS(scene);
+    SKG_NEEDS(spectrum);
+    SKG_TRY(skg_plan_make(context, scene, view, spectrum, options, plan));
+    const uint32_t tests = tests_of(*plan);
+    for (int test = 0; test < SKG_TRIALS; test++) {
+        if (!(tests >> test & 1)) continue;
+        const skg_status status = skg_trial_need(context, (skg_trial_number)test);
+        if (status == SKG_OK) continue;
+        skg_plan_release(plan);
+        return status;
+    }
+    return SKG_OK;
+}

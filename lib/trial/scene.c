@@ -1,0 +1,178 @@
+#include "trial/scene.h"
+#include "device/verdict.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Attenuation of the two parts in 1/cm at the energies of the beam, in keV. */
+enum { ENERGIES = 3 };
+static const double energies[ENERGIES] = {40, 60, 90}, photons[ENERGIES] = {1000, 2000, 500};
+static const double attenuation[2][ENERGIES] = {{0.27, 0.2, 0.17}, {1.28, 0.6, 0.34}};
+
+/* Lengths in single precision: numerics.md has 3e-5 of the longest path; three times that for the corners of the boxes,
+ * which a mesh keeps as floats. In double precision the latter alone. In half precision depths have 11 bits over the
+ * 1,200 mm from the source. Intensities change by at most mu L exp(-mu L) < 0.4 times the relative error of a length,
+ * and by the rounding of floats. */
+static const skg_trial trials[SKG_TRIALS] = {
+    [SKG_TRIAL_CORE] = {SKG_TEST_OF_ALL, 1e-4, 1e-4},
+    [SKG_TRIAL_COPIES] = {"strategy copies", 1e-4, 1e-4},
+    [SKG_TRIAL_TILES] = {"strategy tiles", 1e-4, 1e-4},
+    [SKG_TRIAL_ATOMICS] = {"strategy atomics", 1e-4, 1e-4},
+    [SKG_TRIAL_DOUBLE] = {"precision double", 2e-6, 2e-6},
+    [SKG_TRIAL_HALF] = {"precision half", 0.1, 0.1},
+    [SKG_TRIAL_ENERGIES] = {"several energies", 1e-4, 1e-4},
+    [SKG_TRIAL_SOURCE_PLANE] = {"source plane", 1e-4, 1e-4},
+    [SKG_TRIAL_LEAKY] = {"leaky meshes", 1e-4, 1e-4},
+    [SKG_TRIAL_PRIORITY] = {"priority", 1e-4, 1e-4},
+    [SKG_TRIAL_NOISE] = {"noise", 1e-4, 1e-4},
+    [SKG_TRIAL_BLUR] = {"blur", 1e-4, 1e-4},
+};
+
+const skg_trial *skg_trial_get(skg_trial_number number) {
+    return &trials[number];
+}
+
+static int has_two_parts(const skg_trial_scene *scene) {
+    return scene->number == SKG_TRIAL_ENERGIES || scene->number == SKG_TRIAL_PRIORITY;
+}
+
+/* One large box, smaller ones of all sizes on a spiral around it, and one that pierces the large one. Their places and
+ * angles are arbitrary. */
+static void place_boxes(skg_trial_scene *scene) {
+    for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
+        const double turn = 2.4 * b, far = 14 + 1.1 * b, size = 0.15 * exp(0.13 * b);
+        const double centre[3] = {far * cos(turn), far * sin(turn), 10 * sin(1.7 * b)};
+        const double half[3] = {size, 1.3 * size, 0.7 * size};
+        const double angles[3] = {0.3 + b, 0.7 + 0.5 * b, 1.1 + 0.3 * b};
+        scene->boxes[b] = skg_box_turned(centre, half, angles);
+    }
+    /* The large one, or a narrow one around the source, whose sides the outer rays cross beside the source. */
+    const double middle[3] = {1, -2, 3}, half[3] = {12, 9, 15}, angles[3] = {0.31, 0.52, 0.23};
+    const double source[3] = {0.2, -0.1, -990}, narrow[3] = {1, 0.8, 30}, upright[3] = {0.01, 0.02, 0.23};
+    scene->boxes[0] = scene->number == SKG_TRIAL_SOURCE_PLANE ? skg_box_turned(source, narrow, upright)
+                                                              : skg_box_turned(middle, half, angles);
+    const double beside[3] = {9, 3, 1}, other[3] = {8, 5, 6}, others[3] = {0.71, 0.13, 0.4};
+    scene->boxes[SKG_TRIAL_BOXES] = skg_box_turned(beside, other, others);
+}
+
+static skg_status add_part(skg_context *context, skg_trial_scene *scene, int part) {
+    const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_TRIAL_BOXES;
+    skg_part given;
+    skg_part_init(&given);
+    given.label = part == 0 ? "boxes" : "box";
+    given.priority = scene->number == SKG_TRIAL_PRIORITY ? part : 0;
+    skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_TRIAL_BOXES : 1,
+                                       part == 0 && scene->number == SKG_TRIAL_LEAKY, &given.mesh);
+    if (status == SKG_OK)
+        status =
+            skg_material_create_table(given.label, ENERGIES, energies, attenuation[part], &given.material);
+    if (status == SKG_OK) status = skg_scene_add(scene->scene, &given, NULL);
+    skg_material_release(&given.material);
+    skg_mesh_release(&given.mesh);
+    return status;
+}
+
+static void choose_options(skg_trial_scene *scene) {
+    skg_plan_options *options = &scene->options;
+    skg_plan_options_init(options);
+    options->overlaps = 0;
+    switch (scene->number) {
+    case SKG_TRIAL_COPIES:
+        options->strategy = SKG_STRATEGY_COPIES;
+        break;
+    case SKG_TRIAL_TILES:
+        options->strategy = SKG_STRATEGY_TILES;
+        break;
+    case SKG_TRIAL_ATOMICS:
+        options->strategy = SKG_STRATEGY_ATOMICS;
+        break;
+    case SKG_TRIAL_DOUBLE:
+        options->precision = SKG_PRECISION_DOUBLE;
+        break;
+    case SKG_TRIAL_HALF:
+        options->precision = SKG_PRECISION_HALF;
+        break;
+    case SKG_TRIAL_LEAKY:
+        options->repair = SKG_REPAIR_NEIGHBOURS;
+        break;
+    case SKG_TRIAL_NOISE:
+        options->noise = 1;
+        break;
+    case SKG_TRIAL_BLUR:
+        options->blur = &scene->blur;
+        break;
+    default:
+        break;
+    }
+}
+
+static void choose_blur(skg_trial_scene *scene) {
+    static const double row[] = {0.05, 0.2, 0.5, 0.15, 0.1}, column[] = {0.1, 0.3, 0.4, 0.2, 0};
+    skg_detector_blur_init(&scene->blur);
+    for (int k = 0; k < SKG_TRIAL_BLUR_SAMPLES; k++)
+        scene->along_row[k] = row[k], scene->along_column[k] = column[k];
+    scene->blur.columns = scene->blur.rows = SKG_TRIAL_BLUR_SAMPLES;
+    scene->blur.along_row = scene->along_row;
+    scene->blur.along_column = scene->along_column;
+}
+
+skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number, int64_t pixels,
+                                  skg_trial_scene *scene) {
+    *scene = (skg_trial_scene){.number = number};
+    skg_view *view = &scene->view;
+    skg_view_init(view);
+    view->columns = view->rows = pixels;
+    view->source[2] = -1000;
+    view->centre[2] = 200;
+    view->column_step[0] = view->row_step[1] = 100.0 / (double)pixels;
+    place_boxes(scene);
+    choose_blur(scene);
+    choose_options(scene);
+    SKG_TRY(skg_scene_create(context, &scene->scene));
+    SKG_TRY(add_part(context, scene, 0));
+    if (has_two_parts(scene)) SKG_TRY(add_part(context, scene, 1));
+    if (number == SKG_TRIAL_ENERGIES)
+        return skg_spectrum_create_bins(ENERGIES, energies, photons, &scene->beam);
+    return skg_spectrum_create_mono(energies[0], photons[0], &scene->beam);
+}
+
+void skg_trial_scene_release(skg_trial_scene *scene) {
+    skg_scene_release(&scene->scene);
+    skg_spectrum_release(&scene->beam);
+}
+
+void skg_trial_lengths(const skg_trial_scene *scene, int64_t row, int64_t column, double *surface,
+                       double *net) {
+    const skg_view *view = &scene->view;
+    double pixel[3], enters = 0, leaves = 0, distance = 0, from = 0, to = 0;
+    const double i = (double)column - (double)(view->columns - 1) / 2,
+                 j = (double)row - (double)(view->rows - 1) / 2;
+    for (int k = 0; k < 3; k++) {
+        pixel[k] = view->centre[k] + i * view->column_step[k] + j * view->row_step[k];
+        distance += (pixel[k] - view->source[k]) * (pixel[k] - view->source[k]);
+    }
+    distance = sqrt(distance);
+    const int other = has_two_parts(scene) &&
+                      skg_box_crossed(&scene->boxes[SKG_TRIAL_BOXES], view->source, pixel, &from, &to);
+    *surface = net[0] = net[1] = 0;
+    if (other) net[1] = (to - from) * distance;
+    for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
+        if (!skg_box_crossed(&scene->boxes[b], view->source, pixel, &enters, &leaves)) continue;
+        *surface += (leaves - enters) * distance;
+        net[0] += (leaves - enters) * distance;
+        if (other && scene->number == SKG_TRIAL_PRIORITY) /* part 1 displaces part 0 */
+            net[0] -= fmax(0, fmin(leaves, to) - fmax(enters, from)) * distance;
+    }
+}
+
+double skg_trial_intensity(const skg_trial_scene *scene, const double *net, double *open) {
+    const int bins = scene->number == SKG_TRIAL_ENERGIES ? ENERGIES : 1;
+    double shown = 0;
+    *open = 0;
+    for (int e = 0; e < bins; e++) {
+        *open += photons[e] * energies[e];
+        shown +=
+            photons[e] * energies[e] * exp(-0.1 * (attenuation[0][e] * net[0] + attenuation[1][e] * net[1]));
+    }
+    return shown;
+}

@@ -1,0 +1,66 @@
+/* The small scenes that a device is tested with, and what they have to show. Private.
+ *
+ * Each test has the options that make a plan use certain kernels. The parts are boxes, so that each pixel's path
+ * lengths are known from a formula. */
+#ifndef SKG_TRIAL_SCENE_H
+#define SKG_TRIAL_SCENE_H
+
+#include "trial/boxes.h"
+
+#include <skiagraph/options.h>
+#include <skiagraph/scene.h>
+
+/* In the order in which `skiagraph devices --test` lists them. */
+typedef enum {
+    SKG_TRIAL_CORE, /* what every plan needs: project, one raster, attenuate */
+    SKG_TRIAL_COPIES,
+    SKG_TRIAL_TILES,
+    SKG_TRIAL_ATOMICS,
+    SKG_TRIAL_DOUBLE,
+    SKG_TRIAL_HALF,
+    SKG_TRIAL_ENERGIES,
+    SKG_TRIAL_SOURCE_PLANE,
+    SKG_TRIAL_LEAKY,
+    SKG_TRIAL_PRIORITY,
+    SKG_TRIAL_NOISE,
+    SKG_TRIAL_BLUR,
+    SKG_TRIALS
+} skg_trial_number;
+
+enum { SKG_TRIAL_BOXES = 25, SKG_TRIAL_PIXELS = 64, SKG_TRIAL_BLUR_SAMPLES = 5 };
+
+typedef struct {
+    const char *name;    /* of the kernels: "strategy tiles" */
+    double length_error; /* tolerance, as a fraction of the longest path */
+    double image_error;  /* tolerance, as a fraction of the open beam */
+} skg_trial;
+
+/* Static storage. */
+const skg_trial *skg_trial_get(skg_trial_number number);
+
+typedef struct {
+    skg_trial_number number;
+    skg_box boxes[SKG_TRIAL_BOXES + 1]; /* the last one is a part of its own, if there are two */
+    double along_row[SKG_TRIAL_BLUR_SAMPLES];
+    double along_column[SKG_TRIAL_BLUR_SAMPLES];
+    skg_detector_blur blur;
+    skg_plan_options options;
+    skg_view view;
+    skg_scene *scene;
+    skg_spectrum *beam;
+} skg_trial_scene;
+
+/* Makes the scene of a test, with a detector of `pixels` x `pixels`. Release it whatever this returns. */
+skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number, int64_t pixels,
+                                  skg_trial_scene *scene);
+void skg_trial_scene_release(skg_trial_scene *scene);
+
+/* The path lengths in mm that pixel (row, column) has to have: of part 0 within its surface, and what each part adds to
+ * the image. */
+void skg_trial_lengths(const skg_trial_scene *scene, int64_t row, int64_t column, double *surface,
+                       double *net);
+
+/* What the image has to show, keV per pixel, without blur and noise. open: of the open beam. */
+double skg_trial_intensity(const skg_trial_scene *scene, const double *net, double *open);
+
+#endif

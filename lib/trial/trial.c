@@ -1,0 +1,46 @@
+#include "trial/trial.h"
+#include "device/device.h"
+#include "device/verdict.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What is kept of a finding. */
+static skg_verdict verdict_of(const skg_finding *finding) {
+    skg_verdict verdict = {.good = finding->good, .score = finding->score};
+    snprintf(verdict.reason, sizeof verdict.reason, "%s", finding->reason);
+    return verdict;
+}
+
+static skg_status refuse(const skg_device *device, skg_trial_number number, const char *reason) {
+    return skg_fail(
+        SKG_ERR_DEVICE,
+        "%s (%s, driver %s) computes wrongly with the kernels of %s: %s. Choose another device, or update the "
+        "driver; `skiagraph devices --test` tests all",
+        device->info.name, device->info.platform_name, device->info.driver, skg_trial_get(number)->name,
+        reason);
+}
+
+skg_status skg_trial_again(skg_context *context, skg_trial_number number, skg_finding *finding) {
+    skg_device *device = context->device;
+    SKG_TRY(skg_trial_judge(context, number, finding));
+    const skg_verdict verdict = verdict_of(finding);
+    skg_verdict_keep(device->store, &device->identity, skg_trial_get(number)->name, &verdict);
+    if (finding->good) device->passed |= UINT32_C(1) << number;
+    return SKG_OK;
+}
+
+skg_status skg_trial_need(skg_context *context, skg_trial_number number) {
+    skg_device *device = context->device;
+    skg_verdict known;
+    skg_finding finding;
+    /* Kernels that are being developed are their author's own to test; a simulator is slow, and runs our own tests. */
+    if (device->kernel_dir || device->simulates || device->passed >> number & 1) return SKG_OK;
+    if (skg_verdict_known(device->store, &device->identity, skg_trial_get(number)->name, &known)) {
+        if (!known.good) return refuse(device, number, known.reason);
+        device->passed |= UINT32_C(1) << number;
+        return SKG_OK;
+    }
+    SKG_TRY(skg_trial_again(context, number, &finding));
+    return finding.good ? SKG_OK : refuse(device, number, finding.reason);
+}

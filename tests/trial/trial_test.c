@@ -1,0 +1,266 @@
+/* The tests that a device is put to: they pass on a device that computes rightly, and kernels that were made wrong do
+ * not pass. */
+#include "device/cache_folder.h"
+#include "device/device.h"
+#include "device/verdict.h"
+#include "suite.h"
+#include "trial/trial.h"
+
+#include <skiagraph/material.h>
+#include <skiagraph/plan.h>
+
+#include <math.h>
+
+static skg_context *open_first(const char *more) {
+    char config[256];
+    skg_context *context = NULL;
+    int32_t index = -1;
+    snprintf(config, sizeof config, "device=0:0 %s", more);
+    ck_skg(skg_context_open(config, 0, &context, &index));
+    ck_assert_int_eq(index, 0);
+    return context;
+}
+
+START_TEST(boxes_have_known_lengths) {
+    const double centre[3] = {1, 2, 3}, half[3] = {2, 3, 4}, none[3] = {0, 0, 0},
+                 turned[3] = {0.4, -1.1, 2.5};
+    const double from[3] = {1, 2, -100}, to[3] = {1, 2, 100}, past[3] = {4, 2, -100}, beyond[3] = {4, 2, 100};
+    double enters = 0, leaves = 0;
+    const skg_box straight = skg_box_turned(centre, half, none);
+    ck_assert_int_eq(skg_box_crossed(&straight, from, to, &enters, &leaves), 1);
+    ck_assert_double_eq_tol(enters * 200, 99, 1e-12);  /* doubles of this size have steps of 1.4e-14 */
+    ck_assert_double_eq_tol(leaves * 200, 107, 1e-12); /* the same */
+    ck_assert_int_eq(skg_box_crossed(&straight, past, beyond, &enters, &leaves), 0);
+    ck_assert_int_eq(skg_box_crossed(&straight, centre, to, &enters, &leaves), 1);
+    ck_assert_double_eq(enters, 0); /* the way begins inside */
+    const skg_box box = skg_box_turned(centre, half, turned);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            double product = 0;
+            for (int k = 0; k < 3; k++) product += box.axes[3 * a + k] * box.axes[3 * b + k];
+            ck_assert_double_eq_tol(product, a == b, 1e-15 * 4); /* four roundings of numbers up to 1 */
+        }
+}
+END_TEST
+
+/* The volume of what a mesh encloses: a sixth of the sum of its triangles' determinants. */
+static double volume_of(const skg_mesh *mesh) {
+    int64_t vertices = 0, triangles = 0;
+    double volume = 0, *positions = NULL;
+    int32_t *corners = NULL;
+    ck_skg(skg_mesh_count(mesh, &vertices, &triangles));
+    ck_skg(skg_alloc(3 * vertices, sizeof *positions, "test", &positions));
+    ck_skg(skg_alloc(3 * triangles, sizeof *corners, "test", &corners));
+    ck_skg(skg_mesh_positions_get(mesh, positions, 0));
+    ck_skg(skg_mesh_triangles_get(mesh, corners, 0));
+    for (int64_t t = 0; t < triangles; t++) {
+        const double *a = positions + 3 * corners[3 * t], *b = positions + 3 * corners[3 * t + 1],
+                     *c = positions + 3 * corners[3 * t + 2];
+        volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                   a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                  6;
+    }
+    skg_free(&positions);
+    skg_free(&corners);
+    return volume;
+}
+
+START_TEST(meshes_of_boxes_are_closed_unless_split) {
+    const double centre[3] = {1, 2, 3}, half[3] = {2, 3, 4}, angles[3] = {0.4, -1.1, 2.5};
+    skg_context *context = open_first("");
+    const skg_box boxes[2] = {skg_box_turned(centre, half, angles), skg_box_turned(half, centre, angles)};
+    for (int split = 0; split < 2; split++) {
+        skg_mesh *mesh = NULL;
+        skg_mesh_health health;
+        skg_mesh_health_init(&health);
+        ck_skg(skg_boxes_mesh(context, boxes, 2, split, &mesh));
+        ck_skg(skg_mesh_health_get(mesh, &health));
+        ck_assert_int_eq(health.closed, !split);
+        ck_assert_double_eq_tol(volume_of(mesh), 8 * (2 * 3 * 4 + 1 * 2 * 3),
+                                1e-3); /* 100 float steps of 10 mm, times the area */
+        skg_mesh_release(&mesh);
+    }
+    skg_context_release(&context);
+}
+END_TEST
+
+START_TEST(a_right_device_passes) {
+    skg_context *context = open_first("");
+    for (int test = 0; test < SKG_TRIALS; test++) {
+        skg_finding finding;
+        if (test == SKG_TRIAL_DOUBLE && !context->device->info.has_double) continue;
+        ck_skg(skg_trial_judge(context, (skg_trial_number)test, &finding));
+        ck_assert_msg(finding.good, "%s: %s", skg_trial_get((skg_trial_number)test)->name, finding.reason);
+        ck_assert(test == SKG_TRIAL_CORE ? finding.score > 0 : finding.score == 0);
+    }
+    skg_context_release(&context);
+}
+END_TEST
+
+static char kernels[64];
+
+/* A folder with the kernels, in one file of which this text is replaced. */
+static void copy_kernels(const char *name, const char *old, const char *new) {
+    static char text[1 << 16];
+    char line[512];
+    snprintf(kernels, sizeof kernels, "/tmp/skg-kernels-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(kernels));
+    snprintf(line, sizeof line, "cp %s/kernels/* %s", SKG_SOURCE, kernels);
+    ck_assert_int_eq(system(line), 0);
+    snprintf(line, sizeof line, "%s/%s", kernels, name);
+    FILE *file = fopen(line, "r");
+    ck_assert_ptr_nonnull(file);
+    const size_t length = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[length] = '\0';
+    char *at = strstr(text, old);
+    ck_assert_msg(at != NULL, "%s no longer has \"%s\"", name, old);
+    file = fopen(line, "w");
+    ck_assert_ptr_nonnull(file);
+    fprintf(file, "%.*s%s%s", (int)(at - text), text, new, at + strlen(old));
+    fclose(file);
+}
+
+static void remove_kernels(void) {
+    char line[128];
+    snprintf(line, sizeof line, "rm -r %s", kernels);
+    ck_assert_int_eq(system(line), 0);
+}
+
+/* Errors that a compiler might make: each has to be found by the test of these kernels. */
+static const struct {
+    const char *file, *old, *new;
+    skg_trial_number test;
+} errors[] = {
+    {"sums.clh", "SKG_TO_REAL_V(SKG_AS_TERM_V(sum))", "SKG_TO_REAL_V(SKG_AS_TERM_V(sum) * 0)",
+     SKG_TRIAL_CORE},
+    {"project.cl", "p->anchor_x + across / t", "p->anchor_x + across / t + 0.01f", SKG_TRIAL_CORE},
+    {"attenuate.cl", "passed, pixels->shown[c][r])", "passed * 1.001f, pixels->shown[c][r])", SKG_TRIAL_CORE},
+    {"attenuate.cl", "pass->weights[n * SKG_CHANNELS + c]), passed", "pass->weights[c]), passed",
+     SKG_TRIAL_ENERGIES},
+    {"source_plane.cl", "part < 1 ? part : 1", "part < 1 ? 0 : 1", SKG_TRIAL_SOURCE_PLANE},
+    {"leaky.cl", "SKG_LOAD_V(0, place) + (sums & valid)", "SKG_LOAD_V(0, place)", SKG_TRIAL_LEAKY},
+    {"hits.cl", "hits[k + 1].depth - hits[k].depth", "hits[k].depth - hits[k + 1].depth", SKG_TRIAL_PRIORITY},
+    {"noise.clh", "(uint)pixel", "(uint)0", SKG_TRIAL_NOISE},
+    {"blur.cl", "weights[j * across + i]", "weights[j * across]", SKG_TRIAL_BLUR},
+};
+
+START_TEST(wrong_kernels_are_found) {
+    char more[96];
+    skg_finding finding;
+    copy_kernels(errors[_i].file, errors[_i].old, errors[_i].new);
+    snprintf(more, sizeof more, "kernels=%s", kernels);
+    skg_context *context = open_first(more);
+    ck_skg(skg_trial_judge(context, errors[_i].test, &finding));
+    ck_assert_int_eq(finding.good, 0);
+    ck_assert_msg(strstr(finding.reason, "pixel") != NULL, "%s", finding.reason);
+    skg_context_release(&context);
+    remove_kernels();
+}
+END_TEST
+
+static void keep_verdict(const skg_context *context, const char *test, int good, double score) {
+    skg_verdict verdict = {.good = good, .score = score};
+    snprintf(verdict.reason, sizeof verdict.reason, "pixel (1, 2) is black");
+    skg_verdict_keep(context->device->store, &context->device->identity, test, &verdict);
+}
+
+START_TEST(a_verdict_is_found_once_and_kept) {
+    skg_context *context = NULL;
+    skg_verdict verdict;
+    ck_skg(skg_context_create("device=0:0", &context));
+    ck_assert_int_eq(count_kept(".verdict", NULL), 1);
+    ck_assert_int_eq(
+        skg_verdict_known(context->device->store, &context->device->identity, SKG_TEST_OF_ALL, &verdict), 1);
+    ck_assert_int_eq(verdict.good, 1);
+    ck_assert_double_gt(verdict.score, 0);
+    skg_context_release(&context);
+    ck_skg(skg_context_create("device=0:0", &context));
+    ck_assert_int_eq(context->device->builds + context->device->loads, 0); /* it was not tested again */
+    skg_context_release(&context);
+}
+END_TEST
+
+START_TEST(a_device_that_failed_is_refused) {
+    skg_context *context = open_first("");
+    skg_device_test result;
+    keep_verdict(context, SKG_TEST_OF_ALL, 0, 0);
+    skg_context_release(&context);
+    ck_skg_fails(skg_context_create("device=0:0", &context), SKG_ERR_DEVICE, "computes wrongly");
+    ck_skg_fails(skg_context_create("device=0:0", &context), SKG_ERR_DEVICE, "pixel (1, 2) is black");
+    ck_assert_ptr_null(context);
+    skg_device_test_init(&result);
+    ck_skg(skg_device_test_run(0, 0, &result)); /* tests again, and finds it right */
+    ck_assert_int_eq(result.verdict, SKG_TEST_RIGHT);
+    ck_assert_str_eq(result.name, SKG_TEST_OF_ALL);
+    ck_skg(skg_context_create("device=0:0", &context));
+    skg_context_release(&context);
+}
+END_TEST
+
+static skg_status plan_with(skg_context *context, int noise) {
+    skg_trial_scene scene;
+    skg_plan *plan = NULL;
+    ck_skg(skg_trial_scene_create(context, SKG_TRIAL_CORE, 16, &scene));
+    scene.options.noise = noise;
+    const skg_status status =
+        skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan);
+    skg_plan_release(&plan);
+    skg_trial_scene_release(&scene);
+    return status;
+}
+
+/* Kernels that not every plan needs: only plans that need them are refused. */
+START_TEST(wrong_kernels_are_refused_when_they_are_needed) {
+    skg_context *context = NULL;
+    ck_skg(skg_context_create("device=0:0", &context));
+    ck_skg(plan_with(context, 0));
+    keep_verdict(context, "noise", 0, 0);
+    ck_skg(plan_with(context, 0));
+    ck_skg_fails(plan_with(context, 1), SKG_ERR_DEVICE, "with the kernels of noise");
+    keep_verdict(context, "noise", 1, 0);
+    ck_skg(plan_with(context, 1));
+    skg_context_release(&context);
+}
+END_TEST
+
+START_TEST(where_nothing_is_kept_every_context_tests) {
+    skg_context *context = NULL;
+    setenv("SKG_CACHE_DIR", "none", 1);
+    ck_skg(skg_context_create("device=0:0", &context));
+    ck_assert_int_gt(context->device->builds, 0);
+    ck_assert_int_eq(context->device->passed & 1, 1);
+    skg_context_release(&context);
+    ck_assert_int_eq(count_kept("", NULL), 0);
+}
+END_TEST
+
+START_TEST(bad_numbers_are_refused) {
+    skg_device_test result;
+    int64_t count = 0, devices = 0;
+    skg_device_test_init(&result);
+    ck_skg(skg_device_test_count(&count));
+    ck_skg(skg_device_count(&devices));
+    ck_assert_int_eq(count, SKG_TRIALS);
+    ck_skg_fails(skg_device_test_run(0, count, &result), SKG_ERR_ARGUMENT, "counted from 0");
+    ck_skg_fails(skg_device_test_run(0, -1, &result), SKG_ERR_ARGUMENT, "counted from 0");
+    ck_skg_fails(skg_device_test_run(devices, 0, &result), SKG_ERR_ARGUMENT, "counted from 0");
+    ck_skg_fails(skg_device_test_run(0, 0, NULL), SKG_ERR_ARGUMENT, "result");
+    ck_skg_fails(skg_device_test_count(NULL), SKG_ERR_ARGUMENT, "count");
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, make_cache_folder, remove_cache_folder);
+    tcase_add_test(tests, boxes_have_known_lengths);
+    tcase_add_test(tests, meshes_of_boxes_are_closed_unless_split);
+    tcase_add_test(tests, a_right_device_passes);
+    tcase_add_loop_test(tests, wrong_kernels_are_found, 0, (int)(sizeof errors / sizeof *errors));
+    tcase_add_test(tests, a_verdict_is_found_once_and_kept);
+    tcase_add_test(tests, a_device_that_failed_is_refused);
+    tcase_add_test(tests, wrong_kernels_are_refused_when_they_are_needed);
+    tcase_add_test(tests, where_nothing_is_kept_every_context_tests);
+    tcase_add_test(tests, bad_numbers_are_refused);
+}
+
+SKG_SUITE_MAIN("trial", add_tests)
