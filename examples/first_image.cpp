@@ -26,15 +26,18 @@ int main() try {
     view.source[2] = -1000;
     view.centre[2] = 200;
     view.column_step[0] = view.row_step[1] = 1;
-    const auto plan = sk::make<sk::plan>(skg_plan_create, context.get(), scene.get(), &view, beam.get(), nullptr);
+    const auto plan =
+        sk::make<sk::plan>(skg_plan_create, context.get(), scene.get(), &view, beam.get(), nullptr);
 
     std::vector<float> image(side * side), lengths(side * side);
     sk::image(plan, std::span(image));
     sk::lengths(plan, id, std::span(lengths));
     const auto middle = side / 2 * side + side / 2;
-    const auto expected = 80000 * std::exp(-sk::number<double>(skg_material_attenuation_get, tissue.get(), 80.0) *
-                                           lengths[middle] / 10);
-    std::printf("energy %.1f keV of %.1f keV, path length %.3f mm\n", image[middle], image[0], lengths[middle]);
+    const auto expected =
+        80000 * std::exp(-sk::number<double>(skg_material_attenuation_get, tissue.get(), 80.0) *
+                         lengths[middle] / 10);
+    std::printf("energy %.1f keV of %.1f keV, path length %.3f mm\n", image[middle], image[0],
+                lengths[middle]);
 
     std::vector<skg_frame> frames(3, sk::init(skg_frame_init));
     std::vector<float> images(3 * side * side);

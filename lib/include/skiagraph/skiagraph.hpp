@@ -17,7 +17,8 @@ namespace skiagraph {
 /** A call failed. what() is the library's sentence. */
 class error : public std::runtime_error {
   public:
-    explicit error(skg_status status) : std::runtime_error(skg_last_error()), status_(status) {}
+    explicit error(skg_status status) : std::runtime_error(skg_last_error()), status_(status) {
+    }
     skg_status status() const noexcept {
         return status_;
     }
@@ -37,8 +38,10 @@ template <class T, void (*Release)(T **)> class handle {
   public:
     using type = T;
     handle() noexcept = default;
-    explicit handle(T *owned) noexcept : it_(owned) {}
-    handle(handle &&other) noexcept : it_(std::exchange(other.it_, nullptr)) {}
+    explicit handle(T *owned) noexcept : it_(owned) {
+    }
+    handle(handle &&other) noexcept : it_(std::exchange(other.it_, nullptr)) {
+    }
     handle &operator=(handle &&other) noexcept {
         if (this != &other) {
             Release(&it_);
@@ -105,21 +108,23 @@ Number number(Function function, Arguments &&...arguments) {
 }
 
 /** A mesh from rows of x, y, z in units of unit_mm, and rows of three vertex numbers. The arrays are copied. */
-inline mesh make_mesh(std::span<const double> positions, std::span<const std::int32_t> corners, double unit_mm = 1,
-                      const char *name = nullptr) {
+inline mesh make_mesh(std::span<const double> positions, std::span<const std::int32_t> corners,
+                      double unit_mm = 1, const char *name = nullptr) {
     if (positions.size() % 3 || corners.size() % 3)
         throw std::invalid_argument("skiagraph::make_mesh: rows have three numbers");
     return make<mesh>(skg_mesh_create, nullptr, name, static_cast<std::int64_t>(positions.size() / 3),
-                      positions.data(), 0, static_cast<std::int64_t>(corners.size() / 3), corners.data(), 0, unit_mm);
+                      positions.data(), 0, static_cast<std::int64_t>(corners.size() / 3), corners.data(), 0,
+                      unit_mm);
 }
 
 /** The same from floats. */
-inline mesh make_mesh(std::span<const float> positions, std::span<const std::int32_t> corners, double unit_mm = 1,
-                      const char *name = nullptr) {
+inline mesh make_mesh(std::span<const float> positions, std::span<const std::int32_t> corners,
+                      double unit_mm = 1, const char *name = nullptr) {
     if (positions.size() % 3 || corners.size() % 3)
         throw std::invalid_argument("skiagraph::make_mesh: rows have three numbers");
     return make<mesh>(skg_mesh_create_float, nullptr, name, static_cast<std::int64_t>(positions.size() / 3),
-                      positions.data(), 0, static_cast<std::int64_t>(corners.size() / 3), corners.data(), 0, unit_mm);
+                      positions.data(), 0, static_cast<std::int64_t>(corners.size() / 3), corners.data(), 0,
+                      unit_mm);
 }
 
 /** Adds a part to a scene and returns its number. */
@@ -130,8 +135,10 @@ inline std::int64_t add(const scene &to, const skg_part &part) {
 /** Work that was submitted. Its destructor waits, because the output's memory is in use until then. */
 class job {
   public:
-    explicit job(skg_job *submitted) noexcept : it_(submitted) {}
-    job(job &&other) noexcept : it_(std::exchange(other.it_, nullptr)) {}
+    explicit job(skg_job *submitted) noexcept : it_(submitted) {
+    }
+    job(job &&other) noexcept : it_(std::exchange(other.it_, nullptr)) {
+    }
     job(const job &) = delete;
     job &operator=(const job &) = delete;
     job &operator=(job &&) = delete;
@@ -154,7 +161,8 @@ class job {
 /** A plan cannot absorb what changed: make another one. */
 class stale : public std::runtime_error {
   public:
-    stale() : std::runtime_error(skg_last_error()) {}
+    stale() : std::runtime_error(skg_last_error()) {
+    }
 };
 
 namespace detail {
@@ -178,7 +186,8 @@ inline std::int32_t type_of(const double *) {
 
 /** Starts frames whose images are stored densely, [frame][channel][row][column], in float or double. `images` has to
  * stay, and to be large enough, until the job was waited for. */
-template <class Pixel> job submit(const plan &by, std::span<const skg_frame> frames, std::span<Pixel> images) {
+template <class Pixel>
+job submit(const plan &by, std::span<const skg_frame> frames, std::span<Pixel> images) {
     skg_job *submitted = nullptr;
     const skg_output output = detail::dense(images.data(), detail::type_of(images.data()));
     const skg_status status =
@@ -196,7 +205,8 @@ template <class Pixel> skg_status image(const plan &by, std::span<Pixel> to) {
 
 /** Computes path lengths through a part in mm, [row][column]; kind is enum skg_lengths. */
 template <class Pixel>
-skg_status lengths(const plan &by, std::int64_t part, std::span<Pixel> to, std::int32_t kind = SKG_LENGTHS_NET) {
+skg_status lengths(const plan &by, std::int64_t part, std::span<Pixel> to,
+                   std::int32_t kind = SKG_LENGTHS_NET) {
     skg_job *submitted = nullptr;
     const skg_output output = detail::dense(to.data(), detail::type_of(to.data()));
     const skg_status status = skg_plan_lengths(by, part, kind, 1, nullptr, &output, &submitted);
