@@ -21,6 +21,7 @@ if [ "$intel" = yes ]; then
 fi
 "$bin/skiagraph" devices --test | tee "$build/devices.txt"
 failed=0
+# shellcheck disable=SC2013 # a word a line
 for number in $(sed -n 's/^\([0-9]*:[0-9]*\)  .*/\1/p' "$build/devices.txt"); do
     if ! SKG_DEVICE=$number "$bin/skiagraph" devices >/dev/null 2>"$build/devices.log"; then
         echo "$number is refused:"
