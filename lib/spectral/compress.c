@@ -82,6 +82,33 @@ static skg_status describe(compressing *c, const skg_model *model) {
     return find_floor(c, model);
 }
 
+/* Shades have ranges of their own. Over the rays, each goes once from end to end. */
+static void add_shades(const skg_model *model, skg_ranges *ranges) {
+    const skg_shades *shades = &model->shades;
+    const int32_t first = model->planes - shades->count;
+    for (int32_t k = 0; k < shades->count; k++) {
+        const double low = shades->low[k], high = shades->high[k];
+        ranges->low[first + k] = low, ranges->high[first + k] = high;
+        for (int64_t r = 0; r < ranges->rays; r++)
+            ranges->lengths[r * ranges->planes + first + k] =
+                low + (high - low) * (double)r / (double)(ranges->rays - 1);
+    }
+}
+
+/* What a unit of a shade adds to the planes of the basis. */
+static skg_status rewrite_shades(const skg_basis *basis, skg_model *model) {
+    const int32_t planes = basis->planes, first = model->planes - model->shades.count;
+    double *lists = NULL;
+    if (model->shades.count == 0) return SKG_OK;
+    SKG_TRY(skg_alloc((int64_t)model->shades.count * planes, sizeof *lists, "planes", &lists));
+    for (int32_t k = 0; k < model->shades.count; k++)
+        memcpy(lists + k * planes, basis->mix + (int64_t)(first + k) * planes,
+               (size_t)planes * sizeof *lists);
+    skg_free(&model->shade_lists);
+    model->shade_lists = lists;
+    return SKG_OK;
+}
+
 /* --- planes --- */
 
 /* Sets weights [planes] to what a mm of a part adds to the planes of a basis. */
@@ -223,6 +250,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_
         .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c.ranges));
+    add_shades(model, &c.ranges);
     SKG_TRY_CLEANUP(describe(&c, model));
     SKG_TRY_CLEANUP(choose_planes(&c, model));
     SKG_TRY_CLEANUP(
@@ -230,6 +258,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_
     if (c.found.nodes.count == 0) goto cleanup;
     c.found.bound *= errors;
     SKG_TRY_CLEANUP(find_range(&c, model));
+    SKG_TRY_CLEANUP(rewrite_shades(&c.basis, model));
     SKG_TRY_CLEANUP(rewrite_contributions(&c, model));
     rewrite_nodes(&c, model);
 cleanup:

@@ -9,6 +9,7 @@
 
 #include "scene/scene.h"
 #include "spectral/contribution.h"
+#include "spectral/shades.h"
 
 #include <skiagraph/plan.h>
 
@@ -24,6 +25,9 @@ typedef struct {
     double *flat_field;  /* [channels] the sum of the weights before they were made those of a ratio */
     int64_t world_plane; /* the plane to which a mm of the world's path adds world_weight; -1: vacuum */
     double world_weight;
+    skg_shades shades;
+    double
+        *shade_lists; /* [shades.count][planes] what a unit of a shade adds to the planes; NULL: no shades */
     double *node_photons; /* [nodes] photons of the flat field that would have the same weight */
     double *node_kev;     /* [nodes] */
     int32_t bins;         /* bins of the spectrum that have photons */

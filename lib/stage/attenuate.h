@@ -2,6 +2,7 @@
 #ifndef SKG_ATTENUATE_H
 #define SKG_ATTENUATE_H
 
+#include "spectral/shades.h"
 #include "stage/raster.h"
 
 /* The same numbers as SKG_SHOW_... of config.clh. */
@@ -18,8 +19,10 @@ typedef struct {
     int32_t energies;    /* 1: shows keV, which half precision stores in MeV */
     int32_t noise;       /* 1: quantum noise is drawn; then intensities are no ratio */
     int32_t reserved;
-    double world_weight; /* of a mm of the world's path in its plane */
+    double world_weight;      /* of a mm of the world's path in its plane */
+    const skg_shades *shades; /* borrowed; count 0, or NULL: none */
     skg_buffer coefficients, weights, variances;
+    skg_buffer shade_tables; /* [shades][SKG_SHADE_TERMS] amounts, [shades][planes] lists */
     skg_buffer
         range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
 } skg_attenuation;
@@ -30,6 +33,7 @@ typedef struct {
     const double *weights;      /* [nodes][channels] */
     const double *variances;    /* [nodes][channels] with noise; else NULL */
     const double *range;        /* [planes][2]; NULL: not checked */
+    const double *shade_lists;  /* [shades][planes]; NULL: no shades */
 } skg_attenuation_tables;
 
 /* shape: planes, nodes, channels and what is shown. The tables are copied. */
