@@ -106,9 +106,6 @@ typedef struct {
 #if SKG_WORLD
     skg_realv world[SKG_RUNS]; /* mm that the world adds to its plane */
 #endif
-#if SKG_SHADES
-    skg_realv shade[SKG_SHADES][SKG_RUNS]; /* amounts of the shades */
-#endif
 #if SKG_NOISE
     skg_realv spread[SKG_CHANNELS][SKG_RUNS]; /* variances */
 #endif
@@ -117,19 +114,22 @@ typedef struct {
 #define SKG_EACH_RUN SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
 #define SKG_EACH_CHANNEL SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
 #define SKG_EACH_PLANE(first) SKG_UNROLL for (int p = first; p < SKG_PLANES; p++)
+/* The planes that are accumulated; the others are shades. */
+#define SKG_SUMMED (SKG_PLANES - SKG_SHADES)
+#define SKG_EACH_SUMMED SKG_UNROLL for (int p = 0; p < SKG_SUMMED; p++)
 
 /* Reads the planes of run r in mm from the sums. scaled: mm of a unit of the sums. */
 static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, __global const int *used, int at,
                          skg_realv scaled, skg_pixels *pixels, int r) {
 #if SKG_SUMS
-    SKG_EACH_PLANE(0) pixels->x[p][r] = (skg_realv)(0);
+    SKG_EACH_SUMMED pixels->x[p][r] = (skg_realv)(0);
     SKG_UNROLL for (int s = 0; s < SKG_SUMS; s++) {
         const skg_realv sum = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, s, pass->row, at)) * scaled;
-        SKG_EACH_PLANE(0)
-        pixels->x[p][r] = fma((skg_realv)(pass->lists[s * SKG_PLANES + p]), sum, pixels->x[p][r]);
+        SKG_EACH_SUMMED
+        pixels->x[p][r] = fma((skg_realv)(pass->lists[s * SKG_SUMMED + p]), sum, pixels->x[p][r]);
     }
 #else
-    SKG_EACH_PLANE(0)
+    SKG_EACH_SUMMED
     pixels->x[p][r] = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, p, pass->row, at)) * scaled;
 #endif
 }
@@ -138,34 +138,25 @@ static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, _
 /* Terms of the polynomials that amounts of shades are: SKG_SHADE_TERMS of lib/spectral/shades.h. */
 #define SKG_TERMS 12
 
-/* Adds the shades of run r. length: of the rays. */
-static void skg_add_shades(const skg_pass *pass, int at, skg_realv length, skg_pixels *pixels, int r) {
+/* Sets the planes of the shades of run r to their amounts. length: of the rays. */
+static void skg_read_shades(const skg_pass *pass, int at, skg_realv length, skg_pixels *pixels, int r) {
     const skg_real4 axis = pass->shade_axis;
     const skg_realv along = fma((skg_realv)(axis.y), (skg_real)at + SKG_LANES,
                                 (skg_realv)(fma(axis.z, (skg_real)pass->row, axis.x)));
     const skg_realv z = along / length + axis.w;
-    __constant const skg_real *terms = pass->shades;
     SKG_UNROLL for (int s = 0; s < SKG_SHADES; s++) {
-        skg_realv amount = (skg_realv)(terms[s * SKG_TERMS + SKG_TERMS - 1]);
-        SKG_UNROLL for (int t = SKG_TERMS - 2; t >= 0; t--)
-            amount = fma(amount, z, (skg_realv)(terms[s * SKG_TERMS + t]));
-        pixels->shade[s][r] = amount;
+        __constant const skg_real *terms = pass->shades + s * SKG_TERMS;
+        skg_realv amount = (skg_realv)(terms[SKG_TERMS - 1]);
+        SKG_UNROLL for (int t = SKG_TERMS - 2; t >= 0; t--) amount = fma(amount, z, (skg_realv)(terms[t]));
+        pixels->x[SKG_SUMMED + s][r] = amount;
     }
-    __constant const skg_real *lists = pass->shades + SKG_SHADES * SKG_TERMS;
-    SKG_UNROLL for (int s = 0; s < SKG_SHADES; s++) SKG_EACH_PLANE(0)
-    pixels->x[p][r] = fma((skg_realv)(lists[s * SKG_PLANES + p]), pixels->shade[s][r], pixels->x[p][r]);
 }
 
 /* The power of two that the shades of run r add to node n. */
 static skg_realv skg_shade_power(const skg_pass *pass, const skg_pixels *pixels, int n, int r) {
-    __constant const skg_real *lists = pass->shades + SKG_SHADES * SKG_TERMS;
     skg_realv power = (skg_realv)(0);
-    SKG_UNROLL for (int s = 0; s < SKG_SHADES; s++) {
-        skg_real loss = (skg_real)(0);
-        SKG_EACH_PLANE(0)
-        loss = fma(pass->coefficients[n * SKG_PLANES + p], lists[s * SKG_PLANES + p], loss);
-        power = fma((skg_realv)(loss), pixels->shade[s][r], power);
-    }
+    SKG_EACH_PLANE(SKG_SUMMED)
+    power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + p]), pixels->x[p][r], power);
     return power;
 }
 #endif
@@ -185,7 +176,7 @@ static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies
         SKG_EACH_PLANE(0) if (p == pass->world_plane) pixels->x[p][r] += pixels->world[r];
 #endif
 #if SKG_SHADES
-        skg_add_shades(pass, at, length, pixels, r);
+        skg_read_shades(pass, at, length, pixels, r);
 #endif
     }
 }
@@ -380,14 +371,14 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  *                below -limit): more was subtracted for children than their parent has there
  *                negative[2] counts the values that are not finite
  * output         strides and offset in elements
- * lists          a unit of accumulator s adds lists[s][p] to plane p
+ * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p
  * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
  * foot           distance from the source to the foot of its perpendicular on the plane of the detector: intensities are
  *                multiplied by the cube of foot / |ray|
  * variances      of the nodes, as weights
  * photons        if fewer are detected in a pixel they are drawn one by one; mean^2 / variance, which is never more than
  *                their number, decides
- * shades         amounts as polynomials of z, and what a unit adds to the planes; z is (shade_axis.x + shade_axis.y i +
+ * shades         amounts as polynomials of z, which are the last planes; z is (shade_axis.x + shade_axis.y i +
  *                shade_axis.z j) / |ray| + shade_axis.w
  * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,

@@ -37,7 +37,7 @@ static skg_status make_detector(const skg_recipe *recipe, const skg_detector_blu
 static skg_status make_attenuation(const skg_recipe *recipe, skg_context *context, skg_attenuation *images) {
     const skg_model *model = &recipe->model;
     const skg_attenuation_tables tables = {model->coefficients, model->weights, model->variances,
-                                           model->range, model->shade_lists};
+                                           model->range};
     skg_attenuation shape;
     skg_decide_attenuation(recipe, &shape);
     return skg_attenuation_create(context, recipe->options.precision, &shape, &tables, images);

@@ -75,7 +75,7 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_FALLOFF:
         return c->passes * RAY;
     case SKG_EFFECT_HEEL:
-        return c->passes * (RAY + model->shades.count * (SKG_SHADE_TERMS + planes));
+        return c->passes * (RAY + model->shades.count * (SKG_SHADE_TERMS + nodes));
     case SKG_EFFECT_LEAKY:
         return c->passes * (double)recipe->leaky_count * 2 * SKG_COST_OF_PLANE;
     case SKG_EFFECT_REPAIR:

@@ -27,7 +27,7 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
                                               : SKG_SHOWN_LOGARITHM;
     /* In a ratio of one energy the world cancels. */
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
-    *shape = (skg_attenuation){.planes = model->planes,
+    *shape = (skg_attenuation){.planes = skg_model_width(model),
                                .nodes = model->nodes,
                                .channels = model->channels,
                                .shown = shown,

@@ -48,18 +48,11 @@ static int32_t shades_of(const skg_attenuation *attenuation) {
     return attenuation->shades ? attenuation->shades->count : 0;
 }
 
-static skg_status upload_shades(skg_context *context, int32_t is_double, const double *lists,
-                                skg_attenuation *attenuation) {
-    const int64_t shades = shades_of(attenuation), planes = attenuation->planes;
-    double *tables = NULL;
+static skg_status upload_shades(skg_context *context, int32_t is_double, skg_attenuation *attenuation) {
+    const int64_t shades = shades_of(attenuation);
     if (shades == 0) return SKG_OK;
-    SKG_TRY(skg_alloc(shades * (SKG_SHADE_TERMS + planes), sizeof *tables, "heel effect", &tables));
-    memcpy(tables, attenuation->shades->amounts, (size_t)(shades * SKG_SHADE_TERMS) * sizeof *tables);
-    memcpy(tables + shades * SKG_SHADE_TERMS, lists, (size_t)(shades * planes) * sizeof *tables);
-    const skg_status status =
-        upload(context, is_double, shades * (SKG_SHADE_TERMS + planes), tables, &attenuation->shade_tables);
-    skg_free(&tables);
-    return status;
+    return upload(context, is_double, shades * SKG_SHADE_TERMS, attenuation->shades->amounts[0],
+                  &attenuation->shade_amounts);
 }
 
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
@@ -78,7 +71,7 @@ skg_status skg_attenuation_create(skg_context *context, int32_t precision, const
     const int64_t weighted = (int64_t)shape->nodes * shape->channels;
     if (shape->noise)
         SKG_TRY(upload(context, is_double, weighted, tables->variances, &attenuation->variances));
-    SKG_TRY(upload_shades(context, is_double, tables->shade_lists, attenuation));
+    SKG_TRY(upload_shades(context, is_double, attenuation));
     if (tables->range)
         SKG_TRY(upload(context, is_double, 2 * (int64_t)shape->planes, tables->range, &attenuation->range));
     return upload(context, is_double, weighted, tables->weights, &attenuation->weights);
@@ -89,12 +82,12 @@ void skg_attenuation_release(skg_attenuation *attenuation) {
     skg_buffer_release(&attenuation->weights);
     skg_buffer_release(&attenuation->variances);
     skg_buffer_release(&attenuation->range);
-    skg_buffer_release(&attenuation->shade_tables);
+    skg_buffer_release(&attenuation->shade_amounts);
 }
 
 int64_t skg_attenuation_bytes(const skg_attenuation *attenuation) {
     return attenuation->coefficients.bytes + attenuation->weights.bytes + attenuation->variances.bytes +
-           attenuation->range.bytes + attenuation->shade_tables.bytes;
+           attenuation->range.bytes + attenuation->shade_amounts.bytes;
 }
 
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator) {
@@ -260,7 +253,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, range, attenuation->range.memory),
         {SKG_ATTENUATE_shade_axis, is_double ? sizeof axis : sizeof axis_single,
          is_double ? (const void *)axis : (const void *)axis_single},
-        SKG_ARGUMENT(ATTENUATE, shades, attenuation->shade_tables.memory),
+        SKG_ARGUMENT(ATTENUATE, shades, attenuation->shade_amounts.memory),
     };
     SKG_TRY(set_arguments(kernel, &key, arguments));
     const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision) * RUNS;
