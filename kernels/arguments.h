@@ -112,7 +112,8 @@
     X(ATTENUATE, world_plane) X(ATTENUATE, world) /* SKG_WORLD */ \
     X(ATTENUATE, foot) /* SKG_FALLOFF */ \
     X(ATTENUATE, variances) X(ATTENUATE, key) X(ATTENUATE, photons) /* SKG_NOISE */ \
-    X(ATTENUATE, range) /* SKG_RANGED */
+    X(ATTENUATE, range) /* SKG_RANGED */ \
+    X(ATTENUATE, shade_axis) X(ATTENUATE, shades) /* SKG_SHADES */
 
 #define SKG_ARGUMENTS_LOGARITHM(X) \
     X(LOGARITHM, columns) X(LOGARITHM, rows) X(LOGARITHM, channels) X(LOGARITHM, output) X(LOGARITHM, offset) \

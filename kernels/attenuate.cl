@@ -92,6 +92,10 @@ typedef struct {
     const skg_noise_args *key;
     skg_real photons;
 #endif
+#if SKG_SHADES
+    skg_real4 shade_axis;
+    __constant const skg_real *shades;
+#endif
 } skg_pass;
 
 /* What a work-item knows of its pixels, a vector a run. */
@@ -110,22 +114,52 @@ typedef struct {
 #define SKG_EACH_RUN SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
 #define SKG_EACH_CHANNEL SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
 #define SKG_EACH_PLANE(first) SKG_UNROLL for (int p = first; p < SKG_PLANES; p++)
+/* The planes that are accumulated; the others are shades. */
+#define SKG_SUMMED (SKG_PLANES - SKG_SHADES)
+#define SKG_EACH_SUMMED SKG_UNROLL for (int p = 0; p < SKG_SUMMED; p++)
 
 /* Reads the planes of run r in mm from the sums. scaled: mm of a unit of the sums. */
 static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, __global const int *used, int at,
                          skg_realv scaled, skg_pixels *pixels, int r) {
 #if SKG_SUMS
-    SKG_EACH_PLANE(0) pixels->x[p][r] = (skg_realv)(0);
+    SKG_EACH_SUMMED pixels->x[p][r] = (skg_realv)(0);
     SKG_UNROLL for (int s = 0; s < SKG_SUMS; s++) {
         const skg_realv sum = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, s, pass->row, at)) * scaled;
-        SKG_EACH_PLANE(0)
-        pixels->x[p][r] = fma((skg_realv)(pass->lists[s * SKG_PLANES + p]), sum, pixels->x[p][r]);
+        SKG_EACH_SUMMED
+        pixels->x[p][r] = fma((skg_realv)(pass->lists[s * SKG_SUMMED + p]), sum, pixels->x[p][r]);
     }
 #else
-    SKG_EACH_PLANE(0)
+    SKG_EACH_SUMMED
     pixels->x[p][r] = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, p, pass->row, at)) * scaled;
 #endif
 }
+
+#if SKG_SHADES
+/* Terms of the polynomials that amounts of shades are: SKG_SHADE_TERMS of lib/spectral/shades.h. */
+#define SKG_TERMS 12
+
+/* Sets the planes of the shades of run r to their amounts. length: of the rays. */
+static void skg_read_shades(const skg_pass *pass, int at, skg_realv length, skg_pixels *pixels, int r) {
+    const skg_real4 axis = pass->shade_axis;
+    const skg_realv along = fma((skg_realv)(axis.y), (skg_real)at + SKG_LANES,
+                                (skg_realv)(fma(axis.z, (skg_real)pass->row, axis.x)));
+    const skg_realv z = along / length + axis.w;
+    SKG_UNROLL for (int s = 0; s < SKG_SHADES; s++) {
+        __constant const skg_real *terms = pass->shades + s * SKG_TERMS;
+        skg_realv amount = (skg_realv)(terms[SKG_TERMS - 1]);
+        SKG_UNROLL for (int t = SKG_TERMS - 2; t >= 0; t--) amount = fma(amount, z, (skg_realv)(terms[t]));
+        pixels->x[SKG_SUMMED + s][r] = amount;
+    }
+}
+
+/* The power of two that the shades of run r add to node n. */
+static skg_realv skg_shade_power(const skg_pass *pass, const skg_pixels *pixels, int n, int r) {
+    skg_realv power = (skg_realv)(0);
+    SKG_EACH_PLANE(SKG_SUMMED)
+    power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + p]), pixels->x[p][r], power);
+    return power;
+}
+#endif
 
 /* Path lengths. Runs past the end of a row stay in it. */
 static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies, __global const int *used,
@@ -140,6 +174,9 @@ static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies
                                    (skg_realv)(fma(pass->world.w, (skg_real)pass->row, pass->world.y)));
         pixels->world[r] = pass->world.x * length * path;
         SKG_EACH_PLANE(0) if (p == pass->world_plane) pixels->x[p][r] += pixels->world[r];
+#endif
+#if SKG_SHADES
+        skg_read_shades(pass, at, length, pixels, r);
 #endif
     }
 }
@@ -216,24 +253,35 @@ static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
 }
 
 #if SKG_RATIO
-/* The greatest power of two of the flat field, in which there is the world alone. */
-static skg_realv skg_highest_flat_field(const skg_pass *pass, skg_realv world) {
-    skg_realv highest = (skg_realv)(pass->coefficients[pass->world_plane]) * world;
+/* The power of two of node n in the flat field, in which there are the world and the shades alone, less `base`. */
+static skg_realv skg_open_power(const skg_pass *pass, const skg_pixels *pixels, int n, int r, skg_realv base) {
+    skg_realv power = -base;
+#if SKG_SHADES
+    power += skg_shade_power(pass, pixels, n, r);
+#endif
+#if SKG_WORLD
+    power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]), pixels->world[r], power);
+#endif
+    return power;
+}
+
+/* The greatest power of two of the flat field. */
+static skg_realv skg_highest_flat_field(const skg_pass *pass, const skg_pixels *pixels, int r) {
+    const skg_realv zero = (skg_realv)(0);
+    skg_realv highest = skg_open_power(pass, pixels, 0, r, zero);
     for (int n = 1; n < pass->nodes; n++) {
-        const skg_realv power = (skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]) * world;
+        const skg_realv power = skg_open_power(pass, pixels, n, r, zero);
         highest = power > highest ? power : highest;
     }
     return highest;
 }
 
 /* The sum over nodes of weight * 2^(power - base) for one channel of the flat field. */
-static skg_realv skg_flat_field(const skg_pass *pass, int channel, skg_realv world, skg_realv base) {
+static skg_realv skg_flat_field(const skg_pass *pass, const skg_pixels *pixels, int channel, int r, skg_realv base) {
     skg_realv flat = (skg_realv)(0);
-    for (int n = 0; n < pass->nodes; n++) {
-        const skg_realv coefficient = (skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]);
+    for (int n = 0; n < pass->nodes; n++)
         flat = fma((skg_realv)(pass->weights[n * SKG_CHANNELS + channel]),
-                   skg_exp2_v(fma(coefficient, world, -base)), flat);
-    }
+                   skg_exp2_v(skg_open_power(pass, pixels, n, r, base)), flat);
     return flat;
 }
 #endif
@@ -285,17 +333,17 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
     const skg_realv all = (skg_realv)(pass->factor);
 #endif
 #if SKG_RATIO
-    const skg_realv top = skg_highest_flat_field(pass, pixels->world[r]);
+    const skg_realv top = skg_highest_flat_field(pass, pixels, r);
 #endif
     SKG_EACH_CHANNEL {
         skg_realv value = pixels->shown[c][r];
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
         value = -fma(pixels->highest[r], (skg_realv)(SKG_LN2), skg_log_v(value));
 #if SKG_RATIO
-        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_flat_field(pass, c, pixels->world[r], top)));
+        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_flat_field(pass, pixels, c, r, top)));
 #endif
 #elif SKG_RATIO
-        value = value / skg_flat_field(pass, c, pixels->world[r], top) * skg_exp2_v(-top) * all;
+        value = value / skg_flat_field(pass, pixels, c, r, top) * skg_exp2_v(-top) * all;
 #else
         value *= all;
 #endif
@@ -304,8 +352,13 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
         pixels->shown[c][r] = skg_noisy_v(pass, pixels, r, c, all);
 #endif
     }
-#if SKG_WORLD
     /* Only what the parts subtract is counted as negative. */
+#if SKG_SHADES
+    pixels->highest[r] = -skg_shade_power(pass, pixels, 0, r);
+    SKG_EACH_PLANE(0)
+    pixels->highest[r] = fma((skg_realv)(pass->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
+#endif
+#if SKG_WORLD
     pixels->highest[r] -= pass->coefficients[pass->world_plane] * pixels->world[r];
 #endif
 }
@@ -318,13 +371,15 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  *                below -limit): more was subtracted for children than their parent has there
  *                negative[2] counts the values that are not finite
  * output         strides and offset in elements
- * lists          a unit of accumulator s adds lists[s][p] to plane p
+ * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p
  * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
  * foot           distance from the source to the foot of its perpendicular on the plane of the detector: intensities are
  *                multiplied by the cube of foot / |ray|
  * variances      of the nodes, as weights
  * photons        if fewer are detected in a pixel they are drawn one by one; mean^2 / variance, which is never more than
  *                their number, decides
+ * shades         amounts as polynomials of z, which are the last planes; z is (shade_axis.x + shade_axis.y i +
+ *                shade_axis.z j) / |ray| + shade_axis.w
  * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
@@ -351,6 +406,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
                             ,
                             __constant const skg_real *range
 #endif
+#if SKG_SHADES
+                            ,
+                            skg_real4 shade_axis, __constant const skg_real *shades
+#endif
 ) {
     skg_pass pass;
     skg_pixels pixels;
@@ -376,6 +435,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     pass.variances = variances;
     pass.key = &key;
     pass.photons = photons;
+#endif
+#if SKG_SHADES
+    pass.shade_axis = shade_axis;
+    pass.shades = shades;
 #endif
     if (pass.column >= frame.columns || pass.row >= frame.rows) return;
     skg_read_planes(&pass, copies, used, &pixels);

@@ -195,8 +195,8 @@ static skg_status read_output(const skg_json_object *beam, skg_tube *tube) {
     return SKG_OK;
 }
 
-/* Everything but voltage, load and filters. */
-static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
+/* Everything but voltage, load and filters. heel_deg: the anode's angle that Heel gives; 0: none. */
+static skg_status read_options(const skg_json_object *beam, double heel_deg, skg_tube *tube) {
     static const char *const models[] = {"Ebel", "Birch"};
     skg_json_node angle = skg_json_member(beam, "TubeAngle"), anode = skg_json_member(beam, "Anode");
     skg_json_node model = skg_json_member(beam, "Model"),
@@ -204,6 +204,11 @@ static skg_status read_options(const skg_json_object *beam, skg_tube *tube) {
     int64_t most = 0, choice = 0;
     const char *text = NULL;
     if (angle.value) SKG_TRY(skg_json_number(&angle, &tube->angle_deg));
+    if (angle.value && heel_deg > 0 && heel_deg != tube->angle_deg)
+        return skg_json_fail(&angle, SKG_ERR_BEAM,
+                             "is %g degrees, but AnodeAngle of Heel is %g; give one of them", tube->angle_deg,
+                             heel_deg);
+    if (heel_deg > 0) tube->angle_deg = heel_deg;
     if (anode.value) {
         SKG_TRY(skg_json_text(&anode, &text));
         skg_status status = skg_element_number_get(text, &tube->anode);
@@ -226,7 +231,11 @@ static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *bea
     tube.context = reader->context;
     SKG_TRY(skg_json_number(kvp, &tube.kvp));
     SKG_TRY(read_mas(beam, &tube.mas, &reader->setup->absolute));
-    SKG_TRY(read_options(beam, &tube));
+    skg_heel *heel = &reader->setup->heel;
+    SKG_TRY(read_options(beam, heel->angle_deg, &tube));
+    heel->anode = tube.anode, heel->kvp = tube.kvp;
+    heel->angle_deg = tube.angle_deg, heel->bin_kev = tube.bin_kev;
+    reader->setup->has_tube = 1;
     SKG_TRY_CLEANUP(read_filters(beam, &list));
     tube.filters = list.filters;
     tube.filter_count = list.count;

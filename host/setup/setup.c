@@ -297,6 +297,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->clip) ours.clip = 1;
     if (setup->has_band_weight) ours.band_weight = setup->band_weight;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
+    if (setup->has_heel) ours.heel = &setup->heel;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;

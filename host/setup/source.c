@@ -6,7 +6,7 @@ static const skg_json_key source_keys[] = {
     {"Shape", NULL, SKG_KEY_READ},    {"Samples", NULL, SKG_KEY_READ},
     {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
     {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
-    {"From", NULL, SKG_KEY_READ},
+    {"From", NULL, SKG_KEY_READ},     {"Heel", NULL, SKG_KEY_READ},
 };
 
 /* Where only path lengths are wanted, any energy does for a beam that is absent. */
@@ -21,6 +21,30 @@ static skg_status read_side(skg_setup_reader *reader, const skg_json_node *node)
     if (!json_is_string(node->value)) return skg_json_direction(node, reader->side);
     SKG_TRY(skg_json_choice(node, "side", names, 3, &choice));
     for (int k = 0; k < 3; k++) reader->side[k] = sides[choice][k];
+    return SKG_OK;
+}
+
+static const skg_json_key heel_keys[] = {
+    {"AnodeAngle", NULL, SKG_KEY_READ},
+    {"Direction", NULL, SKG_KEY_READ},
+};
+
+/* Before the beam, whose tube has the angle of the anode. node->value may be NULL. */
+static skg_status read_heel(skg_setup *setup, const skg_json_node *node) {
+    skg_json_object heel;
+    skg_json_node direction;
+    skg_heel_init(&setup->heel);
+    setup->heel.angle_deg = 0; /* not given */
+    if (!node->value) return SKG_OK;
+    SKG_TRY(skg_json_read_object(node, heel_keys, sizeof heel_keys / sizeof *heel_keys, &heel));
+    skg_json_node angle = skg_json_member(&heel, "AnodeAngle");
+    if (angle.value) SKG_TRY(skg_json_number(&angle, &setup->heel.angle_deg));
+    if (angle.value && !(setup->heel.angle_deg > 0))
+        return skg_json_fail(&angle, SKG_ERR_BEAM, "is %g; give the angle of the anode in degrees, above 0",
+                             setup->heel.angle_deg);
+    SKG_TRY(skg_json_need(&heel, "Direction", "[1, 0, 0]", &direction));
+    SKG_TRY(skg_json_direction(&direction, setup->heel.direction));
+    setup->has_heel = 1;
     return SKG_OK;
 }
 
@@ -65,5 +89,11 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     }
     SKG_TRY(skg_json_need(&source, "Beam", "[{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]",
                           &beam));
-    return skg_setup_read_beam(reader, &beam);
+    skg_json_node heel = skg_json_member(&source, "Heel");
+    SKG_TRY(read_heel(setup, &heel));
+    SKG_TRY(skg_setup_read_beam(reader, &beam));
+    if (setup->has_heel && !setup->has_tube)
+        return skg_json_fail(&heel, SKG_ERR_BEAM,
+                             "needs a tube, whose anode makes it; give a Beam with kVp, or leave Heel out");
+    return SKG_OK;
 }

@@ -57,6 +57,22 @@ double skg_ebel_line(const skg_anode *anode, int32_t shell, int line, double dee
 double skg_tube_continuum(const skg_anode *anode, double energy_kev);
 double skg_tube_line(const skg_anode *anode, int32_t shell, int line, double *energy_kev);
 
+skg_status skg_tube_check(const skg_tube *tube);
+
+/* The unfiltered spectrum of a checked tube per mAs and mm2 at 1 m, every bin from SKG_LOWEST_KEV on. */
+skg_status skg_tube_bare(const skg_tube *tube, skg_spectrum **spectrum);
+
+/* The tube of a heel effect. */
+typedef struct {
+    int32_t anode, reserved;
+    double kvp, angle_deg, bin_kev;
+} skg_heel_tube;
+
+/* Sets losses [energies of the spectrum] to -ln of the photons that leave the anode at an angle over those that leave it at
+ * the tube's. */
+skg_status skg_heel_losses(const skg_heel_tube *heel, double angle_deg, const skg_spectrum *spectrum,
+                           double *losses);
+
 /* The range for which the calibration of an anode was made. z 0: this element has none, and has that of tungsten. */
 typedef struct {
     int32_t z, reserved;

@@ -27,7 +27,7 @@ static skg_status check_value(const char *what, double value, double lowest, dou
                     highest);
 }
 
-static skg_status check_tube(const skg_tube *tube) {
+skg_status skg_tube_check(const skg_tube *tube) {
     const char *symbol;
     if (tube->model != SKG_TUBE_MODEL_EBEL && tube->model != SKG_TUBE_MODEL_BIRCH)
         return skg_fail(SKG_ERR_BEAM,
@@ -96,8 +96,7 @@ cleanup:
     return status;
 }
 
-/* The unfiltered spectrum per mAs and mm2 at 1 m. */
-static skg_status unfiltered(const skg_tube *tube, skg_spectrum **spectrum) {
+skg_status skg_tube_bare(const skg_tube *tube, skg_spectrum **spectrum) {
     SKG_TRY(shape(tube, tube->model, spectrum));
     skg_status status = SKG_OK;
     if (tube->model == SKG_TUBE_MODEL_BIRCH) {
@@ -190,8 +189,8 @@ skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectru
     *spectrum = NULL;
     skg_tube_init(&ours);
     SKG_TRY(skg_struct_read(tube, "skg_tube", &ours, sizeof ours));
-    SKG_TRY(check_tube(&ours));
-    SKG_TRY(unfiltered(&ours, &bare));
+    SKG_TRY(skg_tube_check(&ours));
+    SKG_TRY(skg_tube_bare(&ours, &bare));
     SKG_TRY_CLEANUP(skg_spectrum_create_filtered(bare, ours.filter_count, ours.filters, &behind));
     SKG_TRY_CLEANUP(warn(&ours, bare, behind));
     double scale = ours.mas * ours.pixel_mm2 * pow(1000 / ours.distance_mm, 2);

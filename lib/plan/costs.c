@@ -87,6 +87,8 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
         return c->passes * (RAY + (shape.ratio ? nodes * (1 + EXPONENTIAL) : 0));
     case SKG_EFFECT_FALLOFF:
         return c->passes * RAY;
+    case SKG_EFFECT_HEEL:
+        return c->passes * (RAY + model->shades.count * (SKG_SHADE_TERMS + nodes));
     case SKG_EFFECT_LEAKY:
         return c->passes * (double)recipe->leaky_count * 2 * SKG_COST_OF_PLANE;
     case SKG_EFFECT_REPAIR:

@@ -27,13 +27,14 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
                                               : SKG_SHOWN_LOGARITHM;
     /* In a ratio of one energy the world cancels. */
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
-    *shape = (skg_attenuation){.planes = model->planes,
+    *shape = (skg_attenuation){.planes = skg_model_width(model),
                                .nodes = model->nodes,
                                .channels = model->channels,
                                .shown = shown,
                                .world_plane = has_world ? (int32_t)model->world_plane : -1,
                                .world_weight = model->world_weight,
-                               .ratio = has_world && is_ratio,
+                               .shades = &model->shades,
+                               .ratio = (has_world || model->shades.count > 0) && is_ratio,
                                .falloff = options->falloff && !is_ratio,
                                .noise = options->noise,
                                .energies = options->quantity == SKG_QUANTITY_ENERGY};
@@ -44,10 +45,11 @@ skg_status skg_decide_detection(const skg_recipe *recipe, skg_detection *detecti
     const skg_plan_options *options = &recipe->options;
     const skg_model *model = &recipe->model;
     const int ratio = skg_quantity_is_ratio(options), areas = options->quantity == SKG_QUANTITY_FLUENCE;
-    *detection = (skg_detection){.electronic = options->electronic_kev,
-                                 .step = options->quantum_step_kev,
-                                 .channels = model->channels,
-                                 .over_flat_field = ratio && (options->world || options->falloff)};
+    *detection = (skg_detection){
+        .electronic = options->electronic_kev,
+        .step = options->quantum_step_kev,
+        .channels = model->channels,
+        .over_flat_field = ratio && (options->world || options->falloff || model->shades.count > 0)};
     *wanted = skg_quantity_is_absolute(options) &&
               (ratio || areas || detection->electronic > 0 || detection->step > 0);
     for (int32_t c = 0; *wanted && c < model->channels; c++) {

@@ -7,6 +7,7 @@
 #include "spectral/quantity.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -167,6 +168,23 @@ static void find_beam(const finding *f) {
             options->falloff ? "ratios to the flat field do not show it" : "photons are counted per pixel");
 }
 
+static void find_heel(const finding *f) {
+    const skg_heel *heel = f->recipe->options.heel;
+    const skg_shades *shades = &f->recipe->model.shades;
+    const double degree = 57.29577951308232; /* of a radian */
+    if (!heel)
+        set(f, SKG_EFFECT_HEEL, 0, "not asked for: the spectrum is the same everywhere");
+    else if (f->recipe->view.projection != SKG_PROJECTION_POINT)
+        set(f, SKG_EFFECT_HEEL, 0, "the beam is parallel");
+    else if (shades->count == 0)
+        set(f, SKG_EFFECT_HEEL, 0, "one energy over its flat field does not show it");
+    else
+        set(f, SKG_EFFECT_HEEL, 1,
+            "photons leave the anode at %.3g to %.3g degrees; %" PRId32 " %s, to %.1g of the logarithm",
+            asin(shades->middle - shades->half) * degree, asin(shades->middle + shades->half) * degree,
+            shades->count, skg_plural(shades->count, "shade", "shades"), shades->error);
+}
+
 static void find_compression(const finding *f) {
     const skg_plan_options *options = &f->recipe->options;
     const skg_model *model = &f->recipe->model;
@@ -251,6 +269,7 @@ skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context
     find_energies(&f);
     find_samples(&f);
     find_beam(&f);
+    find_heel(&f);
     find_compression(&f);
     find_nesting(&f);
     find_leaky(&f);

@@ -14,6 +14,11 @@ void skg_plan_options_init_sized(void *options, int32_t size) {
     skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
+void skg_heel_init_sized(void *heel, int32_t size) {
+    const skg_heel defaults = {.anode = 74, .angle_deg = 12, .bin_kev = 1};
+    skg_struct_init(heel, size, &defaults, sizeof defaults);
+}
+
 static skg_status check_kev(const char *what, double kev) {
     if (kev >= 0 && isfinite(kev)) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT, "%s is %g keV; 0 or more", what, kev);

@@ -23,7 +23,8 @@
     X(SKG_EFFECT_BLUR, "blur")                                                                               \
     X(SKG_EFFECT_ELECTRONIC, "electronic noise")                                                             \
     X(SKG_EFFECT_QUANTISATION, "quantisation")                                                               \
-    X(SKG_EFFECT_PRIORITY, "priority")
+    X(SKG_EFFECT_PRIORITY, "priority")                                                                       \
+    X(SKG_EFFECT_HEEL, "heel effect")
 
 enum {
 #define SKG_EFFECT_ENUM(name, text) name,

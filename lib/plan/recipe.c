@@ -74,6 +74,17 @@ static skg_status keep_options(skg_recipe *recipe, const skg_plan_options *given
     options->blur = NULL;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
+    const skg_heel *heel = options->heel;
+    options->heel = NULL;
+    skg_heel_init(&recipe->heel);
+    if (heel) {
+        const skg_status status = skg_struct_read(heel, "skg_heel", &recipe->heel, sizeof recipe->heel);
+        if (status != SKG_OK) {
+            options->band_kev = NULL, options->views = NULL;
+            return status;
+        }
+        options->heel = &recipe->heel;
+    }
     const skg_status views = keep_views(recipe);
     if (views != SKG_OK) options->band_kev = NULL;
     return views == SKG_OK ? keep_bands(recipe) : views;
@@ -95,11 +106,11 @@ static skg_status check_half(const skg_recipe *recipe) {
     const skg_plan_options *options = &recipe->options;
     if (options->precision != SKG_PRECISION_HALF) return SKG_OK;
     if (recipe->view.projection != SKG_PROJECTION_POINT || recipe->leaky_count > 0 || options->world ||
-        recipe->priority_possible || recipe->is_blurred || skg_quantity_is_absolute(options))
+        recipe->priority_possible || recipe->is_blurred || options->heel || skg_quantity_is_absolute(options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
             "precision half is for comparison: a point source or samples of one, closed meshes without "
-            "priorities, vacuum around them, no noise or blur; take single");
+            "priorities, vacuum around them, no noise, blur or heel effect; take single");
     return SKG_OK;
 }
 

@@ -27,6 +27,7 @@ struct skg_recipe {
     int64_t materials;        /* of the scene when the model was made */
     double *band_kev;         /* [bands + 1] or NULL; options has it, too */
     skg_view *views;          /* [view_count] or NULL; options has it, too */
+    skg_heel heel;            /* options points to it unless there is none */
 
     skg_plan_meshes meshes;
     skg_model model;

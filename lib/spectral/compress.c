@@ -72,7 +72,7 @@ static skg_status describe(compressing *c, const skg_model *model) {
     for (int32_t k = 0; k < bins * sets; k++)
         c->shares[k] = c->sums[k % sets] > 0 ? *weight_at(model, k / sets, k % sets) / c->sums[k % sets] : 0;
     c->beam = (skg_polychromatic){.bins = bins,
-                                  .materials = model->planes,
+                                  .materials = skg_model_width(model),
                                   .sets = sets,
                                   .paired = model->variances != NULL,
                                   .mu = c->mu,
@@ -80,6 +80,41 @@ static skg_status describe(compressing *c, const skg_model *model) {
                                   .low = c->ranges.low,
                                   .high = c->ranges.high};
     return find_floor(c, model);
+}
+
+/* Shades have ranges of their own. Over the rays, each goes once from end to end. */
+static void add_shades(const skg_model *model, skg_ranges *ranges) {
+    const skg_shades *shades = &model->shades;
+    for (int32_t k = 0; k < shades->count; k++) {
+        const int32_t at = model->planes + k;
+        const double low = shades->low[k], high = shades->high[k];
+        ranges->low[at] = low, ranges->high[at] = high;
+        for (int64_t r = 0; r < ranges->rays; r++)
+            ranges->lengths[r * ranges->planes + at] =
+                low + (high - low) * (double)r / (double)(ranges->rays - 1);
+    }
+}
+
+/* Adds the shades behind the planes of the basis, which stay as they are: no part adds to a shade. */
+static skg_status extend_basis(const compressing *c, const skg_model *model, skg_basis *basis) {
+    const int32_t shades = model->shades.count, materials = model->planes, planes = basis->planes;
+    const int64_t bins = c->beam.bins, width = planes + shades;
+    double *mix = NULL;
+    if (shades == 0) return SKG_OK;
+    SKG_TRY(skg_realloc(width, sizeof *basis->material, "basis", &basis->material));
+    SKG_TRY(skg_realloc((materials + shades) * bins, sizeof *basis->mu, "basis", &basis->mu));
+    SKG_TRY(skg_alloc((materials + shades) * width, sizeof *mix, "basis", &mix));
+    for (int32_t m = 0; m < materials; m++)
+        memcpy(mix + m * width, basis->mix + (int64_t)m * planes, (size_t)planes * sizeof *mix);
+    for (int32_t k = 0; k < shades; k++) {
+        basis->material[planes + k] = materials + k;
+        mix[(materials + k) * width + planes + k] = 1;
+    }
+    memcpy(basis->mu + materials * bins, c->mu + materials * bins, (size_t)(shades * bins) * sizeof *mix);
+    skg_free(&basis->mix);
+    basis->mix = mix;
+    basis->planes = (int32_t)width;
+    return SKG_OK;
 }
 
 /* --- planes --- */
@@ -105,23 +140,25 @@ static double cost_of(const compressing *c, const skg_model *model, const skg_ba
 
 /* Chooses the cheapest of the layouts that the tolerance allows, from one plane for each material downwards. */
 static skg_status choose_planes(compressing *c, const skg_model *model) {
-    const int32_t materials = c->beam.materials;
+    const int32_t materials = model->planes;
+    skg_polychromatic beam = c->beam; /* without shades, which are its last materials */
     skg_lengths points = {0};
     skg_basis trial = {0};
     int32_t *order = NULL;
     double *weights = NULL, least = HUGE_VAL;
     skg_status status = SKG_OK;
+    beam.materials = materials;
     SKG_TRY_CLEANUP(skg_alloc(materials, sizeof *order, "basis", &order));
     SKG_TRY_CLEANUP(skg_alloc(materials, sizeof *weights, "basis", &weights));
-    SKG_TRY_CLEANUP(skg_lengths_fill(&c->beam, CORNERS, DRAWS, 3, 0, NULL, &points));
+    SKG_TRY_CLEANUP(skg_lengths_fill(&beam, CORNERS, DRAWS, 3, 0, NULL, &points));
     for (int64_t k = 0; k < GIVEN && k < c->ranges.rays; k++)
         SKG_TRY_CLEANUP(skg_lengths_add(
-            &c->beam,
-            c->ranges.lengths + (c->ranges.rays <= GIVEN ? k : k * c->ranges.rays / GIVEN) * materials,
+            &beam,
+            c->ranges.lengths + (c->ranges.rays <= GIVEN ? k : k * c->ranges.rays / GIVEN) * c->ranges.planes,
             &points));
-    SKG_TRY_CLEANUP(skg_basis_order(&c->beam, &points, (int32_t)model->world_plane, order));
+    SKG_TRY_CLEANUP(skg_basis_order(&beam, &points, (int32_t)model->world_plane, order));
     for (int32_t planes = materials; planes >= 1; planes--) {
-        SKG_TRY_CLEANUP(skg_basis_make(&c->beam, &points, order, planes, &trial));
+        SKG_TRY_CLEANUP(skg_basis_make(&beam, &points, order, planes, &trial));
         if (planes < materials && trial.error > SHARE_OF_PLANES * c->tolerance) break;
         const double cost = cost_of(c, model, &trial, weights);
         if (cost < least) {
@@ -130,6 +167,7 @@ static skg_status choose_planes(compressing *c, const skg_model *model) {
         }
         skg_basis_release(&trial);
     }
+    status = extend_basis(c, model, &c->basis);
 cleanup:
     skg_basis_release(&trial);
     skg_lengths_release(&points);
@@ -165,7 +203,7 @@ static skg_status rewrite_contributions(const compressing *c, skg_model *model) 
     int32_t world = 0;
     while (world < planes && c->basis.material[world] != model->world_plane) world++;
     if (model->world_plane >= 0) model->world_plane = world; /* the basis took its material first */
-    model->planes = planes;
+    model->planes = planes - model->shades.count;
 cleanup:
     skg_free(&first);
     skg_free(&contributions);
@@ -223,6 +261,7 @@ skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_
         .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c.ranges));
+    add_shades(model, &c.ranges);
     SKG_TRY_CLEANUP(describe(&c, model));
     SKG_TRY_CLEANUP(choose_planes(&c, model));
     SKG_TRY_CLEANUP(

@@ -212,13 +212,29 @@ static skg_status weigh(const making *m, skg_model *model) {
     return SKG_OK;
 }
 
+/* Appends the losses of the shades to the bases. */
+static skg_status add_shades(making *m, const skg_view *view, skg_model *model) {
+    const int64_t planes = model->planes, nodes = model->nodes;
+    skg_shades *shades = &model->shades;
+    SKG_TRY(skg_shades_find(view, m->spectrum, m->options, shades));
+    if (shades->count == 0) return SKG_OK;
+    SKG_TRY(skg_realloc((planes + shades->count) * nodes, sizeof *m->bases, "planes", &m->bases));
+    for (int32_t k = 0; k < shades->count; k++)
+        for (int32_t n = 0; n < nodes; n++)
+            m->bases[(planes + k) * nodes + n] = shades->losses[k * m->spectrum->count + m->bins[n]];
+    return SKG_OK;
+}
+
 static skg_status list_coefficients(const making *m, skg_model *model) {
     const int32_t planes = model->planes > 0 ? model->planes : 1; /* an empty plane if nothing attenuates */
-    SKG_TRY(skg_alloc((int64_t)model->nodes * planes, sizeof *model->coefficients, "nodes",
-                      &model->coefficients));
-    for (int32_t n = 0; n < model->nodes; n++)
-        for (int32_t k = 0; k < model->planes; k++)
-            model->coefficients[n * planes + k] = m->bases[(int64_t)k * model->nodes + n];
+    const int64_t width = planes + model->shades.count;
+    SKG_TRY(skg_alloc(model->nodes * width, sizeof *model->coefficients, "nodes", &model->coefficients));
+    for (int32_t n = 0; n < model->nodes; n++) {
+        double *row = model->coefficients + n * width;
+        for (int32_t k = 0; k < model->planes; k++) row[k] = m->bases[(int64_t)k * model->nodes + n];
+        for (int32_t k = 0; k < model->shades.count; k++)
+            row[planes + k] = m->bases[(int64_t)(model->planes + k) * model->nodes + n];
+    }
     model->materials = model->planes;
     model->planes = planes;
     model->world_plane = m->plane[m->scene->count];
@@ -235,6 +251,7 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(look_up(&m, model));
     SKG_TRY_CLEANUP(choose_planes(&m, model));
     SKG_TRY_CLEANUP(list_contributions(&m, model));
+    SKG_TRY_CLEANUP(add_shades(&m, view, model));
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
     if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
@@ -258,4 +275,5 @@ void skg_model_release(skg_model *model) {
     skg_free(&model->node_kev);
     skg_free(&model->range);
     skg_free(&model->node_photons);
+    skg_shades_release(&model->shades);
 }

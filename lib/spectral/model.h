@@ -9,6 +9,7 @@
 
 #include "scene/scene.h"
 #include "spectral/contribution.h"
+#include "spectral/shades.h"
 
 #include <skiagraph/plan.h>
 
@@ -17,21 +18,29 @@ typedef struct {
     int64_t *first_contribution; /* [parts + 1] into contributions */
     /* What a mm of a part's path adds. A part without any is not seen. */
     skg_contribution *contributions;
-    double *coefficients; /* [nodes][planes] 1/mm per mm of a plane */
-    double *weights;      /* [nodes][channels] of the quantity: per mm2 for fluence, of I/I0 for ratios */
+    /* [nodes][planes + shades.count] 1/mm per mm of a plane, then the loss for a unit of a shade */
+    double *coefficients;
+    double *weights; /* [nodes][channels] of the quantity: per mm2 for fluence, of I/I0 for ratios */
     /* [nodes][channels] with noise: the sum of squares of what single photons add; otherwise NULL. */
     double *variances;
     double *flat_field;  /* [channels] the sum of the weights before they were made those of a ratio */
     int64_t world_plane; /* the plane to which a mm of the world's path adds world_weight; -1: vacuum */
     double world_weight;
+    skg_shades shades;
     double *node_photons; /* [nodes] photons of the flat field that would have the same weight */
     double *node_kev;     /* [nodes] */
     int32_t bins;         /* bins of the spectrum that have photons */
     int32_t materials;    /* that differ: the number of planes without compression */
-    double *range;        /* [planes][2] mm, the values of planes for which the bound holds; NULL: any */
-    double bound;         /* stated bound of the error by fewer nodes and planes; 0: every bin is used */
-    int64_t verified;     /* points of the range of lengths on which the bound was verified */
+    /* [planes + shades.count][2] mm, the values of planes and shades for which the bound holds; NULL: any */
+    double *range;
+    double bound;     /* stated bound of the error by fewer nodes and planes; 0: every bin is used */
+    int64_t verified; /* points of the range of lengths on which the bound was verified */
 } skg_model;
+
+/* Planes and shades: what exponents are made of. */
+static inline int32_t skg_model_width(const skg_model *model) {
+    return model->planes + model->shades.count;
+}
 
 /* Makes the model (create.c).
  *

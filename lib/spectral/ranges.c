@@ -241,12 +241,12 @@ static skg_status add_view(const skg_scene *scene, looking *look, const skg_mode
 static skg_status allocate(const skg_scene *scene, int64_t more, const skg_model *model, ray_grid *grid,
                            skg_ranges *ranges) {
     static const char what[] = "ranges of lengths";
-    const int64_t rays = SIDE * SIDE + more * MORE_SIDE * MORE_SIDE;
+    const int64_t rays = SIDE * SIDE + more * MORE_SIDE * MORE_SIDE, width = skg_model_width(model);
     SKG_TRY(skg_alloc(SIDE * SIDE, sizeof *grid->length, what, &grid->length));
     SKG_TRY(skg_alloc(SIDE * SIDE, sizeof *grid->count, what, &grid->count));
-    SKG_TRY(skg_alloc(rays * model->planes, sizeof *ranges->lengths, what, &ranges->lengths));
-    SKG_TRY(skg_alloc(model->planes, sizeof *ranges->low, what, &ranges->low));
-    SKG_TRY(skg_alloc(model->planes, sizeof *ranges->high, what, &ranges->high));
+    SKG_TRY(skg_alloc(rays * width, sizeof *ranges->lengths, what, &ranges->lengths));
+    SKG_TRY(skg_alloc(width, sizeof *ranges->low, what, &ranges->low));
+    SKG_TRY(skg_alloc(width, sizeof *ranges->high, what, &ranges->high));
     return skg_alloc(2 * scene->count, sizeof *ranges->hits, what, &ranges->hits);
 }
 
@@ -254,17 +254,17 @@ skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t
                            const skg_model *model, skg_ranges *ranges) {
     ray_grid grid = {0};
     skg_status status = SKG_OK;
-    *ranges = (skg_ranges){.planes = model->planes};
+    *ranges = (skg_ranges){.planes = skg_model_width(model)};
     SKG_TRY_CLEANUP(allocate(scene, more, model, &grid, ranges));
     for (int64_t v = 0; v <= more; v++) {
         looking look = {.side = v ? MORE_SIDE : SIDE,
-                        .lengths = ranges->lengths + ranges->rays * model->planes};
+                        .lengths = ranges->lengths + ranges->rays * ranges->planes};
         SKG_TRY_CLEANUP(skg_camera_make(v ? &views[v - 1] : view, NULL, 0, 0, &look.camera));
         SKG_TRY_CLEANUP(add_view(scene, &look, model, &grid, ranges, ranges->hits + (v ? scene->count : 0)));
     }
-    for (int64_t r = 0; r < ranges->rays * model->planes; r++)
-        widen(ranges, r % model->planes, ranges->lengths[r]);
-    for (int32_t k = 0; k < model->planes; k++) ranges->low[k] -= FOLDS * (ranges->high[k] - ranges->low[k]);
+    for (int64_t r = 0; r < ranges->rays * ranges->planes; r++)
+        widen(ranges, r % ranges->planes, ranges->lengths[r]);
+    for (int32_t k = 0; k < ranges->planes; k++) ranges->low[k] -= FOLDS * (ranges->high[k] - ranges->low[k]);
 cleanup:
     skg_free(&grid.length);
     skg_free(&grid.count);

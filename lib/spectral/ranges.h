@@ -5,7 +5,7 @@
 #include "spectral/model.h"
 
 typedef struct {
-    int32_t planes, reserved;
+    int32_t planes, reserved; /* planes, then shades, which the caller fills */
     int64_t rays;
     double *lengths; /* [rays][planes] what a ray adds to the planes, mm times weight */
     double

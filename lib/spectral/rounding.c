@@ -48,8 +48,9 @@ static void find_mu(rounding *r, int64_t part) {
     for (int32_t n = 0; n < model->nodes; n++) {
         r->mu[n] = 0;
         for (int64_t w = model->first_contribution[part]; w < model->first_contribution[part + 1]; w++)
-            r->mu[n] += model->contributions[w].weight *
-                        model->coefficients[(int64_t)n * model->planes + model->contributions[w].plane];
+            r->mu[n] +=
+                model->contributions[w].weight *
+                model->coefficients[(int64_t)n * skg_model_width(model) + model->contributions[w].plane];
     }
 }
 

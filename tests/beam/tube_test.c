@@ -183,6 +183,27 @@ START_TEST(output_scales) {
 }
 END_TEST
 
+/* The heel effect of SpekPy 2.5.4: W, 12 degrees, 100 kV, 2.5 mm Al crossed straight, in a plane at 1 m. x towards the
+ * cathode, cm; its kerma has the inverse square of the distance. */
+START_TEST(heel_of_a_tube) {
+    static const double rows[][3] = {{-15, 75.276, 4.491}, {-10, 97.427, 3.930}, {-5, 110.569, 3.639},
+                                     {5, 124.139, 3.335},  {10, 127.117, 3.245}, {15, 128.362, 3.178}};
+    static const layer layers[] = {{"Al", 2.5}, {NULL, 0}};
+    const double centre = quality(SKG_TUBE_MODEL_EBEL, 100, 12, layers).air_kerma_ugy;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const double x = rows[i][0] / 100, angle = 12 + atan(x) * (180 / acos(-1));
+        const skg_quality q = quality(SKG_TUBE_MODEL_EBEL, 100, angle, layers);
+        const double kerma = q.air_kerma_ugy / centre / (rows[i][1] * (1 + x * x) / 118.911) - 1;
+        const double hvl = q.hvl1_mm_al / rows[i][2] - 1;
+        if (getenv("SKG_LIST"))
+            printf("%g cm: kerma %+.1f %%, HVL1 %+.1f %%\n", rows[i][0], 100 * kerma, 100 * hvl);
+        /* What the calibration reaches at 3.5 to 20.5 degrees, and half as much again. */
+        ck_assert_msg(fabs(kerma) <= 0.02 && fabs(hvl) <= 0.02, "%g cm: kerma %+.1f %%, HVL1 %+.1f %%",
+                      rows[i][0], 100 * kerma, 100 * hvl);
+    }
+}
+END_TEST
+
 static char warned[1024];
 
 static void keep(int32_t level, const char *sentence, void *user) {
@@ -269,6 +290,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, output_per_mas);
     tcase_add_test(tests, soft_beams);
     tcase_add_test(tests, k_lines_share);
+    tcase_add_test(tests, heel_of_a_tube);
     tcase_add_test(tests, limits_are_warned_of);
     tcase_add_test(tests, beyond_the_calibration);
     tcase_add_test(tests, beam_of_figure_4);

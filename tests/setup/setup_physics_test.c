@@ -235,6 +235,28 @@ START_TEST(responses) {
 }
 END_TEST
 
+START_TEST(heels) {
+    static const char tube[] = "Source.Beam={\"kVp\": 85, \"TubeAngle\": 15, \"Filter\": [[\"Al\", 3]]}";
+    write_file("scene.json", good);
+    ck_skg(load_with(tube, NULL));
+    ck_assert_ptr_null(options().heel);
+    ck_skg(load_with(tube, "Source.Heel={\"Direction\": [0, 0, -2]}"));
+    const skg_heel *heel = options().heel;
+    ck_assert_double_eq(heel->angle_deg, 15);
+    ck_assert_double_eq(heel->kvp, 85);
+    ck_assert_double_eq(heel->direction[2], -1);
+    ck_assert_int_eq(heel->anode, 74);
+    ck_skg(load_with("Source.Beam={\"kVp\": 85, \"Filter\": [[\"Al\", 3]]}",
+                     "Source.Heel={\"AnodeAngle\": 10, \"Direction\": [1, 0, 0]}"));
+    heel = options().heel; /* the spectrum has this angle, too */
+    ck_assert_double_eq(heel->angle_deg, 10);
+    ck_skg_fails(load_with(tube, "Source.Heel={\"AnodeAngle\": 10, \"Direction\": [1, 0, 0]}"), SKG_ERR_BEAM,
+                 "AnodeAngle of Heel is 10");
+    ck_skg_fails(load_with(tube, "Source.Heel={}"), SKG_ERR_FORMAT, "Direction");
+    ck_skg_fails(load_with("Source.Heel={\"Direction\": [1, 0, 0]}", NULL), SKG_ERR_BEAM, "needs a tube");
+}
+END_TEST
+
 START_TEST(what_responses_mean_for_noise) {
     const skg_response *r = NULL;
     double seen = 0, factor = 0;
@@ -413,6 +435,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, hounsfield_beyond_the_table_is_told_once);
     tcase_add_test(tests, tubes);
     tcase_add_test(tests, responses);
+    tcase_add_test(tests, heels);
     tcase_add_test(tests, what_responses_mean_for_noise);
     tcase_add_test(tests, focal_spots);
     tcase_add_test(tests, worlds);

@@ -130,6 +130,36 @@ static inline void skg_spot_init(skg_spot *spot) {
     skg_spot_init_sized(spot, (int32_t)sizeof *spot);
 }
 
+/** The heel effect: photons leave the anode at an angle that differs over the detector, and the shallower it
+ * is, the more of them the anode absorbs, the soft ones above all. Prepare with skg_heel_init; set kvp and
+ * direction. The spectrum of the plan is that of the ray from the source to the detector's centre.
+ *
+ * method   the ratio of the spectra of Ebel's tube model at the angle of a ray and at angle_deg, for each
+ *          energy. Filters are crossed straight, whatever the ray. */
+typedef struct {
+    /** Set by skg_heel_init. */
+    int32_t size;
+    /** Atomic number of the anode; 74 by default. */
+    int32_t anode;
+    /** Tube voltage in kV; no photon of the spectrum may have more energy. */
+    double kvp;
+    /** Angle between the anode's face and the ray to the detector's centre, degrees; 12 by default. */
+    double angle_deg;
+    /** Width of the bins of the spectrum, keV; 1 by default. */
+    double bin_kev;
+    /** From the detector's centre towards the side of the anode, where the image is darkest; any length. What
+     * lies along the central ray does not count. It turns with the detector when frames have other views. */
+    double direction[3];
+} skg_heel;
+
+/** Prepares a heel of `size` bytes (export.h). */
+SKG_API void skg_heel_init_sized(void *heel, int32_t size);
+
+/** Prepares a heel. */
+static inline void skg_heel_init(skg_heel *heel) {
+    skg_heel_init_sized(heel, (int32_t)sizeof *heel);
+}
+
 /** Options of a plan. Prepare with skg_plan_options_init: single precision, energy per pixel, every energy of
  * the spectrum, point source, ideal detector, no noise. Arrays and structs that it points to are copied by
  * skg_plan_create, handles are retained. */
@@ -198,6 +228,9 @@ typedef struct {
     int32_t band_weight;
     /** 0 */
     int32_t reserved;
+    /** The heel effect; NULL: the spectrum is the same everywhere. Without effect in a parallel beam, and on
+     * ratios to the flat field of one energy. */
+    const skg_heel *heel;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.
