@@ -1,0 +1,158 @@
+#include "scan/acquisition.h"
+
+#include "common/progress.h"
+#include "common/say.h"
+#include "session/explain.h"
+#include "session/frames.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PROJECTIONS = 10000000, MOST_SUBFRAMES = 1000 };
+
+/* Reads "3,7,12". */
+static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
+    const char *value = cli_value(arguments, &cli_flag_scan_only), *at = value;
+    if (!value) return CLI_DONE;
+    a->only = calloc(strlen(value) / 2 + 1, sizeof *a->only);
+    if (!a->only) return cli_error(CLI_DEVICE, "out of host memory");
+    while (at) {
+        char *end = NULL;
+        const long long number = strtoll(at, &end, 10);
+        if (end == at || (*end && *end != ',') || number < 0)
+            return cli_error(CLI_USAGE, "--only %s: \"%.*s\" is not the number of a projection", value,
+                             (int)strcspn(at, ","), at);
+        a->only[a->options.only_count++] = number;
+        at = *end ? end + 1 : NULL;
+    }
+    a->options.only = a->only;
+    return CLI_DONE;
+}
+
+int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
+    int64_t to = -1;
+    skg_scan_run_options_init(&a->options);
+    a->place = cli_value(arguments, &cli_flag_scan_output);
+    if (!a->place)
+        return cli_error(CLI_USAGE, "scan: no output is named; add -o FILE (.mha, .raw, .tif or a folder)");
+    const skg_status status = skg_scan_file_path_check(a->place);
+    if (status != SKG_OK) return cli_fail(status);
+    int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, MOST_PROJECTIONS, &a->options.from);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_scan_to, 0, MOST_PROJECTIONS, &to);
+    if (exit_status == CLI_DONE)
+        exit_status =
+            cli_integer(arguments, &cli_flag_scan_subframes, 1, MOST_SUBFRAMES, &a->options.subframes);
+    if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
+    a->options.to = to + 1;
+    return exit_status;
+}
+
+/* A scan that is continued has the number of source samples with which it was begun. */
+static int choose_samples(cli_acquisition *a) {
+    skg_plan_options *options = &a->session.options;
+    int64_t samples = 0;
+    const skg_status status = skg_scan_file_samples_get(a->place, a->hash, &samples);
+    if (status != SKG_OK) return cli_fail(status);
+    if (samples == 0 || !options->spot || options->spot->samples > 0 || options->spot->grid > 0)
+        return CLI_DONE;
+    a->spot = *options->spot;
+    a->spot.samples = samples / ((int64_t)options->supersampling * options->supersampling);
+    options->spot = &a->spot;
+    return CLI_DONE;
+}
+
+static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
+    skg_scan_file_options options;
+    skg_channel channel;
+    skg_plan_report report;
+    skg_scan_file_options_init(&options);
+    skg_channel_init(&channel);
+    skg_plan_report_init(&report);
+    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
+    if (status == SKG_OK) status = skg_plan_report_get(a->plan, &report);
+    options.type = a->options.type;
+    options.scan = a->scan;
+    options.hash = a->hash;
+    options.name = channel.name;
+    options.unit = channel.unit;
+    options.flat_field = channel.flat_field;
+    options.samples = report.samples;
+    options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
+    if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
+    if (status == SKG_OK) status = skg_scan_file_done_count(a->file, &a->found);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
+    const char *path;
+    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i)); i++) {
+        const skg_status status = skg_scan_geometry_write(a->scan, path);
+        if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
+        if (status != SKG_OK) return cli_fail(status);
+    }
+    return CLI_DONE;
+}
+
+int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
+    int32_t quantity = SKG_QUANTITY_ENERGY;
+    int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
+    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &a->session);
+    if (exit_status != CLI_DONE) return exit_status;
+    a->session.options.quantity = quantity;
+    a->options.type =
+        a->session.options.precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
+    skg_status status = skg_setup_scan_get(a->session.setup, &a->scan);
+    if (status == SKG_OK) status = skg_scan_projection_count(a->scan, &a->projections);
+    if (status == SKG_OK && cli_given(arguments, &cli_flag_scan_breathing))
+        status = skg_motion_create(a->session.context, a->session.setup, &a->motion);
+    a->options.motion = a->motion;
+    if (status == SKG_OK)
+        status =
+            skg_scan_hash_get(a->session.setup, &a->session.options, &a->options, a->hash, sizeof a->hash);
+    if (status != SKG_OK) return cli_fail(status);
+    exit_status = write_geometry(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = choose_samples(a);
+    if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
+    return exit_status == CLI_DONE ? open_output(arguments, a) : exit_status;
+}
+
+/* Computes and writes batch after batch. */
+static skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
+    const double start = cli_now_ms();
+    int64_t all = 0;
+    skg_status status = skg_scan_run_projection_count(run, &all);
+    while (status >= SKG_OK) {
+        skg_scan_batch batch;
+        skg_scan_batch_init(&batch);
+        status = skg_scan_run_next(run, &batch);
+        if (status == SKG_RANGE) cli_end_image(status, &a->range_warned);
+        if (status < SKG_OK || batch.count == 0) break;
+        status = skg_scan_file_write(a->file, batch.count, batch.indices, batch.images, batch.phases);
+        a->computed += batch.count;
+        cli_progress("projections", a->computed, all, start);
+    }
+    a->seconds = 1e-3 * (cli_now_ms() - start);
+    return status == SKG_RANGE ? SKG_OK : status;
+}
+
+int acquisition_run(cli_acquisition *a) {
+    skg_scan_run *run = NULL;
+    if (a->found > 0 && a->found < a->projections && !cli_is_quiet())
+        cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
+    a->options.file = a->file;
+    skg_status status = skg_scan_run_create(a->plan, a->scan, &a->options, &run);
+    if (status == SKG_OK) status = write_batches(a, run);
+    skg_scan_run_release(&run);
+    if (status == SKG_OK) status = skg_scan_file_finish(a->file);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+void acquisition_close(cli_acquisition *a) {
+    skg_scan_file_release(&a->file);
+    skg_plan_release(&a->plan);
+    skg_motion_release(&a->motion);
+    cli_close_session(&a->session);
+    free(a->only);
+}

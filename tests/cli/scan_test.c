@@ -1,0 +1,175 @@
+/* The verb scan. */
+#include "cli/command.h"
+
+#include "cli/scene.h"
+#include "support/random.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <time.h>
+
+#define SCAN "--set Scan='{\"NumberOfProjections\":12,\"FinalAngle\":360}'"
+enum { COLUMNS = 65, ROWS = 49, COUNT = 12, MOST_BYTES = 1 << 24 };
+
+static char bytes[MOST_BYTES], before[MOST_BYTES];
+
+static void set_up_scan(void) {
+    set_up();
+    write_text("scene.json", scene);
+}
+
+static void tear_down_scan(void) {
+    char line[128];
+    snprintf(line, sizeof line, "rm -rf %s", folder);
+    ck_assert_int_eq(system(line), 0);
+}
+
+static size_t read_file(const char *name, char *to) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_msg(stream != NULL, "no %s", name);
+    const size_t count = fread(to, 1, MOST_BYTES, stream);
+    fclose(stream);
+    return count;
+}
+
+/* Each slice of the stack is the image of the same scene whose scan begins there. */
+START_TEST(projections_are_images) {
+    enum { IMAGE = COLUMNS * ROWS * sizeof(float) };
+    ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
+    ck_assert(strstr(said, "scan.mha has 12 of 12") != NULL);
+    const size_t size = read_file("scan.mha", bytes);
+    for (int k = 0; k < COUNT; k += 5) {
+        ck_run(0,
+               "image scene.json -o one.mha --quiet --set "
+               "Scan='{\"NumberOfProjections\":12,\"FinalAngle\":390,\"StartAngle\":%d}'",
+               30 * k);
+        const size_t one = read_file("one.mha", before);
+        ck_assert_mem_eq(before + one - IMAGE, bytes + size - (size_t)(COUNT - k) * IMAGE, IMAGE);
+    }
+}
+END_TEST
+
+START_TEST(parts_of_a_scan_make_the_whole) {
+    ck_run(0, "scan scene.json %s -o whole.mha --quiet", SCAN);
+    ck_run(0, "scan scene.json %s -o scan.mha --only 3,7 --json", SCAN);
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "computed")), 2);
+    ck_assert(json_is_false(member(object, "finished")));
+    json_decref(object);
+    ck_assert(has_file("scan.mha.progress") && !has_file("scan.mha.lock"));
+    ck_run(0, "scan scene.json %s -o scan.mha --from 2 --to 5 --strategy atomics --json", SCAN);
+    object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "computed")), 3);
+    ck_assert_int_eq(json_integer_value(member(object, "found")), 2);
+    json_decref(object);
+    ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
+    ck_assert(strstr(complained, "it is continued") != NULL);
+    ck_assert(!has_file("scan.mha.progress"));
+    ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
+    ck_assert(strstr(said, "is finished") != NULL);
+    const size_t size = read_file("whole.mha", before);
+    ck_assert_uint_eq(read_file("scan.mha", bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+}
+END_TEST
+
+/* The scene, a file that it names, a quantity: each makes another scan. */
+START_TEST(another_state_of_the_scene_is_another_scan) {
+    static const char *const changes[] = {"--quantity photons", "--precision double", "--tolerance 0.01",
+                                          "--set Samples.bone.Material='[\"mu\",0.6]'"};
+    ck_run(0, "scan scene.json %s -o scan.tif --quiet", SCAN);
+    for (int i = 0; i < 4; i++)
+        ck_run_fails(5, "another scan", "scan scene.json %s -o scan.tif %s", SCAN, changes[i]);
+    ck_run(0, "scan scene.json %s -o scan.tif %s --overwrite --quiet", SCAN, changes[0]);
+    write_text("poses.csv", "0 -400 0 0 100 0 -1 0 0 0 0 -2\n");
+    ck_run(0, "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o table.raw --quiet");
+    write_text("poses.csv", "0 -401 0 0 100 0 -1 0 0 0 0 -2\n");
+    ck_run_fails(5, "another scan", "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o table.raw");
+}
+END_TEST
+
+START_TEST(a_folder_and_a_geometry) {
+    ck_run(0, "scan scene.json %s --set Source.Shape=Point -o out --geometry g.csv --geometry g.xml --quiet",
+           SCAN);
+    ck_assert(has_file("out/projection-00000.tif") && has_file("out/projection-00011.tif"));
+    ck_assert(has_file("g.csv") && has_file("g.xml"));
+    ck_run(
+        0,
+        "scan scene.json --set Source.Shape=Point --set Scan='{\"Table\":\"g.csv\"}' -o table.raw --quiet");
+    ck_run(0, "scan scene.json %s --set Source.Shape=Point -o circle.raw --quiet", SCAN);
+    const size_t size = read_file("circle.raw", before);
+    ck_assert_uint_eq(read_file("table.raw", bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+}
+END_TEST
+
+START_TEST(what_cannot_be_is_refused) {
+    ck_run_fails(2, "-o FILE", "scan scene.json");
+    ck_run_fails(2, ".png", "scan scene.json -o a.png");
+    ck_run_fails(3, "no key Scan", "scan scene.json -o a.mha");
+    ck_run_fails(3, "number of projections", "scan scene.json -o a.mha --set Scan='{\"StartAngle\":3}'");
+    ck_run_fails(2, "--only", "scan scene.json %s -o a.mha --only 3,x", SCAN);
+    ck_run_fails(2, "the scan has 12", "scan scene.json %s -o a.mha --to 12", SCAN);
+    ck_run_fails(5, "parallel", "scan scene.json %s -o a.mha --geometry a.xml", SCAN);
+    ck_run_fails(3, "a short scan",
+                 "scan scene.json -o a.mha --set Scan='{\"NumberOfProjections\":3,\"Short\":true}'");
+}
+END_TEST
+
+/* Killed by SIGKILL at 20 random moments, and each time continued: the bytes are those of a scan without an
+ * interruption. */
+START_TEST(kills_leave_no_trace) {
+    enum { KILLS = 20 };
+    static const char scan[] =
+        "\"Scan={\\\"NumberOfProjections\\\":400,\\\"FinalAngle\\\":360}\" --set \"Detector.NumberOfPixels=[130,98]\"";
+    static const char *const names[] = {"scan.mha", "scan.raw", "scan.tif"};
+    const char *name = names[_i];
+    struct timespec begun, ended;
+    uint64_t state = 17 + (uint64_t)_i;
+    char whole[64];
+    snprintf(whole, sizeof whole, "whole%s", name + 4);
+    clock_gettime(CLOCK_MONOTONIC, &begun);
+    ck_run(0, "scan scene.json --quiet -o %s --set %s", whole, scan);
+    clock_gettime(CLOCK_MONOTONIC, &ended);
+    const double span =
+        (double)(ended.tv_sec - begun.tv_sec) + 1e-9 * (double)(ended.tv_nsec - begun.tv_nsec);
+    for (int kills = 0; kills < KILLS; kills++) {
+        /* The shell is replaced by the command, so that the signal meets the command. */
+        char line[1024];
+        snprintf(line, sizeof line, "cd %s && exec %s scan scene.json --quiet -o %s --set %s 2>.complained",
+                 folder, SKG_COMMAND, name, scan);
+        fflush(NULL);
+        const pid_t child = fork();
+        ck_assert_int_ge(child, 0);
+        if (child == 0) {
+            execl("/bin/sh", "sh", "-c", line, (char *)NULL);
+            _exit(127);
+        }
+        const double delay = draw(&state, 0.1, 1.1) * span;
+        const struct timespec pause = {(time_t)delay, (long)(1e9 * (delay - (double)(time_t)delay))};
+        int status = 0;
+        nanosleep(&pause, NULL);
+        kill(child, SIGKILL);
+        ck_assert_int_eq(waitpid(child, &status, 0), child);
+        ck_assert(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+    }
+    ck_run(0, "scan scene.json --quiet -o %s --set %s", name, scan);
+    const size_t size = read_file(whole, before);
+    ck_assert_uint_eq(read_file(name, bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
+    tcase_add_test(tests, projections_are_images);
+    tcase_add_test(tests, parts_of_a_scan_make_the_whole);
+    tcase_add_test(tests, another_state_of_the_scene_is_another_scan);
+    tcase_add_test(tests, a_folder_and_a_geometry);
+    tcase_add_test(tests, what_cannot_be_is_refused);
+    tcase_add_loop_test(tests, kills_leave_no_trace, 0, 3);
+}
+
+SKG_SUITE_MAIN("scan", add_tests)
