@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,13 +17,13 @@
 enum { PROGRESS_TEXT = 256 };
 
 void skg_scan_file_options_init_sized(void *options, int32_t size) {
-    const skg_scan_file_options defaults = {0};
+    const skg_scan_file_options defaults = {.flats = 1, .darks = 1};
     skg_struct_init(options, size, &defaults, sizeof defaults);
 }
 
 skg_status skg_scan_find_format(const char *path, const skg_scan_format **format) {
     static const skg_scan_format *const formats[] = {&skg_scan_format_mha, &skg_scan_format_raw,
-                                                     &skg_scan_format_tiff};
+                                                     &skg_scan_format_tiff, &skg_scan_format_hdf5};
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     *format = &skg_scan_format_folder;
     if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "scan: the path is empty");
@@ -31,11 +32,14 @@ skg_status skg_scan_find_format(const char *path, const skg_scan_format **format
         for (int e = 0; formats[i]->extensions[e]; e++)
             if (skg_same_name(dot, formats[i]->extensions[e])) {
                 *format = formats[i];
-                return SKG_OK;
+                if (!formats[i]->is_missing) return SKG_OK;
+                return skg_fail(
+                    SKG_ERR_UNSUPPORTED,
+                    "%s: this build of skiagraph has no HDF5; build it with libhdf5-dev, or use .mha", path);
             }
     return skg_fail(
         SKG_ERR_ARGUMENT,
-        "%s: the extension %s is no format of scans; use .mha, .raw, .tif, or a folder without an "
+        "%s: the extension %s is no format of scans; use .h5, .mha, .raw, .tif, or a folder without an "
         "extension",
         path, dot);
 }
@@ -86,7 +90,10 @@ static void sync_folder(const char *path) {
 /* First the progress, then the file: whoever finds a file without a progress finds a finished one. */
 static skg_status lay_out(skg_scan_file *file) {
     char ending[32], *temporary = NULL;
-    SKG_TRY(file->format->remove(file));
+    if (file->format->remove)
+        SKG_TRY(file->format->remove(file));
+    else
+        unlink(file->path);
     SKG_TRY(begin_progress(file));
     if (file->format->write) return file->format->lay_out(file, NULL);
     snprintf(ending, sizeof ending, ".part-%ld", (long)getpid());
@@ -131,7 +138,9 @@ static skg_status open_laid_out(skg_scan_file *file) {
     SKG_TRY(file->format->locate(file));
     file->data = open(file->path, O_RDWR | O_CLOEXEC);
     if (file->data < 0) return skg_output_fail(file->path, errno, "");
-    return open_progress(file);
+    if (!file->format->has_progress_inside) return open_progress(file);
+    file->progress = dup(file->data);
+    return file->progress < 0 ? skg_output_fail(file->path, errno, "") : read_done(file);
 }
 
 /* Whether something of another scan stands at the path, or of this one. */
@@ -166,7 +175,8 @@ static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_
     size_t length = strlen(path);
     while (length > 1 && file->path[length - 1] == '/') file->path[--length] = '\0';
     SKG_TRY(skg_scan_path_with(file->path, ".lock", &file->lock_path));
-    if (!file->format->find_done) SKG_TRY(skg_scan_path_with(file->path, ".progress", &file->progress_path));
+    if (!file->format->find_done && !file->format->has_progress_inside)
+        SKG_TRY(skg_scan_path_with(file->path, ".progress", &file->progress_path));
     SKG_TRY(skg_copy_text(o->hash, (char **)&file->options.hash));
     SKG_TRY(skg_copy_text(o->name ? o->name : "", (char **)&file->options.name));
     SKG_TRY(skg_copy_text(o->unit ? o->unit : "", (char **)&file->options.unit));
@@ -200,6 +210,9 @@ skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *opt
     SKG_TRY(skg_struct_read(options, "skg_scan_file_options", &o, sizeof o));
     if (!o.scan || !o.hash || strlen(o.hash) != SKG_SHA256_TEXT - 1)
         return skg_fail(SKG_ERR_ARGUMENT, "scan file: it needs a scan, and a hash of 64 hexadecimal digits");
+    if (o.flats < 0 || o.darks < 0 || o.flats > INT32_MAX || o.darks > INT32_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT, "scan file: %" PRId64 " flat and %" PRId64 " dark fields", o.flats,
+                        o.darks);
     if (o.type != SKG_TYPE_FLOAT32 && o.type != SKG_TYPE_FLOAT64)
         return skg_fail(SKG_ERR_ARGUMENT, "scan file: type %" PRId32 " is no SKG_TYPE_ value", o.type);
     SKG_TRY(skg_alloc(1, sizeof *file, "file of projections", &file));
@@ -240,6 +253,25 @@ skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *count) {
     return SKG_OK;
 }
 
+/* Flat or dark fields, which stand side by side. */
+static skg_status write_fields(skg_scan_file *file, int64_t at, int64_t have, int64_t count,
+                               const void *images) {
+    if (!at) return SKG_OK;
+    if (count != have)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: has room for %" PRId64 " fields, not %" PRId64, file->path,
+                        have, count);
+    return skg_scan_write_at(file->path, file->data, images, count * file->bytes, at);
+}
+
+skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const void *white, int64_t darks,
+                                      const void *dark) {
+    SKG_NEEDS(file);
+    if (flats > 0) SKG_NEEDS(white);
+    if (darks > 0) SKG_NEEDS(dark);
+    SKG_TRY(write_fields(file, file->white_at, file->options.flats, flats, white));
+    return write_fields(file, file->dark_at, file->options.darks, darks, dark);
+}
+
 static skg_status check_index(const skg_scan_file *file, int64_t index) {
     if (index >= 0 && index < file->projections) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT, "%s: no projection %" PRId64 "; projections are 0 to %" PRId64,
@@ -270,6 +302,7 @@ static skg_status mark(skg_scan_file *file, int64_t count, const int64_t *indice
 skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t *indices, const void *images,
                                const double *phases) {
     SKG_PLAIN;
+    const double none = (double)NAN;
     SKG_NEEDS(file);
     SKG_NEEDS(indices);
     SKG_NEEDS(images);
@@ -281,6 +314,9 @@ skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t
         else
             SKG_TRY(skg_scan_write_at(file->path, file->data, image, file->bytes,
                                       file->data_at + indices[i] * file->data_step));
+        if (file->phase_at)
+            SKG_TRY(skg_scan_write_at(file->path, file->data, phases ? phases + i : &none, sizeof none,
+                                      file->phase_at + indices[i] * (int64_t)sizeof none));
     }
     return mark(file, count, indices);
 }

@@ -23,6 +23,8 @@ struct skg_scan_file {
     int lock, data, progress;   /* descriptors; -1: none */
     int64_t data_at, data_step; /* place of projection 0, and from one to the next */
     int64_t done_at;            /* place of the byte of projection 0 in `progress` */
+    int64_t phase_at;           /* place of the phases, which are doubles; 0: none */
+    int64_t white_at, dark_at;  /* place of flat and dark fields; 0: none */
     char *done;                 /* [projections] */
     int64_t done_count;
 };
@@ -46,8 +48,10 @@ struct skg_scan_format {
     skg_status (*write)(skg_scan_file *file, int64_t index, const void *image, double phase);
     /* Finds what is done where there is no NAME.progress. */
     skg_status (*find_done)(skg_scan_file *file);
-    /* Removes the file for one that replaces it. */
+    /* Removes the file for one that replaces it; NULL: it is one file. */
     skg_status (*remove)(skg_scan_file *file);
+    int has_progress_inside; /* 1: the bytes of NAME.progress stand in the file, and locate finds done_at */
+    int is_missing;          /* 1: this build cannot write it */
 };
 
 extern const skg_scan_format skg_scan_format_mha, skg_scan_format_raw, skg_scan_format_tiff,
@@ -67,6 +71,9 @@ skg_status skg_scan_write_at(const char *path, int descriptor, const void *bytes
 
 /* Makes a file of `total` bytes that begins with a header, and sees to it that the disk has room. */
 skg_status skg_scan_lay_out(const char *path, const void *header, int64_t count, int64_t total);
+
+/* Sees to it that the disk has room for the whole length of a file, and has what it holds. */
+skg_status skg_scan_reserve(const char *path);
 
 /* Fails if a file has another length. */
 skg_status skg_scan_check_length(const char *path, int64_t total);

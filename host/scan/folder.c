@@ -100,5 +100,5 @@ static skg_status remove_all(skg_scan_file *file) {
     return SKG_OK;
 }
 
-const skg_scan_format skg_scan_format_folder = {{NULL},    lay_out,   NULL,      identify,
-                                                write_one, find_done, remove_all};
+const skg_scan_format skg_scan_format_folder = {{NULL},    lay_out,    NULL, identify, write_one,
+                                                find_done, remove_all, 0,    0};

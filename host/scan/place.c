@@ -75,6 +75,16 @@ skg_status skg_scan_lay_out(const char *path, const void *header, int64_t count,
     return status;
 }
 
+skg_status skg_scan_reserve(const char *path) {
+    struct stat there;
+    const int descriptor = open(path, O_RDWR | O_CLOEXEC);
+    if (descriptor < 0) return skg_output_fail(path, errno, "");
+    int reason = fstat(descriptor, &there) == 0 ? reserve(descriptor, (int64_t)there.st_size) : errno;
+    if (!reason && fsync(descriptor) != 0) reason = errno;
+    if (close(descriptor) != 0 && !reason) reason = errno;
+    return reason ? skg_output_fail(path, reason, "") : SKG_OK;
+}
+
 skg_status skg_scan_check_length(const char *path, int64_t total) {
     struct stat there;
     if (stat(path, &there) != 0) return skg_output_fail(path, errno, "");

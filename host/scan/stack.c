@@ -188,14 +188,9 @@ static skg_status remove_raw(skg_scan_file *file) {
     return SKG_OK;
 }
 
-static skg_status remove_one(skg_scan_file *file) {
-    unlink(file->path);
-    return SKG_OK;
-}
-
-const skg_scan_format skg_scan_format_mha = {{".mha"}, lay_out_mha, locate_mha, skg_scan_read_identity,
-                                             NULL,     NULL,        remove_one};
-const skg_scan_format skg_scan_format_raw = {{".raw"}, lay_out_raw, locate_raw, identify_raw,
-                                             NULL,     NULL,        remove_raw};
+const skg_scan_format skg_scan_format_mha = {
+    {".mha"}, lay_out_mha, locate_mha, skg_scan_read_identity, NULL, NULL, NULL, 0, 0};
+const skg_scan_format skg_scan_format_raw = {{".raw"},   lay_out_raw, locate_raw, identify_raw, NULL, NULL,
+                                             remove_raw, 0,           0};
 const skg_scan_format skg_scan_format_tiff = {
-    {".tif", ".tiff"}, lay_out_tiff, locate_tiff, skg_scan_read_identity, NULL, NULL, remove_one};
+    {".tif", ".tiff"}, lay_out_tiff, locate_tiff, skg_scan_read_identity, NULL, NULL, NULL, 0, 0};

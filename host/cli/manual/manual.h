@@ -73,6 +73,7 @@ extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles;
 extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_flag_breathe_fps,
     cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,
-    cli_flag_scan_overwrite, cli_flag_scan_breathing, cli_flag_scan_subframes, cli_flag_scan_geometry;
+    cli_flag_scan_overwrite, cli_flag_scan_breathing, cli_flag_scan_subframes, cli_flag_scan_geometry,
+    cli_flag_scan_flats, cli_flag_scan_darks;
 
 #endif

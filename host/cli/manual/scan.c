@@ -2,7 +2,7 @@
 
 const cli_flag cli_flag_scan_output = {
     "-o", "FILE",
-    "The output: .mha (MetaImage), .raw (with its header in a .mhd beside it), .tif (BigTIFF), or a folder, which has no "
+    "The output: .h5 (HDF5 in the layout of Data Exchange, if it was built with HDF5), .mha (MetaImage), .raw (with its header in a .mhd beside it), .tif (BigTIFF), or a folder, which has no "
     "extension. Required.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_scan_from = {"--from", "K", "The first projection to compute, counted from 0.", NULL,
@@ -22,6 +22,12 @@ const cli_flag cli_flag_scan_subframes = {
     "Averages each projection from N frames, spread over its exposure (Exposure of Scan), during which the scan turns "
     "and the scene breathes. The default is 1.",
     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_flats = {
+    "--flats", "N", "The number of flat fields in an .h5: the beam without parts. The default is 1.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_darks = {"--darks", "N",
+                                      "The number of dark fields in an .h5, which are 0. The default is 1.",
+                                      NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
@@ -30,7 +36,7 @@ const cli_flag cli_flag_scan_geometry = {
 
 static const char *const text[] = {
     "Computes the projections of the scene's key Scan and writes them while the next ones are computed. "
-    "While a scan is written, FILE.progress holds which projections are finished. If the command is stopped, even by "
+    "While a scan is written, FILE.progress holds which projections are finished (an .h5 holds it itself). If the command is stopped, even by "
     "force, the same command continues with the projections that are missing. The bytes of the output do not depend on "
     "that.",
     "An output that is finished is left as it is. One that holds another scan is refused: a scan is another one if the "
@@ -48,6 +54,8 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_scan_breathing,
                                         &cli_flag_scan_subframes,
                                         &cli_flag_scan_geometry,
+                                        &cli_flag_scan_flats,
+                                        &cli_flag_scan_darks,
                                         &cli_flag_device,
                                         &cli_flag_precision,
                                         &cli_flag_tolerance,

@@ -1,5 +1,6 @@
 #include "scan/acquisition.h"
 
+#include "common/file.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "session/explain.h"
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PROJECTIONS = 10000000, MOST_SUBFRAMES = 1000 };
+enum { MOST_PROJECTIONS = 10000000, MOST_SUBFRAMES = 1000, MOST_FIELDS = 1000 };
 
 /* Reads "3,7,12". */
 static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
@@ -33,9 +34,11 @@ static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
 int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     int64_t to = -1;
     skg_scan_run_options_init(&a->options);
+    a->flats = a->darks = 1;
     a->place = cli_value(arguments, &cli_flag_scan_output);
     if (!a->place)
-        return cli_error(CLI_USAGE, "scan: no output is named; add -o FILE (.mha, .raw, .tif or a folder)");
+        return cli_error(CLI_USAGE,
+                         "scan: no output is named; add -o FILE (.h5, .mha, .raw, .tif or a folder)");
     const skg_status status = skg_scan_file_path_check(a->place);
     if (status != SKG_OK) return cli_fail(status);
     int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, MOST_PROJECTIONS, &a->options.from);
@@ -44,6 +47,10 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE)
         exit_status =
             cli_integer(arguments, &cli_flag_scan_subframes, 1, MOST_SUBFRAMES, &a->options.subframes);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_scan_flats, 0, MOST_FIELDS, &a->flats);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_scan_darks, 0, MOST_FIELDS, &a->darks);
     if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
     a->options.to = to + 1;
     return exit_status;
@@ -63,6 +70,23 @@ static int choose_samples(cli_acquisition *a) {
     return CLI_DONE;
 }
 
+/* Flat fields as the plan makes them, and dark fields of zeros. Other files than HDF5 have none. */
+static int write_fields(cli_acquisition *a) {
+    const skg_view *view = &a->session.view;
+    const size_t bytes = (size_t)(view->columns * view->rows) * (a->options.type == SKG_TYPE_FLOAT64 ? 8 : 4);
+    void *white = calloc((size_t)a->flats + 1, bytes), *dark = calloc((size_t)a->darks + 1, bytes);
+    skg_status status = SKG_OK;
+    int exit_status = white && dark ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for flat fields");
+    if (exit_status == CLI_DONE && a->flats > 0)
+        status =
+            skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, a->flats, white);
+    if (exit_status == CLI_DONE && status >= SKG_OK)
+        status = skg_scan_file_fields_write(a->file, a->flats, white, a->darks, dark);
+    free(white);
+    free(dark);
+    return exit_status != CLI_DONE || status >= SKG_OK ? exit_status : cli_fail(status);
+}
+
 static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     skg_scan_file_options options;
     skg_channel channel;
@@ -79,10 +103,14 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.unit = channel.unit;
     options.flat_field = channel.flat_field;
     options.samples = report.samples;
+    options.flats = a->flats;
+    options.darks = a->darks;
     options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
     if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
     if (status == SKG_OK) status = skg_scan_file_done_count(a->file, &a->found);
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+    if (status != SKG_OK) return cli_fail(status);
+    const int is_hdf5 = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5");
+    return is_hdf5 && a->found < a->projections ? write_fields(a) : CLI_DONE;
 }
 
 static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {

@@ -15,7 +15,7 @@ typedef struct {
     int64_t *only;
     char hash[65];
     const char *place;
-    int64_t projections, found, computed;
+    int64_t projections, found, computed, flats, darks;
     double plan_ms, seconds;
     int range_warned;
 } cli_acquisition;

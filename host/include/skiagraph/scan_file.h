@@ -36,6 +36,10 @@ typedef struct {
     int32_t overwrite;
     /** 1: another process has laid out the file and holds its lock; this one only writes projections. */
     int32_t is_helper;
+    /** Number of flat fields, of HDF5 only; 1 by default. */
+    int64_t flats;
+    /** Number of dark fields, of HDF5 only; 1 by default. */
+    int64_t darks;
 } skg_scan_file_options;
 
 /** Prepares the options of a file, of `size` bytes (export.h). */
@@ -82,6 +86,16 @@ SKG_API skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *
  *
  *     done   result: 1 or 0 */
 SKG_API skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done);
+
+/** Writes the flat and dark fields of an HDF5 file; other files have none, and ignore them.
+ *
+ *     flats    number of flat fields, as in the options of the file
+ *     white    [flats][row][column]; NULL if flats is 0
+ *     darks    number of dark fields, as in the options of the file
+ *     dark     [darks][row][column]; NULL if darks is 0
+ *     errors   SKG_ERR_OUTPUT, SKG_ERR_ARGUMENT (number) */
+SKG_API skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const void *white,
+                                              int64_t darks, const void *dark);
 
 /** Writes projections, and marks them as finished once the disk has them.
  *

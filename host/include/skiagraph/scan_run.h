@@ -115,6 +115,18 @@ typedef skg_status (*skg_scan_function)(const skg_scan_batch *batch, void *user)
 SKG_API skg_status skg_scan_run_each(skg_plan *plan, skg_scan *scan, const skg_scan_run_options *options,
                                      skg_scan_function function, void *user);
 
+/** Makes flat fields of a scan: images of the beam through the world, without parts, for the view of the first
+ * projection. Their noise is that of the frames after the last projection.
+ *
+ *     scene     of the plan
+ *     options   type and seed count; NULL: the defaults
+ *     count     number of flat fields, at least 1
+ *     images    result: [count][channel][row][column] of the options' type
+ *     errors    what skg_plan_submit and skg_job_wait give */
+SKG_API skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, skg_scan *scan,
+                                               const skg_scan_run_options *options, int64_t count,
+                                               void *images);
+
 /** Gets the text that identifies a scan: the SHA-256 of the set-up (skg_setup_hash_get), of the options that
  * decide its images, and of the version of the library. Device, strategy, shard and batch do not change it.
  *
