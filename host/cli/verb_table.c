@@ -6,10 +6,17 @@
 #include "verbs/verbs.h"
 
 const cli_verb cli_verbs[] = {
-    {&cli_manual_image, cli_image},   {&cli_manual_lbuffer, cli_lbuffer},
-    {&cli_manual_plan, cli_plan},     {&cli_manual_cost, cli_cost},
-    {&cli_manual_mesh, cli_mesh},     {&cli_manual_material, cli_material},
-    {&cli_manual_beam, cli_beam},     {&cli_manual_devices, cli_devices},
-    {&cli_manual_thorax, cli_thorax}, {&cli_manual_breathe, cli_breathe},
-    {&cli_manual_scan, cli_scan},     {NULL, NULL},
+    {&cli_manual_image, cli_image},
+    {&cli_manual_lbuffer, cli_lbuffer},
+    {&cli_manual_plan, cli_plan},
+    {&cli_manual_cost, cli_cost},
+    {&cli_manual_mesh, cli_mesh},
+    {&cli_manual_material, cli_material},
+    {&cli_manual_beam, cli_beam},
+    {&cli_manual_devices, cli_devices},
+    {&cli_manual_thorax, cli_thorax},
+    {&cli_manual_breathe, cli_breathe},
+    {&cli_manual_scan, cli_scan},
+    {&cli_manual_reconstruct, cli_reconstruct},
+    {NULL, NULL},
 };

@@ -4,32 +4,18 @@
 #include "core/maths.h"
 #include "core/output.h"
 #include "scan/file.h"
+#include "scan/hdf5_errors.h"
+#include "trajectory/scan.h"
 
 #include <skiagraph/version.h>
 
 #include <errno.h>
 #include <fcntl.h>
-#include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* HDF5 prints its errors unless it is told not to. */
-typedef struct {
-    H5E_auto2_t print;
-    void *data;
-} error_printer;
-
-static void be_silent(error_printer *before) {
-    H5Eget_auto2(H5E_DEFAULT, &before->print, &before->data);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
-
-static void be_as_before(const error_printer *before) {
-    H5Eset_auto2(H5E_DEFAULT, before->print, before->data);
-}
 
 static herr_t keep_reason(unsigned level, const H5E_error2_t *error, void *user) {
     if (level == 0 && error->desc) snprintf(user, 256, "%s", error->desc);
@@ -133,11 +119,31 @@ static int make_exchange(hid_t root, const skg_scan_file *file, const geometry *
     return done;
 }
 
+/* What a reconstruction needs of a scan that turns. */
+static int write_rotation(hid_t group, const skg_scan_file *file) {
+    const hsize_t size = 3;
+    const hid_t space = H5Screate_simple(1, &size, NULL);
+    const skg_scan_options *o = &file->options.scan->options;
+    const struct {
+        const char *name;
+        const double *vector;
+    } vectors[] = {{"axis", o->axis}, {"centre_of_rotation", o->centre}};
+    int done = write_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection);
+    for (int v = 0; v < 2 && done && !file->options.scan->poses; v++) {
+        const hid_t attribute =
+            H5Acreate2(group, vectors[v].name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
+        done = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, vectors[v].vector) >= 0;
+        if (attribute >= 0) H5Aclose(attribute);
+    }
+    H5Sclose(space);
+    return done;
+}
+
 static int make_geometry(hid_t root, const skg_scan_file *file, const geometry *g) {
     static const char *const names[] = {"source", "centre", "column_step", "row_step"};
     const hsize_t size[2] = {(hsize_t)file->projections, 3};
     const hid_t group = H5Gcreate2(root, "geometry", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    int done = group >= 0;
+    int done = group >= 0 && write_rotation(group, file);
     for (int v = 0; v < 4 && done; v++)
         done = make_dataset(group, names[v], H5T_NATIVE_DOUBLE, 2, size, g->vectors[v], "mm");
     done =
@@ -176,12 +182,12 @@ static skg_status make_file(skg_scan_file *file, const char *path, const geometr
 
 static skg_status lay_out(skg_scan_file *file, const char *temporary) {
     geometry g = {0};
-    error_printer before;
+    skg_hdf5_errors before;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(find_geometry(file, &g));
-    be_silent(&before);
+    skg_hdf5_be_silent(&before);
     status = make_file(file, temporary, &g);
-    be_as_before(&before);
+    skg_hdf5_be_as_before(&before);
     if (status == SKG_OK) status = skg_scan_reserve(temporary);
     if (status != SKG_OK) unlink(temporary);
 cleanup:
@@ -199,8 +205,8 @@ static int64_t place_of(hid_t root, const char *name) {
 }
 
 static skg_status locate(skg_scan_file *file) {
-    error_printer before;
-    be_silent(&before);
+    skg_hdf5_errors before;
+    skg_hdf5_be_silent(&before);
     const hid_t root = H5Fopen(file->path, H5F_ACC_RDONLY, H5P_DEFAULT);
     skg_status status = root < 0 ? fail(file->path) : SKG_OK;
     if (root >= 0) {
@@ -212,7 +218,7 @@ static skg_status locate(skg_scan_file *file) {
         file->data_step = file->bytes;
         H5Fclose(root);
     }
-    be_as_before(&before);
+    skg_hdf5_be_as_before(&before);
     if (status == SKG_OK && (!file->data_at || !file->done_at))
         return skg_fail(SKG_ERR_OUTPUT,
                         "%s: has no place for projections; something else has changed it: remove it",
@@ -237,13 +243,13 @@ static int read_identity(const char *path, skg_scan_identity *identity) {
 }
 
 static skg_status identify(const char *path, skg_scan_identity *identity) {
-    error_printer before;
+    skg_hdf5_errors before;
     struct stat there;
     *identity = (skg_scan_identity){0};
     if (stat(path, &there) != 0 || !S_ISREG(there.st_mode)) return SKG_OK;
-    be_silent(&before);
+    skg_hdf5_be_silent(&before);
     if (H5Fis_hdf5(path) <= 0 || !read_identity(path, identity)) *identity = (skg_scan_identity){0};
-    be_as_before(&before);
+    skg_hdf5_be_as_before(&before);
     return SKG_OK;
 }
 

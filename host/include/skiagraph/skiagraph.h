@@ -26,6 +26,7 @@
 #include <skiagraph/reconstruct.h>
 #include <skiagraph/scan.h>
 #include <skiagraph/scan_file.h>
+#include <skiagraph/scan_reader.h>
 #include <skiagraph/scan_run.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/setup.h>
