@@ -169,6 +169,19 @@ static skg_status look(const skg_scan_file *file, int *is_there) {
                     identity.hash[0] ? "another scan, or one of another state of this scene" : "no scan");
 }
 
+/* Which projections the file has. */
+static skg_status find_part(skg_scan_file *file, const skg_scan_file_options *o) {
+    int64_t all = 0;
+    SKG_TRY(skg_scan_projection_count(o->scan, &all));
+    file->first = o->from;
+    file->projections = o->count > 0 ? o->count : all - o->from;
+    if (o->from >= 0 && o->count >= 0 && file->projections > 0 && file->first <= all - file->projections)
+        return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "scan file: %" PRId64 " projections from %" PRId64 " on; the scan has %" PRId64,
+                    file->projections, file->first, all);
+}
+
 static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_file_options *o) {
     SKG_TRY(skg_scan_find_format(path, &file->format));
     SKG_TRY(skg_copy_text(path, &file->path));
@@ -180,7 +193,7 @@ static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_
     SKG_TRY(skg_copy_text(o->hash, (char **)&file->options.hash));
     SKG_TRY(skg_copy_text(o->name ? o->name : "", (char **)&file->options.name));
     SKG_TRY(skg_copy_text(o->unit ? o->unit : "", (char **)&file->options.unit));
-    SKG_TRY(skg_scan_projection_count(o->scan, &file->projections));
+    SKG_TRY(find_part(file, o));
     skg_view_init(&file->view);
     SKG_TRY(skg_scan_view_get(o->scan, 0, &file->view));
     file->bytes = file->view.columns * file->view.rows * (o->type == SKG_TYPE_FLOAT64 ? 8 : 4);
@@ -273,16 +286,17 @@ skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const 
 }
 
 static skg_status check_index(const skg_scan_file *file, int64_t index) {
-    if (index >= 0 && index < file->projections) return SKG_OK;
-    return skg_fail(SKG_ERR_ARGUMENT, "%s: no projection %" PRId64 "; projections are 0 to %" PRId64,
-                    file->path, index, file->projections - 1);
+    if (index >= file->first && index < file->first + file->projections) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "%s: no projection %" PRId64 "; projections are %" PRId64 " to %" PRId64, file->path,
+                    index, file->first, file->first + file->projections - 1);
 }
 
 skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done) {
     SKG_NEEDS(file);
     SKG_NEEDS(done);
     SKG_TRY(check_index(file, index));
-    *done = file->done[index] == 1;
+    *done = file->done[index - file->first] == 1;
     return SKG_OK;
 }
 
@@ -291,10 +305,11 @@ static skg_status mark(skg_scan_file *file, int64_t count, const int64_t *indice
     static const char one = 1;
     if (file->data >= 0 && fdatasync(file->data) != 0) return skg_output_fail(file->path, errno, "");
     for (int64_t i = 0; i < count; i++) {
+        const int64_t at = indices[i] - file->first;
         if (file->progress >= 0)
-            SKG_TRY(skg_scan_write_at(file->path, file->progress, &one, 1, file->done_at + indices[i]));
-        file->done_count += file->done[indices[i]] != 1;
-        file->done[indices[i]] = 1;
+            SKG_TRY(skg_scan_write_at(file->path, file->progress, &one, 1, file->done_at + at));
+        file->done_count += file->done[at] != 1;
+        file->done[at] = 1;
     }
     return SKG_OK;
 }
@@ -313,12 +328,53 @@ skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t
             SKG_TRY(file->format->write(file, indices[i], image, phases ? phases[i] : 0));
         else
             SKG_TRY(skg_scan_write_at(file->path, file->data, image, file->bytes,
-                                      file->data_at + indices[i] * file->data_step));
+                                      file->data_at + (indices[i] - file->first) * file->data_step));
         if (file->phase_at)
             SKG_TRY(skg_scan_write_at(file->path, file->data, phases ? phases + i : &none, sizeof none,
-                                      file->phase_at + indices[i] * (int64_t)sizeof none));
+                                      file->phase_at + (indices[i] - file->first) * (int64_t)sizeof none));
     }
     return mark(file, count, indices);
+}
+
+static skg_status read_at(const skg_scan_file *file, void *to, int64_t count, int64_t at) {
+    char *bytes = to;
+    while (count > 0) {
+        const ssize_t got = pread(file->data, bytes, (size_t)count, (off_t)at);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0)
+            return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", file->path,
+                            got < 0 ? strerror(errno) : "it ends");
+        bytes += got, at += got, count -= got;
+    }
+    return SKG_OK;
+}
+
+skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part) {
+    SKG_PLAIN;
+    char *image = NULL;
+    skg_status status = SKG_OK;
+    SKG_NEEDS(file);
+    SKG_NEEDS(part);
+    if (part->data < 0 || file->data < 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: folders are not joined; write their projections to one folder", part->path);
+    SKG_TRY(check_index(file, part->first));
+    SKG_TRY(check_index(file, part->first + part->projections - 1));
+    if (part->bytes != file->bytes || part->options.samples != file->options.samples)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: has another type or number of source samples than %s",
+                        part->path, file->path);
+    SKG_TRY(skg_alloc(file->bytes, 1, "projection", &image));
+    for (int64_t k = 0; k < part->projections && status == SKG_OK; k++) {
+        const int64_t index = part->first + k;
+        double phase = (double)NAN;
+        if (part->done[k] != 1 || file->done[index - file->first] == 1) continue;
+        status = read_at(part, image, part->bytes, part->data_at + k * part->data_step);
+        if (status == SKG_OK && part->phase_at)
+            status = read_at(part, &phase, sizeof phase, part->phase_at + k * (int64_t)sizeof phase);
+        if (status == SKG_OK) status = skg_scan_file_write(file, 1, &index, image, &phase);
+    }
+    skg_free(&image);
+    return status;
 }
 
 skg_status skg_scan_file_finish(skg_scan_file *file) {

@@ -17,8 +17,9 @@ struct skg_scan_file {
     const skg_scan_format *format;
     skg_scan_file_options options; /* texts are copies */
     skg_view view;                 /* of the first projection */
-    int64_t projections;
-    int64_t bytes; /* of a projection */
+    int64_t first;                 /* number of its first projection in the scan */
+    int64_t projections;           /* of the file */
+    int64_t bytes;                 /* of a projection */
     char *path, *lock_path, *progress_path;
     int lock, data, progress;   /* descriptors; -1: none */
     int64_t data_at, data_step; /* place of projection 0, and from one to the next */

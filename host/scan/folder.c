@@ -56,7 +56,7 @@ static skg_status identify(const char *path, skg_scan_identity *identity) {
 static skg_status find_done(skg_scan_file *file) {
     for (int64_t k = 0; k < file->projections; k++) {
         char *path = NULL;
-        SKG_TRY(projection_path(file, k, &path));
+        SKG_TRY(projection_path(file, file->first + k, &path));
         file->done[k] = access(path, F_OK) == 0;
         file->done_count += file->done[k];
         skg_free(&path);
@@ -93,7 +93,7 @@ static skg_status remove_all(skg_scan_file *file) {
     skg_free(&text);
     for (int64_t k = 0; k < file->projections; k++) {
         char *path = NULL;
-        SKG_TRY(projection_path(file, k, &path));
+        SKG_TRY(projection_path(file, file->first + k, &path));
         unlink(path);
         skg_free(&path);
     }

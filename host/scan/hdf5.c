@@ -89,9 +89,9 @@ static skg_status find_geometry(const skg_scan_file *file, geometry *g) {
     for (int64_t k = 0; k < n; k++) {
         skg_view view;
         skg_view_init(&view);
-        SKG_TRY(skg_scan_view_get(scan, k, &view));
-        SKG_TRY(skg_scan_time_get(scan, k, &g->time[k], NULL));
-        SKG_TRY(skg_scan_angle_get(scan, k, &g->theta[k]));
+        SKG_TRY(skg_scan_view_get(scan, file->first + k, &view));
+        SKG_TRY(skg_scan_time_get(scan, file->first + k, &g->time[k], NULL));
+        SKG_TRY(skg_scan_angle_get(scan, file->first + k, &g->theta[k]));
         g->theta[k] *= 180 / SKG_PI;
         const double *from[] = {view.source, view.centre, view.column_step, view.row_step};
         for (int v = 0; v < 4; v++) memcpy(g->vectors[v] + 3 * k, from[v], 3 * sizeof(double));

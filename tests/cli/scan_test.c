@@ -211,6 +211,52 @@ START_TEST(a_volume_has_the_coefficients) {
 }
 END_TEST
 
+/* Shards in files of their own, joined, are the scan that one process makes. */
+START_TEST(shards_are_joined) {
+    static const char *const names[] = {"scan.mha", "scan.h5"};
+    const char *name = names[_i];
+    if (_i == 1 && !SKG_HAS_HDF5) return;
+    ck_run(0, "scan scene.json %s -o whole%s --quiet", SCAN, name + 4);
+    ck_run(0, "scan scene.json %s -o %s --shard 1/3 --quiet", SCAN, name);
+    ck_run(0, "scan scene.json %s -o %s --shard 3/3 --quiet", SCAN, name);
+    ck_run_fails(3, "2-of-3", "scan scene.json %s -o %s --join", SCAN, name);
+    ck_run(0, "scan scene.json %s -o %s --shard 2/3 --json", SCAN, name);
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "projections")), 4);
+    json_decref(object);
+    ck_run_fails(3, "no files of shards", "scan scene.json %s -o other%s --join", SCAN, name + 4);
+    ck_run(0, "scan scene.json %s -o %s --join", SCAN, name);
+    ck_assert(strstr(said, "has all 12 projections") != NULL);
+    char whole[64];
+    snprintf(whole, sizeof whole, "whole%s", name + 4);
+    const size_t size = read_file(whole, before);
+    ck_assert_uint_eq(read_file(name, bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+    ck_run_fails(2, "I/N", "scan scene.json %s -o %s --shard 4/3", SCAN, name);
+    ck_run_fails(2, "leave out", "scan scene.json %s -o %s --shard 1/3 --from 2", SCAN, name);
+    ck_run_fails(2, "shards are files", "scan scene.json %s -o folder --shard 1/3", SCAN);
+}
+END_TEST
+
+/* Each projection shows the thorax at its own time, as breathe shows it. */
+START_TEST(each_projection_has_its_own_time) {
+    enum { SIDE = 40, IMAGE = SIDE * SIDE * sizeof(float) };
+    static const char beam[] = "--set Detector.NumberOfPixels=[40,40] --set "
+                               "Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]'";
+    ck_run(0, "thorax -o . --triangles 10000 --quiet");
+    ck_run(0,
+           "scan thorax.json %s --breathing --quantity attenuation -o scan.mha --quiet --set "
+           "Scan='{\"NumberOfProjections\":3,\"StartTime\":0.5,\"Interval\":1.5}'",
+           beam);
+    const size_t size = read_file("scan.mha", bytes);
+    for (int k = 0; k < 3; k++) {
+        ck_run(0, "breathe thorax.json %s --at %g --range 0:8 -o one.mha --quiet", beam, 0.5 + 1.5 * k);
+        const size_t one = read_file("one.mha", before);
+        ck_assert_mem_eq(before + one - IMAGE, bytes + size - (size_t)(3 - k) * IMAGE, IMAGE);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, projections_are_images);
@@ -219,6 +265,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_folder_and_a_geometry);
     tcase_add_test(tests, what_cannot_be_is_refused);
     tcase_add_test(tests, a_volume_has_the_coefficients);
+    tcase_add_loop_test(tests, shards_are_joined, 0, 2);
+    tcase_add_test(tests, each_projection_has_its_own_time);
     tcase_add_loop_test(tests, kills_leave_no_trace, 0, 4);
 }
 

@@ -28,6 +28,15 @@ const cli_flag cli_flag_scan_flats = {
 const cli_flag cli_flag_scan_darks = {"--darks", "N",
                                       "The number of dark fields in an .h5, which are 0. The default is 1.",
                                       NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_shard = {
+    "--shard", "I/N",
+    "Computes block I of N blocks of consecutive projections, I from 1 to N, and writes it to a file of its own: "
+    "scan.I-of-N.h5 for -o scan.h5. For job arrays.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_join = {
+    "--join", NULL,
+    "Puts the files of all shards together in the file of -o. Projections that no shard has are computed.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
@@ -45,25 +54,14 @@ static const char *const text[] = {
     "many projections the scan has, how many were computed now, and how many the output had before.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_scan_output,
-                                        &cli_flag_image_quantity,
-                                        &cli_flag_scan_from,
-                                        &cli_flag_scan_to,
-                                        &cli_flag_scan_only,
-                                        &cli_flag_scan_overwrite,
-                                        &cli_flag_scan_breathing,
-                                        &cli_flag_scan_subframes,
-                                        &cli_flag_scan_geometry,
-                                        &cli_flag_scan_flats,
-                                        &cli_flag_scan_darks,
-                                        &cli_flag_device,
-                                        &cli_flag_precision,
-                                        &cli_flag_tolerance,
-                                        &cli_flag_strategy,
-                                        &cli_flag_set,
-                                        &cli_flag_json,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {
+    &cli_flag_scan_output,    &cli_flag_image_quantity, &cli_flag_scan_from,
+    &cli_flag_scan_to,        &cli_flag_scan_only,      &cli_flag_scan_overwrite,
+    &cli_flag_scan_breathing, &cli_flag_scan_subframes, &cli_flag_scan_geometry,
+    &cli_flag_scan_flats,     &cli_flag_scan_darks,     &cli_flag_scan_shard,
+    &cli_flag_scan_join,      &cli_flag_device,         &cli_flag_precision,
+    &cli_flag_tolerance,      &cli_flag_strategy,       &cli_flag_set,
+    &cli_flag_json,           &cli_flag_quiet,          NULL};
 
 static const cli_item files[] = {{"FILE", "the projections"},
                                  {"FILE.progress", "which of them are finished; removed at the end"},

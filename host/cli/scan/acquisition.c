@@ -3,6 +3,7 @@
 #include "common/file.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "scan/shards.h"
 #include "session/explain.h"
 #include "session/frames.h"
 
@@ -53,6 +54,7 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
         exit_status = cli_integer(arguments, &cli_flag_scan_darks, 0, MOST_FIELDS, &a->darks);
     if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
     a->options.to = to + 1;
+    if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
     return exit_status;
 }
 
@@ -105,12 +107,20 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.samples = report.samples;
     options.flats = a->flats;
     options.darks = a->darks;
+    options.from = a->part_from;
+    options.count = a->part_count;
     options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
     if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
-    if (status == SKG_OK) status = skg_scan_file_done_count(a->file, &a->found);
+    if (status != SKG_OK) return cli_fail(status);
+    const int is_joined = cli_given(arguments, &cli_flag_scan_join);
+    if (is_joined) {
+        const int exit_status = shards_join(a, &options);
+        if (exit_status != CLI_DONE) return exit_status;
+    }
+    status = skg_scan_file_done_count(a->file, &a->found);
     if (status != SKG_OK) return cli_fail(status);
     const int is_hdf5 = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5");
-    return is_hdf5 && a->found < a->projections ? write_fields(a) : CLI_DONE;
+    return is_hdf5 && (is_joined || a->found < a->projections) ? write_fields(a) : CLI_DONE;
 }
 
 static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
@@ -141,6 +151,7 @@ int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
             skg_scan_hash_get(a->session.setup, &a->session.options, &a->options, a->hash, sizeof a->hash);
     if (status != SKG_OK) return cli_fail(status);
     exit_status = write_geometry(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
     return exit_status == CLI_DONE ? open_output(arguments, a) : exit_status;
@@ -183,4 +194,5 @@ void acquisition_close(cli_acquisition *a) {
     skg_motion_release(&a->motion);
     cli_close_session(&a->session);
     free(a->only);
+    free(a->shard_place);
 }

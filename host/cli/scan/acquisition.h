@@ -18,6 +18,9 @@ typedef struct {
     int64_t projections, found, computed, flats, darks;
     double plan_ms, seconds;
     int range_warned;
+    int64_t shard, shards; /* from 1; 0: none is asked for */
+    char *shard_place;
+    int64_t part_from, part_count; /* of a shard; 0 and 0: the whole scan */
 } cli_acquisition;
 
 /* Reads the flags. These functions return an exit status and print the error. */

@@ -40,6 +40,10 @@ typedef struct {
     int64_t flats;
     /** Number of dark fields, of HDF5 only; 1 by default. */
     int64_t darks;
+    /** First projection of the file, which then is a part of the scan. */
+    int64_t from;
+    /** Number of its projections; 0: all from `from` on. */
+    int64_t count;
 } skg_scan_file_options;
 
 /** Prepares the options of a file, of `size` bytes (export.h). */
@@ -106,6 +110,13 @@ SKG_API skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats
  *     errors    SKG_ERR_OUTPUT; projections that were not marked have to be written again */
 SKG_API skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t *indices,
                                        const void *images, const double *phases);
+
+/** Copies the projections that a part of the scan has and a file does not.
+ *
+ *     part     finished or not; of the same type and number of source samples
+ *     errors   SKG_ERR_ARGUMENT if the part is of another type or lies outside of the file, SKG_ERR_OUTPUT;
+ *              SKG_ERR_UNSUPPORTED for folders */
+SKG_API skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part);
 
 /** Ends a file that has every projection: what only an unfinished file needs is removed. Does nothing if
  * projections are missing. */
