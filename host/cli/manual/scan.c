@@ -37,6 +37,10 @@ const cli_flag cli_flag_scan_join = {
     "--join", NULL,
     "Puts the files of all shards together in the file of -o. Projections that no shard has are computed.",
     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_mixed = {
+    "--mixed", NULL,
+    "Under MPI: allows devices that give different bits. Without this flag they are refused.", NULL,
+    CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
@@ -50,18 +54,34 @@ static const char *const text[] = {
     "that.",
     "An output that is finished is left as it is. One that holds another scan is refused: a scan is another one if the "
     "scene, a file that it names, the quantity, the precision, the tolerance or the version differs.",
+    "Under mpirun or srun the processes take projections in turn and write them to one output; each has its own device or "
+    "its share of the cores.",
     "--json prints {projections, computed, found, finished, plan_ms, seconds, projections_per_s, hash, file, plan}: how "
     "many projections the scan has, how many were computed now, and how many the output had before.",
     NULL};
 
-static const cli_flag *const flags[] = {
-    &cli_flag_scan_output,    &cli_flag_image_quantity, &cli_flag_scan_from,
-    &cli_flag_scan_to,        &cli_flag_scan_only,      &cli_flag_scan_overwrite,
-    &cli_flag_scan_breathing, &cli_flag_scan_subframes, &cli_flag_scan_geometry,
-    &cli_flag_scan_flats,     &cli_flag_scan_darks,     &cli_flag_scan_shard,
-    &cli_flag_scan_join,      &cli_flag_device,         &cli_flag_precision,
-    &cli_flag_tolerance,      &cli_flag_strategy,       &cli_flag_set,
-    &cli_flag_json,           &cli_flag_quiet,          NULL};
+static const cli_flag *const flags[] = {&cli_flag_scan_output,
+                                        &cli_flag_image_quantity,
+                                        &cli_flag_scan_from,
+                                        &cli_flag_scan_to,
+                                        &cli_flag_scan_only,
+                                        &cli_flag_scan_overwrite,
+                                        &cli_flag_scan_breathing,
+                                        &cli_flag_scan_subframes,
+                                        &cli_flag_scan_geometry,
+                                        &cli_flag_scan_flats,
+                                        &cli_flag_scan_darks,
+                                        &cli_flag_scan_shard,
+                                        &cli_flag_scan_join,
+                                        &cli_flag_scan_mixed,
+                                        &cli_flag_device,
+                                        &cli_flag_precision,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_strategy,
+                                        &cli_flag_set,
+                                        &cli_flag_json,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item files[] = {{"FILE", "the projections"},
                                  {"FILE.progress", "which of them are finished; removed at the end"},
@@ -75,6 +95,7 @@ static const cli_item examples[] = {
     {"skiagraph scan thorax/thorax.json --breathing -o folder --set "
      "Scan='{\"NumberOfProjections\":60,\"FinalAngle\":360,\"Interval\":0.1}'",
      "writes a thorax that breathes during the scan"},
+    {"mpirun -n 8 skiagraph scan scene.json -o scan.h5", "shares the projections out over eight processes"},
     {NULL, NULL}};
 
 const cli_manual cli_manual_scan = {.name = "scan",

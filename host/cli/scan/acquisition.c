@@ -1,11 +1,11 @@
 #include "scan/acquisition.h"
 
 #include "common/file.h"
-#include "common/progress.h"
 #include "common/say.h"
+#include "scan/batches.h"
 #include "scan/shards.h"
+#include "scan/shared.h"
 #include "session/explain.h"
-#include "session/frames.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -89,6 +89,7 @@ static int write_fields(cli_acquisition *a) {
     return exit_status != CLI_DONE || status >= SKG_OK ? exit_status : cli_fail(status);
 }
 
+/* The first rank lays the output out and holds its lock; the others open it when it has. */
 static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     skg_scan_file_options options;
     skg_channel channel;
@@ -110,9 +111,10 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.from = a->part_from;
     options.count = a->part_count;
     options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
+    options.is_helper = a->ranks.rank > 0;
     if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
     if (status != SKG_OK) return cli_fail(status);
-    const int is_joined = cli_given(arguments, &cli_flag_scan_join);
+    const int is_joined = cli_given(arguments, &cli_flag_scan_join) && a->ranks.rank == 0;
     if (is_joined) {
         const int exit_status = shards_join(a, &options);
         if (exit_status != CLI_DONE) return exit_status;
@@ -120,12 +122,14 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     status = skg_scan_file_done_count(a->file, &a->found);
     if (status != SKG_OK) return cli_fail(status);
     const int is_hdf5 = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5");
-    return is_hdf5 && (is_joined || a->found < a->projections) ? write_fields(a) : CLI_DONE;
+    return is_hdf5 && a->ranks.rank == 0 && (is_joined || a->found < a->projections) ? write_fields(a)
+                                                                                     : CLI_DONE;
 }
 
 static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *path;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i)); i++) {
+    for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
+         i++) {
         const skg_status status = skg_scan_geometry_write(a->scan, path);
         if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
         if (status != SKG_OK) return cli_fail(status);
@@ -133,7 +137,8 @@ static int write_geometry(const cli_arguments *arguments, const cli_acquisition 
     return CLI_DONE;
 }
 
-int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
+/* Scene, scan, motion and plan: of every rank its own. */
+static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     int32_t quantity = SKG_QUANTITY_ENERGY;
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &a->session);
@@ -154,37 +159,32 @@ int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
-    return exit_status == CLI_DONE ? open_output(arguments, a) : exit_status;
+    return exit_status;
 }
 
-/* Computes and writes batch after batch. */
-static skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
-    const double start = cli_now_ms();
-    int64_t all = 0;
-    skg_status status = skg_scan_run_projection_count(run, &all);
-    while (status >= SKG_OK) {
-        skg_scan_batch batch;
-        skg_scan_batch_init(&batch);
-        status = skg_scan_run_next(run, &batch);
-        if (status == SKG_RANGE) cli_end_image(status, &a->range_warned);
-        if (status < SKG_OK || batch.count == 0) break;
-        status = skg_scan_file_write(a->file, batch.count, batch.indices, batch.images, batch.phases);
-        a->computed += batch.count;
-        cli_progress("projections", a->computed, all, start);
-    }
-    a->seconds = 1e-3 * (cli_now_ms() - start);
-    return status == SKG_RANGE ? SKG_OK : status;
+int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
+    int exit_status = ranks_agree(&a->ranks, prepare(arguments, a));
+    if (exit_status == CLI_DONE && a->ranks.rank == 0) exit_status = open_output(arguments, a);
+    exit_status = ranks_agree(&a->ranks, exit_status);
+    if (exit_status == CLI_DONE && a->ranks.rank > 0) exit_status = open_output(arguments, a);
+    return ranks_agree(&a->ranks, exit_status);
 }
 
-int acquisition_run(cli_acquisition *a) {
+static int run_alone(cli_acquisition *a) {
     skg_scan_run *run = NULL;
-    if (a->found > 0 && a->found < a->projections && !cli_is_quiet())
+    skg_status status = skg_scan_run_create(a->plan, a->scan, &a->options, &run);
+    if (status == SKG_OK) status = write_batches(a, run, 1);
+    skg_scan_run_release(&run);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
+    if (a->ranks.rank == 0 && a->found > 0 && a->found < a->projections && !cli_is_quiet())
         cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
     a->options.file = a->file;
-    skg_status status = skg_scan_run_create(a->plan, a->scan, &a->options, &run);
-    if (status == SKG_OK) status = write_batches(a, run);
-    skg_scan_run_release(&run);
-    if (status == SKG_OK) status = skg_scan_file_finish(a->file);
+    const int exit_status = a->ranks.count > 1 ? shared_run(arguments, a) : run_alone(a);
+    if (exit_status != CLI_DONE || a->ranks.rank > 0) return exit_status;
+    const skg_status status = skg_scan_file_finish(a->file);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

@@ -1,36 +1,16 @@
-/* A scan that the command computes and writes. */
+/* From the flags of `scan` to a finished output. These functions return an exit status and print the error. */
 #ifndef SKG_CLI_ACQUISITION_H
 #define SKG_CLI_ACQUISITION_H
 
-#include "session/session.h"
+#include "scan/state.h"
 
-typedef struct {
-    cli_session session;
-    skg_spot spot;  /* with the samples of a scan that is continued */
-    skg_scan *scan; /* owned by the set-up */
-    skg_motion *motion;
-    skg_plan *plan;
-    skg_scan_file *file;
-    skg_scan_run_options options;
-    int64_t *only;
-    char hash[65];
-    const char *place;
-    int64_t projections, found, computed, flats, darks;
-    double plan_ms, seconds;
-    int range_warned;
-    int64_t shard, shards; /* from 1; 0: none is asked for */
-    char *shard_place;
-    int64_t part_from, part_count; /* of a shard; 0 and 0: the whole scan */
-} cli_acquisition;
-
-/* Reads the flags. These functions return an exit status and print the error. */
 int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a);
 
 /* Opens the session, makes plan and motion, and opens the output. */
 int acquisition_open(const cli_arguments *arguments, cli_acquisition *a);
 
 /* Computes and writes what is missing. */
-int acquisition_run(cli_acquisition *a);
+int acquisition_run(const cli_arguments *arguments, cli_acquisition *a);
 
 void acquisition_close(cli_acquisition *a);
 

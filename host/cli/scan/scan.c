@@ -38,9 +38,11 @@ static int print(const cli_arguments *arguments, const cli_acquisition *a) {
 int cli_scan(const cli_arguments *arguments) {
     cli_acquisition a = {0};
     int exit_status = acquisition_read_flags(arguments, &a);
+    if (exit_status == CLI_DONE) exit_status = ranks_open(&a.ranks);
     if (exit_status == CLI_DONE) exit_status = acquisition_open(arguments, &a);
-    if (exit_status == CLI_DONE) exit_status = acquisition_run(&a);
-    if (exit_status == CLI_DONE) exit_status = print(arguments, &a);
+    if (exit_status == CLI_DONE) exit_status = acquisition_run(arguments, &a);
+    if (exit_status == CLI_DONE && a.ranks.rank == 0) exit_status = print(arguments, &a);
     acquisition_close(&a);
+    ranks_close(&a.ranks);
     return exit_status;
 }

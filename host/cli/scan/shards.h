@@ -2,7 +2,7 @@
 #ifndef SKG_CLI_SHARDS_H
 #define SKG_CLI_SHARDS_H
 
-#include "scan/acquisition.h"
+#include "scan/state.h"
 
 /* Reads --shard I/N. These functions return an exit status and print the error. */
 int shards_read_flag(const cli_arguments *arguments, cli_acquisition *a);
