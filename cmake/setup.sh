@@ -5,6 +5,10 @@
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
 libassimp-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
 
+# Without these the build leaves something out: HDF5 files of scans, scans under MPI.
+# shellcheck disable=SC2034
+skg_optional_packages="libhdf5-dev libopenmpi-dev openmpi-bin"
+
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {
     if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then

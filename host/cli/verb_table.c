@@ -2,6 +2,7 @@
 
 #include "breathe/breathe.h"
 #include "cost/cost.h"
+#include "scan/scan.h"
 #include "verbs/verbs.h"
 
 const cli_verb cli_verbs[] = {
@@ -15,5 +16,7 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_devices, cli_devices},
     {&cli_manual_thorax, cli_thorax},
     {&cli_manual_breathe, cli_breathe},
+    {&cli_manual_scan, cli_scan},
+    {&cli_manual_reconstruct, cli_reconstruct},
     {NULL, NULL},
 };

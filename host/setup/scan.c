@@ -10,6 +10,8 @@
  * are seen edge-on. */
 enum { SAMPLED_VIEWS = 16 };
 
+static const double degree = SKG_PI / 180;
+
 static const skg_json_key scan_keys[] = {
     {"NumberOfProjections", NULL, SKG_KEY_READ},
     {"AngleStep", NULL, SKG_KEY_READ},
@@ -17,6 +19,19 @@ static const skg_json_key scan_keys[] = {
     {"FinalAngle", NULL, SKG_KEY_READ},
     {"IncludeLastAngle", NULL, SKG_KEY_READ},
     {"IncludeFinalAngle", "IncludeLastAngle", SKG_KEY_READ},
+    {"Short", NULL, SKG_KEY_READ},
+    {"Pitch", NULL, SKG_KEY_READ},
+    {"SourceTravel", NULL, SKG_KEY_READ},
+    {"FixedDetector", NULL, SKG_KEY_READ},
+    {"Table", NULL, SKG_KEY_READ},
+    {"DetectorOffset", NULL, SKG_KEY_READ},
+    {"DetectorTilt", NULL, SKG_KEY_READ},
+    {"DetectorSkew", NULL, SKG_KEY_READ},
+    {"Drift", NULL, SKG_KEY_READ},
+    {"Jitter", NULL, SKG_KEY_READ},
+    {"StartTime", NULL, SKG_KEY_READ},
+    {"Interval", NULL, SKG_KEY_READ},
+    {"Exposure", NULL, SKG_KEY_READ},
     {"Flat-Field Correction", NULL, SKG_KEY_READ},
     {"NumberOfWhiteImages", NULL, SKG_KEY_READ},
     {"CentreOfRotation", NULL, SKG_KEY_READ},
@@ -26,97 +41,196 @@ static const skg_json_key scan_keys[] = {
     {"GifPath", NULL, SKG_KEY_IGNORED},
 };
 
-static skg_status read_angle(const skg_json_object *object, const char *name, double *degrees,
-                             int32_t *given) {
-    skg_json_node node = skg_json_member(object, name);
-    *given = node.value != NULL;
-    return *given ? skg_json_number(&node, degrees) : SKG_OK;
+static const skg_json_key drift_keys[] = {{"Source", NULL, SKG_KEY_READ}, {"Detector", NULL, SKG_KEY_READ}};
+static const skg_json_key jitter_keys[] = {{"Source", NULL, SKG_KEY_READ},
+                                           {"Detector", NULL, SKG_KEY_READ},
+                                           {"Angle", NULL, SKG_KEY_READ},
+                                           {"Seed", NULL, SKG_KEY_READ}};
+
+/* What the section says about angles, in degrees. */
+typedef struct {
+    double step, final;
+    int32_t has_step, has_final, include_last, is_short;
+    int64_t count; /* 0: not given */
+} angles;
+
+static skg_status read_number(const skg_json_object *object, const char *name, double unit, double *number,
+                              int32_t *given) {
+    const skg_json_node node = skg_json_member(object, name);
+    if (given) *given = node.value != NULL;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_number(&node, number));
+    *number *= unit;
+    return SKG_OK;
 }
 
 static skg_status read_flag(const skg_json_object *object, const char *name, int32_t *flag) {
-    skg_json_node node = skg_json_member(object, name);
+    const skg_json_node node = skg_json_member(object, name);
     return node.value ? skg_json_flag(&node, flag) : SKG_OK;
 }
 
 static skg_status read_count(const skg_json_object *object, const char *name, int64_t *count) {
-    skg_json_node node = skg_json_member(object, name);
+    const skg_json_node node = skg_json_member(object, name);
     return node.value ? skg_json_integer(&node, 1, INT32_MAX, count) : SKG_OK;
 }
 
+static skg_status read_lengths(const skg_json_object *object, const char *name, const char *example,
+                               int64_t count, double *mm) {
+    const skg_json_node node = skg_json_member(object, name);
+    return node.value ? skg_json_lengths(&node, example, count, mm) : SKG_OK;
+}
+
 /* The centre may have no unit, as files in use have [0, 0, 0]. */
-static skg_status read_rotation(const skg_json_object *object, const skg_view *view, skg_scan_section *scan) {
+static skg_status read_rotation(const skg_json_object *object, const skg_view *view, skg_scan_options *scan) {
     static const char *const example = "[0, 0, 0, \"mm\"]";
-    skg_json_node centre = skg_json_member(object, "CentreOfRotation");
+    const skg_json_node centre = skg_json_member(object, "CentreOfRotation");
     if (json_array_size(centre.value) == 3)
         SKG_TRY(skg_json_numbers(&centre, example, 3, scan->centre));
     else if (centre.value)
         SKG_TRY(skg_json_lengths(&centre, example, 3, scan->centre));
-    skg_json_node axis = skg_json_member(object, "RotationAxis");
+    const skg_json_node axis = skg_json_member(object, "RotationAxis");
     if (axis.value) return skg_json_direction(&axis, scan->axis);
     skg_scale_vector(1 / skg_length(view->row_step), view->row_step, scan->axis);
     return SKG_OK;
 }
 
-/* Turns source and detector back by an angle, which looks the same as samples turned by it. */
-static void turn_view(skg_view *view, const skg_scan_section *scan, double degrees) {
-    double turn[16];
-    skg_pose_rotation(-degrees * (SKG_PI / 180), scan->axis, turn);
-    double *points[] = {view->source, view->centre}, *steps[] = {view->column_step, view->row_step};
-    for (int k = 0; k < 2; k++) {
-        int is_point = k == 1 || view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY;
-        if (is_point) skg_add_scaled(points[k], -1, scan->centre, points[k]);
-        skg_pose_point(turn, points[k], points[k]);
-        if (is_point) skg_add_scaled(points[k], 1, scan->centre, points[k]);
-        skg_pose_point(turn, steps[k], steps[k]);
-    }
+static skg_status read_detector(const skg_json_object *object, skg_scan_options *scan) {
+    const skg_json_node tilt = skg_json_member(object, "DetectorTilt");
+    SKG_TRY(read_lengths(object, "DetectorOffset", "[0.2, 0, \"mm\"]", 2, scan->detector_offset_mm));
+    SKG_TRY(read_number(object, "DetectorSkew", degree, &scan->detector_skew_rad, NULL));
+    if (!tilt.value) return SKG_OK;
+    SKG_TRY(skg_json_numbers(&tilt, "[0.5, 0, 0]", 3, scan->detector_tilt_rad));
+    for (int k = 0; k < 3; k++) scan->detector_tilt_rad[k] *= degree;
+    return SKG_OK;
 }
 
-/* Lists projections evenly over the whole rotation, for which a plan has to hold. */
-static skg_status list_views(skg_scan_section *scan, const skg_view *first) {
-    const double turns = scan->has_step && scan->projections > 0
-                             ? scan->step * (double)(scan->projections - 1)
-                         : scan->has_final ? scan->final - scan->start
-                                           : 0;
-    if (turns == 0) return SKG_OK;
-    SKG_TRY(skg_alloc(SAMPLED_VIEWS, sizeof *scan->views, "views of a scan", &scan->views));
-    scan->view_count = SAMPLED_VIEWS;
-    for (int64_t v = 0; v < SAMPLED_VIEWS; v++) {
-        scan->views[v] = *first;
-        turn_view(&scan->views[v], scan, turns * (double)(v + 1) / SAMPLED_VIEWS);
+static skg_status read_errors(const skg_json_object *object, skg_scan_options *scan) {
+    static const char *const vector = "[0.1, 0, 0, \"mm\"]", *const length = "[0.1, \"mm\"]";
+    const skg_json_node drift = skg_json_member(object, "Drift"), jitter = skg_json_member(object, "Jitter");
+    skg_json_object errors;
+    if (drift.value) {
+        SKG_TRY(skg_json_read_object(&drift, drift_keys, sizeof drift_keys / sizeof *drift_keys, &errors));
+        SKG_TRY(read_lengths(&errors, "Source", vector, 3, scan->source_drift_mm));
+        SKG_TRY(read_lengths(&errors, "Detector", vector, 3, scan->detector_drift_mm));
+    }
+    if (!jitter.value) return SKG_OK;
+    SKG_TRY(skg_json_read_object(&jitter, jitter_keys, sizeof jitter_keys / sizeof *jitter_keys, &errors));
+    SKG_TRY(read_lengths(&errors, "Source", length, 1, &scan->source_jitter_mm));
+    SKG_TRY(read_lengths(&errors, "Detector", length, 1, &scan->detector_jitter_mm));
+    SKG_TRY(read_number(&errors, "Angle", degree, &scan->angle_jitter_rad, NULL));
+    const skg_json_node seed = skg_json_member(&errors, "Seed");
+    return seed.value ? skg_json_integer(&seed, 0, INT64_MAX, &scan->jitter_seed) : SKG_OK;
+}
+
+static skg_status read_angles(const skg_json_object *object, angles *a, skg_scan_options *scan) {
+    SKG_TRY(read_count(object, "NumberOfProjections", &a->count));
+    SKG_TRY(read_number(object, "StartAngle", degree, &scan->start_rad, NULL));
+    SKG_TRY(read_number(object, "AngleStep", 1, &a->step, &a->has_step));
+    SKG_TRY(read_number(object, "FinalAngle", 1, &a->final, &a->has_final));
+    SKG_TRY(read_flag(object, "IncludeLastAngle", &a->include_last));
+    return read_flag(object, "Short", &a->is_short);
+}
+
+/* Number of projections and step from what is given. *last: the position at which the rotation ends. */
+static skg_status decide_angles(const skg_json_node *node, const skg_view *view, angles *a,
+                                skg_scan_options *scan, double *last) {
+    double range = a->final * degree - scan->start_rad;
+    if (a->is_short) {
+        if (a->has_step || a->has_final)
+            return skg_json_fail(node, SKG_ERR_FORMAT,
+                                 "has Short, which decides the angles; remove AngleStep and FinalAngle");
+        SKG_TRY(skg_json_at(node, skg_scan_short_range_get(view, scan, &range)));
+        a->include_last = 1;
+    }
+    if (a->count == 0 && a->has_step && a->has_final && a->step != 0) {
+        /* A step that reaches the final angle to within rounding reaches it. */
+        const double steps = range / (a->step * degree), whole = floor(steps + 1e-9);
+        const int reaches = fabs(steps - whole) <= 1e-9;
+        if (steps >= 0 && steps < INT32_MAX)
+            a->count = (int64_t)whole + (reaches && !a->include_last ? 0 : 1);
+    }
+    const int64_t intervals = a->count - (a->include_last ? 1 : 0);
+    scan->projections = a->count > 0 ? a->count : 1;
+    *last = (double)(scan->projections - 1);
+    if (a->has_step) {
+        scan->step_rad = a->step * degree;
+    } else if (a->has_final || a->is_short) {
+        *last = intervals > 0 ? (double)intervals : 1;
+        scan->step_rad = range / *last;
     }
     return SKG_OK;
 }
 
-int64_t skg_scan_section_count(const skg_scan_section *scan) {
-    if (scan->projections > 0) return scan->projections;
-    if (!scan->has_step || !scan->has_final || scan->step == 0) return 0;
-    /* A step that reaches the final angle to within rounding reaches it. */
-    const double steps = (scan->final - scan->start) / scan->step, whole = floor(steps + 1e-9);
-    if (!(steps >= 0 && steps < INT32_MAX)) return 0;
-    const int reaches = fabs(steps - whole) <= 1e-9;
-    return (int64_t)whole + (reaches && !scan->include_last ? 0 : 1);
+/* Lists projections evenly over the whole motion, for which a plan has to hold. */
+static skg_status list_views(skg_scan_section *section, double last) {
+    if (!(last > 0)) return SKG_OK;
+    SKG_TRY(skg_alloc(SAMPLED_VIEWS, sizeof *section->views, "views of a scan", &section->views));
+    section->view_count = SAMPLED_VIEWS;
+    for (int64_t v = 0; v < SAMPLED_VIEWS; v++) {
+        skg_view_init(&section->views[v]);
+        SKG_TRY(skg_scan_view_at(section->scan, last * (double)(v + 1) / SAMPLED_VIEWS, &section->views[v]));
+    }
+    return SKG_OK;
+}
+
+static skg_status make_scan(skg_setup_reader *reader, const skg_json_node *node, const skg_json_node *table,
+                            angles *a, skg_scan_options *options) {
+    skg_setup *setup = reader->setup;
+    double last = 0;
+    if (table->value) {
+        const char *text = NULL;
+        const char *path = NULL;
+        SKG_TRY(skg_json_text(table, &text));
+        SKG_TRY(skg_setup_find_file(reader, text, &path));
+        SKG_TRY(skg_json_at(table, skg_scan_load_table(&setup->view, options, path, &setup->scan.scan)));
+        int64_t count = 0;
+        SKG_TRY(skg_scan_projection_count(setup->scan.scan, &count));
+        if (a->count > 0 && a->count != count)
+            return skg_json_fail(table, SKG_ERR_FORMAT, "has %lld poses, but NumberOfProjections is %lld",
+                                 (long long)count, (long long)a->count);
+        setup->scan.has_count = 1;
+        last = (double)(count - 1);
+    } else {
+        SKG_TRY(decide_angles(node, &setup->view, a, options, &last));
+        setup->scan.has_count = a->count > 0;
+        SKG_TRY(skg_json_at(node, skg_scan_create(&setup->view, options, &setup->scan.scan)));
+        if (options->step_rad == 0 && !(skg_length(options->source_travel_mm) > 0)) last = 0;
+    }
+    SKG_TRY(list_views(&setup->scan, last));
+    return skg_scan_view_get(setup->scan.scan, 0, &setup->view);
 }
 
 skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *node) {
     skg_scan_section *scan = &reader->setup->scan;
+    skg_scan_options options;
     skg_json_object object;
-    int32_t has_start = 0;
+    angles a = {0};
+    skg_scan_options_init(&options);
     SKG_TRY(skg_json_read_object(node, scan_keys, sizeof scan_keys / sizeof *scan_keys, &object));
-    scan->present = 1;
-    SKG_TRY(read_count(&object, "NumberOfProjections", &scan->projections));
+    SKG_TRY(read_rotation(&object, &reader->setup->view, &options));
+    SKG_TRY(read_angles(&object, &a, &options));
+    SKG_TRY(read_lengths(&object, "Pitch", "[20, \"mm\"]", 1, &options.pitch_mm));
+    SKG_TRY(read_lengths(&object, "SourceTravel", "[200, 0, 0, \"mm\"]", 3, options.source_travel_mm));
+    SKG_TRY(read_flag(&object, "FixedDetector", &options.is_detector_fixed));
+    SKG_TRY(read_detector(&object, &options));
+    SKG_TRY(read_errors(&object, &options));
+    SKG_TRY(read_number(&object, "StartTime", 1, &options.start_s, NULL));
+    SKG_TRY(read_number(&object, "Interval", 1, &options.interval_s, NULL));
+    SKG_TRY(read_number(&object, "Exposure", 1, &options.exposure_s, NULL));
     SKG_TRY(read_count(&object, "NumberOfWhiteImages", &scan->white_images));
-    SKG_TRY(read_angle(&object, "StartAngle", &scan->start, &has_start));
-    SKG_TRY(read_angle(&object, "AngleStep", &scan->step, &scan->has_step));
-    SKG_TRY(read_angle(&object, "FinalAngle", &scan->final, &scan->has_final));
-    SKG_TRY(read_flag(&object, "IncludeLastAngle", &scan->include_last));
     SKG_TRY(read_flag(&object, "Flat-Field Correction", &scan->flat_field));
-    SKG_TRY(read_rotation(&object, &reader->setup->view, scan));
-    skg_json_node folder = skg_json_member(&object, "OutFolder");
+    const skg_json_node folder = skg_json_member(&object, "OutFolder"),
+                        table = skg_json_member(&object, "Table");
     if (folder.value) {
         const char *text = NULL;
         SKG_TRY(skg_json_text(&folder, &text));
         SKG_TRY(skg_setup_resolve(reader, text, &scan->folder));
     }
-    if (scan->start != 0) turn_view(&reader->setup->view, scan, scan->start);
-    return list_views(scan, &reader->setup->view);
+    return make_scan(reader, node, &table, &a, &options);
+}
+
+void skg_scan_section_free(skg_scan_section *section) {
+    skg_scan_release(&section->scan);
+    skg_free(&section->folder);
+    skg_free(&section->views);
 }

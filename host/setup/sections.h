@@ -33,8 +33,10 @@ skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *d
 /* Bounds of all vertices in the world, mm: least x, y, z, largest x, y, z. */
 skg_status skg_setup_bounds(const skg_scene *scene, double *bounds);
 
-/* Number of projections of a scan: as given, or as many steps as reach the final angle; 0: not defined. */
-int64_t skg_scan_section_count(const skg_scan_section *scan);
+void skg_scan_section_free(skg_scan_section *section);
+
+/* What skg_setup_hash_get covers, besides the files. */
+skg_status skg_setup_keep_text(skg_setup_reader *reader);
 
 /* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);

@@ -211,6 +211,7 @@ static skg_status make(skg_setup_reader *reader, skg_setup **setup) {
     reader->file.lenient = source->lenient;
     reader->file.lengths = source->lengths_only;
     SKG_TRY_CLEANUP(read_all(reader));
+    SKG_TRY_CLEANUP(skg_setup_keep_text(reader));
     say_remarks(reader);
     *setup = reader->setup;
     reader->setup = NULL;
@@ -253,10 +254,10 @@ void skg_setup_release(skg_setup **setup) {
     skg_response_release(&(*setup)->response);
     skg_material_release(&(*setup)->world);
     skg_free(&(*setup)->blur_samples);
-    skg_free(&(*setup)->scan.folder);
-    skg_free(&(*setup)->scan.views);
+    skg_scan_section_free(&(*setup)->scan);
     skg_breathing_section_free(&(*setup)->breathing);
     skg_setup_files_free(*setup);
+    skg_free(&(*setup)->text);
     skg_free(setup);
 }
 
@@ -282,7 +283,24 @@ skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view) {
 skg_status skg_setup_projection_count_get(const skg_setup *setup, int64_t *count) {
     SKG_NEEDS(setup);
     SKG_NEEDS(count);
-    *count = setup->scan.present ? skg_scan_section_count(&setup->scan) : 1;
+    *count = setup->scan.scan ? 0 : 1;
+    if (setup->scan.has_count) return skg_scan_projection_count(setup->scan.scan, count);
+    return SKG_OK;
+}
+
+skg_status skg_setup_scan_get(const skg_setup *setup, skg_scan **scan) {
+    SKG_NEEDS(setup);
+    SKG_NEEDS(scan);
+    if (!setup->scan.scan)
+        return skg_fail(SKG_ERR_SCENE,
+                        "the scene has no key Scan; add one, such as {\"NumberOfProjections\": 360, "
+                        "\"FinalAngle\": 360}");
+    if (!setup->scan.has_count)
+        return skg_fail(
+            SKG_ERR_SCENE,
+            "Scan: the number of projections is not given; add NumberOfProjections, or AngleStep and "
+            "FinalAngle, or a Table");
+    *scan = setup->scan.scan;
     return SKG_OK;
 }
 

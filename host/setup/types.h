@@ -7,18 +7,15 @@
 #include <skiagraph/breathing.h>
 #include <skiagraph/setup.h>
 
-/* The section Scan, as given. Angles are in degrees. */
+/* The section Scan. */
 typedef struct {
-    int32_t present; /* 1: the file has it; otherwise all is 0 */
-    double start, step, final;
-    int32_t has_step, has_final, include_last, flat_field;
-    int64_t projections; /* 0: not given */
-    int64_t white_images;
-    double centre[3]; /* mm, of the rotation */
-    double axis[3];   /* of the rotation, length 1 */
-    char *folder;     /* OutFolder relative to the scene file's own, or NULL */
+    skg_scan *scan;       /* NULL: the file has no Scan */
+    int32_t has_count;    /* 1: it says how many projections there are */
+    int32_t flat_field;   /* as given, without effect */
+    int64_t white_images; /* as given, without effect */
+    char *folder;         /* OutFolder relative to the scene file's own, or NULL */
     int64_t view_count;
-    skg_view *views; /* [view_count] some of the projections after the first */
+    skg_view *views; /* [view_count] a sample of the projections after the first */
 } skg_scan_section;
 
 /* A value over time: linear between its points (s, value), constant beyond them. */
@@ -90,6 +87,7 @@ struct skg_setup {
     int32_t orient; /* 1: inverted components of meshes are turned */
     int32_t band_weight, has_band_weight;
     double tolerance; /* negative: not given */
+    char *text;       /* the scene file after its settings, with its keys in order */
 };
 
 #endif

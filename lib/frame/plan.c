@@ -1,6 +1,8 @@
 #include "frame/plan.h"
+
 #include "core/plain.h"
 #include "frame/assemble.h"
+#include "frame/quiet.h"
 
 skg_status skg_plan_retain(skg_plan *plan) {
     SKG_NEEDS(plan);
@@ -59,4 +61,10 @@ skg_status skg_plan_renew(skg_plan *plan) {
     skg_outcome_renew(renewed, &plan->outcome);
     replace(plan, renewed);
     return SKG_OK;
+}
+
+int32_t skg_plan_warned_unseen_set(skg_plan *plan, int32_t warned) {
+    const int32_t before = plan->outcome.warned_unseen;
+    plan->outcome.warned_unseen = warned;
+    return before;
 }

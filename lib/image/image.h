@@ -7,8 +7,18 @@
 
 #include <skiagraph/image.h>
 
+#include <string.h>
+
 /* Bytes of the description with its closing zero. */
 enum { SKG_DESCRIPTION_LENGTH = 1024 };
+
+/* Whether the first byte of a number is its most significant one. */
+static inline int skg_host_is_big_endian(void) {
+    const uint16_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 0;
+}
 
 /* The value at `index`, counted from the first value of the first channel. */
 double skg_picture_value(const skg_picture *picture, int64_t index);

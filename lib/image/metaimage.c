@@ -48,13 +48,6 @@ static void write_place(const skg_view *view, FILE *stream) {
 }
 
 /* Values are written in the byte order of the host, which the header names. */
-static int host_is_big_endian(void) {
-    const uint16_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    return first == 0;
-}
-
 static void write_header(const skg_picture *picture, FILE *stream) {
     char title[200]; /* readers keep comments of up to 255 characters */
     const skg_view *view = picture->view;
@@ -63,7 +56,7 @@ static void write_header(const skg_picture *picture, FILE *stream) {
             "ObjectType = Image\nNDims = %d\nComment = %s; skiagraph " SKG_VERSION
             "\nBinaryData = True\nBinaryDataByteOrderMSB = %s\n"
             "CompressedData = False\n",
-            view ? 3 : 2, title, host_is_big_endian() ? "True" : "False");
+            view ? 3 : 2, title, skg_host_is_big_endian() ? "True" : "False");
     if (view)
         write_place(view, stream);
     else

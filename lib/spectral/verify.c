@@ -1,5 +1,7 @@
 #include "spectral/verify.h"
 
+#include "core/random.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -62,14 +64,6 @@ skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths,
     return SKG_OK;
 }
 
-/* A random number from 0 to below 1: splitmix64 of Steele, Lea and Flood (2014). */
-static double draw(uint64_t *state) {
-    uint64_t z = *state += 0x9E3779B97F4A7C15u;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 static void draw_corner(const skg_polychromatic *beam, uint64_t which, double *lengths) {
     for (int32_t m = 0; m < beam->materials; m++)
         lengths[m] = m < 64 && which >> m & 1 ? beam->high[m] : beam->low[m];
@@ -78,9 +72,9 @@ static void draw_corner(const skg_polychromatic *beam, uint64_t which, double *l
 /* thin: all lengths together are scaled by 1 to a thousandth, and each is a square, so that thin objects are
  * frequent. */
 static void draw_point(const skg_polychromatic *beam, int thin, uint64_t *state, double *lengths) {
-    const double all = thin ? pow(10, -3 * draw(state)) : 1;
+    const double all = thin ? pow(10, -3 * skg_draw(state)) : 1;
     for (int32_t m = 0; m < beam->materials; m++) {
-        const double part = draw(state), end = beam->high[m];
+        const double part = skg_draw(state), end = beam->high[m];
         const double start = thin ? fmax(0, beam->low[m]) : beam->low[m];
         lengths[m] = start + (end - start) * (thin ? part * part : part) * all;
     }
@@ -96,7 +90,7 @@ skg_status skg_lengths_fill(const skg_polychromatic *beam, int64_t most, int64_t
     const int64_t corners = all ? (int64_t)1 << beam->materials : most;
     SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points)); /* no matter at all */
     for (int64_t c = 0; c < corners; c++) {
-        draw_corner(beam, all || c == 0 ? (uint64_t)c : (uint64_t)(draw(&state) * 0x1p53), lengths);
+        draw_corner(beam, all || c == 0 ? (uint64_t)c : (uint64_t)(skg_draw(&state) * 0x1p53), lengths);
         SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points));
     }
     for (int64_t d = 0; d < draws; d++) {

@@ -10,6 +10,8 @@ const cli_manual *const cli_manuals[] = {&cli_manual_image,
                                          &cli_manual_devices,
                                          &cli_manual_thorax,
                                          &cli_manual_breathe,
+                                         &cli_manual_scan,
+                                         &cli_manual_reconstruct,
                                          NULL};
 
 const char cli_summary[] = "X-ray images of triangle meshes on any OpenCL device";

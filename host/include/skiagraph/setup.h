@@ -7,6 +7,7 @@
 #define SKIAGRAPH_SETUP_H
 
 #include <skiagraph/plan.h>
+#include <skiagraph/scan.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -96,6 +97,20 @@ SKG_API skg_status skg_setup_view_get(const skg_setup *setup, skg_view *view);
 
 /** Gets the number of projections of the file's scan; 1 without a scan, 0 if its keys do not define it. */
 SKG_API skg_status skg_setup_projection_count_get(const skg_setup *setup, int64_t *count);
+
+/** Gets the scan of the key Scan, which is valid as long as the set-up and not retained for the caller.
+ *
+ *     scan     result
+ *     errors   SKG_ERR_SCENE if the file has no key Scan, or one that does not say how many projections there
+ *              are */
+SKG_API skg_status skg_setup_scan_get(const skg_setup *setup, skg_scan **scan);
+
+/** Gets the text that identifies what a set-up was read from: the SHA-256 of the scene file after its settings
+ * and of the contents of every file that it names. Two set-ups with the same text are the same scene.
+ *
+ *     hash     result: [size] bytes, at least 65: 64 hexadecimal digits and a zero
+ *     errors   SKG_ERR_ARGUMENT (size), SKG_ERR_FILE if a file cannot be read any more */
+SKG_API skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_t size);
 
 /** Gets the options of a plan.
  *

@@ -23,6 +23,11 @@
 #include <skiagraph/mesh.h>
 #include <skiagraph/motion.h>
 #include <skiagraph/plan.h>
+#include <skiagraph/reconstruct.h>
+#include <skiagraph/scan.h>
+#include <skiagraph/scan_file.h>
+#include <skiagraph/scan_reader.h>
+#include <skiagraph/scan_run.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/setup.h>
 #include <skiagraph/thorax.h>

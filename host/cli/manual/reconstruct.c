@@ -1,0 +1,50 @@
+#include "manual/manual.h"
+
+const cli_flag cli_flag_reconstruct_output = {"-o", "FILE", "The volume to write, a .mha. Required.", NULL,
+                                              CLI_NAMES_FILE};
+const cli_flag cli_flag_reconstruct_size = {
+    "--size", "N",
+    "The number of voxels along each side, 1 to 4096. The default is the number of columns of a projection.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_reconstruct_voxel = {
+    "--voxel", "MM",
+    "The edge of a voxel in mm. The default is the step of the detector's columns, as it is seen at the axis.",
+    NULL, CLI_NAMES_NOTHING};
+
+/* In the order of SKG_FDK_FILTER_. */
+static const cli_item filters[] = {{"ramp", "the band-limited ramp (the default)"},
+                                   {"hann", "the ramp times a Hann window: less noise, less sharp"},
+                                   {NULL, NULL}};
+const cli_flag cli_flag_reconstruct_filter = {"--filter", NULL, "The filter of the rows of the projections.",
+                                              filters, CLI_NAMES_NOTHING};
+
+static const char *const text[] = {
+    "Reconstructs a circular scan by the method of Feldkamp, Davis and Kress, to look at what the scan gives. "
+    "Scans of less than a turn get Parker's weights. The scan is an .h5 that `skiagraph scan` wrote.",
+    "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
+    "of the scene.",
+    "--json prints {projections, size, voxel_mm, range, seconds, file}; range has the least and the largest value.",
+    NULL};
+
+static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
+                                        &cli_flag_reconstruct_size,
+                                        &cli_flag_reconstruct_voxel,
+                                        &cli_flag_reconstruct_filter,
+                                        &cli_flag_json,
+                                        &cli_flag_quiet,
+                                        NULL};
+
+static const cli_item examples[] = {
+    {"skiagraph reconstruct scan.h5 -o volume.mha --size 256 --filter hann", "writes 256 x 256 x 256 voxels"},
+    {NULL, NULL}};
+
+const cli_manual cli_manual_reconstruct = {.name = "reconstruct",
+                                           .operands = "SCAN",
+                                           .required = "-o FILE",
+                                           .summary = "a volume from the projections of a scan",
+                                           .text = text,
+                                           .least = 1,
+                                           .most = 1,
+                                           .names = CLI_NAMES_FILE,
+                                           .flags = flags,
+                                           .examples = examples};

@@ -1,0 +1,112 @@
+#include "manual/manual.h"
+
+const cli_flag cli_flag_scan_output = {
+    "-o", "FILE",
+    "The output: .h5 (HDF5 in the layout of Data Exchange, if it was built with HDF5), .mha (MetaImage), .raw (with its header in a .mhd beside it), .tif (BigTIFF), or a folder, which has no "
+    "extension. Required.",
+    NULL, CLI_NAMES_FILE};
+const cli_flag cli_flag_scan_from = {"--from", "K", "The first projection to compute, counted from 0.", NULL,
+                                     CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_to = {"--to", "K", "The last projection to compute.", NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_only = {"--only", "K,K,...", "Computes these projections only, in rising order.",
+                                     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_overwrite = {
+    "--overwrite", NULL, "Replaces an output that holds another scan. Without this flag it is refused.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_breathing = {
+    "--breathing", NULL,
+    "Poses the scene for each projection at its own time (Interval and StartTime of Scan), as its key Breathing says.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_subframes = {
+    "--subframes", "N",
+    "Averages each projection from N frames, spread over its exposure (Exposure of Scan), during which the scan turns "
+    "and the scene breathes. The default is 1.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_flats = {
+    "--flats", "N", "The number of flat fields in an .h5: the beam without parts. The default is 1.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_darks = {"--darks", "N",
+                                      "The number of dark fields in an .h5, which are 0. The default is 1.",
+                                      NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_shard = {
+    "--shard", "I/N",
+    "Computes block I of N blocks of consecutive projections, I from 1 to N, and writes it to a file of its own: "
+    "scan.I-of-N.h5 for -o scan.h5. For job arrays.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_join = {
+    "--join", NULL,
+    "Puts the files of all shards together in the file of -o. Projections that no shard has are computed.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_mixed = {
+    "--mixed", NULL,
+    "Under MPI: allows devices that give different bits. Without this flag they are refused.", NULL,
+    CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_geometry = {
+    "--geometry", "FILE",
+    "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
+    "cone_vec of ASTRA) or .xml (RTK). May be repeated.",
+    NULL, CLI_NAMES_FILE};
+
+static const char *const text[] = {
+    "Computes the projections of the scene's key Scan and writes them while the next ones are computed. "
+    "While a scan is written, FILE.progress holds which projections are finished (an .h5 holds it itself). If the command is stopped, even by "
+    "force, the same command continues with the projections that are missing. The bytes of the output do not depend on "
+    "that.",
+    "An output that is finished is left as it is. One that holds another scan is refused: a scan is another one if the "
+    "scene, a file that it names, the quantity, the precision, the tolerance or the version differs.",
+    "Under mpirun or srun the processes take projections in turn and write them to one output; each has its own device or "
+    "its share of the cores.",
+    "--json prints {projections, computed, found, finished, plan_ms, seconds, projections_per_s, hash, file, plan}: how "
+    "many projections the scan has, how many were computed now, and how many the output had before.",
+    NULL};
+
+static const cli_flag *const flags[] = {&cli_flag_scan_output,
+                                        &cli_flag_image_quantity,
+                                        &cli_flag_scan_from,
+                                        &cli_flag_scan_to,
+                                        &cli_flag_scan_only,
+                                        &cli_flag_scan_overwrite,
+                                        &cli_flag_scan_breathing,
+                                        &cli_flag_scan_subframes,
+                                        &cli_flag_scan_geometry,
+                                        &cli_flag_scan_flats,
+                                        &cli_flag_scan_darks,
+                                        &cli_flag_scan_shard,
+                                        &cli_flag_scan_join,
+                                        &cli_flag_scan_mixed,
+                                        &cli_flag_device,
+                                        &cli_flag_precision,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_strategy,
+                                        &cli_flag_set,
+                                        &cli_flag_json,
+                                        &cli_flag_quiet,
+                                        NULL};
+
+static const cli_item files[] = {{"FILE", "the projections"},
+                                 {"FILE.progress", "which of them are finished; removed at the end"},
+                                 {"FILE.lock", "who writes the scan; removed at the end"},
+                                 {NULL, NULL}};
+
+static const cli_item examples[] = {
+    {"skiagraph scan scene.json -o scan.mha", "writes all projections as a stack"},
+    {"skiagraph scan scene.json -o scan.mha --quantity attenuation --geometry scan.xml",
+     "writes what RTK reconstructs"},
+    {"skiagraph scan thorax/thorax.json --breathing -o folder --set "
+     "Scan='{\"NumberOfProjections\":60,\"FinalAngle\":360,\"Interval\":0.1}'",
+     "writes a thorax that breathes during the scan"},
+    {"mpirun -n 8 skiagraph scan scene.json -o scan.h5", "shares the projections out over eight processes"},
+    {NULL, NULL}};
+
+const cli_manual cli_manual_scan = {.name = "scan",
+                                    .operands = "SCENE",
+                                    .required = "-o FILE",
+                                    .summary = "the projections of a CT scan",
+                                    .text = text,
+                                    .least = 1,
+                                    .most = 1,
+                                    .names = CLI_NAMES_SCENE,
+                                    .flags = flags,
+                                    .files = files,
+                                    .examples = examples,
+                                    .has_device = 1};

@@ -1,0 +1,198 @@
+#include "scan/acquisition.h"
+
+#include "common/file.h"
+#include "common/say.h"
+#include "scan/batches.h"
+#include "scan/shards.h"
+#include "scan/shared.h"
+#include "session/explain.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PROJECTIONS = 10000000, MOST_SUBFRAMES = 1000, MOST_FIELDS = 1000 };
+
+/* Reads "3,7,12". */
+static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
+    const char *value = cli_value(arguments, &cli_flag_scan_only), *at = value;
+    if (!value) return CLI_DONE;
+    a->only = calloc(strlen(value) / 2 + 1, sizeof *a->only);
+    if (!a->only) return cli_error(CLI_DEVICE, "out of host memory");
+    while (at) {
+        char *end = NULL;
+        const long long number = strtoll(at, &end, 10);
+        if (end == at || (*end && *end != ',') || number < 0)
+            return cli_error(CLI_USAGE, "--only %s: \"%.*s\" is not the number of a projection", value,
+                             (int)strcspn(at, ","), at);
+        a->only[a->options.only_count++] = number;
+        at = *end ? end + 1 : NULL;
+    }
+    a->options.only = a->only;
+    return CLI_DONE;
+}
+
+int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
+    int64_t to = -1;
+    skg_scan_run_options_init(&a->options);
+    a->flats = a->darks = 1;
+    a->place = cli_value(arguments, &cli_flag_scan_output);
+    if (!a->place)
+        return cli_error(CLI_USAGE,
+                         "scan: no output is named; add -o FILE (.h5, .mha, .raw, .tif or a folder)");
+    const skg_status status = skg_scan_file_path_check(a->place);
+    if (status != SKG_OK) return cli_fail(status);
+    int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, MOST_PROJECTIONS, &a->options.from);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_scan_to, 0, MOST_PROJECTIONS, &to);
+    if (exit_status == CLI_DONE)
+        exit_status =
+            cli_integer(arguments, &cli_flag_scan_subframes, 1, MOST_SUBFRAMES, &a->options.subframes);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_scan_flats, 0, MOST_FIELDS, &a->flats);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_scan_darks, 0, MOST_FIELDS, &a->darks);
+    if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
+    a->options.to = to + 1;
+    if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
+    return exit_status;
+}
+
+/* A scan that is continued has the number of source samples with which it was begun. */
+static int choose_samples(cli_acquisition *a) {
+    skg_plan_options *options = &a->session.options;
+    int64_t samples = 0;
+    const skg_status status = skg_scan_file_samples_get(a->place, a->hash, &samples);
+    if (status != SKG_OK) return cli_fail(status);
+    if (samples == 0 || !options->spot || options->spot->samples > 0 || options->spot->grid > 0)
+        return CLI_DONE;
+    a->spot = *options->spot;
+    a->spot.samples = samples / ((int64_t)options->supersampling * options->supersampling);
+    options->spot = &a->spot;
+    return CLI_DONE;
+}
+
+/* Flat fields as the plan makes them, and dark fields of zeros. Other files than HDF5 have none. */
+static int write_fields(cli_acquisition *a) {
+    const skg_view *view = &a->session.view;
+    const size_t bytes = (size_t)(view->columns * view->rows) * (a->options.type == SKG_TYPE_FLOAT64 ? 8 : 4);
+    void *white = calloc((size_t)a->flats + 1, bytes), *dark = calloc((size_t)a->darks + 1, bytes);
+    skg_status status = SKG_OK;
+    int exit_status = white && dark ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for flat fields");
+    if (exit_status == CLI_DONE && a->flats > 0)
+        status =
+            skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, a->flats, white);
+    if (exit_status == CLI_DONE && status >= SKG_OK)
+        status = skg_scan_file_fields_write(a->file, a->flats, white, a->darks, dark);
+    free(white);
+    free(dark);
+    return exit_status != CLI_DONE || status >= SKG_OK ? exit_status : cli_fail(status);
+}
+
+/* The first rank lays the output out and holds its lock; the others open it when it has. */
+static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
+    skg_scan_file_options options;
+    skg_channel channel;
+    skg_plan_report report;
+    skg_scan_file_options_init(&options);
+    skg_channel_init(&channel);
+    skg_plan_report_init(&report);
+    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
+    if (status == SKG_OK) status = skg_plan_report_get(a->plan, &report);
+    options.type = a->options.type;
+    options.scan = a->scan;
+    options.hash = a->hash;
+    options.name = channel.name;
+    options.unit = channel.unit;
+    options.flat_field = channel.flat_field;
+    options.samples = report.samples;
+    options.flats = a->flats;
+    options.darks = a->darks;
+    options.from = a->part_from;
+    options.count = a->part_count;
+    options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
+    options.is_helper = a->ranks.rank > 0;
+    if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
+    if (status != SKG_OK) return cli_fail(status);
+    const int is_joined = cli_given(arguments, &cli_flag_scan_join) && a->ranks.rank == 0;
+    if (is_joined) {
+        const int exit_status = shards_join(a, &options);
+        if (exit_status != CLI_DONE) return exit_status;
+    }
+    status = skg_scan_file_done_count(a->file, &a->found);
+    if (status != SKG_OK) return cli_fail(status);
+    const int is_hdf5 = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5");
+    return is_hdf5 && a->ranks.rank == 0 && (is_joined || a->found < a->projections) ? write_fields(a)
+                                                                                     : CLI_DONE;
+}
+
+static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
+    const char *path;
+    for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
+         i++) {
+        const skg_status status = skg_scan_geometry_write(a->scan, path);
+        if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
+        if (status != SKG_OK) return cli_fail(status);
+    }
+    return CLI_DONE;
+}
+
+/* Scene, scan, motion and plan: of every rank its own. */
+static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
+    int32_t quantity = SKG_QUANTITY_ENERGY;
+    int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
+    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &a->session);
+    if (exit_status != CLI_DONE) return exit_status;
+    a->session.options.quantity = quantity;
+    a->options.type =
+        a->session.options.precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
+    skg_status status = skg_setup_scan_get(a->session.setup, &a->scan);
+    if (status == SKG_OK) status = skg_scan_projection_count(a->scan, &a->projections);
+    if (status == SKG_OK && cli_given(arguments, &cli_flag_scan_breathing))
+        status = skg_motion_create(a->session.context, a->session.setup, &a->motion);
+    a->options.motion = a->motion;
+    if (status == SKG_OK)
+        status =
+            skg_scan_hash_get(a->session.setup, &a->session.options, &a->options, a->hash, sizeof a->hash);
+    if (status != SKG_OK) return cli_fail(status);
+    exit_status = write_geometry(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
+    if (exit_status == CLI_DONE) exit_status = choose_samples(a);
+    if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
+    return exit_status;
+}
+
+int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
+    int exit_status = ranks_agree(&a->ranks, prepare(arguments, a));
+    if (exit_status == CLI_DONE && a->ranks.rank == 0) exit_status = open_output(arguments, a);
+    exit_status = ranks_agree(&a->ranks, exit_status);
+    if (exit_status == CLI_DONE && a->ranks.rank > 0) exit_status = open_output(arguments, a);
+    return ranks_agree(&a->ranks, exit_status);
+}
+
+static int run_alone(cli_acquisition *a) {
+    skg_scan_run *run = NULL;
+    skg_status status = skg_scan_run_create(a->plan, a->scan, &a->options, &run);
+    if (status == SKG_OK) status = write_batches(a, run, 1);
+    skg_scan_run_release(&run);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
+    if (a->ranks.rank == 0 && a->found > 0 && a->found < a->projections && !cli_is_quiet())
+        cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
+    a->options.file = a->file;
+    const int exit_status = a->ranks.count > 1 ? shared_run(arguments, a) : run_alone(a);
+    if (exit_status != CLI_DONE || a->ranks.rank > 0) return exit_status;
+    const skg_status status = skg_scan_file_finish(a->file);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+void acquisition_close(cli_acquisition *a) {
+    skg_scan_file_release(&a->file);
+    skg_plan_release(&a->plan);
+    skg_motion_release(&a->motion);
+    cli_close_session(&a->session);
+    free(a->only);
+    free(a->shard_place);
+}

@@ -1,0 +1,128 @@
+/* The verb reconstruct. */
+#include "common/file.h"
+#include "common/json.h"
+#include "common/progress.h"
+#include "common/say.h"
+#include "scan/scan.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST_VOXELS = 4096 };
+
+typedef struct {
+    skg_scan_reader *reader;
+    skg_scan *scan; /* of the reader */
+    skg_fdk *fdk;
+    skg_fdk_options options;
+    const char *place;
+    float *image;
+    int64_t projections;
+    double seconds;
+} reconstruction;
+
+static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t *size) {
+    r->place = cli_value(arguments, &cli_flag_reconstruct_output);
+    if (!r->place || !cli_has_extension(r->place, ".mha"))
+        return cli_error(CLI_USAGE, "reconstruct: no volume is named; add -o FILE.mha");
+    int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, MOST_VOXELS, size);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_choice(arguments, &cli_flag_reconstruct_filter, &r->options.filter);
+    return exit_status;
+}
+
+static double length(const double *v) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* The step of the columns at the distance of the centre of rotation. */
+static double step_at_axis(const skg_view *view, const double *centre) {
+    double to_axis[3], to_detector[3];
+    for (int k = 0; k < 3; k++) {
+        to_axis[k] = centre[k] - view->source[k];
+        to_detector[k] = view->centre[k] - view->source[k];
+    }
+    const double share = view->projection == SKG_PROJECTION_POINT ? length(to_axis) / length(to_detector) : 1;
+    return share * length(view->column_step);
+}
+
+static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int64_t size) {
+    skg_view view;
+    skg_view_init(&view);
+    skg_status status = skg_scan_reader_open(arguments->operands[0], &r->reader);
+    if (status == SKG_OK) status = skg_scan_reader_scan_get(r->reader, &r->scan);
+    if (status == SKG_OK) status = skg_scan_reader_axis_get(r->reader, r->options.axis, r->options.centre);
+    if (status == SKG_OK) status = skg_scan_projection_count(r->scan, &r->projections);
+    if (status == SKG_OK) status = skg_scan_view_get(r->scan, 0, &view);
+    if (status != SKG_OK) return status;
+    if (!cli_given(arguments, &cli_flag_reconstruct_voxel))
+        r->options.voxel_mm = step_at_axis(&view, r->options.centre);
+    for (int k = 0; k < 3; k++) {
+        r->options.voxels[k] = size > 0 ? size : view.columns < MOST_VOXELS ? view.columns : MOST_VOXELS;
+        r->options.middle[k] = r->options.centre[k];
+    }
+    r->image = calloc((size_t)(view.columns * view.rows), sizeof *r->image);
+    return r->image ? skg_fdk_create(r->scan, &r->options, &r->fdk) : SKG_ERR_MEMORY;
+}
+
+static skg_status add_projections(reconstruction *r) {
+    const double start = cli_now_ms();
+    skg_status status = SKG_OK;
+    for (int64_t k = 0; k < r->projections && status == SKG_OK; k++) {
+        status = skg_scan_reader_attenuation_get(r->reader, k, r->image);
+        if (status == SKG_OK) status = skg_fdk_add(r->fdk, k, r->image);
+        cli_progress("projections", k + 1, r->projections, start);
+    }
+    r->seconds = 1e-3 * (cli_now_ms() - start);
+    return status;
+}
+
+static int print(const cli_arguments *arguments, const reconstruction *r) {
+    const int64_t *n = r->options.voxels, count = n[0] * n[1] * n[2];
+    const float *volume = NULL;
+    const skg_status status = skg_fdk_volume_get(r->fdk, &volume);
+    if (status != SKG_OK) return cli_fail(status);
+    double range[2] = {(double)volume[0], (double)volume[0]};
+    for (int64_t i = 1; i < count; i++) {
+        range[0] = fmin(range[0], (double)volume[i]);
+        range[1] = fmax(range[1], (double)volume[i]);
+    }
+    if (cli_given(arguments, &cli_flag_json)) {
+        json_t *object = json_object();
+        json_object_set_new(object, "projections", json_integer(r->projections));
+        json_object_set_new(object, "size", json_integer(n[0]));
+        json_object_set_new(object, "voxel_mm", cli_json_number(r->options.voxel_mm));
+        json_object_set_new(object, "range", cli_json_numbers(range, 2));
+        json_object_set_new(object, "seconds", cli_json_number(r->seconds));
+        json_object_set_new(object, "file", cli_json_text(r->place));
+        return cli_json_print(object);
+    }
+    if (!cli_is_quiet())
+        printf("%" PRId64 " x %" PRId64 " x %" PRId64
+               " voxels of %.4g mm, %.4g to %.4g per cm, in %.1f s; wrote %s\n",
+               n[0], n[1], n[2], r->options.voxel_mm, range[0], range[1], r->seconds, r->place);
+    return CLI_DONE;
+}
+
+int cli_reconstruct(const cli_arguments *arguments) {
+    reconstruction r = {0};
+    int64_t size = 0;
+    skg_fdk_options_init(&r.options);
+    int exit_status = read_flags(arguments, &r, &size);
+    if (exit_status == CLI_DONE) {
+        skg_status status = prepare(arguments, &r, size);
+        if (status == SKG_OK) status = add_projections(&r);
+        if (status == SKG_OK) status = skg_fdk_write(r.fdk, r.place);
+        exit_status = status == SKG_OK                ? print(arguments, &r)
+                      : status == SKG_ERR_UNSUPPORTED ? (cli_fail(status), CLI_INPUT)
+                                                      : cli_fail(status);
+    }
+    skg_fdk_release(&r.fdk);
+    skg_scan_reader_release(&r.reader);
+    free(r.image);
+    return exit_status;
+}

@@ -1,0 +1,48 @@
+#include "scan/scan.h"
+
+#include "common/json.h"
+#include "common/say.h"
+#include "scan/acquisition.h"
+#include "session/explain.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static int print(const cli_arguments *arguments, const cli_acquisition *a) {
+    const double rate = a->seconds > 0 ? (double)a->computed / a->seconds : 0;
+    const int64_t there = a->found + a->computed;
+    if (cli_given(arguments, &cli_flag_json)) {
+        json_t *object = json_object();
+        json_object_set_new(object, "projections", json_integer(a->projections));
+        json_object_set_new(object, "computed", json_integer(a->computed));
+        json_object_set_new(object, "found", json_integer(a->found));
+        json_object_set_new(object, "finished", json_boolean(there == a->projections));
+        json_object_set_new(object, "plan_ms", cli_json_number(a->plan_ms));
+        json_object_set_new(object, "seconds", cli_json_number(a->seconds));
+        json_object_set_new(object, "projections_per_s", cli_json_number(rate));
+        json_object_set_new(object, "hash", cli_json_text(a->hash));
+        json_object_set_new(object, "file", cli_json_text(a->place));
+        json_object_set_new(object, "plan", cli_explain_json(a->plan, &a->session));
+        return cli_json_print(object);
+    }
+    if (cli_is_quiet()) return CLI_DONE;
+    if (a->found == a->projections) {
+        printf("%s is finished: it has all %" PRId64 " projections\n", a->place, a->projections);
+        return CLI_DONE;
+    }
+    printf("%" PRId64 " projections in %.1f s, %.3g per second; %s has %" PRId64 " of %" PRId64 "\n",
+           a->computed, a->seconds, rate, a->place, there, a->projections);
+    return CLI_DONE;
+}
+
+int cli_scan(const cli_arguments *arguments) {
+    cli_acquisition a = {0};
+    int exit_status = acquisition_read_flags(arguments, &a);
+    if (exit_status == CLI_DONE) exit_status = ranks_open(&a.ranks);
+    if (exit_status == CLI_DONE) exit_status = acquisition_open(arguments, &a);
+    if (exit_status == CLI_DONE) exit_status = acquisition_run(arguments, &a);
+    if (exit_status == CLI_DONE && a.ranks.rank == 0) exit_status = print(arguments, &a);
+    acquisition_close(&a);
+    ranks_close(&a.ranks);
+    return exit_status;
+}

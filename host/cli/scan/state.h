@@ -1,0 +1,28 @@
+/* A scan that the command computes and writes. */
+#ifndef SKG_CLI_SCAN_STATE_H
+#define SKG_CLI_SCAN_STATE_H
+
+#include "scan/ranks.h"
+#include "session/session.h"
+
+typedef struct {
+    cli_ranks ranks;
+    cli_session session;
+    skg_spot spot;  /* with the samples of a scan that is continued */
+    skg_scan *scan; /* owned by the set-up */
+    skg_motion *motion;
+    skg_plan *plan;
+    skg_scan_file *file;
+    skg_scan_run_options options;
+    int64_t *only;
+    char hash[65];
+    const char *place;
+    int64_t projections, found, computed, flats, darks;
+    double plan_ms, seconds;
+    int range_warned;
+    int64_t shard, shards; /* from 1; 0: none is asked for */
+    char *shard_place;
+    int64_t part_from, part_count; /* of a shard; 0 and 0: the whole scan */
+} cli_acquisition;
+
+#endif

@@ -1,0 +1,81 @@
+/** @file
+ * Reconstruction of circular scans by the method of Feldkamp, Davis and Kress (J. Opt. Soc. Am. A 1 (1984) 612-619),
+ * to look at what a scan gives. Programs such as RTK, ASTRA, TIGRE and CIL do more. */
+#ifndef SKIAGRAPH_RECONSTRUCT_H
+#define SKIAGRAPH_RECONSTRUCT_H
+
+#include <skiagraph/scan.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A volume that is being reconstructed. */
+typedef struct skg_fdk skg_fdk;
+
+/** Filters of the rows of a projection. */
+enum skg_fdk_filter {
+    /** The band-limited ramp. */
+    SKG_FDK_FILTER_RAMP = 0,
+    /** The ramp times a Hann window: less noise, less sharp. */
+    SKG_FDK_FILTER_HANN = 1
+};
+
+/** What is reconstructed. Prepare with skg_fdk_options_init: axis z through the origin, 128 voxels of 1 mm along
+ * each side, the ramp. */
+typedef struct {
+    /** Set by skg_fdk_options_init. */
+    int32_t size;
+    /** enum skg_fdk_filter */
+    int32_t filter;
+    /** Direction of the axis of rotation. */
+    double axis[3];
+    /** A point on it, mm. */
+    double centre[3];
+    /** Numbers of voxels along x, y and z, 1 to 4096 each. */
+    int64_t voxels[3];
+    /** Edge of a voxel, mm. */
+    double voxel_mm;
+    /** Centre of the volume, mm. */
+    double middle[3];
+} skg_fdk_options;
+
+/** Prepares the options of a reconstruction, of `size` bytes (export.h). */
+SKG_API void skg_fdk_options_init_sized(void *options, int32_t size);
+
+/** Prepares the options of a reconstruction. */
+static inline void skg_fdk_options_init(skg_fdk_options *options) {
+    skg_fdk_options_init_sized(options, (int32_t)sizeof *options);
+}
+
+/** Begins a reconstruction.
+ *
+ *     scan      retained. The angles are those of its views about the axis. A full turn needs no weights; from 180
+ *               degrees plus the fan on, Parker's weights are used (Med. Phys. 9 (1982) 254-257)
+ *     options   NULL: the defaults
+ *     fdk       result; the caller releases it
+ *     errors    SKG_ERR_ARGUMENT (an option); SKG_ERR_UNSUPPORTED if the scan is not circular, if its range is
+ *               too short, or if the rows of the detector are not across the axis */
+SKG_API skg_status skg_fdk_create(skg_scan *scan, const skg_fdk_options *options, skg_fdk **fdk);
+
+/** Frees a reconstruction. */
+SKG_API void skg_fdk_release(skg_fdk **fdk);
+
+/** Adds a projection: weights and filters it, and projects it back. All threads of OpenMP are used, and the sum does
+ * not depend on their number.
+ *
+ *     index   of the projection; each one once, in any order
+ *     image   [row][column] of -ln(I / I0) */
+SKG_API skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image);
+
+/** Gets the volume, 1/cm: [z][y][x]. It is valid as long as the reconstruction. */
+SKG_API skg_status skg_fdk_volume_get(const skg_fdk *fdk, const float **volume);
+
+/** Writes the volume as MetaImage, with its place in the scene. Errors: SKG_ERR_ARGUMENT if the path does not end in
+ * .mha, SKG_ERR_OUTPUT. */
+SKG_API skg_status skg_fdk_write(const skg_fdk *fdk, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

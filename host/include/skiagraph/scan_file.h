@@ -1,0 +1,128 @@
+/** @file
+ * Files of projections that survive the end of the program that writes them. A file is laid out whole before the
+ * first projection is written. Each projection is written in place and then marked as finished. Whoever opens the
+ * file again continues with the projections that are missing. */
+#ifndef SKIAGRAPH_SCAN_FILE_H
+#define SKIAGRAPH_SCAN_FILE_H
+
+#include <skiagraph/scan.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A file of projections that is being written. */
+typedef struct skg_scan_file skg_scan_file;
+
+/** What a file of projections holds. Prepare with skg_scan_file_options_init: float. */
+typedef struct {
+    /** Set by skg_scan_file_options_init. */
+    int32_t size;
+    /** enum skg_type of the projections */
+    int32_t type;
+    /** Retained; numbers of projections, columns and rows, and the geometry. */
+    skg_scan *scan;
+    /** 64 hexadecimal digits that identify the scan (skg_scan_hash_get); copied. */
+    const char *hash;
+    /** Name of the quantity, such as "energy"; copied. NULL: "". */
+    const char *name;
+    /** Its unit, such as "keV per pixel"; copied. NULL: "". */
+    const char *unit;
+    /** I0 in the unit of the projections; 0: unknown. */
+    double flat_field;
+    /** Number of source samples of the plan (skg_plan_report.samples), which a continued scan has to use again. */
+    int64_t samples;
+    /** 1: a file of another scan at this path is replaced. 0 (default): it is refused. */
+    int32_t overwrite;
+    /** 1: another process has laid out the file and holds its lock; this one only writes projections. */
+    int32_t is_helper;
+    /** Number of flat fields, of HDF5 only; 1 by default. */
+    int64_t flats;
+    /** Number of dark fields, of HDF5 only; 1 by default. */
+    int64_t darks;
+    /** First projection of the file, which then is a part of the scan. */
+    int64_t from;
+    /** Number of its projections; 0: all from `from` on. */
+    int64_t count;
+} skg_scan_file_options;
+
+/** Prepares the options of a file, of `size` bytes (export.h). */
+SKG_API void skg_scan_file_options_init_sized(void *options, int32_t size);
+
+/** Prepares the options of a file. */
+static inline void skg_scan_file_options_init(skg_scan_file_options *options) {
+    skg_scan_file_options_init_sized(options, (int32_t)sizeof *options);
+}
+
+/** Checks that a path names a kind of file that can be written: an extension of skg_scan_file_open, or a folder.
+ * Errors: SKG_ERR_ARGUMENT (extension), SKG_ERR_UNSUPPORTED (.h5 in a build without HDF5). */
+SKG_API skg_status skg_scan_file_path_check(const char *path);
+
+/** Gets the number of source samples with which the file at a path was begun.
+ *
+ *     hash      of the scan
+ *     samples   result: 0 if there is no file of this scan */
+SKG_API skg_status skg_scan_file_samples_get(const char *path, const char *hash, int64_t *samples);
+
+/** Lays out a file, or opens one of the same scan that is there.
+ *
+ *     path     .mha: MetaImage, one slice per projection
+ *              .raw: the same values without a header, which stands beside it as .mhd
+ *              .tif, .tiff: BigTIFF, one page per projection
+ *              .h5, .hdf5: HDF5 in the layout of Data Exchange, in builds with HDF5
+ *              no extension, or a closing /: a folder with one TIFF file per projection
+ *     file     result; the caller releases it
+ *     errors   SKG_ERR_OUTPUT: another process writes the file (the sentence names it), a file of another scan is
+ *              there, the disk is full
+ *
+ * While it is written, NAME.lock beside the file names who writes it, and NAME.progress holds which projections are
+ * finished (except for HDF5, where /process/done does, and for folders). Both disappear when the file is finished. */
+SKG_API skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *options,
+                                      skg_scan_file **file);
+
+/** Closes a file and gives up its lock. Projections that were written stay. */
+SKG_API void skg_scan_file_release(skg_scan_file **file);
+
+/** Number of projections that a file has. */
+SKG_API skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *count);
+
+/** Whether a file has a projection.
+ *
+ *     done   result: 1 or 0 */
+SKG_API skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done);
+
+/** Writes the flat and dark fields of an HDF5 file; other files have none, and ignore them.
+ *
+ *     flats    number of flat fields, as in the options of the file
+ *     white    [flats][row][column]; NULL if flats is 0
+ *     darks    number of dark fields, as in the options of the file
+ *     dark     [darks][row][column]; NULL if darks is 0
+ *     errors   SKG_ERR_OUTPUT, SKG_ERR_ARGUMENT (number) */
+SKG_API skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const void *white,
+                                              int64_t darks, const void *dark);
+
+/** Writes projections, and marks them as finished once the disk has them.
+ *
+ *     count     number of projections
+ *     indices   [count] their numbers in the scan
+ *     images    [count][row][column] of the file's type
+ *     phases    [count] phase of the breath for the geometry of HDF5; NULL: none
+ *     errors    SKG_ERR_OUTPUT; projections that were not marked have to be written again */
+SKG_API skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t *indices,
+                                       const void *images, const double *phases);
+
+/** Copies the projections that a part of the scan has and a file does not.
+ *
+ *     part     finished or not; of the same type and number of source samples
+ *     errors   SKG_ERR_ARGUMENT if the part is of another type or lies outside of the file, SKG_ERR_OUTPUT;
+ *              SKG_ERR_UNSUPPORTED for folders */
+SKG_API skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part);
+
+/** Ends a file that has every projection: what only an unfinished file needs is removed. Does nothing if
+ * projections are missing. */
+SKG_API skg_status skg_scan_file_finish(skg_scan_file *file);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,252 @@
+/* Filtered backprojection of cone beams. */
+#include "core/core.h"
+#include "core/names.h"
+#include "core/output.h"
+#include "core/plain.h"
+#include "core/vector.h"
+#include "image/image.h"
+#include "reconstruct/fourier.h"
+#include "reconstruct/orbit.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { MOST_VOXELS = 4096 };
+
+struct skg_fdk {
+    skg_scan *scan;
+    skg_fdk_options options;
+    skg_orbit orbit;
+    skg_row_filter filter;
+    int64_t columns, rows, projections;
+    float *image;  /* [rows][columns], weighted and filtered */
+    float *volume; /* [z][y][x], 1/cm */
+};
+
+void skg_fdk_options_init_sized(void *options, int32_t size) {
+    const skg_fdk_options defaults = {.axis = {0, 0, 1}, .voxels = {128, 128, 128}, .voxel_mm = 1};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
+}
+
+static skg_status check_options(const skg_fdk_options *o) {
+    if (o->filter != SKG_FDK_FILTER_RAMP && o->filter != SKG_FDK_FILTER_HANN)
+        return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: filter %" PRId32 " is no SKG_FDK_FILTER_ value",
+                        o->filter);
+    for (int k = 0; k < 3; k++)
+        if (o->voxels[k] < 1 || o->voxels[k] > MOST_VOXELS)
+            return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: %" PRId64 " voxels along %c; give 1 to %d",
+                            o->voxels[k], "xyz"[k], MOST_VOXELS);
+    if (!(o->voxel_mm > 0) || isinf(o->voxel_mm))
+        return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: voxels of %g mm", o->voxel_mm);
+    if (!skg_all_finite(o->axis, 3) || !(skg_length(o->axis) > 0) || !skg_all_finite(o->centre, 3) ||
+        !skg_all_finite(o->middle, 3))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "reconstruction: axis, centre or middle is not finite, or the axis has no "
+                        "length");
+    return SKG_OK;
+}
+
+static skg_status prepare(skg_fdk *fdk) {
+    skg_view view;
+    skg_view_init(&view);
+    SKG_TRY(skg_orbit_find(fdk->scan, &fdk->options, &fdk->orbit));
+    SKG_TRY(skg_scan_view_get(fdk->scan, 0, &view));
+    SKG_TRY(skg_scan_projection_count(fdk->scan, &fdk->projections));
+    fdk->columns = view.columns;
+    fdk->rows = view.rows;
+    const int64_t *n = fdk->options.voxels;
+    SKG_TRY(skg_row_filter_create(view.columns, fdk->options.filter == SKG_FDK_FILTER_HANN, &fdk->filter));
+    SKG_TRY(skg_alloc(view.columns * view.rows, sizeof(float), "projection", &fdk->image));
+    return skg_alloc(n[0] * n[1] * n[2], sizeof(float), "volume", &fdk->volume);
+}
+
+skg_status skg_fdk_create(skg_scan *scan, const skg_fdk_options *options, skg_fdk **result) {
+    SKG_PLAIN;
+    skg_fdk *fdk = NULL;
+    skg_fdk_options ours;
+    SKG_NEEDS(result);
+    *result = NULL;
+    SKG_NEEDS(scan);
+    skg_fdk_options_init(&ours);
+    if (options) SKG_TRY(skg_struct_read(options, "skg_fdk_options", &ours, sizeof ours));
+    SKG_TRY(check_options(&ours));
+    SKG_TRY(skg_alloc(1, sizeof *fdk, "reconstruction", &fdk));
+    skg_scan_retain(scan);
+    fdk->scan = scan;
+    fdk->options = ours;
+    const skg_status status = prepare(fdk);
+    if (status != SKG_OK)
+        skg_fdk_release(&fdk);
+    else
+        *result = fdk;
+    return status;
+}
+
+void skg_fdk_release(skg_fdk **fdk) {
+    if (!fdk || !*fdk) return;
+    skg_scan_release(&(*fdk)->scan);
+    skg_row_filter_free(&(*fdk)->filter);
+    skg_free(&(*fdk)->image);
+    skg_free(&(*fdk)->volume);
+    skg_free(fdk);
+}
+
+/* Weights each ray by its share and by the cosine of its angle with the plane across the axis, then filters the row. */
+static void filter_row(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image, int64_t row,
+                       double *work) {
+    float *to = fdk->image + row * fdk->columns;
+    for (int64_t c = 0; c < fdk->columns; c++) {
+        double ray[3];
+        skg_orbit_ray(pose, row, c, ray);
+        const double cosine = skg_dot(ray, pose->forward) / skg_length(ray);
+        to[c] = (float)((double)image[row * fdk->columns + c] * cosine *
+                        skg_orbit_weight(&fdk->orbit, pose, ray));
+    }
+    skg_row_filter_apply(&fdk->filter, fdk->columns, to, work);
+}
+
+static skg_status filter_image(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image) {
+    int failed = 0;
+#pragma omp parallel reduction(| : failed)
+    {
+        double *work = NULL;
+        failed = skg_alloc(2 * fdk->filter.length, sizeof *work, "filter", &work) != SKG_OK;
+#pragma omp for schedule(static)
+        for (int64_t row = 0; row < fdk->rows; row++)
+            if (!failed) filter_row(fdk, pose, image, row, work);
+        skg_free(&work);
+    }
+    return failed ? skg_fail(SKG_ERR_MEMORY, "reconstruction: no memory for the filter") : SKG_OK;
+}
+
+/* Column, row and 1 of the pixel that a point is seen in, times w, as affine functions of the point; and the point's
+ * distance from the source along `forward` as well. */
+typedef struct {
+    double column[4], row[4], w[4], depth[4];
+} pixel_map;
+
+static void affine(const double *direction, double factor, const double *from, double add, double *function) {
+    skg_scale_vector(factor, direction, function);
+    function[3] = add - factor * skg_dot(direction, from);
+}
+
+static void find_map(const skg_orbit_pose *pose, pixel_map *map) {
+    const skg_view *v = &pose->view;
+    double normal[3], dual[2][3], across[3], from[3];
+    skg_cross(v->column_step, v->row_step, normal);
+    skg_cross(v->row_step, normal, across);
+    skg_scale_vector(1 / skg_dot(v->column_step, across), across, dual[0]);
+    skg_cross(normal, v->column_step, across);
+    skg_scale_vector(1 / skg_dot(v->row_step, across), across, dual[1]);
+    const double middle[2] = {0.5 * (double)(v->columns - 1), 0.5 * (double)(v->rows - 1)};
+    double *pixel[2] = {map->column, map->row};
+    if (pose->is_parallel) { /* the point slides along the beam to the detector's plane */
+        const double along = skg_dot(normal, pose->forward);
+        for (int k = 0; k < 2; k++) {
+            skg_add_scaled(dual[k], -skg_dot(dual[k], pose->forward) / along, normal, across);
+            affine(across, 1, v->centre, middle[k], pixel[k]);
+        }
+        memset(map->w, 0, sizeof map->w);
+        memset(map->depth, 0, sizeof map->depth);
+        map->w[3] = 1;
+        map->depth[3] = 1;
+        return;
+    }
+    skg_add_scaled(v->centre, -1, v->source, from);
+    const double distance = skg_dot(normal, from);
+    affine(normal, 1 / distance, v->source, 0, map->w);
+    affine(pose->forward, 1 / pose->radius, v->source, 0, map->depth);
+    for (int k = 0; k < 2; k++) { /* (x - source) dual / w + (source - centre) dual + middle, times w */
+        const double shift = middle[k] - skg_dot(dual[k], from);
+        affine(dual[k], 1, v->source, 0, pixel[k]);
+        for (int i = 0; i < 4; i++) pixel[k][i] += shift * map->w[i];
+    }
+}
+
+/* The image between pixels; 0 beyond its edge. */
+static double image_at(const skg_fdk *fdk, double column, double row) {
+    const double c = floor(column), r = floor(row);
+    if (!(c >= 0 && r >= 0 && c < (double)(fdk->columns - 1) && r < (double)(fdk->rows - 1))) return 0;
+    const float *at = fdk->image + (int64_t)r * fdk->columns + (int64_t)c;
+    const double u = column - c, v = row - r;
+    return (1 - v) * ((1 - u) * (double)at[0] + u * (double)at[1]) +
+           v * ((1 - u) * (double)at[fdk->columns] + u * (double)at[fdk->columns + 1]);
+}
+
+/* Coordinate of a voxel. */
+static double place_of(const skg_fdk_options *o, int k, int64_t index) {
+    return o->middle[k] + ((double)index - 0.5 * (double)(o->voxels[k] - 1)) * o->voxel_mm;
+}
+
+static double at_point(const double *function, const double *point) {
+    return skg_dot(function, point) + function[3];
+}
+
+static void back_project_line(skg_fdk *fdk, const pixel_map *map, double scale, int64_t y, int64_t z) {
+    const skg_fdk_options *o = &fdk->options;
+    const double start[3] = {place_of(o, 0, 0), place_of(o, 1, y), place_of(o, 2, z)};
+    const double column = at_point(map->column, start), row = at_point(map->row, start);
+    const double w = at_point(map->w, start), depth = at_point(map->depth, start);
+    float *to = fdk->volume + (z * o->voxels[1] + y) * o->voxels[0];
+    for (int64_t x = 0; x < o->voxels[0]; x++) {
+        const double along = (double)x * o->voxel_mm, near = w + along * map->w[0],
+                     far = depth + along * map->depth[0];
+        if (!(near > 0)) continue;
+        const double value =
+            image_at(fdk, (column + along * map->column[0]) / near, (row + along * map->row[0]) / near);
+        to[x] += (float)(scale * value / (far * far));
+    }
+}
+
+skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
+    SKG_PLAIN;
+    enum { MM_PER_CM = 10 };
+    skg_orbit_pose pose = {0};
+    pixel_map map;
+    SKG_NEEDS(fdk);
+    SKG_NEEDS(image);
+    SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, &fdk->orbit, index, &pose));
+    SKG_TRY(filter_image(fdk, &pose, image));
+    find_map(&pose, &map);
+    const double scale = MM_PER_CM * fdk->orbit.step / pose.spacing;
+    const int64_t lines = fdk->options.voxels[1] * fdk->options.voxels[2];
+#pragma omp parallel for schedule(static)
+    for (int64_t line = 0; line < lines; line++)
+        back_project_line(fdk, &map, scale, line % fdk->options.voxels[1], line / fdk->options.voxels[1]);
+    return SKG_OK;
+}
+
+skg_status skg_fdk_volume_get(const skg_fdk *fdk, const float **volume) {
+    SKG_NEEDS(fdk);
+    SKG_NEEDS(volume);
+    *volume = fdk->volume;
+    return SKG_OK;
+}
+
+skg_status skg_fdk_write(const skg_fdk *fdk, const char *path) {
+    SKG_PLAIN;
+    skg_output_file file;
+    SKG_NEEDS(fdk);
+    SKG_NEEDS(path);
+    const skg_fdk_options *o = &fdk->options;
+    const char *dot = strrchr(path, '.');
+    if (!dot || !skg_same_name(dot, ".mha"))
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: a volume is written to a .mha", path);
+    const double first[3] = {place_of(o, 0, 0), place_of(o, 1, 0), place_of(o, 2, 0)};
+    const double spacing[3] = {o->voxel_mm, o->voxel_mm, o->voxel_mm};
+    char offset[96], steps[96];
+    skg_picture_numbers(first, 3, offset, sizeof offset);
+    skg_picture_numbers(spacing, 3, steps, sizeof steps);
+    SKG_TRY(skg_output_open(path, &file));
+    fprintf(
+        file.stream,
+        "ObjectType = Image\nNDims = 3\nComment = attenuation coefficient (1/cm)\nBinaryData = True\n"
+        "BinaryDataByteOrderMSB = %s\nCompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = %s\n"
+        "CenterOfRotation = 0 0 0\nElementSpacing = %s\nDimSize = %" PRId64 " %" PRId64 " %" PRId64
+        "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n",
+        skg_host_is_big_endian() ? "True" : "False", offset, steps, o->voxels[0], o->voxels[1], o->voxels[2]);
+    fwrite(fdk->volume, sizeof *fdk->volume, (size_t)(o->voxels[0] * o->voxels[1] * o->voxels[2]),
+           file.stream);
+    return skg_output_commit(&file); /* finds failures to write */
+}

@@ -1,0 +1,162 @@
+#include "reconstruct/orbit.h"
+
+#include "core/maths.h"
+#include "core/vector.h"
+
+#include <math.h>
+
+/* The largest cosine between the rows of the detector and the axis. */
+static const double most_oblique = 0.1;
+
+static void normalise(double *v) {
+    skg_scale_vector(1 / skg_length(v), v, v);
+}
+
+/* The direction from the source to the axis, and their distance. */
+static skg_status find_forward(const skg_fdk_options *o, const double *axis, int64_t index,
+                               skg_orbit_pose *pose) {
+    const skg_view *view = &pose->view;
+    double *to = pose->forward;
+    pose->is_parallel = view->projection != SKG_PROJECTION_POINT;
+    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+        skg_scale_vector(1, view->source, to);
+    else
+        skg_add_scaled(pose->is_parallel ? view->centre : o->centre, -1, view->source, to);
+    skg_add_scaled(to, -skg_dot(to, axis), axis, to);
+    pose->radius = pose->is_parallel ? 0 : skg_length(to);
+    if (!(skg_length(to) > 0))
+        return skg_fail(SKG_ERR_UNSUPPORTED, "projection %lld: the beam runs along the axis",
+                        (long long)index);
+    normalise(to);
+    return SKG_OK;
+}
+
+/* Seen at the axis: a column step of the detector, and whether rows run across the axis. */
+static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose *pose) {
+    const skg_view *view = &pose->view;
+    const double length = skg_length(view->column_step);
+    double to_detector[3];
+    if (fabs(skg_dot(view->column_step, axis)) > most_oblique * length)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "projection %lld: the rows of the detector do not run across the axis of rotation",
+                        (long long)index);
+    pose->spacing = fabs(skg_dot(view->column_step, pose->across));
+    if (pose->is_parallel) return SKG_OK;
+    skg_add_scaled(view->centre, -1, view->source, to_detector);
+    const double depth = skg_dot(to_detector, pose->forward);
+    if (!(depth > 0))
+        return skg_fail(SKG_ERR_UNSUPPORTED, "projection %lld: the detector is not behind the axis",
+                        (long long)index);
+    pose->spacing *= pose->radius / depth;
+    return SKG_OK;
+}
+
+skg_status skg_orbit_pose_get(skg_scan *scan, const skg_fdk_options *o, const skg_orbit *orbit, int64_t index,
+                              skg_orbit_pose *pose) {
+    skg_orbit_pose first = {0};
+    double turned[3];
+    skg_view_init(&pose->view);
+    skg_view_init(&first.view);
+    SKG_TRY(skg_scan_view_get(scan, index, &pose->view));
+    SKG_TRY(skg_scan_view_get(scan, 0, &first.view));
+    SKG_TRY(find_forward(o, orbit->axis, 0, &first));
+    SKG_TRY(find_forward(o, orbit->axis, index, pose));
+    skg_cross(orbit->axis, pose->forward, pose->across);
+    skg_cross(first.forward, pose->forward, turned);
+    pose->angle = atan2(skg_dot(turned, orbit->axis), skg_dot(first.forward, pose->forward));
+    if (pose->angle < -1e-9) pose->angle += 2 * SKG_PI;
+    return find_spacing(orbit->axis, index, pose);
+}
+
+void skg_orbit_ray(const skg_orbit_pose *pose, int64_t row, int64_t column, double *ray) {
+    const skg_view *view = &pose->view;
+    if (pose->is_parallel) {
+        skg_scale_vector(1, pose->forward, ray);
+        return;
+    }
+    skg_add_scaled(view->centre, (double)column - 0.5 * (double)(view->columns - 1), view->column_step, ray);
+    skg_add_scaled(ray, (double)row - 0.5 * (double)(view->rows - 1), view->row_step, ray);
+    skg_add_scaled(ray, -1, view->source, ray);
+}
+
+static double fan_angle(const skg_orbit_pose *pose, const double *ray) {
+    return atan2(skg_dot(ray, pose->across), skg_dot(ray, pose->forward));
+}
+
+/* The widest fan of a projection, from the corners of its detector. */
+static double widest(const skg_orbit_pose *pose) {
+    double angle = 0, ray[3];
+    for (int corner = 0; corner < 4; corner++) {
+        skg_orbit_ray(pose, corner & 1 ? pose->view.rows - 1 : 0, corner & 2 ? pose->view.columns - 1 : 0,
+                      ray);
+        angle = fmax(angle, fabs(fan_angle(pose, ray)));
+    }
+    return angle;
+}
+
+/* Which way round: the axis is turned so that the second projection is less than half a turn on. */
+static skg_status orient(skg_scan *scan, const skg_fdk_options *o, skg_orbit *orbit, int64_t count) {
+    skg_orbit_pose pose = {0};
+    skg_scale_vector(1 / skg_length(o->axis), o->axis, orbit->axis);
+    if (count < 2) return skg_fail(SKG_ERR_UNSUPPORTED, "a reconstruction needs two or more projections");
+    SKG_TRY(skg_orbit_pose_get(scan, o, orbit, 1, &pose));
+    if (pose.angle > SKG_PI) {
+        skg_scale_vector(-1, orbit->axis, orbit->axis);
+        SKG_TRY(skg_orbit_pose_get(scan, o, orbit, 1, &pose));
+    }
+    orbit->step = pose.angle;
+    orbit->range = pose.angle * (double)(count - 1);
+    orbit->fan = widest(&pose);
+    if (!(orbit->step > 0)) return skg_fail(SKG_ERR_UNSUPPORTED, "the scan does not turn about the axis");
+    return SKG_OK;
+}
+
+/* Equal steps, and a source that stays in its plane. */
+static skg_status check_circle(skg_scan *scan, const skg_fdk_options *o, const skg_orbit *orbit,
+                               int64_t count) {
+    double from[3];
+    for (int64_t k = 2; k < count; k++) {
+        skg_orbit_pose pose = {0};
+        SKG_TRY(skg_orbit_pose_get(scan, o, orbit, k, &pose));
+        const double expected = fmod((double)k * orbit->step, 2 * SKG_PI);
+        double off = fabs(pose.angle - expected);
+        off = fmin(off, 2 * SKG_PI - off);
+        skg_view first;
+        skg_view_init(&first);
+        SKG_TRY(skg_scan_view_get(scan, 0, &first));
+        skg_add_scaled(pose.view.source, -1, first.source, from);
+        const double lift = pose.is_parallel ? 0 : fabs(skg_dot(from, orbit->axis));
+        if (off > 0.5 * orbit->step || lift > 0.05 * pose.radius)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "projection %lld: the source leaves its circle, or angles are not evenly spaced; only "
+                "circular scans are reconstructed",
+                (long long)k);
+    }
+    return SKG_OK;
+}
+
+skg_status skg_orbit_find(skg_scan *scan, const skg_fdk_options *o, skg_orbit *orbit) {
+    int64_t count = 0;
+    SKG_TRY(skg_scan_projection_count(scan, &count));
+    SKG_TRY(orient(scan, o, orbit, count));
+    SKG_TRY(check_circle(scan, o, orbit, count));
+    orbit->is_full = orbit->range + 1.5 * orbit->step > 2 * SKG_PI;
+    const double least = SKG_PI + 2 * orbit->fan;
+    if (!orbit->is_full && orbit->range + 1.5 * orbit->step < least)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "the scan has a range of %.4g degrees; a reconstruction needs 180 degrees plus the fan, %.4g",
+            orbit->range * 180 / SKG_PI, least * 180 / SKG_PI);
+    return SKG_OK;
+}
+
+double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray) {
+    if (orbit->is_full) return SKG_PI / (orbit->range + orbit->step); /* 1/2 for each turn */
+    const double gamma = fan_angle(pose, ray), beta = pose->angle;
+    const double delta = fmax(0.5 * (orbit->range - SKG_PI), fabs(gamma) + 1e-6);
+    double share = 1;
+    if (beta < 2 * (delta - gamma)) share = sin(SKG_PI / 4 * beta / (delta - gamma));
+    if (beta > SKG_PI - 2 * gamma) share = sin(SKG_PI / 4 * (SKG_PI + 2 * delta - beta) / (delta + gamma));
+    return share > 0 ? share * share : 0;
+}

@@ -1,0 +1,37 @@
+/* How the views of a scan go about its axis, and how much each ray counts. Private. */
+#ifndef SKG_ORBIT_H
+#define SKG_ORBIT_H
+
+#include "core/core.h"
+
+#include <skiagraph/reconstruct.h>
+
+/* A projection as the reconstruction sees it. */
+typedef struct {
+    skg_view view;
+    int is_parallel;
+    double forward[3]; /* length 1, across the axis: from the source to the axis, or along the beam */
+    double across[3];  /* length 1, across axis and forward: where the source goes */
+    double radius;     /* distance of the source from the axis, mm; 0 for a parallel beam */
+    double spacing;    /* of the columns, seen at the axis, mm */
+    double angle;      /* from that of the first projection, rad, not below 0 */
+} skg_orbit_pose;
+
+typedef struct {
+    double axis[3];     /* of length 1; the source goes counter-clockwise about it */
+    double step, range; /* rad: of one projection, from the first to the last */
+    double fan;         /* rad: widest angle of a ray with forward */
+    int is_full;
+} skg_orbit;
+
+skg_status skg_orbit_find(skg_scan *scan, const skg_fdk_options *options, skg_orbit *orbit);
+skg_status skg_orbit_pose_get(skg_scan *scan, const skg_fdk_options *options, const skg_orbit *orbit,
+                              int64_t index, skg_orbit_pose *pose);
+
+/* The ray from the source to a pixel. */
+void skg_orbit_ray(const skg_orbit_pose *pose, int64_t row, int64_t column, double *ray);
+
+/* The share of a ray in the sum over all that run along its line: 1/2 in a full turn, Parker's weight otherwise. */
+double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray);
+
+#endif

@@ -1,0 +1,392 @@
+/* Opening, writing and ending a file of projections. */
+#include "scan/file.h"
+
+#include "core/names.h"
+#include "core/output.h"
+#include "core/plain.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { PROGRESS_TEXT = 256 };
+
+void skg_scan_file_options_init_sized(void *options, int32_t size) {
+    const skg_scan_file_options defaults = {.flats = 1, .darks = 1};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_scan_find_format(const char *path, const skg_scan_format **format) {
+    static const skg_scan_format *const formats[] = {&skg_scan_format_mha, &skg_scan_format_raw,
+                                                     &skg_scan_format_tiff, &skg_scan_format_hdf5};
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    *format = &skg_scan_format_folder;
+    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "scan: the path is empty");
+    if (!dot || dot[1] == '\0' || dot[1] == '.') return SKG_OK;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        for (int e = 0; formats[i]->extensions[e]; e++)
+            if (skg_same_name(dot, formats[i]->extensions[e])) {
+                *format = formats[i];
+                if (!formats[i]->is_missing) return SKG_OK;
+                return skg_fail(
+                    SKG_ERR_UNSUPPORTED,
+                    "%s: this build of skiagraph has no HDF5; build it with libhdf5-dev, or use .mha", path);
+            }
+    return skg_fail(
+        SKG_ERR_ARGUMENT,
+        "%s: the extension %s is no format of scans; use .h5, .mha, .raw, .tif, or a folder without an "
+        "extension",
+        path, dot);
+}
+
+skg_status skg_scan_file_path_check(const char *path) {
+    const skg_scan_format *format = NULL;
+    SKG_NEEDS(path);
+    return skg_scan_find_format(path, &format);
+}
+
+skg_status skg_scan_file_samples_get(const char *path, const char *hash, int64_t *samples) {
+    const skg_scan_format *format = NULL;
+    skg_scan_identity identity;
+    SKG_NEEDS(path);
+    SKG_NEEDS(hash);
+    SKG_NEEDS(samples);
+    SKG_TRY(skg_scan_find_format(path, &format));
+    SKG_TRY(format->identify(path, &identity));
+    *samples = strcmp(identity.hash, hash) == 0 ? identity.samples : 0;
+    return SKG_OK;
+}
+
+/* The progress of a file that was just laid out. */
+static skg_status begin_progress(const skg_scan_file *file) {
+    char text[PROGRESS_TEXT] = "";
+    skg_output_file output;
+    if (!file->progress_path) return SKG_OK;
+    SKG_TRY(skg_output_open(file->progress_path, &output));
+    skg_scan_write_identity(file, text, sizeof text);
+    fwrite(text, 1, sizeof text, output.stream);
+    fwrite(file->done, 1, (size_t)file->projections, output.stream);
+    return skg_output_commit(&output);
+}
+
+/* Makes the name durable: after a crash of the machine the folder has it. */
+static void sync_folder(const char *path) {
+    char folder[4096];
+    const char *slash = strrchr(path, '/');
+    const size_t length = slash ? (size_t)(slash - path) : 0;
+    if (length >= sizeof folder) return;
+    snprintf(folder, sizeof folder, "%.*s", (int)length, path);
+    const int descriptor = open(slash ? length ? folder : "/" : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    fsync(descriptor);
+    close(descriptor);
+}
+
+/* First the progress, then the file: whoever finds a file without a progress finds a finished one. */
+static skg_status lay_out(skg_scan_file *file) {
+    char ending[32], *temporary = NULL;
+    if (file->format->remove)
+        SKG_TRY(file->format->remove(file));
+    else
+        unlink(file->path);
+    SKG_TRY(begin_progress(file));
+    if (file->format->write) return file->format->lay_out(file, NULL);
+    snprintf(ending, sizeof ending, ".part-%ld", (long)getpid());
+    SKG_TRY(skg_scan_path_with(file->path, ending, &temporary));
+    skg_status status = file->format->lay_out(file, temporary);
+    if (status == SKG_OK && rename(temporary, file->path) != 0) {
+        status = skg_output_fail(file->path, errno, "");
+        unlink(temporary);
+    }
+    if (status == SKG_OK) sync_folder(file->path);
+    skg_free(&temporary);
+    return status;
+}
+
+static skg_status read_done(skg_scan_file *file) {
+    const ssize_t got = pread(file->progress, file->done, (size_t)file->projections, (off_t)file->done_at);
+    if (got != (ssize_t)file->projections)
+        return skg_fail(SKG_ERR_OUTPUT, "%s: is too short; remove it with the file that it belongs to",
+                        file->progress_path ? file->progress_path : file->path);
+    file->done_count = 0;
+    for (int64_t k = 0; k < file->projections; k++) file->done_count += file->done[k] == 1;
+    return SKG_OK;
+}
+
+/* Opens the progress of this scan; a file that has none is finished. */
+static skg_status open_progress(skg_scan_file *file) {
+    skg_scan_identity identity;
+    SKG_TRY(skg_scan_read_identity(file->progress_path, &identity));
+    if (strcmp(identity.hash, file->options.hash) != 0) {
+        memset(file->done, 1, (size_t)file->projections);
+        file->done_count = file->projections;
+        return SKG_OK;
+    }
+    file->done_at = PROGRESS_TEXT;
+    file->progress = open(file->progress_path, O_RDWR | O_CLOEXEC);
+    if (file->progress < 0) return skg_output_fail(file->progress_path, errno, "");
+    return read_done(file);
+}
+
+static skg_status open_laid_out(skg_scan_file *file) {
+    if (file->format->find_done) return file->format->find_done(file);
+    SKG_TRY(file->format->locate(file));
+    file->data = open(file->path, O_RDWR | O_CLOEXEC);
+    if (file->data < 0) return skg_output_fail(file->path, errno, "");
+    if (!file->format->has_progress_inside) return open_progress(file);
+    file->progress = dup(file->data);
+    return file->progress < 0 ? skg_output_fail(file->path, errno, "") : read_done(file);
+}
+
+/* Whether something of another scan stands at the path, or of this one. */
+static skg_status look(const skg_scan_file *file, int *is_there) {
+    skg_scan_identity identity;
+    struct stat there;
+    *is_there = 0;
+    if (stat(file->path, &there) != 0) return SKG_OK;
+    const int is_folder = file->format == &skg_scan_format_folder;
+    if (!(is_folder ? S_ISDIR(there.st_mode) : S_ISREG(there.st_mode)))
+        return skg_output_fail(file->path, 0,
+                               is_folder ? "it is no folder" : "it is a folder or a device; name a file");
+    SKG_TRY(file->format->identify(file->path, &identity));
+    if (strcmp(identity.hash, file->options.hash) == 0) {
+        if (identity.samples != file->options.samples)
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "%s: was begun with %" PRId64 " source samples, not %" PRId64
+                            "; plan with as many (skg_scan_file_samples_get)",
+                            file->path, identity.samples, file->options.samples);
+        *is_there = 1;
+        return SKG_OK;
+    }
+    if (file->options.overwrite || (is_folder && !identity.hash[0])) return SKG_OK;
+    return skg_fail(SKG_ERR_OUTPUT, "%s: is %s; choose another output, or give --overwrite to replace it",
+                    file->path,
+                    identity.hash[0] ? "another scan, or one of another state of this scene" : "no scan");
+}
+
+/* Which projections the file has. */
+static skg_status find_part(skg_scan_file *file, const skg_scan_file_options *o) {
+    int64_t all = 0;
+    SKG_TRY(skg_scan_projection_count(o->scan, &all));
+    file->first = o->from;
+    file->projections = o->count > 0 ? o->count : all - o->from;
+    if (o->from >= 0 && o->count >= 0 && file->projections > 0 && file->first <= all - file->projections)
+        return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "scan file: %" PRId64 " projections from %" PRId64 " on; the scan has %" PRId64,
+                    file->projections, file->first, all);
+}
+
+static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_file_options *o) {
+    SKG_TRY(skg_scan_find_format(path, &file->format));
+    SKG_TRY(skg_copy_text(path, &file->path));
+    size_t length = strlen(path);
+    while (length > 1 && file->path[length - 1] == '/') file->path[--length] = '\0';
+    SKG_TRY(skg_scan_path_with(file->path, ".lock", &file->lock_path));
+    if (!file->format->find_done && !file->format->has_progress_inside)
+        SKG_TRY(skg_scan_path_with(file->path, ".progress", &file->progress_path));
+    SKG_TRY(skg_copy_text(o->hash, (char **)&file->options.hash));
+    SKG_TRY(skg_copy_text(o->name ? o->name : "", (char **)&file->options.name));
+    SKG_TRY(skg_copy_text(o->unit ? o->unit : "", (char **)&file->options.unit));
+    SKG_TRY(find_part(file, o));
+    skg_view_init(&file->view);
+    SKG_TRY(skg_scan_view_get(o->scan, 0, &file->view));
+    file->bytes = file->view.columns * file->view.rows * (o->type == SKG_TYPE_FLOAT64 ? 8 : 4);
+    return skg_alloc(file->projections, 1, "list of projections", &file->done);
+}
+
+static skg_status open_file(skg_scan_file *file) {
+    int is_there = 0;
+    if (!file->options.is_helper) SKG_TRY(skg_scan_lock(file->lock_path, &file->lock));
+    SKG_TRY(look(file, &is_there));
+    if (!is_there && file->options.is_helper)
+        return skg_fail(SKG_ERR_OUTPUT, "%s: is not laid out", file->path);
+    if (!is_there) SKG_TRY(lay_out(file));
+    return open_laid_out(file);
+}
+
+skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *options,
+                              skg_scan_file **result) {
+    SKG_PLAIN;
+    skg_scan_file *file = NULL;
+    skg_scan_file_options o;
+    skg_status status = SKG_OK;
+    SKG_NEEDS(result);
+    *result = NULL;
+    SKG_NEEDS(path);
+    skg_scan_file_options_init(&o);
+    SKG_TRY(skg_struct_read(options, "skg_scan_file_options", &o, sizeof o));
+    if (!o.scan || !o.hash || strlen(o.hash) != SKG_SHA256_TEXT - 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "scan file: it needs a scan, and a hash of 64 hexadecimal digits");
+    if (o.flats < 0 || o.darks < 0 || o.flats > INT32_MAX || o.darks > INT32_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT, "scan file: %" PRId64 " flat and %" PRId64 " dark fields", o.flats,
+                        o.darks);
+    if (o.type != SKG_TYPE_FLOAT32 && o.type != SKG_TYPE_FLOAT64)
+        return skg_fail(SKG_ERR_ARGUMENT, "scan file: type %" PRId32 " is no SKG_TYPE_ value", o.type);
+    SKG_TRY(skg_alloc(1, sizeof *file, "file of projections", &file));
+    file->options = o;
+    file->options.hash = file->options.name = file->options.unit = NULL;
+    file->lock = file->data = file->progress = -1;
+    skg_scan_retain(o.scan);
+    SKG_TRY_CLEANUP(prepare(file, path, &o));
+    SKG_TRY_CLEANUP(open_file(file));
+    *result = file;
+    return SKG_OK;
+cleanup:
+    skg_scan_file_release(&file);
+    return status;
+}
+
+void skg_scan_file_release(skg_scan_file **file) {
+    if (!file || !*file) return;
+    skg_scan_file *f = *file;
+    if (f->data >= 0) close(f->data);
+    if (f->progress >= 0) close(f->progress);
+    skg_scan_unlock(f->lock_path, &f->lock);
+    skg_scan_release(&f->options.scan);
+    skg_free(&f->options.hash);
+    skg_free(&f->options.name);
+    skg_free(&f->options.unit);
+    skg_free(&f->path);
+    skg_free(&f->lock_path);
+    skg_free(&f->progress_path);
+    skg_free(&f->done);
+    skg_free(file);
+}
+
+skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *count) {
+    SKG_NEEDS(file);
+    SKG_NEEDS(count);
+    *count = file->done_count;
+    return SKG_OK;
+}
+
+/* Flat or dark fields, which stand side by side. */
+static skg_status write_fields(skg_scan_file *file, int64_t at, int64_t have, int64_t count,
+                               const void *images) {
+    if (!at) return SKG_OK;
+    if (count != have)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: has room for %" PRId64 " fields, not %" PRId64, file->path,
+                        have, count);
+    return skg_scan_write_at(file->path, file->data, images, count * file->bytes, at);
+}
+
+skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const void *white, int64_t darks,
+                                      const void *dark) {
+    SKG_NEEDS(file);
+    if (flats > 0) SKG_NEEDS(white);
+    if (darks > 0) SKG_NEEDS(dark);
+    SKG_TRY(write_fields(file, file->white_at, file->options.flats, flats, white));
+    return write_fields(file, file->dark_at, file->options.darks, darks, dark);
+}
+
+static skg_status check_index(const skg_scan_file *file, int64_t index) {
+    if (index >= file->first && index < file->first + file->projections) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "%s: no projection %" PRId64 "; projections are %" PRId64 " to %" PRId64, file->path,
+                    index, file->first, file->first + file->projections - 1);
+}
+
+skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done) {
+    SKG_NEEDS(file);
+    SKG_NEEDS(done);
+    SKG_TRY(check_index(file, index));
+    *done = file->done[index - file->first] == 1;
+    return SKG_OK;
+}
+
+/* Marks what the disk has. */
+static skg_status mark(skg_scan_file *file, int64_t count, const int64_t *indices) {
+    static const char one = 1;
+    if (file->data >= 0 && fdatasync(file->data) != 0) return skg_output_fail(file->path, errno, "");
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t at = indices[i] - file->first;
+        if (file->progress >= 0)
+            SKG_TRY(skg_scan_write_at(file->path, file->progress, &one, 1, file->done_at + at));
+        file->done_count += file->done[at] != 1;
+        file->done[at] = 1;
+    }
+    return SKG_OK;
+}
+
+skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t *indices, const void *images,
+                               const double *phases) {
+    SKG_PLAIN;
+    const double none = (double)NAN;
+    SKG_NEEDS(file);
+    SKG_NEEDS(indices);
+    SKG_NEEDS(images);
+    for (int64_t i = 0; i < count; i++) SKG_TRY(check_index(file, indices[i]));
+    for (int64_t i = 0; i < count; i++) {
+        const char *image = (const char *)images + i * file->bytes;
+        if (file->format->write)
+            SKG_TRY(file->format->write(file, indices[i], image, phases ? phases[i] : 0));
+        else
+            SKG_TRY(skg_scan_write_at(file->path, file->data, image, file->bytes,
+                                      file->data_at + (indices[i] - file->first) * file->data_step));
+        if (file->phase_at)
+            SKG_TRY(skg_scan_write_at(file->path, file->data, phases ? phases + i : &none, sizeof none,
+                                      file->phase_at + (indices[i] - file->first) * (int64_t)sizeof none));
+    }
+    return mark(file, count, indices);
+}
+
+static skg_status read_at(const skg_scan_file *file, void *to, int64_t count, int64_t at) {
+    char *bytes = to;
+    while (count > 0) {
+        const ssize_t got = pread(file->data, bytes, (size_t)count, (off_t)at);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0)
+            return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", file->path,
+                            got < 0 ? strerror(errno) : "it ends");
+        bytes += got, at += got, count -= got;
+    }
+    return SKG_OK;
+}
+
+skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part) {
+    SKG_PLAIN;
+    char *image = NULL;
+    skg_status status = SKG_OK;
+    SKG_NEEDS(file);
+    SKG_NEEDS(part);
+    if (part->data < 0 || file->data < 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: folders are not joined; write their projections to one folder", part->path);
+    SKG_TRY(check_index(file, part->first));
+    SKG_TRY(check_index(file, part->first + part->projections - 1));
+    if (part->bytes != file->bytes || part->options.samples != file->options.samples)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: has another type or number of source samples than %s",
+                        part->path, file->path);
+    SKG_TRY(skg_alloc(file->bytes, 1, "projection", &image));
+    for (int64_t k = 0; k < part->projections && status == SKG_OK; k++) {
+        const int64_t index = part->first + k;
+        double phase = (double)NAN;
+        if (part->done[k] != 1 || file->done[index - file->first] == 1) continue;
+        status = read_at(part, image, part->bytes, part->data_at + k * part->data_step);
+        if (status == SKG_OK && part->phase_at)
+            status = read_at(part, &phase, sizeof phase, part->phase_at + k * (int64_t)sizeof phase);
+        if (status == SKG_OK) status = skg_scan_file_write(file, 1, &index, image, &phase);
+    }
+    skg_free(&image);
+    return status;
+}
+
+skg_status skg_scan_file_finish(skg_scan_file *file) {
+    SKG_NEEDS(file);
+    if (file->progress < 0) return SKG_OK;
+    SKG_TRY(read_done(file)); /* other processes may have written */
+    if (file->done_count < file->projections) return SKG_OK;
+    if (fsync(file->data) != 0) return skg_output_fail(file->path, errno, "");
+    close(file->progress);
+    file->progress = -1;
+    if (file->progress_path && unlink(file->progress_path) != 0)
+        return skg_output_fail(file->progress_path, errno, "");
+    sync_folder(file->path);
+    return SKG_OK;
+}

@@ -1,0 +1,85 @@
+/* Flat fields: images of the beam without parts. */
+#include "core/core.h"
+#include "core/plain.h"
+#include "core/vector.h"
+#include "frame/quiet.h"
+#include "scan/slot.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* Far beyond the edge of any detector, and below the largest coordinate. */
+static const double far_mm = 1e7;
+
+typedef struct {
+    int64_t *parts;
+    double *poses;
+} absence;
+
+/* Moves every part sideways, out of the beam. */
+static skg_status remove_parts(const skg_scene *scene, const skg_view *view, int64_t count, absence *gone) {
+    double away[16];
+    const double shift = far_mm / skg_length(view->column_step);
+    SKG_TRY(skg_alloc(count, sizeof *gone->parts, "flat field", &gone->parts));
+    SKG_TRY(skg_alloc(count, 16 * sizeof *gone->poses, "flat field", &gone->poses));
+    skg_pose_translation(shift * view->column_step[0], shift * view->column_step[1],
+                         shift * view->column_step[2], away);
+    for (int64_t p = 0; p < count; p++) {
+        skg_part part;
+        skg_part_init(&part);
+        SKG_TRY(skg_scene_part_get(scene, p, &part));
+        skg_pose_multiply(away, part.pose, gone->poses + 16 * p);
+        gone->parts[p] = p;
+    }
+    return SKG_OK;
+}
+
+static skg_status render(skg_plan *plan, const skg_frame *frame, int32_t type, void *image) {
+    skg_output output;
+    skg_job *job = NULL;
+    skg_output_init(&output);
+    output.type = type;
+    output.data = image;
+    SKG_TRY(skg_plan_submit(plan, 1, frame, &output, &job));
+    return skg_job_wait(&job);
+}
+
+skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, skg_scan *scan,
+                                       const skg_scan_run_options *options, int64_t count, void *images) {
+    SKG_PLAIN;
+    absence gone = {0};
+    skg_view view;
+    skg_frame frame;
+    skg_status status = SKG_OK;
+    skg_scan_work work = {.plan = plan, .scan = scan};
+    int64_t parts = 0;
+    SKG_NEEDS(plan);
+    SKG_NEEDS(scan);
+    SKG_NEEDS(images);
+    skg_scan_run_options_init(&work.options);
+    if (options)
+        SKG_TRY(skg_struct_read(options, "skg_scan_run_options", &work.options, sizeof work.options));
+    if (count < 1) return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " flat fields; give 1 or more", count);
+    skg_view_init(&view);
+    SKG_TRY(skg_scan_view_get(scan, 0, &view));
+    SKG_TRY(skg_scan_work_init(&work));
+    SKG_TRY(skg_scene_part_count(scene, &parts));
+    SKG_TRY_CLEANUP(remove_parts(scene, &view, parts, &gone));
+    skg_frame_init(&frame);
+    frame.view = &view;
+    frame.pose_count = parts;
+    frame.pose_parts = gone.parts;
+    frame.poses = gone.poses;
+    frame.noise_seed = work.options.noise_seed;
+    const int32_t warned = skg_plan_warned_unseen_set(plan, 1);
+    for (int64_t f = 0; f < count && status == SKG_OK; f++) {
+        frame.index = work.projections + f;
+        const int64_t at = f * work.image_elements * skg_scan_element(work.options.type);
+        status = render(plan, &frame, work.options.type, (char *)images + at);
+    }
+    skg_plan_warned_unseen_set(plan, warned);
+cleanup:
+    skg_free(&gone.parts);
+    skg_free(&gone.poses);
+    return status;
+}

@@ -1,0 +1,104 @@
+/* A folder with one TIFF file for each projection, which appears whole or not at all, and scan.txt, which says of which
+ * scan they are. */
+#include "core/output.h"
+#include "scan/file.h"
+
+#include <skiagraph/image.h>
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { NAME_LENGTH = 64 };
+
+static skg_status member(const char *path, const char *name, char **result) {
+    char ending[NAME_LENGTH + 1];
+    const size_t length = strlen(path);
+    snprintf(ending, sizeof ending, "%s%s", length > 0 && path[length - 1] == '/' ? "" : "/", name);
+    return skg_scan_path_with(path, ending, result);
+}
+
+static skg_status projection_path(const skg_scan_file *file, int64_t index, char **result) {
+    char name[NAME_LENGTH];
+    snprintf(name, sizeof name, "projection-%05" PRId64 ".tif", index);
+    return member(file->path, name, result);
+}
+
+static skg_status lay_out(skg_scan_file *file, const char *temporary) {
+    char *path = NULL, text[160];
+    skg_output_file output = {0};
+    skg_status status = SKG_OK;
+    (void)temporary;
+    if (mkdir(file->path, 0777) != 0 && errno != EEXIST) return skg_output_fail(file->path, errno, "");
+    SKG_TRY_CLEANUP(member(file->path, "scan.txt", &path));
+    SKG_TRY_CLEANUP(skg_output_open(path, &output));
+    skg_scan_write_identity(file, text, sizeof text);
+    fprintf(output.stream, "%sProjections = %" PRId64 "\nQuantity = %s\nUnit = %s\nFlatField = %.17g\n", text,
+            file->projections, file->options.name, file->options.unit, file->options.flat_field);
+    SKG_TRY_CLEANUP(skg_output_commit(&output));
+cleanup:
+    skg_output_discard(&output);
+    skg_free(&path);
+    return status;
+}
+
+static skg_status identify(const char *path, skg_scan_identity *identity) {
+    char *text = NULL;
+    SKG_TRY(member(path, "scan.txt", &text));
+    skg_status status = skg_scan_read_identity(text, identity);
+    skg_free(&text);
+    return status;
+}
+
+static skg_status find_done(skg_scan_file *file) {
+    for (int64_t k = 0; k < file->projections; k++) {
+        char *path = NULL;
+        SKG_TRY(projection_path(file, file->first + k, &path));
+        file->done[k] = access(path, F_OK) == 0;
+        file->done_count += file->done[k];
+        skg_free(&path);
+    }
+    return SKG_OK;
+}
+
+static skg_status write_one(skg_scan_file *file, int64_t index, const void *image, double phase) {
+    char *path = NULL;
+    skg_picture picture;
+    skg_view view;
+    (void)phase;
+    skg_view_init(&view);
+    SKG_TRY(skg_scan_view_get(file->options.scan, index, &view));
+    skg_picture_init(&picture);
+    picture.type = file->options.type;
+    picture.columns = view.columns;
+    picture.rows = view.rows;
+    picture.data = image;
+    picture.name = file->options.name;
+    picture.unit = file->options.unit;
+    picture.view = &view;
+    SKG_TRY(projection_path(file, index, &path));
+    skg_status status = skg_picture_write(&picture, path);
+    skg_free(&path);
+    return status;
+}
+
+/* Removes the projections of another scan, as many as this one has; its own would take their names. */
+static skg_status remove_all(skg_scan_file *file) {
+    char *text = NULL;
+    SKG_TRY(member(file->path, "scan.txt", &text));
+    unlink(text);
+    skg_free(&text);
+    for (int64_t k = 0; k < file->projections; k++) {
+        char *path = NULL;
+        SKG_TRY(projection_path(file, file->first + k, &path));
+        unlink(path);
+        skg_free(&path);
+    }
+    return SKG_OK;
+}
+
+const skg_scan_format skg_scan_format_folder = {{NULL},    lay_out,    NULL, identify, write_one,
+                                                find_done, remove_all, 0,    0};

@@ -1,0 +1,40 @@
+/* What identifies the projections of a scan. */
+#include "core/core.h"
+#include "core/plain.h"
+#include "core/sha256.h"
+
+#include <skiagraph/scan_run.h>
+#include <skiagraph/version.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+skg_status skg_scan_hash_get(const skg_setup *setup, const skg_plan_options *options,
+                             const skg_scan_run_options *run, char *hash, int64_t size) {
+    SKG_PLAIN;
+    skg_plan_options o;
+    skg_scan_run_options r;
+    skg_sha256 sum;
+    char text[512];
+    SKG_NEEDS(options);
+    SKG_NEEDS(hash);
+    skg_plan_options_init(&o);
+    skg_scan_run_options_init(&r);
+    SKG_TRY(skg_struct_read(options, "skg_plan_options", &o, sizeof o));
+    if (run) SKG_TRY(skg_struct_read(run, "skg_scan_run_options", &r, sizeof r));
+    SKG_TRY(skg_setup_hash_get(setup, hash, size));
+    snprintf(text, sizeof text,
+             "%s %d %d %d %.17g %d %d %d %d %d %d %" PRId64 " %.17g %.17g %.17g %d %" PRId64 " %d %" PRId64,
+             SKG_VERSION, (int)r.type, (int)o.precision, (int)o.quantity, o.tolerance, (int)o.falloff,
+             (int)o.supersampling, (int)o.noise, (int)o.repair, (int)o.clip, (int)o.band_weight, o.noise_seed,
+             o.swank, o.electronic_kev, o.quantum_step_kev, r.motion != NULL, r.subframes, (int)(o.bands > 0),
+             r.noise_seed);
+    skg_sha256_begin(&sum);
+    skg_sha256_add(&sum, hash, strlen(hash));
+    skg_sha256_add(&sum, text, strlen(text));
+    for (int64_t b = 0; o.bands > 0 && b <= o.bands; b++)
+        skg_sha256_add(&sum, &o.band_kev[b], sizeof(double));
+    skg_sha256_end(&sum, hash);
+    return SKG_OK;
+}

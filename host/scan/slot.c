@@ -1,0 +1,144 @@
+#include "scan/slot.h"
+
+#include "core/core.h"
+
+#include <math.h>
+#include <string.h>
+
+skg_status skg_scan_work_init(skg_scan_work *work) {
+    skg_plan_report report;
+    skg_view view;
+    int64_t channels = 0;
+    skg_plan_report_init(&report);
+    skg_view_init(&view);
+    SKG_TRY(skg_plan_report_get(work->plan, &report));
+    SKG_TRY(skg_plan_channel_count(work->plan, &channels));
+    SKG_TRY(skg_scan_view_get(work->scan, 0, &view));
+    SKG_TRY(skg_scan_projection_count(work->scan, &work->projections));
+    work->image_elements = channels * view.columns * view.rows;
+    work->is_logarithm = report.quantity == SKG_QUANTITY_ATTENUATION;
+    return SKG_OK;
+}
+
+skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, int64_t batch) {
+    const int64_t subframes = work->options.subframes, frames = batch * subframes;
+    SKG_TRY(skg_alloc(batch, sizeof *slot->indices, "batch of projections", &slot->indices));
+    SKG_TRY(skg_alloc(batch, sizeof *slot->phases, "batch of projections", &slot->phases));
+    SKG_TRY(skg_alloc(batch, sizeof *slot->amplitudes, "batch of projections", &slot->amplitudes));
+    SKG_TRY(skg_alloc(frames, sizeof *slot->jobs, "batch of projections", &slot->jobs));
+    SKG_TRY(skg_alloc(frames, sizeof *slot->frames, "batch of projections", &slot->frames));
+    SKG_TRY(skg_alloc(frames, sizeof *slot->views, "batch of projections", &slot->views));
+    return skg_alloc(frames * work->image_elements, (size_t)skg_scan_element(work->options.type),
+                     "batch of projections", &slot->images);
+}
+
+static skg_status wait_for_jobs(skg_scan_slot *slot) {
+    skg_status status = SKG_OK;
+    for (int64_t j = 0; j < slot->job_count; j++) {
+        const skg_status its = skg_job_wait(&slot->jobs[j]);
+        if (status == SKG_OK || (status == SKG_RANGE && its < SKG_OK)) status = its;
+    }
+    slot->job_count = 0;
+    return status;
+}
+
+void skg_scan_slot_free(skg_scan_slot *slot) {
+    if (slot->jobs) wait_for_jobs(slot);
+    skg_free(&slot->indices);
+    skg_free(&slot->phases);
+    skg_free(&slot->amplitudes);
+    skg_free(&slot->jobs);
+    skg_free(&slot->frames);
+    skg_free(&slot->views);
+    skg_free(&slot->images);
+}
+
+/* The moment of a sub-frame: its position in the scan, in projections, and its time. */
+static skg_status find_moment(const skg_scan_work *work, int64_t index, int64_t subframe, double *position,
+                              double *time_s) {
+    double middle = 0, exposure = 0, next = 0;
+    SKG_TRY(skg_scan_time_get(work->scan, index, &middle, &exposure));
+    const double from_middle = ((double)subframe + 0.5) / (double)work->options.subframes - 0.5;
+    *time_s = middle + from_middle * exposure;
+    *position = (double)index;
+    if (work->projections < 2 || from_middle == 0) return SKG_OK;
+    const int64_t neighbour = index + 1 < work->projections ? index + 1 : index - 1;
+    SKG_TRY(skg_scan_time_get(work->scan, neighbour, &next, NULL));
+    const double interval = fabs(next - middle);
+    if (interval > 0) *position += from_middle * exposure / interval;
+    return SKG_OK;
+}
+
+static skg_status submit_job(const skg_scan_work *work, skg_scan_slot *slot, int64_t first, int64_t count) {
+    skg_output output;
+    skg_output_init(&output);
+    output.type = work->options.type;
+    output.data = (char *)slot->images + first * work->image_elements * skg_scan_element(output.type);
+    SKG_TRY(skg_plan_submit(work->plan, count, slot->frames + first, &output, &slot->jobs[slot->job_count]));
+    slot->job_count++;
+    return SKG_OK;
+}
+
+/* Describes frame f of a batch; with motion it poses the scene for it. */
+static skg_status prepare_frame(const skg_scan_work *work, skg_scan_slot *slot, int64_t f) {
+    const int64_t subframes = work->options.subframes, p = f / subframes;
+    double position = 0, time = 0;
+    SKG_TRY(find_moment(work, slot->indices[p], f % subframes, &position, &time));
+    skg_view_init(&slot->views[f]);
+    SKG_TRY(skg_scan_view_at(work->scan, position, &slot->views[f]));
+    skg_frame_init(&slot->frames[f]);
+    slot->frames[f].view = &slot->views[f];
+    slot->frames[f].noise_seed = work->options.noise_seed;
+    slot->frames[f].index = slot->indices[p];
+    if (!work->options.motion) return SKG_OK;
+    SKG_TRY(skg_motion_pose_at_time(work->options.motion, time));
+    if (f % subframes == subframes / 2) {
+        skg_motion_state state;
+        skg_motion_state_init(&state);
+        SKG_TRY(skg_motion_state_get(work->options.motion, &state));
+        slot->phases[p] = state.phase;
+        slot->amplitudes[p] = state.amplitude;
+    }
+    return skg_motion_fill(work->options.motion, &slot->frames[f]);
+}
+
+skg_status skg_scan_slot_submit(const skg_scan_work *work, skg_scan_slot *slot, const int64_t *indices,
+                                int64_t count) {
+    const int64_t frames = count * work->options.subframes;
+    memcpy(slot->indices, indices, (size_t)count * sizeof *indices);
+    slot->count = count;
+    for (int64_t f = 0; f < frames; f++) {
+        SKG_TRY(prepare_frame(work, slot, f));
+        if (work->options.motion) SKG_TRY(submit_job(work, slot, f, 1));
+    }
+    return work->options.motion ? SKG_OK : submit_job(work, slot, 0, frames);
+}
+
+static double element(const skg_scan_work *work, const void *images, int64_t at) {
+    return work->options.type == SKG_TYPE_FLOAT64 ? ((const double *)images)[at]
+                                                  : (double)((const float *)images)[at];
+}
+
+/* The mean of each projection takes the place of a frame that was read before. */
+static void take_means(const skg_scan_work *work, skg_scan_slot *slot) {
+    const int64_t n = work->options.subframes, elements = work->image_elements;
+    for (int64_t p = 0; p < slot->count; p++)
+        for (int64_t i = 0; i < elements; i++) {
+            double sum = 0;
+            for (int64_t s = 0; s < n; s++) {
+                const double value = element(work, slot->images, (p * n + s) * elements + i);
+                sum += work->is_logarithm ? exp(-value) : value;
+            }
+            const double mean = work->is_logarithm ? -log(sum / (double)n) : sum / (double)n;
+            if (work->options.type == SKG_TYPE_FLOAT64)
+                ((double *)slot->images)[p * elements + i] = mean;
+            else
+                ((float *)slot->images)[p * elements + i] = (float)mean;
+        }
+}
+
+skg_status skg_scan_slot_wait(const skg_scan_work *work, skg_scan_slot *slot) {
+    const skg_status status = wait_for_jobs(slot);
+    if (status >= SKG_OK && work->options.subframes > 1) take_means(work, slot);
+    return status;
+}

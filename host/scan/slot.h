@@ -1,0 +1,46 @@
+/* A batch of projections in flight. Private. */
+#ifndef SKG_SCAN_SLOT_H
+#define SKG_SCAN_SLOT_H
+
+#include <skiagraph/scan_run.h>
+
+/* What is computed and how; constant during a run. */
+typedef struct {
+    skg_plan *plan;
+    skg_scan *scan;
+    skg_scan_run_options options;
+    int64_t projections;
+    int64_t image_elements; /* of all channels */
+    int32_t is_logarithm;   /* 1: the quantity is attenuation */
+} skg_scan_work;
+
+typedef struct {
+    int64_t count; /* projections; 0: nothing is in flight and nothing is finished */
+    int64_t *indices;
+    double *phases, *amplitudes;
+    void *images; /* [batch][sub-frames] images; the means come to stand at the beginning */
+    skg_job **jobs;
+    int64_t job_count;
+    skg_frame *frames; /* of a job */
+    skg_view *views;
+} skg_scan_slot;
+
+/* Bytes of an element of enum skg_type. */
+static inline int64_t skg_scan_element(int32_t type) {
+    return type == SKG_TYPE_FLOAT64 ? 8 : 4;
+}
+
+skg_status skg_scan_work_init(skg_scan_work *work);
+
+/* Memory for batches of this size. Free also after a failure. */
+skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, int64_t batch);
+void skg_scan_slot_free(skg_scan_slot *slot); /* waits for its jobs */
+
+/* Starts the frames of projections. */
+skg_status skg_scan_slot_submit(const skg_scan_work *work, skg_scan_slot *slot, const int64_t *indices,
+                                int64_t count);
+
+/* Waits for them, and takes the mean over sub-frames. SKG_RANGE as of skg_job_wait. */
+skg_status skg_scan_slot_wait(const skg_scan_work *work, skg_scan_slot *slot);
+
+#endif

@@ -1,0 +1,79 @@
+/* A table of poses from a text file. */
+#include "core/columns.h"
+#include "core/path_hint.h"
+#include "core/plain.h"
+#include "trajectory/scan.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct {
+    const char *path;
+    int64_t count, capacity, line;
+    double *poses;
+} table;
+
+static int is_skipped(const table *t, const char *text) {
+    return !*text || *text == '#' || (t->count == 0 && isalpha((unsigned char)*text));
+}
+
+static const char *skip(const char *text, const char *what) {
+    while (*text && (isspace((unsigned char)*text) || strchr(what, *text))) text++;
+    return text;
+}
+
+static skg_status read_line(table *t, const char *text) {
+    text = skip(text, "");
+    if (is_skipped(t, text)) return SKG_OK;
+    if (t->count == t->capacity) {
+        t->capacity = t->capacity ? 2 * t->capacity : 256;
+        SKG_TRY(skg_realloc(t->capacity, SKG_POSE_NUMBERS * sizeof *t->poses, t->path, &t->poses));
+    }
+    for (int k = 0; k < SKG_POSE_NUMBERS; k++) {
+        const char *end;
+        t->poses[SKG_POSE_NUMBERS * t->count + k] = skg_read_number(text, &end);
+        if (end == text)
+            return skg_fail(SKG_ERR_FORMAT,
+                            "%s: line %" PRId64 ": number %d of %d is missing; a line has x, y, z of source, "
+                            "detector centre, column step and row step in mm",
+                            t->path, t->line, k + 1, SKG_POSE_NUMBERS);
+        text = skip(end, ",;");
+    }
+    if (*text)
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are more than %d numbers", t->path,
+                        t->line, SKG_POSE_NUMBERS);
+    t->count++;
+    return SKG_OK;
+}
+
+static skg_status read_lines(table *t, FILE *file) {
+    char text[1024];
+    while (fgets(text, sizeof text, file)) {
+        t->line++;
+        if (strlen(text) + 1 == sizeof text)
+            return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", t->path, t->line);
+        SKG_TRY(read_line(t, text));
+    }
+    if (ferror(file)) return skg_fail_unreadable(t->path, errno);
+    if (t->count == 0) return skg_fail(SKG_ERR_FORMAT, "%s: there is no line with numbers", t->path);
+    return SKG_OK;
+}
+
+skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *options, const char *path,
+                               skg_scan **scan) {
+    SKG_PLAIN;
+    table t = {.path = path};
+    SKG_NEEDS(scan);
+    *scan = NULL;
+    SKG_NEEDS(path);
+    FILE *file = fopen(path, "r");
+    if (!file) return skg_fail_unreadable(path, errno);
+    skg_status status = read_lines(&t, file);
+    fclose(file);
+    if (status == SKG_OK) status = skg_scan_create_table(view, options, t.count, t.poses, scan);
+    skg_free(&t.poses);
+    return status;
+}

@@ -1,0 +1,273 @@
+/* The verb scan. */
+#include "cli/command.h"
+
+#include "cli/scene.h"
+#include "support/random.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <time.h>
+
+#define SCAN "--set Scan='{\"NumberOfProjections\":12,\"FinalAngle\":360}'"
+enum { COLUMNS = 65, ROWS = 49, COUNT = 12, MOST_BYTES = 1 << 24 };
+
+static char bytes[MOST_BYTES], before[MOST_BYTES];
+
+static void set_up_scan(void) {
+    set_up();
+    write_text("scene.json", scene);
+}
+
+static void tear_down_scan(void) {
+    char line[128];
+    snprintf(line, sizeof line, "rm -rf %s", folder);
+    ck_assert_int_eq(system(line), 0);
+}
+
+static size_t read_file(const char *name, char *to) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_msg(stream != NULL, "no %s", name);
+    const size_t count = fread(to, 1, MOST_BYTES, stream);
+    fclose(stream);
+    return count;
+}
+
+/* Each slice of the stack is the image of the same scene whose scan begins there. */
+START_TEST(projections_are_images) {
+    enum { IMAGE = COLUMNS * ROWS * sizeof(float) };
+    ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
+    ck_assert(strstr(said, "scan.mha has 12 of 12") != NULL);
+    const size_t size = read_file("scan.mha", bytes);
+    for (int k = 0; k < COUNT; k += 5) {
+        ck_run(0,
+               "image scene.json -o one.mha --quiet --set "
+               "Scan='{\"NumberOfProjections\":12,\"FinalAngle\":390,\"StartAngle\":%d}'",
+               30 * k);
+        const size_t one = read_file("one.mha", before);
+        ck_assert_mem_eq(before + one - IMAGE, bytes + size - (size_t)(COUNT - k) * IMAGE, IMAGE);
+    }
+}
+END_TEST
+
+START_TEST(parts_of_a_scan_make_the_whole) {
+    ck_run(0, "scan scene.json %s -o whole.mha --quiet", SCAN);
+    ck_run(0, "scan scene.json %s -o scan.mha --only 3,7 --json", SCAN);
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "computed")), 2);
+    ck_assert(json_is_false(member(object, "finished")));
+    json_decref(object);
+    ck_assert(has_file("scan.mha.progress") && !has_file("scan.mha.lock"));
+    ck_run(0, "scan scene.json %s -o scan.mha --from 2 --to 5 --strategy atomics --json", SCAN);
+    object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "computed")), 3);
+    ck_assert_int_eq(json_integer_value(member(object, "found")), 2);
+    json_decref(object);
+    ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
+    ck_assert(strstr(complained, "it is continued") != NULL);
+    ck_assert(!has_file("scan.mha.progress"));
+    ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
+    ck_assert(strstr(said, "is finished") != NULL);
+    const size_t size = read_file("whole.mha", before);
+    ck_assert_uint_eq(read_file("scan.mha", bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+}
+END_TEST
+
+/* The scene, a file that it names, a quantity: each makes another scan. */
+START_TEST(another_state_of_the_scene_is_another_scan) {
+    static const char *const changes[] = {"--quantity photons", "--precision double", "--tolerance 0.01",
+                                          "--set Samples.bone.Material='[\"mu\",0.6]'"};
+    ck_run(0, "scan scene.json %s -o scan.tif --quiet", SCAN);
+    for (int i = 0; i < 4; i++)
+        ck_run_fails(5, "another scan", "scan scene.json %s -o scan.tif %s", SCAN, changes[i]);
+    ck_run(0, "scan scene.json %s -o scan.tif %s --overwrite --quiet", SCAN, changes[0]);
+    write_text("poses.csv", "0 -400 0 0 100 0 -1 0 0 0 0 -2\n");
+    ck_run(0, "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o table.raw --quiet");
+    write_text("poses.csv", "0 -401 0 0 100 0 -1 0 0 0 0 -2\n");
+    ck_run_fails(5, "another scan", "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o table.raw");
+}
+END_TEST
+
+START_TEST(a_folder_and_a_geometry) {
+    ck_run(0, "scan scene.json %s --set Source.Shape=Point -o out --geometry g.csv --geometry g.xml --quiet",
+           SCAN);
+    ck_assert(has_file("out/projection-00000.tif") && has_file("out/projection-00011.tif"));
+    ck_assert(has_file("g.csv") && has_file("g.xml"));
+    ck_run(
+        0,
+        "scan scene.json --set Source.Shape=Point --set Scan='{\"Table\":\"g.csv\"}' -o table.raw --quiet");
+    ck_run(0, "scan scene.json %s --set Source.Shape=Point -o circle.raw --quiet", SCAN);
+    const size_t size = read_file("circle.raw", before);
+    ck_assert_uint_eq(read_file("table.raw", bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+}
+END_TEST
+
+START_TEST(what_cannot_be_is_refused) {
+    ck_run_fails(2, "-o FILE", "scan scene.json");
+    ck_run_fails(2, ".png", "scan scene.json -o a.png");
+    ck_run_fails(3, "no key Scan", "scan scene.json -o a.mha");
+    ck_run_fails(3, "number of projections", "scan scene.json -o a.mha --set Scan='{\"StartAngle\":3}'");
+    ck_run_fails(2, "--only", "scan scene.json %s -o a.mha --only 3,x", SCAN);
+    ck_run_fails(2, "the scan has 12", "scan scene.json %s -o a.mha --to 12", SCAN);
+    ck_run_fails(5, "parallel", "scan scene.json %s -o a.mha --geometry a.xml", SCAN);
+    ck_run_fails(3, "a short scan",
+                 "scan scene.json -o a.mha --set Scan='{\"NumberOfProjections\":3,\"Short\":true}'");
+}
+END_TEST
+
+/* Killed by SIGKILL at 20 random moments, and each time continued: the bytes are those of a scan without an
+ * interruption. */
+START_TEST(kills_leave_no_trace) {
+    enum { KILLS = 20 };
+    static const char scan[] =
+        "\"Scan={\\\"NumberOfProjections\\\":400,\\\"FinalAngle\\\":360}\" --set \"Detector.NumberOfPixels=[130,98]\"";
+    static const char *const names[] = {"scan.mha", "scan.raw", "scan.tif", "scan.h5"};
+    if (_i == 3 && !SKG_HAS_HDF5) return;
+    const char *name = names[_i];
+    struct timespec begun, ended;
+    uint64_t state = 17 + (uint64_t)_i;
+    char whole[64];
+    snprintf(whole, sizeof whole, "whole%s", name + 4);
+    clock_gettime(CLOCK_MONOTONIC, &begun);
+    ck_run(0, "scan scene.json --quiet -o %s --set %s", whole, scan);
+    clock_gettime(CLOCK_MONOTONIC, &ended);
+    const double span =
+        (double)(ended.tv_sec - begun.tv_sec) + 1e-9 * (double)(ended.tv_nsec - begun.tv_nsec);
+    for (int kills = 0; kills < KILLS; kills++) {
+        /* The shell is replaced by the command, so that the signal meets the command. */
+        char line[1024];
+        snprintf(line, sizeof line, "cd %s && exec %s scan scene.json --quiet -o %s --set %s 2>.complained",
+                 folder, SKG_COMMAND, name, scan);
+        fflush(NULL);
+        const pid_t child = fork();
+        ck_assert_int_ge(child, 0);
+        if (child == 0) {
+            execl("/bin/sh", "sh", "-c", line, (char *)NULL);
+            _exit(127);
+        }
+        const double delay = draw(&state, 0.1, 1.1) * span;
+        const struct timespec pause = {(time_t)delay, (long)(1e9 * (delay - (double)(time_t)delay))};
+        int status = 0;
+        nanosleep(&pause, NULL);
+        kill(child, SIGKILL);
+        ck_assert_int_eq(waitpid(child, &status, 0), child);
+        ck_assert(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+    }
+    ck_run(0, "scan scene.json --quiet -o %s --set %s", name, scan);
+    const size_t size = read_file(whole, before);
+    ck_assert_uint_eq(read_file(name, bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+}
+END_TEST
+
+/* A cylinder of 0.2 per cm with a ball of 0.5 per cm: scanned, written, read, reconstructed. The middle plane has these
+ * values within 1 %, two voxels from the surfaces. */
+START_TEST(a_volume_has_the_coefficients) {
+    enum { SIDE = 48, SLICE = SIDE * SIDE };
+    static const char body[] =
+        "{\"Source\": {\"Position\": [0, -400, 0, \"mm\"], \"Shape\": \"PointSource\",\n"
+        "    \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]},\n"
+        "  \"Detector\": {\"Position\": [0, 200, 0, \"mm\"], \"UpVector\": [0, 0, -1],\n"
+        "    \"NumberOfPixels\": [240, 16], \"Spacing\": [0.5, 0.5, \"mm\"], \"Oversampling\": 4},\n"
+        "  \"Scan\": {\"NumberOfProjections\": 360, \"FinalAngle\": 360},\n"
+        "  \"Samples\": [\n"
+        "    {\"Label\": \"body\", \"Cylinder\": [200, 60, 30, \"mm\"], \"Type\": \"outer\",\n"
+        "     \"Transform\": [[\"Rotation\", 1, 0, 0, 90]], \"Material\": [\"mu\", 0.2]},\n"
+        "    {\"Label\": \"ball\", \"Sphere\": [100, 8, \"mm\"], \"Material\": [\"mu\", 0.5],\n"
+        "     \"Transform\": [[\"Translation\", 10, 0, 0, \"mm\"]]}]}\n";
+    if (!SKG_HAS_HDF5) {
+        ck_run_fails(3, "has no HDF5", "reconstruct scan.h5 -o volume.mha");
+        return;
+    }
+    write_text("body.json", body);
+    ck_run(0, "scan body.json -o scan.h5 --only 0 --quiet");
+    ck_run_fails(3, "359 of 360 projections are missing", "reconstruct scan.h5 -o volume.mha");
+    ck_run(0, "scan body.json -o scan.h5 --quiet");
+    ck_run(0, "reconstruct scan.h5 -o volume.mha --size 48 --voxel 1.2 --filter hann --json");
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "projections")), 360);
+    json_decref(object);
+    const size_t size = read_file("volume.mha", bytes);
+    const float *slice = (const float *)(const void *)(bytes + size) - (size_t)(SIDE / 2) * SLICE;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            float value;
+            memcpy(&value, slice + SIDE * y + x, sizeof value);
+            const double from = 1.2 * hypot(x - 23.5, y - 23.5),
+                         ball = 1.2 * hypot(x - 23.5 - 10 / 1.2, y - 23.5);
+            if (ball < 8 - 2.4)
+                ck_assert_double_eq_tol((double)value, 0.5, 0.005); /* 1 %, the bar */
+            else if (ball > 8 + 2.4 && from < 27)
+                ck_assert_double_eq_tol((double)value, 0.2, 0.002); /* 1 %, the bar */
+        }
+    ck_run_fails(2, "-o FILE.mha", "reconstruct scan.h5 -o volume.png");
+    ck_run_fails(3, "cannot be read", "reconstruct body.json -o volume.mha");
+    ck_run(0, "scan body.json --set Scan.FinalAngle=90 -o part.h5 --quiet");
+    ck_run_fails(3, "180 degrees plus the fan", "reconstruct part.h5 -o volume.mha");
+}
+END_TEST
+
+/* Shards in files of their own, joined, are the scan that one process makes. */
+START_TEST(shards_are_joined) {
+    static const char *const names[] = {"scan.mha", "scan.h5"};
+    const char *name = names[_i];
+    if (_i == 1 && !SKG_HAS_HDF5) return;
+    ck_run(0, "scan scene.json %s -o whole%s --quiet", SCAN, name + 4);
+    ck_run(0, "scan scene.json %s -o %s --shard 1/3 --quiet", SCAN, name);
+    ck_run(0, "scan scene.json %s -o %s --shard 3/3 --quiet", SCAN, name);
+    ck_run_fails(3, "2-of-3", "scan scene.json %s -o %s --join", SCAN, name);
+    ck_run(0, "scan scene.json %s -o %s --shard 2/3 --json", SCAN, name);
+    json_t *object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "projections")), 4);
+    json_decref(object);
+    ck_run_fails(3, "no files of shards", "scan scene.json %s -o other%s --join", SCAN, name + 4);
+    ck_run(0, "scan scene.json %s -o %s --join", SCAN, name);
+    ck_assert(strstr(said, "has all 12 projections") != NULL);
+    char whole[64];
+    snprintf(whole, sizeof whole, "whole%s", name + 4);
+    const size_t size = read_file(whole, before);
+    ck_assert_uint_eq(read_file(name, bytes), size);
+    ck_assert_mem_eq(bytes, before, size);
+    ck_run_fails(2, "I/N", "scan scene.json %s -o %s --shard 4/3", SCAN, name);
+    ck_run_fails(2, "leave out", "scan scene.json %s -o %s --shard 1/3 --from 2", SCAN, name);
+    ck_run_fails(2, "shards are files", "scan scene.json %s -o folder --shard 1/3", SCAN);
+}
+END_TEST
+
+/* Each projection shows the thorax at its own time, as breathe shows it. */
+START_TEST(each_projection_has_its_own_time) {
+    enum { SIDE = 40, IMAGE = SIDE * SIDE * sizeof(float) };
+    static const char beam[] = "--set Detector.NumberOfPixels=[40,40] --set "
+                               "Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]'";
+    ck_run(0, "thorax -o . --triangles 10000 --quiet");
+    ck_run(0,
+           "scan thorax.json %s --breathing --quantity attenuation -o scan.mha --quiet --set "
+           "Scan='{\"NumberOfProjections\":3,\"StartTime\":0.5,\"Interval\":1.5}'",
+           beam);
+    const size_t size = read_file("scan.mha", bytes);
+    for (int k = 0; k < 3; k++) {
+        ck_run(0, "breathe thorax.json %s --at %g --range 0:8 -o one.mha --quiet", beam, 0.5 + 1.5 * k);
+        const size_t one = read_file("one.mha", before);
+        ck_assert_mem_eq(before + one - IMAGE, bytes + size - (size_t)(3 - k) * IMAGE, IMAGE);
+    }
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
+    tcase_add_test(tests, projections_are_images);
+    tcase_add_test(tests, parts_of_a_scan_make_the_whole);
+    tcase_add_test(tests, another_state_of_the_scene_is_another_scan);
+    tcase_add_test(tests, a_folder_and_a_geometry);
+    tcase_add_test(tests, what_cannot_be_is_refused);
+    tcase_add_test(tests, a_volume_has_the_coefficients);
+    tcase_add_loop_test(tests, shards_are_joined, 0, 2);
+    tcase_add_test(tests, each_projection_has_its_own_time);
+    tcase_add_loop_test(tests, kills_leave_no_trace, 0, 4);
+}
+
+SKG_SUITE_MAIN("scan", add_tests)

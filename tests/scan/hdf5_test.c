@@ -1,0 +1,147 @@
+/* What an .h5 holds, as HDF5's own library reads it: Data Exchange, geometry, progress. */
+#include "suite.h"
+#include "support/run.h"
+
+#include <hdf5.h>
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 24, PIXELS = SIDE * SIDE, COUNT = 5, FLATS = 2 };
+
+#define PI 3.14159265358979323846
+
+static const char hash[] = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff";
+
+static char folder[64], path[128];
+static skg_view view;
+static skg_scene *scene;
+static skg_mesh *blob;
+static skg_plan *plan;
+static skg_scan *scan;
+
+static void open_scene(void) {
+    run_open();
+    strcpy(folder, "/tmp/skg-hdf5-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/scan.h5", folder);
+    view = run_view(SIDE, 6);
+    solid s = solid_blob(60, 40, 20, 1);
+    blob = run_mesh(&s);
+    solid_free(&s);
+    ck_skg(skg_scene_create(run_context, &scene));
+    run_part(scene, "blob", blob, 0.2, NULL, -1);
+    plan = run_plan(scene, &view, (run_choice){0});
+    skg_scan_options options;
+    skg_scan_options_init(&options);
+    options.projections = COUNT;
+    options.step_rad = PI / 10;
+    options.axis[1] = 1;
+    options.axis[2] = 0;
+    options.start_s = 3;
+    options.interval_s = 0.5;
+    ck_skg(skg_scan_create(&view, &options, &scan));
+}
+
+static void close_scene(void) {
+    skg_scan_release(&scan);
+    skg_plan_release(&plan);
+    skg_mesh_release(&blob);
+    skg_scene_release(&scene);
+    unlink(path);
+    ck_assert_int_eq(rmdir(folder), 0);
+    run_close();
+}
+
+static void read_set(hid_t root, const char *name, hid_t type, hsize_t count, void *to) {
+    const hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
+    ck_assert_msg(set >= 0, "no %s", name);
+    const hid_t space = H5Dget_space(set);
+    ck_assert_int_eq(H5Sget_simple_extent_npoints(space), (hssize_t)count);
+    ck_assert_int_ge(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), 0);
+    H5Sclose(space);
+    H5Dclose(set);
+}
+
+static skg_status keep(const skg_scan_batch *batch, void *user) {
+    static const double phases[COUNT] = {0.5, 0.25, 0.125, 0, 0.75};
+    return skg_scan_file_write(user, batch->count, batch->indices, batch->images, phases + batch->indices[0]);
+}
+
+START_TEST(what_hdf5_reads) {
+    static float images[COUNT][PIXELS], expected[PIXELS], white[FLATS][PIXELS], dark[PIXELS];
+    double vectors[COUNT][3], numbers[COUNT];
+    unsigned char done[COUNT];
+    char text[65] = "";
+    skg_scan_file *file = NULL;
+    skg_scan_file_options options;
+    skg_scan_run_options run;
+    skg_channel channel;
+    skg_channel_init(&channel);
+    ck_skg(skg_plan_channel_get(plan, 0, &channel));
+    skg_scan_file_options_init(&options);
+    options.scan = scan;
+    options.hash = hash;
+    options.name = channel.name;
+    options.unit = channel.unit;
+    options.flat_field = channel.flat_field;
+    options.samples = 1;
+    options.flats = FLATS;
+    ck_skg(skg_scan_file_open(path, &options, &file));
+    ck_skg(skg_scan_flat_fields_render(plan, scene, scan, NULL, FLATS, white));
+    ck_skg(skg_scan_file_fields_write(file, FLATS, white, 1, dark));
+    ck_skg_fails(skg_scan_file_fields_write(file, 1, white, 1, dark), SKG_ERR_ARGUMENT, "room for 2");
+    skg_scan_run_options_init(&run);
+    run.batch = 1;
+    run.only_count = 2;
+    run.only = (const int64_t[]){1, 4};
+    ck_skg(skg_scan_run_each(plan, scan, &run, keep, file));
+    ck_skg(skg_scan_file_finish(file));
+    skg_scan_file_release(&file);
+    const hid_t root = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert_int_ge(root, 0);
+    read_set(root, "exchange/data", H5T_NATIVE_FLOAT, COUNT * PIXELS, images);
+    read_set(root, "exchange/data_white", H5T_NATIVE_FLOAT, FLATS * PIXELS, white);
+    read_set(root, "exchange/data_dark", H5T_NATIVE_FLOAT, PIXELS, dark);
+    for (int i = 0; i < PIXELS; i++)
+        ck_assert((double)white[1][i] == channel.flat_field && (double)dark[i] == 0);
+    for (int64_t k = 1; k < COUNT; k += 3) {
+        skg_output output;
+        skg_view of;
+        skg_view_init(&of);
+        skg_output_init(&output);
+        output.data = expected;
+        ck_skg(skg_scan_view_get(scan, k, &of));
+        ck_skg(skg_plan_move(plan, &of));
+        ck_skg(skg_plan_image(plan, &output));
+        ck_assert_mem_eq(images[k], expected, sizeof expected);
+        read_set(root, "geometry/source", H5T_NATIVE_DOUBLE, 3 * COUNT, vectors);
+        ck_assert_mem_eq(vectors[k], of.source, sizeof of.source);
+        read_set(root, "geometry/row_step", H5T_NATIVE_DOUBLE, 3 * COUNT, vectors);
+        ck_assert_mem_eq(vectors[k], of.row_step, sizeof of.row_step);
+    }
+    read_set(root, "exchange/theta", H5T_NATIVE_DOUBLE, COUNT, numbers);
+    ck_assert_double_eq_tol(numbers[3], 54, 1e-13); /* some roundings of 54 */
+    read_set(root, "geometry/time", H5T_NATIVE_DOUBLE, COUNT, numbers);
+    ck_assert_double_eq(numbers[4], 5);
+    read_set(root, "geometry/phase", H5T_NATIVE_DOUBLE, COUNT, numbers);
+    ck_assert_double_eq(numbers[1], 0.25);
+    ck_assert_double_eq(numbers[4], 0.75);
+    read_set(root, "process/done", H5T_NATIVE_UCHAR, COUNT, done);
+    ck_assert_mem_eq(done, "\0\1\0\0\1", COUNT);
+    const hid_t attribute = H5Aopen_by_name(root, "process", "hash", H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, sizeof text);
+    ck_assert_int_ge(H5Aread(attribute, type, text), 0);
+    ck_assert_str_eq(text, hash);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    H5Fclose(root);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, open_scene, close_scene);
+    tcase_add_test(tests, what_hdf5_reads);
+}
+
+SKG_SUITE_MAIN("hdf5", add_tests)

@@ -1,0 +1,237 @@
+/* Files of projections: their layout, what is found when they are opened again, and who may write them. */
+#include "suite.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <dirent.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+enum { COLUMNS = 7, ROWS = 5, PIXELS = COLUMNS * ROWS, COUNT = 9 };
+
+static const char hash[] = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff";
+static const char other[] = "ff112233445566778899aabbccddeeff00112233445566778899aabbccddeeff";
+static const char *const names[] = {"scan.mha", "scan.raw", "scan.tif", "folder", "scan.h5"};
+enum { KINDS = sizeof names / sizeof *names };
+
+static char folder[64], path[256];
+static skg_scan *scan;
+static skg_scan_file *file;
+static skg_scan_file_options options;
+static float images[COUNT][PIXELS];
+
+static void set_up(void) {
+    skg_view view;
+    skg_scan_options geometry;
+    strcpy(folder, "/tmp/skg-scan-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    skg_view_init(&view);
+    view.columns = COLUMNS;
+    view.rows = ROWS;
+    view.source[1] = -1000;
+    view.centre[1] = 500;
+    view.column_step[0] = -2;
+    view.row_step[2] = -3;
+    skg_scan_options_init(&geometry);
+    geometry.projections = COUNT;
+    geometry.step_rad = 0.5;
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+    skg_scan_file_options_init(&options);
+    options.scan = scan;
+    options.hash = hash;
+    options.name = "energy";
+    options.unit = "keV per pixel";
+    options.flat_field = 1000;
+    options.samples = 3;
+    file = NULL;
+    for (int k = 0; k < COUNT; k++)
+        for (int i = 0; i < PIXELS; i++) images[k][i] = (float)(1000 * k + i);
+}
+
+static void tear_down(void) {
+    char line[128];
+    skg_scan_file_release(&file);
+    skg_scan_release(&scan);
+    snprintf(line, sizeof line, "rm -rf %s", folder);
+    ck_assert_int_eq(system(line), 0);
+}
+
+static const char *in_folder(const char *name) {
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static int has(const char *name) {
+    return access(in_folder(name), F_OK) == 0;
+}
+
+static void put(int64_t index) {
+    ck_skg(skg_scan_file_write(file, 1, &index, images[index], NULL));
+}
+
+static int64_t done_count(void) {
+    int64_t count = -1;
+    ck_skg(skg_scan_file_done_count(file, &count));
+    return count;
+}
+
+static int files_in_folder(void) {
+    int count = 0;
+    DIR *directory = opendir(folder);
+    for (struct dirent *entry; (entry = readdir(directory));) count += entry->d_name[0] != '.';
+    closedir(directory);
+    return count;
+}
+
+/* The last bytes of a stack are its projections, in order. */
+static void ck_values(const char *name) {
+    static float read[COUNT * PIXELS];
+    FILE *stream = fopen(in_folder(name), "rb");
+    ck_assert_ptr_nonnull(stream);
+    ck_assert_int_eq(fseek(stream, -(long)sizeof read, SEEK_END), 0);
+    ck_assert_uint_eq(fread(read, sizeof(float), COUNT * PIXELS, stream), COUNT * PIXELS);
+    fclose(stream);
+    ck_assert_mem_eq(read, images, sizeof read);
+}
+
+/* A build without HDF5 refuses .h5 with a sentence. */
+static int is_possible(const char *name) {
+    if (skg_scan_file_path_check(name) == SKG_OK) return 1;
+    ck_skg_fails(skg_scan_file_path_check(name), SKG_ERR_UNSUPPORTED, "has no HDF5");
+    return 0;
+}
+
+/* Projections in any order, with the file closed in between. */
+START_TEST(what_is_written_is_found_again) {
+    static const int64_t first[] = {8, 2, 0};
+    const char *name = names[_i];
+    if (!is_possible(name)) return;
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_assert_int_eq(done_count(), 0);
+    for (int i = 0; i < 3; i++) put(first[i]);
+    skg_scan_file_release(&file);
+    int64_t samples = 0;
+    ck_skg(skg_scan_file_samples_get(in_folder(name), hash, &samples));
+    ck_assert_int_eq(samples, 3);
+    ck_skg(skg_scan_file_samples_get(in_folder(name), other, &samples));
+    ck_assert_int_eq(samples, 0);
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_assert_int_eq(done_count(), 3);
+    for (int64_t k = 0; k < COUNT; k++) {
+        int32_t done = -1;
+        ck_skg(skg_scan_file_done_get(file, k, &done));
+        ck_assert_int_eq(done, k == 0 || k == 2 || k == 8);
+        if (!done) put(k);
+    }
+    ck_skg(skg_scan_file_finish(file));
+    skg_scan_file_release(&file);
+    ck_assert_int_eq(files_in_folder(), strcmp(name, "scan.raw") == 0 ? 2 : 1);
+    if (strcmp(name, "folder") != 0 && strcmp(name, "scan.h5") != 0) ck_values(name);
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_assert_int_eq(done_count(), COUNT);
+}
+END_TEST
+
+START_TEST(another_scan_is_refused_or_replaced) {
+    const char *name = names[_i];
+    if (!is_possible(name)) return;
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    put(4);
+    skg_scan_file_release(&file);
+    options.hash = other;
+    ck_skg_fails(skg_scan_file_open(in_folder(name), &options, &file), SKG_ERR_OUTPUT, "is another scan");
+    ck_assert_ptr_null(file);
+    options.overwrite = 1;
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_assert_int_eq(done_count(), 0);
+    skg_scan_file_release(&file);
+    options.samples = 4;
+    ck_skg_fails(skg_scan_file_open(in_folder(name), &options, &file), SKG_ERR_ARGUMENT, "3 source samples");
+}
+END_TEST
+
+/* A file that was there before is never lost. */
+START_TEST(what_is_no_scan_is_refused) {
+    for (int n = 0; n < KINDS; n++) {
+        if (strcmp(names[n], "folder") == 0 || !is_possible(names[n])) continue;
+        FILE *stream = fopen(in_folder(names[n]), "wb");
+        ck_assert_ptr_nonnull(stream);
+        fputs("letters", stream);
+        fclose(stream);
+        ck_skg_fails(skg_scan_file_open(path, &options, &file), SKG_ERR_OUTPUT, "is no scan");
+        struct stat there;
+        ck_assert(stat(path, &there) == 0 && there.st_size == 7);
+    }
+    ck_skg_fails(skg_scan_file_open(in_folder("scan.mha/none.mha"), &options, &file), SKG_ERR_OUTPUT, "");
+    ck_skg_fails(skg_scan_file_open(in_folder("a.png"), &options, &file), SKG_ERR_ARGUMENT,
+                 ".png is no format");
+    ck_assert_int_eq(files_in_folder(), is_possible("scan.h5") ? 4 : 3);
+}
+END_TEST
+
+START_TEST(a_file_of_another_length_is_refused) {
+    ck_skg(skg_scan_file_open(in_folder("scan.mha"), &options, &file));
+    skg_scan_file_release(&file);
+    ck_assert_int_eq(truncate(path, 1000), 0);
+    ck_skg_fails(skg_scan_file_open(path, &options, &file), SKG_ERR_OUTPUT, "has 1000 bytes");
+}
+END_TEST
+
+/* A lock is between processes: a child tries. */
+START_TEST(one_writer_at_a_time) {
+    int status = 0;
+    ck_skg(skg_scan_file_open(in_folder("scan.mha"), &options, &file));
+    fflush(NULL);
+    const pid_t child = fork();
+    ck_assert_int_ge(child, 0);
+    if (child == 0) {
+        skg_scan_file *mine = NULL;
+        const int refused = skg_scan_file_open(path, &options, &mine) == SKG_ERR_OUTPUT;
+        char who[64];
+        snprintf(who, sizeof who, "process %ld on ", (long)getppid());
+        _exit(refused && strstr(skg_last_error(), who) ? 0 : 1);
+    }
+    ck_assert_int_eq(waitpid(child, &status, 0), child);
+    ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    options.is_helper = 1; /* who only helps needs no lock */
+    skg_scan_file *helper = NULL;
+    ck_skg(skg_scan_file_open(path, &options, &helper));
+    const int64_t one = 1;
+    ck_skg(skg_scan_file_write(helper, 1, &one, images[1], NULL));
+    skg_scan_file_release(&helper);
+    for (int64_t k = 0; k < COUNT; k++)
+        if (k != 1) put(k);
+    ck_skg(skg_scan_file_finish(file)); /* sees what the helper wrote */
+    ck_assert(!has("scan.mha.progress"));
+}
+END_TEST
+
+START_TEST(what_is_missing_is_refused) {
+    options.hash = "short";
+    ck_skg_fails(skg_scan_file_open(in_folder("scan.mha"), &options, &file), SKG_ERR_ARGUMENT,
+                 "64 hexadecimal");
+    options.hash = hash;
+    options.type = 5;
+    ck_skg_fails(skg_scan_file_open(in_folder("scan.mha"), &options, &file), SKG_ERR_ARGUMENT, "type 5");
+    options.type = SKG_TYPE_FLOAT32;
+    options.is_helper = 1;
+    ck_skg_fails(skg_scan_file_open(in_folder("scan.mha"), &options, &file), SKG_ERR_OUTPUT, "not laid out");
+    options.is_helper = 0;
+    ck_skg(skg_scan_file_open(in_folder("scan.mha"), &options, &file));
+    const int64_t beyond = COUNT;
+    ck_skg_fails(skg_scan_file_write(file, 1, &beyond, images, NULL), SKG_ERR_ARGUMENT, "no projection 9");
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_loop_test(tests, what_is_written_is_found_again, 0, KINDS);
+    tcase_add_loop_test(tests, another_scan_is_refused_or_replaced, 0, KINDS);
+    tcase_add_test(tests, what_is_no_scan_is_refused);
+    tcase_add_test(tests, a_file_of_another_length_is_refused);
+    tcase_add_test(tests, one_writer_at_a_time);
+    tcase_add_test(tests, what_is_missing_is_refused);
+}
+
+SKG_SUITE_MAIN("scan_file", add_tests)

@@ -1,0 +1,225 @@
+/* Runs: every projection is the image of its view, whatever batch, shard or file it comes in. */
+#include "suite.h"
+#include "support/run.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 40, PIXELS = SIDE * SIDE, COUNT = 11 };
+
+#define PI 3.14159265358979323846
+
+static skg_view view;
+static skg_scene *scene;
+static skg_mesh *blob;
+static skg_plan *plan;
+static skg_scan *scan;
+static skg_scan_options geometry;
+static skg_scan_run_options options;
+static float expected[COUNT][PIXELS], got[COUNT][PIXELS];
+static int64_t order[COUNT], batches, arrived;
+
+static void make_scan(void) {
+    skg_scan_release(&scan);
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+}
+
+static void open_scene(void) {
+    run_open();
+    view = run_view(SIDE, 4);
+    solid s = solid_blob(60, 40, 20, 1);
+    blob = run_mesh(&s);
+    solid_free(&s);
+    ck_skg(skg_scene_create(run_context, &scene));
+    run_part(scene, "blob", blob, 0.2, NULL, -1);
+    plan = run_plan(scene, &view, (run_choice){.quantity = SKG_QUANTITY_TRANSMISSION});
+    skg_scan_options_init(&geometry);
+    geometry.projections = COUNT;
+    geometry.step_rad = 2 * PI / COUNT;
+    geometry.axis[1] = 1;
+    geometry.axis[2] = 0;
+    scan = NULL;
+    make_scan();
+    skg_scan_run_options_init(&options);
+    batches = arrived = 0;
+}
+
+static void close_scene(void) {
+    skg_scan_release(&scan);
+    skg_plan_release(&plan);
+    skg_mesh_release(&blob);
+    skg_scene_release(&scene);
+    run_close();
+}
+
+/* The image of one view, without a run. */
+static void image(const skg_view *of, float *to) {
+    skg_output output;
+    skg_output_init(&output);
+    output.data = to;
+    ck_skg(skg_plan_move(plan, of));
+    ck_skg(skg_plan_image(plan, &output));
+}
+
+static void expect_all(void) {
+    for (int64_t k = 0; k < COUNT; k++) {
+        skg_view of;
+        skg_view_init(&of);
+        ck_skg(skg_scan_view_get(scan, k, &of));
+        image(&of, expected[k]);
+    }
+}
+
+static skg_status take(const skg_scan_batch *batch, void *user) {
+    (void)user;
+    for (int64_t i = 0; i < batch->count; i++) {
+        memcpy(got[batch->indices[i]], (const float *)batch->images + i * PIXELS, sizeof got[0]);
+        order[arrived++] = batch->indices[i];
+    }
+    batches++;
+    return SKG_OK;
+}
+
+START_TEST(a_run_is_one_image_for_each_view) {
+    expect_all();
+    for (int64_t size = 1; size <= COUNT + 1; size++) {
+        memset(got, 0, sizeof got);
+        options.batch = size;
+        batches = arrived = 0;
+        ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+        ck_assert_mem_eq(got, expected, sizeof got);
+        ck_assert_int_eq(arrived, COUNT);
+        ck_assert_int_eq(batches, (COUNT + size - 1) / size);
+        for (int64_t i = 0; i < COUNT; i++) ck_assert_int_eq(order[i], i);
+    }
+}
+END_TEST
+
+START_TEST(shards_are_the_whole) {
+    expect_all();
+    for (int64_t shards = 1; shards <= COUNT + 2; shards++) {
+        memset(got, 0, sizeof got);
+        arrived = 0;
+        options.shards = shards;
+        for (options.shard = 0; options.shard < shards; options.shard++)
+            ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+        ck_assert_int_eq(arrived, COUNT);
+        ck_assert_mem_eq(got, expected, sizeof got);
+    }
+}
+END_TEST
+
+START_TEST(some_projections) {
+    static const int64_t only[] = {1, 4, 5, 10};
+    expect_all();
+    options.from = 3;
+    options.to = 7;
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    ck_assert_int_eq(arrived, 4);
+    ck_assert_int_eq(order[0], 3);
+    ck_assert_mem_eq(got[6], expected[6], sizeof got[6]);
+    arrived = 0;
+    options.only = only;
+    options.only_count = 4;
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    ck_assert_int_eq(arrived, 2);
+    ck_assert(order[0] == 4 && order[1] == 5);
+}
+END_TEST
+
+/* A projection of three sub-frames is the mean of images at the middles of thirds of the exposure; that of attenuation
+ * is the attenuation of the mean intensity. */
+START_TEST(subframes_are_averaged) {
+    static float part[3][PIXELS];
+    geometry.interval_s = 2;
+    geometry.exposure_s = 1.5;
+    make_scan();
+    options.subframes = 3;
+    options.batch = 4;
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    for (int64_t k = 0; k < COUNT; k += 5) {
+        for (int s = 0; s < 3; s++) {
+            skg_view of;
+            skg_view_init(&of);
+            ck_skg(skg_scan_view_at(scan, (double)k + 0.25 * (s - 1), &of));
+            image(&of, part[s]);
+        }
+        for (int i = 0; i < PIXELS; i++) {
+            const double mean = ((double)part[0][i] + (double)part[1][i] + (double)part[2][i]) / 3;
+            ck_assert_double_eq_tol((double)got[k][i], mean, 1e-7); /* a rounding to float of at most 1 */
+        }
+    }
+    skg_plan_release(&plan);
+    plan = run_plan(scene, &view, (run_choice){.quantity = SKG_QUANTITY_ATTENUATION});
+    memcpy(expected, got, sizeof got);
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    for (int i = 0; i < PIXELS; i++)
+        ck_assert_double_eq_tol(exp(-(double)got[5][i]), (double)expected[5][i],
+                                2e-6); /* exp and logarithm of the device, three times */
+}
+END_TEST
+
+START_TEST(a_run_can_be_left) {
+    skg_scan_run *run = NULL;
+    skg_scan_batch batch;
+    int64_t count = 0;
+    options.batch = 2;
+    ck_skg(skg_scan_run_create(plan, scan, &options, &run));
+    ck_skg(skg_scan_run_projection_count(run, &count));
+    ck_assert_int_eq(count, COUNT);
+    skg_scan_batch_init(&batch);
+    ck_skg(skg_scan_run_next(run, &batch));
+    ck_assert_int_eq(batch.count, 2);
+    ck_assert_ptr_null(batch.phases);
+    skg_scan_run_release(&run);
+    ck_assert_ptr_null(run);
+    skg_scan_run_release(&run);
+}
+END_TEST
+
+static skg_status refuse(const skg_scan_batch *batch, void *user) {
+    (void)batch;
+    ++*(int *)user;
+    return SKG_ERR_OUTPUT;
+}
+
+START_TEST(what_is_refused) {
+    static const int64_t falling[] = {3, 2};
+    int calls = 0;
+    skg_scan_run *run = NULL;
+    options.batch = 1;
+    ck_assert_int_eq(skg_scan_run_each(plan, scan, &options, refuse, &calls), SKG_ERR_OUTPUT);
+    ck_assert_int_eq(calls, 1);
+    options.to = COUNT + 1;
+    ck_skg_fails(skg_scan_run_create(plan, scan, &options, &run), SKG_ERR_ARGUMENT, "the scan has 11");
+    options.to = 0;
+    options.shard = 1;
+    ck_skg_fails(skg_scan_run_create(plan, scan, &options, &run), SKG_ERR_ARGUMENT, "shard 1 of 1");
+    options.shard = 0;
+    options.subframes = 0;
+    ck_skg_fails(skg_scan_run_create(plan, scan, &options, &run), SKG_ERR_ARGUMENT, "sub-frames");
+    options.subframes = 1;
+    options.type = 7;
+    ck_skg_fails(skg_scan_run_create(plan, scan, &options, &run), SKG_ERR_ARGUMENT, "type 7");
+    options.type = SKG_TYPE_FLOAT32;
+    options.only = falling;
+    options.only_count = 2;
+    ck_skg_fails(skg_scan_run_create(plan, scan, &options, &run), SKG_ERR_ARGUMENT, "projection 2");
+    options.only_count = 0;
+    options.batch = -1;
+    ck_skg_fails(skg_scan_run_create(plan, scan, &options, &run), SKG_ERR_ARGUMENT, "-1 projections");
+    ck_assert_ptr_null(run);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, open_scene, close_scene);
+    tcase_add_test(tests, a_run_is_one_image_for_each_view);
+    tcase_add_test(tests, shards_are_the_whole);
+    tcase_add_test(tests, some_projections);
+    tcase_add_test(tests, subframes_are_averaged);
+    tcase_add_test(tests, a_run_can_be_left);
+    tcase_add_test(tests, what_is_refused);
+}
+
+SKG_SUITE_MAIN("scan_run", add_tests)
