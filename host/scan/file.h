@@ -7,7 +7,7 @@
 #define SKG_SCAN_FILE_PRIVATE_H
 
 #include "core/core.h"
-#include "core/sha256.h"
+#include "core/digest.h"
 
 #include <skiagraph/scan_file.h>
 

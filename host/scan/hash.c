@@ -1,7 +1,7 @@
 /* What identifies the projections of a scan. */
 #include "core/core.h"
+#include "core/digest.h"
 #include "core/plain.h"
-#include "core/sha256.h"
 
 #include <skiagraph/scan_run.h>
 #include <skiagraph/version.h>
@@ -15,7 +15,7 @@ skg_status skg_scan_hash_get(const skg_setup *setup, const skg_plan_options *opt
     SKG_PLAIN;
     skg_plan_options o;
     skg_scan_run_options r;
-    skg_sha256 sum;
+    skg_digester sum;
     char text[512];
     SKG_NEEDS(options);
     SKG_NEEDS(hash);
@@ -30,11 +30,12 @@ skg_status skg_scan_hash_get(const skg_setup *setup, const skg_plan_options *opt
              (int)o.supersampling, (int)o.noise, (int)o.repair, (int)o.clip, (int)o.band_weight, o.noise_seed,
              o.swank, o.electronic_kev, o.quantum_step_kev, r.motion != NULL, r.subframes, (int)(o.bands > 0),
              r.noise_seed);
-    skg_sha256_begin(&sum);
-    skg_sha256_add(&sum, hash, strlen(hash));
-    skg_sha256_add(&sum, text, strlen(text));
+    skg_digest_start(&sum);
+    skg_digest_add_text(&sum, hash);
+    skg_digest_add_text(&sum, text);
     for (int64_t b = 0; o.bands > 0 && b <= o.bands; b++)
-        skg_sha256_add(&sum, &o.band_kev[b], sizeof(double));
-    skg_sha256_end(&sum, hash);
+        skg_digest_add(&sum, &o.band_kev[b], sizeof(double));
+    const skg_digest digest = skg_digest_end(&sum);
+    skg_digest_text(&digest, hash);
     return SKG_OK;
 }

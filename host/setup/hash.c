@@ -1,6 +1,6 @@
 /* What identifies a set-up: its file after the settings, and the contents of the files that it names. */
+#include "core/digest.h"
 #include "core/path_hint.h"
-#include "core/sha256.h"
 #include "setup/sections.h"
 
 #include <errno.h>
@@ -19,7 +19,7 @@ skg_status skg_setup_keep_text(skg_setup_reader *reader) {
 }
 
 /* Adds the length and the contents of a file. A folder, such as OutFolder, adds nothing. */
-static skg_status add_file(const char *path, skg_sha256 *hash) {
+static skg_status add_file(const char *path, skg_digester *sum) {
     char bytes[65536];
     struct stat there;
     size_t got;
@@ -27,22 +27,23 @@ static skg_status add_file(const char *path, skg_sha256 *hash) {
     FILE *file = fopen(path, "rb");
     if (!file) return skg_fail_unreadable(path, errno);
     snprintf(bytes, sizeof bytes, "%" PRId64 "\n", (int64_t)there.st_size);
-    skg_sha256_add(hash, bytes, strlen(bytes));
-    while ((got = fread(bytes, 1, sizeof bytes, file)) > 0) skg_sha256_add(hash, bytes, got);
+    skg_digest_add_text(sum, bytes);
+    while ((got = fread(bytes, 1, sizeof bytes, file)) > 0) skg_digest_add(sum, bytes, got);
     const int reason = ferror(file) ? errno : 0;
     fclose(file);
     return reason ? skg_fail_unreadable(path, reason) : SKG_OK;
 }
 
 skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_t size) {
-    skg_sha256 sum;
+    skg_digester sum;
     SKG_NEEDS(setup);
     SKG_NEEDS(hash);
-    if (size < SKG_SHA256_TEXT)
-        return skg_fail(SKG_ERR_ARGUMENT, "hash: %" PRId64 " bytes; it needs %d", size, SKG_SHA256_TEXT);
-    skg_sha256_begin(&sum);
-    skg_sha256_add(&sum, setup->text, strlen(setup->text) + 1);
+    if (size < SKG_DIGEST_TEXT)
+        return skg_fail(SKG_ERR_ARGUMENT, "hash: %" PRId64 " bytes; it needs %d", size, SKG_DIGEST_TEXT);
+    skg_digest_start(&sum);
+    skg_digest_add_text(&sum, setup->text);
     for (int64_t i = 0; i < setup->file_count; i++) SKG_TRY(add_file(setup->files[i].path, &sum));
-    skg_sha256_end(&sum, hash);
+    const skg_digest digest = skg_digest_end(&sum);
+    skg_digest_text(&digest, hash);
     return SKG_OK;
 }

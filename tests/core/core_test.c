@@ -3,7 +3,6 @@
 #include "core/maths.h"
 #include "core/names.h"
 #include "core/output.h"
-#include "core/sha256.h"
 #include "suite.h"
 
 #include <string.h>
@@ -183,25 +182,6 @@ START_TEST(arrays_step_by_their_first_element) {
 }
 END_TEST
 
-/* The examples of FIPS 180-4, and a text that ends within the last 9 bytes of a block. */
-START_TEST(sha256_is_as_published) {
-    static const struct {
-        const char *text, *hash;
-    } cases[] = {{"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
-                 {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
-                 {"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq",
-                  "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"}};
-    char text[SKG_SHA256_TEXT];
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        skg_sha256 hash;
-        skg_sha256_begin(&hash);
-        for (const char *c = cases[i].text; *c; c++) skg_sha256_add(&hash, c, 1);
-        skg_sha256_end(&hash, text);
-        ck_assert_str_eq(text, cases[i].hash);
-    }
-}
-END_TEST
-
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_status_has_name_and_text);
     tcase_add_test(tests, last_error_may_quote_itself);
@@ -215,7 +195,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_missing_argument_is_named);
     tcase_add_test(tests, rounding_up_stays_where_it_is_exact);
     tcase_add_test(tests, a_mailbox_is_bounded);
-    tcase_add_test(tests, sha256_is_as_published);
 }
 
 SKG_SUITE_MAIN("core", add_tests)

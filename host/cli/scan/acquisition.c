@@ -141,7 +141,7 @@ static int write_geometry(const cli_arguments *arguments, const cli_acquisition 
 static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     int32_t quantity = SKG_QUANTITY_ENERGY;
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
-    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, &a->session);
+    if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &a->session);
     if (exit_status != CLI_DONE) return exit_status;
     a->session.options.quantity = quantity;
     a->options.type =

@@ -7,6 +7,7 @@ skg_status write_batches(cli_acquisition *a, skg_scan_run *run, int shows_progre
     const double start = cli_now_ms();
     int64_t all = 0;
     skg_status status = skg_scan_run_projection_count(run, &all);
+    if (shows_progress) cli_progress_begin("projections", all);
     while (status >= SKG_OK) {
         skg_scan_batch batch;
         skg_scan_batch_init(&batch);
@@ -15,8 +16,9 @@ skg_status write_batches(cli_acquisition *a, skg_scan_run *run, int shows_progre
         if (status < SKG_OK || batch.count == 0) break;
         status = skg_scan_file_write(a->file, batch.count, batch.indices, batch.images, batch.phases);
         a->computed += batch.count;
-        if (shows_progress) cli_progress("projections", a->computed, all, start);
+        if (shows_progress) cli_progress_step(a->computed);
     }
+    if (shows_progress) cli_progress_end();
     a->seconds = 1e-3 * (cli_now_ms() - start);
     return status == SKG_RANGE ? SKG_OK : status;
 }

@@ -69,15 +69,18 @@ static skg_status write_group(cli_acquisition *a, const int64_t *list, int64_t c
 static int take_groups(cli_acquisition *a, const int64_t *list, int64_t missing) {
     const int64_t even = missing / ((int64_t)GROUPS_PER_RANK * a->ranks.count);
     const int64_t group = even < 1 ? 1 : even < GROUP_MOST ? even : GROUP_MOST;
-    const double start = cli_now_ms();
+    int exit_status = CLI_DONE;
+    if (a->ranks.rank == 0) cli_progress_begin("projections", missing);
     for (;;) {
         const int64_t first = ranks_take(&a->ranks, group), left = missing - first;
         if (left <= 0) break;
         const skg_status status = write_group(a, list + first, left < group ? left : group);
-        if (status != SKG_OK) return cli_fail(status);
-        if (a->ranks.rank == 0) cli_progress("projections", first, missing, start);
+        if (status != SKG_OK) exit_status = cli_fail(status);
+        if (status != SKG_OK) break;
+        if (a->ranks.rank == 0) cli_progress_step(first);
     }
-    return CLI_DONE;
+    if (a->ranks.rank == 0) cli_progress_end();
+    return exit_status;
 }
 
 int shared_run(const cli_arguments *arguments, cli_acquisition *a) {
