@@ -221,7 +221,7 @@ skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *opt
     SKG_NEEDS(path);
     skg_scan_file_options_init(&o);
     SKG_TRY(skg_struct_read(options, "skg_scan_file_options", &o, sizeof o));
-    if (!o.scan || !o.hash || strlen(o.hash) != SKG_SHA256_TEXT - 1)
+    if (!o.scan || !o.hash || strlen(o.hash) != SKG_DIGEST_TEXT - 1)
         return skg_fail(SKG_ERR_ARGUMENT, "scan file: it needs a scan, and a hash of 64 hexadecimal digits");
     if (o.flats < 0 || o.darks < 0 || o.flats > INT32_MAX || o.darks > INT32_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "scan file: %" PRId64 " flat and %" PRId64 " dark fields", o.flats,

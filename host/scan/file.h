@@ -32,7 +32,7 @@ struct skg_scan_file {
 
 /* Who wrote a file. */
 typedef struct {
-    char hash[SKG_SHA256_TEXT]; /* "": no scan of ours */
+    char hash[SKG_DIGEST_TEXT]; /* "": no scan of ours */
     int64_t samples;
 } skg_scan_identity;
 
