@@ -4,7 +4,7 @@
 #include <skiagraph/frame.h>
 #include <skiagraph/plan.h>
 
-#include <inttypes.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
@@ -110,7 +110,7 @@ static skg_status score(skg_context *context, int32_t strategy, double *result) 
     float *image = NULL;
     skg_output output;
     skg_status status = SKG_OK;
-    double fastest = INFINITY;
+    double fastest = DBL_MAX;
     SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)SCORED_PIXELS * SCORED_PIXELS, sizeof *image, "device test", &image));
     SKG_TRY_CLEANUP(skg_trial_scene_create(context, SKG_TRIAL_CORE, SCORED_PIXELS, &run->scene));
