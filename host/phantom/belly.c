@@ -53,7 +53,7 @@ static double liver_region(const void *shape, const double p[3]) {
     double most = fmax(skg_belly_inside(plan, 0, p), -over_liver_floor(p));
     most = fmax(most, -skg_ellipsoid_inside(&gallbladder, p, plan->gap));
     most = fmax(most, -clear_of_kidneys(p, plan->gap));
-    most = fmax(most, plan->gap + 1.5 - to_common_duct(p));
+    most = fmax(most, plan->gap + 2.6 - to_common_duct(p));
     return fmax(most, p[0] - 56);
 }
 

@@ -8,7 +8,7 @@ static const skg_ellipsoid simple_heart = {{20, -78, 40}, {66, 45, 45}, {0.76, -
 
 /* Left ventricle with the apex, right ventricle, right atrium (the right border), left atrium. Places are typical of a
  * frontal image: the right border lies 40 mm to the right of the midline, the apex 85 mm to the left. */
-static const skg_ellipsoid chamber[] = {{{45, -82, 28}, {55, 38, 39}, {0.72, -0.38, -0.50}},
+static const skg_ellipsoid chamber[] = {{{42, -80, 28}, {54, 44, 40}, {0.72, -0.38, -0.50}},
                                         {{16, -97, 23}, {49, 28, 34}, {1, -0.10, -0.28}},
                                         {{-17, -76, 39}, {32, 26, 28}, {0.15, 0.1, 1}},
                                         {{4, -51, 49}, {36, 20, 24}, {1, 0, 0}},

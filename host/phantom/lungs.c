@@ -22,6 +22,9 @@ typedef struct {
 
 static const double apex = 160; /* mm */
 
+/* g/cm3 of the lung between its vessels, which weigh about 0.015 g for each cm3 of the whole; see builder.c. */
+static const double between_vessels = 0.225;
+
 /* z down to which the lung fills the recess between diaphragm and wall: lowest at the back, beside the spine. At
  * end-expiration most of the recess is empty (mm, a choice). */
 static double recess(double x, double y) {
@@ -75,7 +78,7 @@ static double lung_region(const void *shape, const double flat[3]) {
     const lung_level *at = shape;
     const lung *l = at->l;
     const double p[3] = {flat[0], flat[1], height_of(l, at->level, flat[0], flat[1])};
-    double most = skg_cage_inside(p, (l->plan->simple ? 9.5 : 8.3) + l->plan->gap);
+    double most = skg_cage_inside(p, (l->plan->simple ? 9.5 : 7.5) + l->plan->gap);
     /* the mediastinum: vessels, thymus and oesophagus between the lungs, widest at the root with its bronchus */
     double up = (p[2] - 78) / 28, across = (p[1] + 37) / 28;
     double wide = 11, root = 32;
@@ -90,6 +93,10 @@ static double lung_region(const void *shape, const double flat[3]) {
     most = fmax(most, skg_spine_inside(p, l->plan->gap + fold));
     most = fmax(most, -skg_heart_inside(l->plan, p, l->plan->gap + 0.5));
     most = fmax(most, l->plan->gap - skg_airway_distance(l->plan->simple, p));
+    if (!l->plan->simple) { /* no wedge of lung between the heart and the diaphragm on which it lies */
+        const double above[3] = {p[0], p[1], p[2] + 12};
+        most = fmax(most, -skg_heart_inside(l->plan, above, 0));
+    }
     if (p[2] > 95) { /* the apex is a dome: the upper half of an ellipsoid */
         double u = (p[0] - l->side * 44) / 62, v = (p[1] + 36) / 66, w = (p[2] - 95) / (apex + 1 - 95);
         most = fmax(most, 30 * (u * u + v * v + w * w - 1));
@@ -144,11 +151,11 @@ static int meets_wall(const void *unused, const double *triangle, const double *
     return skg_triangles_meet(triangle, other);
 }
 
-/* Whether a ball, 3 mm larger than given, lies in the lung: its middle does, and no triangle about it in the three
+/* Whether a ball, 2 mm larger than given, lies in the lung: its middle does, and no triangle about it in the three
  * planes of the axes meets the wall. */
 static int has_room(const void *shape, const double p[3], double radius) {
     const vessel_room *room = shape;
-    const double clear = radius + 3;
+    const double clear = radius + 2;
     if (outside_wall(&room->wall, p) > -clear) return 0;
     for (int axis = 0; axis < 3; axis++) {
         double triangle[9];
@@ -174,8 +181,8 @@ static void find_radii(const lung *l, double *radius) {
             radius[s * l->around + i] = skg_shape_exit(lung_region, &at, from, direction, 150);
         }
         /* The full thorax has sharper edges, because the left lung wraps the heart. */
-        skg_shape_limit(radius + s * l->around, l->around, l->plan->simple ? 2.5 : 5.5);
-        skg_shape_smooth(radius + s * l->around, l->around, l->plan->simple ? 3 : 1);
+        skg_shape_limit(radius + s * l->around, l->around, l->plan->simple ? 2.5 : 5);
+        skg_shape_smooth(radius + s * l->around, l->around, l->plan->simple ? 3 : 2);
     }
     /* From level to level a radius may change by 2 mm for each mm of height; a lung is 250 mm high. */
     double rise = 2 * 250 / (double)l->sides;
@@ -226,6 +233,7 @@ static skg_status add_lung(const char *label, int64_t skin, lung *l, skg_thorax 
     SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, l, &arrays));
     SKG_TRY_CLEANUP(skg_shape_unfold(label, &arrays));
     SKG_TRY_CLEANUP(skg_thorax_fit(thorax, label, -790, skin, &arrays));
+    if (!l->plan->simple) thorax->part[thorax->parts - 1].density = between_vessels;
 cleanup:
     skg_mesh_arrays_free(&arrays);
     skg_free(&counts);

@@ -24,6 +24,20 @@ static const struct {
                      {{{21, -5, -72}, {76, 21, -129}, {114, -40, -185}, {109, -43, -194}}, 59},
                      {{{20, -16, -107}, {46, 21, -150}, {66, 9, -194}, {64, 11, -200}}, 51}};
 
+/* Rounds the corner where a line meets the cage, over about 10 mm: means of three neighbours, their middle twice. */
+static void round_angle(double (*line)[3]) {
+    for (int pass = 0; pass < 16; pass++) {
+        double before[3];
+        memcpy(before, line[0], sizeof before);
+        for (int i = 1; i + 1 < RIB_POINTS; i++)
+            for (int k = 0; k < 3; k++) {
+                const double here = line[i][k];
+                line[i][k] = 0.25 * before[k] + 0.5 * here + 0.25 * line[i + 1][k];
+                before[k] = here;
+            }
+    }
+}
+
 skg_status skg_rib_fill(int k, int simple, skg_rib *rib) {
     const double ratio = 1.6; /* of height to thickness: ribs are 12 to 14 mm high and 7 to 9 mm thick */
     rib->width = sqrt(rib_table[k].section / (SKG_PI * ratio)), rib->height = ratio * rib->width;
@@ -53,6 +67,7 @@ skg_status skg_rib_fill(int k, int simple, skg_rib *rib) {
         behind = behind && rib->line[i][0] < (simple || k < 11 ? p[1][0] : p[2][0]);
         if (!behind) skg_cage_project(rib->line[i]);
     }
+    if (!simple) round_angle(rib->line);
     return SKG_OK;
 }
 

@@ -32,10 +32,10 @@ typedef struct {
 static const struct {
     double from[3], by[3], to[3], radius;
 } trunk[] = {
-    {{50, -30, 64}, {62, -22, 36}, {70, 2, -26}, 7.5},   {{44, -38, 86}, {54, -42, 108}, {48, -40, 138}, 4.6},
-    {{44, -48, 80}, {70, -72, 88}, {84, -98, 96}, 4.4},  {{44, -26, 80}, {72, -8, 98}, {84, 4, 116}, 4.2},
-    {{46, -40, 72}, {78, -50, 70}, {106, -56, 62}, 4.4}, {{46, -52, 66}, {74, -74, 50}, {96, -96, 32}, 4.4},
-    {{48, -38, 58}, {80, -48, 34}, {104, -58, 8}, 4.6},  {{55, -18, 62}, {59, 0, 56}, {66, 20, 46}, 3.6}};
+    {{50, -30, 64}, {62, -22, 36}, {70, 2, -26}, 8},     {{44, -38, 86}, {54, -42, 108}, {48, -40, 138}, 5.6},
+    {{44, -48, 80}, {70, -72, 88}, {84, -98, 96}, 5.4},  {{44, -26, 80}, {72, -8, 98}, {84, 4, 116}, 5.2},
+    {{46, -40, 72}, {78, -50, 70}, {106, -56, 62}, 5.2}, {{46, -52, 66}, {74, -74, 50}, {96, -96, 32}, 5.2},
+    {{48, -38, 58}, {80, -48, 34}, {104, -58, 8}, 5.6},  {{55, -18, 62}, {59, 0, 56}, {66, 20, 46}, 4.4}};
 enum { TRUNKS = sizeof trunk / sizeof *trunk };
 
 /* A number from 0 to 1 (Numerical Recipes' linear congruences). */
@@ -113,14 +113,25 @@ static void add(tree *t, const branch *given) {
     t->branch[t->count++] = b;
 }
 
+/* Adds a trunk; where the heart or a great vessel leaves it too little room, farther to the side and to the back. */
 static void add_trunk(tree *t, int n) {
-    branch b = {.first = trunk[n].radius, .last = 0.22 * trunk[n].radius};
-    for (int i = 0; i < POINTS; i++) {
-        const double s = (double)i / (POINTS - 1), r = 1 - s;
-        for (int k = 0; k < 3; k++)
-            b.point[i][k] = r * r * trunk[n].from[k] + 2 * r * s * trunk[n].by[k] + s * s * trunk[n].to[k];
+    const double away[3] = {7, 5, 0}; /* mm */
+    branch best = {0};
+    double most = 0;
+    for (int shift = 0; shift < 4; shift++) {
+        branch b = {.first = trunk[n].radius, .last = 0.22 * trunk[n].radius};
+        double from, to;
+        for (int i = 0; i < POINTS; i++) {
+            const double s = (double)i / (POINTS - 1), r = 1 - s;
+            for (int k = 0; k < 3; k++)
+                b.point[i][k] = r * r * trunk[n].from[k] + 2 * r * s * trunk[n].by[k] +
+                                s * s * trunk[n].to[k] + shift * away[k];
+        }
+        find_free(t, &b, length_of(&b), &from, &to);
+        if (to - from <= most + 0.15) continue;
+        most = to - from, best = b;
     }
-    add(t, &b);
+    if (most > 0) add(t, &best);
 }
 
 /* A branch from a place of its parent, at `azimuth` about it, that bends towards the parent's direction. */

@@ -136,7 +136,7 @@ START_TEST(organs_are_those_of_a_chest) { /* volumes of adults as in the literat
                   {"stomach", 150, 600},
                   {"aorta", 60, 120},
                   {"scapula left", 25, 90},
-                  {"pulmonary vessels left", 15, 120},
+                  {"pulmonary vessels left", 12, 120},
                   {"spine", 150, 350},
                   {"marrow of rib 6 left", 12, 26}};
     for (size_t v = 0; v < sizeof volume / sizeof *volume; v++) {
