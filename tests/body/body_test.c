@@ -249,6 +249,11 @@ START_TEST(parts_stay_in_place) { /* over a quiet breath */
         int64_t ducts = find("bile ducts"), liver = find("liver"), needle = find("needle");
         for (int64_t v = 0; v < s[ducts].vertices; v++)
             ck_assert(solid_holds(s + liver, s[ducts].position + 3 * v));
+        for (int64_t i = 0; i < parts; i++) /* mm: as between neighbours */
+            for (int64_t v = 0; part[i].inside >= 0 && v < s[i].vertices; v++)
+                ck_assert_msg(solid_holds(s + part[i].inside, s[i].position + 3 * v) ||
+                                  solid_distance(s + part[i].inside, s[i].position + 3 * v) <= 0.5,
+                              "%s leaves %s", part[i].label, part[part[i].inside].label);
         for (int64_t i = 0; i < parts; i++)
             for (int64_t j = 0; j < parts; j++) {
                 if (i == j || i == needle || j == needle || part[i].inside != part[j].inside) continue;
@@ -273,6 +278,29 @@ START_TEST(parts_stay_in_place) { /* over a quiet breath */
         for (int64_t i = 0; i < parts; i++) solid_free(s + i);
     }
     ck_assert_msg(worst <= 0.5, "%s", what);
+    drop();
+}
+END_TEST
+
+START_TEST(every_part_has_a_rule) { /* and marrow moves with its bone */
+    make(0, NULL);
+    for (int64_t i = 0; i < parts; i++) {
+        const skg_body_organ *o = body->organ + i;
+        const char *outer = part[i].inside >= 0 ? part[part[i].inside].label : "";
+        ck_assert_msg(o->role != ROLE_STATIC || skg_label_stays(o->label) || skg_label_stays(outer),
+                      "%s has no rule", o->label);
+    }
+    pose(1, 1);
+    const skg_body_organ *bone = body->organ + find("rib 6 left");
+    const skg_body_organ *marrow = body->organ + find("marrow of rib 6 left");
+    for (int64_t i = 0; i < marrow->vertices; i++) {
+        double with_bone[3];
+        skg_rigid_displace(&bone->rigid, marrow->rest + 3 * i, with_bone);
+        for (int k = 0; k < 3; k++) ck_assert_double_eq(marrow->moved[3 * i + k], with_bone[k]);
+    }
+    const skg_body_organ *bowel = body->organ + find("bowel"), *gas = body->organ + find("bowel gas");
+    ck_assert_double_lt(gas->moved[2], -0.5); /* mm: it goes down with the bowel, whose top goes down by 15 */
+    ck_assert_double_lt(bowel->moved[2], 0.01);
     drop();
 }
 END_TEST
@@ -366,6 +394,7 @@ START_TEST(bad_bodies_are_refused) {
 END_TEST
 
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, every_part_has_a_rule);
     tcase_add_loop_test(tests, same_bits_for_any_number_of_threads, 0, 2);
     tcase_add_loop_test(tests, reference_in_the_middle, 0, 2);
     tcase_add_loop_test(tests, the_needle_is_rigid_and_slides, 0, 2);

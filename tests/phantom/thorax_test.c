@@ -152,6 +152,24 @@ START_TEST(organs_are_those_of_a_chest) { /* volumes of adults as in the literat
 }
 END_TEST
 
+START_TEST(fat_is_10_to_25_mm_thick) {
+    static solid skin, muscle;
+    make(0, 200000); /* so that facets hardly matter */
+    solid_make(part[find("skin")].mesh, &skin);
+    solid_make(part[find("muscle")].mesh, &muscle);
+    for (int64_t v = 0; v < muscle.vertices; v += 7) {
+        const double *p = muscle.position + 3 * v;
+        if (p[2] < -290 || p[2] > 230) continue; /* the cut ends of the body */
+        const double fat = solid_distance(&skin, p);
+        /* mm: given along the axes; where the surface slopes, the layer is thinner */
+        ck_assert_msg(fat >= 9.5 && fat <= 25, "%g mm at (%g, %g, %g)", fat, p[0], p[1], p[2]);
+    }
+    solid_free(&skin);
+    solid_free(&muscle);
+    skg_thorax_release(&thorax);
+}
+END_TEST
+
 static int within(int64_t inner, int64_t outer) {
     for (int64_t i = part[inner].inside; i >= 0; i = part[i].inside)
         if (i == outer) return 1;
@@ -290,6 +308,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_mesh_is_closed, 0, 6);
     tcase_add_loop_test(tests, parts_are_where_and_as_large_as_they_should_be, 0, 2);
     tcase_add_test(tests, organs_are_those_of_a_chest);
+    tcase_add_test(tests, fat_is_10_to_25_mm_thick);
     tcase_add_loop_test(tests, disjoint_or_nested, 0, 2);
     tcase_add_loop_test(tests, the_sternum_is_not_twisted, 0, 2);
     tcase_add_loop_test(tests, plans_find_no_overlap, 0, 4);

@@ -10,8 +10,8 @@ const cli_flag cli_flag_thorax_triangles = {
 const cli_flag cli_flag_thorax_simple = {
     "--simple", NULL,
     "Generates the simple thorax: 67 parts in a body of fat, without muscle, great vessels, vessels of the lungs, "
-    "marrow, shoulder blades and bowel.", NULL,
-    CLI_NAMES_NOTHING};
+    "marrow, shoulder blades and bowel.",
+    NULL, CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
     "Generates a thorax at end-expiration: fat, muscle, spine, ribs with marrow, shoulder blades, lungs with their "
