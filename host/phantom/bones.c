@@ -84,6 +84,8 @@ static skg_status sternum(const skg_thorax_plan *plan, int64_t skin, skg_thorax 
 
 static skg_status ribs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
     int64_t around = skg_shape_count(plan->resolution, 10, 5);
+    /* Left and right are mirror images only with an even number of points. */
+    if (!plan->simple && around % 2 == 1) around += around > 6 ? -1 : 1;
     for (int k = 0; k < RIBS; k++)
         for (int side = 0; side < 2; side++) {
             const skg_rib *rib = plan->rib + k;
