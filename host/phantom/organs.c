@@ -87,7 +87,7 @@ skg_status skg_thorax_organs(const skg_thorax_plan *plan, int64_t skin, skg_thor
     static const double heart_centre[3] = {18, -79, 42};
     SKG_TRY(skg_thorax_star(plan, "heart", 45, skin, heart_region, plan, heart_centre, plan->simple ? 17 : 24,
                             thorax));
-    if (!plan->simple) return skg_thorax_belly(plan, skin, thorax);
+    if (!plan->simple) return SKG_OK;
     SKG_TRY(skg_thorax_star(plan, "liver", 60, skin, liver_region, plan, liver_centre, 30, thorax));
     SKG_TRY(skg_thorax_ducts(plan, thorax->parts - 1, skin, thorax));
     SKG_TRY(skg_thorax_star(plan, "stomach", 30, skin, stomach_region, plan, stomach_centre, 15, thorax));

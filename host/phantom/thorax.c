@@ -33,6 +33,7 @@ static skg_status fill(int simple, double triangles, skg_thorax *thorax) {
     if (status == SKG_OK && !simple) status = skg_thorax_vessels(plan, outer, thorax);
     if (status == SKG_OK) status = skg_thorax_diaphragm(plan, outer, thorax);
     if (status == SKG_OK) status = skg_thorax_organs(plan, outer, thorax);
+    if (status == SKG_OK && !simple) status = skg_thorax_belly(plan, outer, thorax);
     if (status == SKG_OK) status = skg_thorax_lungs(plan, outer, thorax);
     if (status == SKG_OK) status = skg_thorax_needle(thorax);
     skg_free(&plan);

@@ -2,9 +2,6 @@
 
 #include "core/vector.h"
 #include "phantom/curve.h"
-#include "phantom/fold.h"
-#include "phantom/makers.h"
-#include "phantom/tube.h"
 
 #include <math.h>
 #include <string.h>
@@ -50,6 +47,8 @@ static const struct {
 skg_status skg_vessels_fill(skg_vessel vessels[VESSELS]) {
     for (int v = 0; v < VESSELS; v++) {
         SKG_TRY(skg_shape_spline(table[v].point, table[v].points, VESSEL_POINTS, vessels[v].line));
+        vessels[v].label = table[v].label, vessels[v].hounsfield = table[v].hounsfield;
+        vessels[v].rings = table[v].rings;
         memcpy(vessels[v].radius, table[v].radius, sizeof vessels[v].radius);
         const double most = fmax(table[v].radius[0], table[v].radius[1]);
         for (int k = 0; k < 3; k++) vessels[v].low[k] = HUGE_VAL, vessels[v].high[k] = -HUGE_VAL;
@@ -76,21 +75,4 @@ double skg_vessel_distance(const skg_vessel vessels[VESSELS], const double p[3])
         }
     }
     return least;
-}
-
-skg_status skg_thorax_vessels(const skg_thorax_plan *plan, int64_t outer, skg_thorax *thorax) {
-    for (int v = 0; v < VESSELS; v++) {
-        const skg_vessel *vessel = plan->vessel + v;
-        skg_mesh_arrays arrays = {0};
-        skg_status status =
-            skg_shape_hose(table[v].label, vessel->line, VESSEL_POINTS, vessel->radius[0], vessel->radius[1],
-                           1, skg_shape_count(plan->resolution, table[v].rings, 3),
-                           skg_shape_count(plan->resolution, 12, 6), &arrays);
-        if (status == SKG_OK) status = skg_shape_unfold(table[v].label, &arrays);
-        if (status == SKG_OK)
-            status = skg_thorax_fit(thorax, table[v].label, table[v].hounsfield, outer, &arrays);
-        skg_mesh_arrays_free(&arrays);
-        SKG_TRY(status);
-    }
-    return SKG_OK;
 }

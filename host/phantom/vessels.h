@@ -8,6 +8,8 @@ enum { VESSELS = 8, VESSEL_POINTS = 33 };
 
 /* A vessel's middle line, evenly in arc length, the radii of its ends, and bounds of the whole, mm. */
 typedef struct {
+    const char *label;
+    double hounsfield, rings; /* rings at resolution 1 */
     double line[VESSEL_POINTS][3], radius[2], low[3], high[3];
 } skg_vessel;
 
