@@ -1,7 +1,7 @@
 /* Draws the image of leaky meshes with each kind of repair (none, the neighbours' mean, rays traced again), and
  * below each image its difference from the image of the closed meshes. Prints the errors of the three.
  *
- *   skiagraph thorax -o thorax && bench_repair --scene thorax/thorax.json --png docs/repair.png */
+ *   skiagraph thorax --simple -o thorax && bench_repair --scene thorax/thorax.json --png docs/repair.png */
 #include "common/holes.h"
 #include "common/scenes.h"
 

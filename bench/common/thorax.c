@@ -16,6 +16,7 @@ void thorax_make(long triangles, int leaky, bench_thorax *out) {
     skg_thorax_options options;
     skg_thorax_options_init(&options);
     options.triangles = triangles;
+    options.simple = 1; /* so that figures can be compared with those of earlier versions and of the paper */
     *out = (bench_thorax){0};
     bench_try(skg_thorax_create(&options, &out->thorax), "thorax");
     bench_try(skg_thorax_part_count(out->thorax, &out->parts), "thorax");

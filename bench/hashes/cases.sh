@@ -12,6 +12,7 @@ material() { try "material $*" material "$@" --json -o out/material.csv; }
 
 meshes() {
     for triangles in 10000 42000; do
+        try "thorax --simple --triangles $triangles" thorax --simple --triangles $triangles -o out/thorax
         try "thorax --triangles $triangles" thorax --triangles $triangles -o out/thorax
     done
     for file in liver.stl heart.obj lung.ply thorax/liver.ply thorax/spine.ply; do

@@ -1,4 +1,4 @@
-/* Draws breathing-modes.png and diaphragm-displacement.png into a folder: the generated thorax, breathing
+/* Draws breathing-modes.png and diaphragm-displacement.png into a folder: the simple thorax, breathing
  * with the diaphragm, with the ribs and with both, as Figures 7 and 11 of Vidal and Villard (2016). */
 #include <skiagraph/skiagraph.h>
 
@@ -31,7 +31,10 @@ static skg_thorax_part part[MOST_PARTS];
 static int64_t parts;
 
 static void make_body(void) {
-    check(skg_thorax_create(NULL, &thorax));
+    skg_thorax_options options;
+    skg_thorax_options_init(&options);
+    options.simple = 1;
+    check(skg_thorax_create(&options, &thorax));
     check(skg_thorax_part_count(thorax, &parts));
     check(skg_body_create(NULL, NULL, &body));
     for (int64_t i = 0; i < parts; i++) {

@@ -7,6 +7,11 @@
 
 static const double anywhere = 1e4; /* mm; beyond any body */
 
+/* The vessels in a lung: they go down with the diaphragm, the less the nearer they are to the apex. */
+static int is_lung_vessels(const skg_body_organ *o) {
+    return skg_label_begins(o->label, "pulmonary vessels");
+}
+
 /* Finds the CARRIERS vertices of the carrier that are nearest to each vertex. Their weights are 1/(d^2 + 1 mm^2),
  * made to add up to 1. */
 static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
@@ -34,9 +39,11 @@ static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
     return SKG_OK;
 }
 
-/* Fraction of the carrier's motion: 1 at the lower end and 0 at the upper one, or the other way round. */
-static void span(skg_body_organ *o, int follows_below) {
-    const double *bounds = o->bounds;
+/* Fraction of the carrier's motion: 1 at the lower end and 0 at the upper one, or the other way round. What lies in a
+ * spanned organ, as gas in the bowel, moves as that does. */
+static void span(const skg_body *body, skg_body_organ *o, int follows_below) {
+    const skg_body_organ *outer = o->inside >= 0 ? body->organ + o->inside : o;
+    const double *bounds = outer->role == ROLE_SPANNED || is_lung_vessels(o) ? outer->bounds : o->bounds;
     for (int64_t i = 0; i < o->vertices; i++) {
         double up = (o->rest[3 * i + 2] - bounds[2]) / (bounds[5] - bounds[2]);
         o->fraction[i] = follows_below ? 1 - up : up;
@@ -70,16 +77,20 @@ static skg_status place_needle(skg_body *body, skg_body_organ *o, int32_t liver,
     return carry(body, o, liver);
 }
 
-/* Organs without a rule follow what they lie in, if that deforms and is not the skin; else they stay. */
+static int is_rigid(skg_role role) {
+    return role == ROLE_RIB || role == ROLE_STERNUM || role == ROLE_RIGID;
+}
+
+/* Organs without a rule follow what they lie in, if that moves and is not the wall of the body; else they stay. */
 skg_status skg_carry_adopt(skg_body *body, skg_body_organ *o) {
     if (o->kind == SKG_ORGAN_STATIC) return SKG_OK;
-    skg_role outer = o->inside >= 0 ? body->organ[o->inside].role : ROLE_STATIC;
-    int skin = o->inside >= 0 && skg_label_begins(body->organ[o->inside].label, "skin");
-    if (outer == ROLE_LINKED && !skin) {
+    const skg_body_organ *outer = o->inside >= 0 ? body->organ + o->inside : o;
+    if (outer->role == ROLE_LINKED && !skg_label_is_wall(outer->label)) {
         o->role = ROLE_CARRIED;
         return carry(body, o, (int32_t)o->inside);
     }
-    if (!skg_label_stays(o->label))
+    if (is_rigid(outer->role)) o->role = ROLE_ENCLOSED;
+    if (o->role == ROLE_STATIC && !skg_label_stays(o->label) && !skg_label_stays(outer->label))
         skg_log(
             body->context, SKG_LOG_WARNING,
             "%s: there is no rule for this label, so it stays where it is. Rename it, or put it inside an organ "
@@ -95,8 +106,14 @@ skg_status skg_carry_follow(skg_body *body, skg_body_organ *o) {
             lung = (int32_t)l;
     int with_liver =
         skg_label_begins(o->label, "gallbladder") || skg_label_begins(o->label, "common bile duct");
-    int with_lung = skg_label_begins(o->label, "trachea") || skg_label_begins(o->label, "bronchus");
-    int32_t carrier = with_liver ? liver : with_lung ? lung : LINK_TENDON;
+    int with_lung = skg_label_begins(o->label, "trachea") || skg_label_begins(o->label, "bronchus") ||
+                    skg_label_begins(o->label, "pulmonary artery");
+    int with_heart = skg_label_begins(o->label, "ascending aorta") ||
+                     skg_label_begins(o->label, "vena cava") || skg_label_begins(o->label, "pulmonary trunk");
+    int32_t carrier = with_liver   ? liver
+                      : with_lung  ? lung
+                      : with_heart ? skg_find_organ(body, "heart")
+                                   : LINK_TENDON;
     if (o->role == ROLE_NEEDLE ? liver < 0 || skin < 0 : carrier == -1) {
         o->role = ROLE_STATIC;
         skg_log(body->context, SKG_LOG_WARNING,
@@ -106,8 +123,9 @@ skg_status skg_carry_follow(skg_body *body, skg_body_organ *o) {
     /* In dynamic MR, kidneys move by 0.6 to 0.7 of the diaphragm. */
     SKG_TRY(skg_alloc(o->vertices, sizeof *o->fraction, o->label, &o->fraction));
     for (int64_t i = 0; i < o->vertices; i++)
-        o->fraction[i] = skg_label_begins(o->label, "kidney") ? 0.65 : 1;
-    if (o->role == ROLE_SPANNED) span(o, with_lung);
+        o->fraction[i] =
+            skg_label_begins(o->label, "kidney") || skg_label_begins(o->label, "perirenal fat") ? 0.65 : 1;
+    if (o->role == ROLE_SPANNED) span(body, o, with_lung || with_heart || is_lung_vessels(o));
     if (o->role == ROLE_NEEDLE) return place_needle(body, o, liver, skin);
     o->carrier = LINK_TENDON;
     return carrier >= 0 ? carry(body, o, carrier) : SKG_OK;

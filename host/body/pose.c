@@ -110,6 +110,10 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
 
 static skg_status pose_one(skg_body *body, skg_body_organ *o) {
     switch (o->role) {
+    case ROLE_ENCLOSED:
+        o->rigid = body->organ[o->inside].rigid;
+        pose_rigid(o);
+        return SKG_OK;
     case ROLE_CARTILAGE:
         pose_cartilage(body, o);
         return SKG_OK;
@@ -199,6 +203,7 @@ static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic
         stages = body->organ[i].stage > stages ? body->organ[i].stage : stages;
     pose_bones(body, thoracic);
     SKG_TRY(pose_role(body, ROLE_CARTILAGE, 0));
+    SKG_TRY(pose_role(body, ROLE_ENCLOSED, 0));
     for (int stage = 0; stage <= stages; stage++) {
         SKG_TRY(pose_role(body, ROLE_DIAPHRAGM, stage));
         SKG_TRY(pose_role(body, ROLE_LINKED, stage));

@@ -31,6 +31,14 @@ skg_role skg_role_of(const char *label, int *number, int *side) {
                 {"liver", ROLE_LINKED},
                 {"heart", ROLE_LINKED},
                 {"skin", ROLE_LINKED},
+                {"muscle", ROLE_LINKED},
+                {"ascending aorta", ROLE_SPANNED},
+                {"vena cava", ROLE_SPANNED},
+                {"pulmonary trunk", ROLE_SPANNED},
+                {"pulmonary artery", ROLE_CARRIED},
+                {"pulmonary vessels", ROLE_SPANNED},
+                {"bowel", ROLE_SPANNED},
+                {"perirenal fat", ROLE_CARRIED},
                 {"gallbladder", ROLE_CARRIED},
                 {"stomach", ROLE_CARRIED},
                 {"spleen", ROLE_CARRIED},
@@ -57,10 +65,16 @@ skg_role skg_role_of(const char *label, int *number, int *side) {
 }
 
 int skg_label_stays(const char *label) {
-    static const char *const word[] = {"spine", "vertebra", "clavicle", "scapula"};
+    static const char *const word[] = {"spine",      "spinal canal",   "vertebra", "disc",
+                                       "discs",      "clavicle",       "scapula",  "aorta",
+                                       "oesophagus", "brachiocephalic"};
     for (size_t i = 0; i < sizeof word / sizeof *word; i++)
         if (skg_label_begins(label, word[i])) return 1;
     return 0;
+}
+
+int skg_label_is_wall(const char *label) {
+    return skg_label_begins(label, "skin") || skg_label_begins(label, "muscle");
 }
 
 /* The diaphragm's is the paper's muscle. The others are assumptions: the softer the organ, the wider its limits. */
@@ -70,7 +84,8 @@ skg_tissue skg_tissue_of(const char *label) {
         skg_tissue tissue;
     } known[] = {{"diaphragm", {0.7, 1.1, 0.1}},    {"lung", {0.5, 1.6, 0.3}},
                  {"liver", {0.97, 1.05, 0.03}},     {"heart", {0.7, 1.3, 0.1}},
-                 {"cartilage", {0.85, 1.15, 0.15}}, {"skin", {0.75, 1.3, 0.25}}};
+                 {"cartilage", {0.85, 1.15, 0.15}}, {"skin", {0.75, 1.3, 0.25}},
+                 {"muscle", {0.75, 1.3, 0.25}}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (skg_label_begins(label, known[i].word)) return known[i].tissue;
     return (skg_tissue){0.8, 1.2, 0.1};

@@ -14,9 +14,10 @@ typedef enum {
     ROLE_STERNUM,
     ROLE_CARTILAGE, /* between a rib and the sternum or another rib */
     ROLE_DIAPHRAGM,
-    ROLE_LINKED,  /* deformable, driven through links: lungs, liver, heart, skin */
-    ROLE_CARRIED, /* every vertex moves with the nearest ones of a carrier */
-    ROLE_SPANNED, /* one end moves with a carrier, the other stays */
+    ROLE_LINKED,   /* deformable, driven through links: lungs, liver, heart, skin, muscle */
+    ROLE_CARRIED,  /* every vertex moves with the nearest ones of a carrier */
+    ROLE_SPANNED,  /* one end moves with a carrier, the other stays */
+    ROLE_ENCLOSED, /* moves with the rigid organ that it lies in */
     ROLE_NEEDLE
 } skg_role;
 
@@ -29,7 +30,10 @@ skg_tissue skg_tissue_of(const char *label);
 /* Whether a label begins with a word, without regard to case, and no letter follows. */
 int skg_label_begins(const char *label, const char *word);
 
-/* Whether this is a bone that does not move. */
+/* Whether this is a bone that does not move, or what lies at the spine and does not. */
 int skg_label_stays(const char *label);
+
+/* Whether this is the wall of the body, in which everything lies: skin or muscle. */
+int skg_label_is_wall(const char *label);
 
 #endif

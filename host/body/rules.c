@@ -66,7 +66,7 @@ static int tendon_rule(const skg_body *body, const skg_body_organ *organ, const 
     return tendon;
 }
 
-/* Skin over the ribs' fat follows them: fully up to `near`, then the less the farther away, and not at all from `far`
+/* Skin over the ribs' fat, and the muscle under it, follow them: fully up to `near`, then the less the farther away, and not at all from `far`
  * on. */
 static int skin_rule(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link) {
     const double near = 22, far = 60;
@@ -98,7 +98,7 @@ skg_link_rule skg_link_rule_of(const skg_body_organ *organ) {
     if (organ->role == ROLE_DIAPHRAGM) return diaphragm_rule;
     if (skg_label_begins(organ->label, "lung")) return lung_rule;
     if (skg_label_begins(organ->label, "cartilage")) return cartilage_rule;
-    return skg_label_begins(organ->label, "skin") ? skin_rule : tendon_rule;
+    return skg_label_is_wall(organ->label) ? skin_rule : tendon_rule;
 }
 
 void skg_body_set_tendon_plane(skg_body *body) {

@@ -19,6 +19,28 @@ static skg_status add_tube(skg_thorax *thorax, const char *label, double hounsfi
     return status;
 }
 
+/* Inside a tube of the full thorax: the marrow, under cortex of `cortex` mm. The rings are those of the bone, or the
+ * marrow would leave it where the bone bends. */
+static skg_status add_marrow(skg_thorax *thorax, const char *bone, const double (*curve)[3], int64_t points,
+                             double height, double width, double side, int64_t rings, int64_t around) {
+    const double cortex = 0.9; /* mm; a rib's is 0.9 to 2.6 at its thickest */
+    const int64_t inside = thorax->parts - 1, fewer = around * 3 / 4;
+    char label[40];
+    double curves[2 * RIB_POINTS][3];
+    const double cut = 1.0 / (double)(rings - 1); /* the end rings, narrower and round, stay solid */
+    for (int64_t i = 0; i < points; i++) {
+        const double at = (cut + (1 - 2 * cut) * (double)i / (double)(points - 1)) * (double)(points - 1);
+        const int64_t low = (int64_t)at < points - 1 ? (int64_t)at : points - 2;
+        for (int k = 0; k < 3; k++)
+            curves[i][k] = curve[low][k] + (at - (double)low) * (curve[low + 1][k] - curve[low][k]);
+    }
+    snprintf(label, sizeof label, "marrow of %s", bone);
+    return add_tube(thorax, label, 150, inside, (const double(*)[3])curves, points, height - cortex,
+                    width - cortex, side, rings - 2, fewer > 5 ? fewer : 5);
+}
+
+static const double cortex_hounsfield = 1330;
+
 enum { CARTILAGES = 10 };
 
 static const char *const side_name[2] = {"left", "right"};
@@ -62,6 +84,8 @@ static skg_status sternum(const skg_thorax_plan *plan, int64_t skin, skg_thorax 
 
 static skg_status ribs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
     int64_t around = skg_shape_count(plan->resolution, 10, 5);
+    /* Left and right are mirror images only with an even number of points. */
+    if (!plan->simple && around % 2 == 1) around += around > 6 ? -1 : 1;
     for (int k = 0; k < RIBS; k++)
         for (int side = 0; side < 2; side++) {
             const skg_rib *rib = plan->rib + k;
@@ -72,8 +96,12 @@ static skg_status ribs(const skg_thorax_plan *plan, int64_t skin, skg_thorax *th
             }
             char label[40];
             snprintf(label, sizeof label, "rib %d %s", k + 1, side_name[side]);
-            SKG_TRY(add_tube(thorax, label, 600, skin, rib->line, RIB_POINTS, rib->height, rib->width,
-                             side_sign[side], skg_shape_count(plan->resolution, 4 + length / 11, 6), around));
+            const int64_t rings = skg_shape_count(plan->resolution, 4 + length / 11, 6);
+            SKG_TRY(add_tube(thorax, label, plan->simple ? 600 : cortex_hounsfield, skin, rib->line,
+                             RIB_POINTS, rib->height, rib->width, side_sign[side], rings, around));
+            if (!plan->simple)
+                SKG_TRY(add_marrow(thorax, label, rib->line, RIB_POINTS, rib->height, rib->width,
+                                   side_sign[side], rings, around));
         }
     return SKG_OK;
 }
@@ -115,14 +143,21 @@ static skg_status cartilages(const skg_thorax_plan *plan, int64_t skin, skg_thor
 }
 
 static skg_status clavicles(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
-    const double p[4][3] = {{26, -100, 147}, {62, -103, 156}, {104, -78, 164}, {150, -44, 170}};
+    static const double points[2][4][3] = {
+        {{20, -98, 140}, {56, -103, 148}, {98, -72, 156}, {147, -34, 158}},
+        {{26, -100, 147}, {62, -103, 156}, {104, -78, 164}, {150, -44, 170}}};
     double curve[33][3];
-    SKG_TRY(skg_shape_spline(p, 4, 33, curve));
+    SKG_TRY(skg_shape_spline(points[plan->simple], 4, 33, curve));
     for (int side = 0; side < 2; side++) {
         char label[40];
         snprintf(label, sizeof label, "clavicle %s", side_name[side]);
-        SKG_TRY(add_tube(thorax, label, 600, skin, (const double(*)[3])curve, 33, 5.5, 6, side_sign[side],
-                         skg_shape_count(plan->resolution, 12, 5), skg_shape_count(plan->resolution, 9, 5)));
+        const int64_t rings = skg_shape_count(plan->resolution, 12, 5);
+        const int64_t around = skg_shape_count(plan->resolution, 9, 5);
+        SKG_TRY(add_tube(thorax, label, plan->simple ? 600 : cortex_hounsfield, skin,
+                         (const double(*)[3])curve, 33, 5.5, 6, side_sign[side], rings, around));
+        if (!plan->simple)
+            SKG_TRY(add_marrow(thorax, label, (const double(*)[3])curve, 33, 4.8, 5.3, side_sign[side], rings,
+                               around));
     }
     return SKG_OK;
 }
@@ -147,7 +182,7 @@ static double arch_region(const void *shape, const double point[3]) {
     return length - a->size * radius;
 }
 
-static skg_status spine(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
+static skg_status simple_spine(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax) {
     skg_mesh_arrays arrays = {0};
     skg_status status = SKG_OK;
     int64_t around = skg_shape_count(plan->resolution, 16, 6);
@@ -178,5 +213,7 @@ skg_status skg_thorax_bones(const skg_thorax_plan *plan, int64_t skin, skg_thora
     SKG_TRY(cartilages(plan, skin, thorax));
     SKG_TRY(sternum(plan, skin, thorax));
     SKG_TRY(clavicles(plan, skin, thorax));
-    return spine(plan, skin, thorax);
+    if (plan->simple) return simple_spine(plan, skin, thorax);
+    SKG_TRY(skg_thorax_spine(plan, skin, thorax));
+    return skg_thorax_scapulae(plan, skin, thorax);
 }

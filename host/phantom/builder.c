@@ -15,6 +15,19 @@ static const struct {
               {"trachea", "Air", 0},
               {"bronchus", "Air", 0},
               {"heart", "Blood", 0},
+              {"aorta", "Blood", 0},
+              {"ascending aorta", "Blood", 0},
+              {"vena cava", "Blood", 0},
+              {"brachiocephalic", "Blood", 0},
+              {"pulmonary", "Blood", 0},
+              {"oesophagus", "Muscle", 0},
+              {"muscle", "Muscle", 0},
+              {"disc", "Soft tissue", 1.10},
+              {"spinal canal", "Water", 0},
+              {"perirenal fat", "Adipose", 0},
+              {"bowel gas", "Air", 0},
+              {"bowel", "Soft tissue", 0.97}, /* mixed with fat and gas: an assumption */
+              {"stomach gas", "Air", 0},
               {"diaphragm", "Muscle", 0},
               {"liver", "Liver", 0},
               {"gallbladder", "Water", 0},
@@ -59,7 +72,8 @@ skg_status skg_thorax_fit(skg_thorax *thorax, const char *label, double hounsfie
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(thorax->parts, sizeof *others, label, &others));
     for (int64_t i = 0; i < thorax->parts; i++)
-        if (thorax->part[i].inside == inside) others[count++] = thorax->part[i].mesh;
+        if (thorax->part[i].inside == inside || (i == inside && thorax->part[i].inside >= 0))
+            others[count++] = thorax->part[i].mesh;
     SKG_TRY_CLEANUP(skg_shape_retreat(label, count, others, arrays));
     SKG_TRY_CLEANUP(skg_thorax_add(thorax, label, hounsfield, inside, arrays));
 cleanup:

@@ -25,7 +25,8 @@ struct skg_thorax {
 skg_status skg_thorax_add(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
                           skg_mesh_arrays *arrays);
 
-/* Adds a part whose surface first draws back from the parts before it with the same `inside`. */
+/* Adds a part whose surface first draws back from the parts before it with the same `inside`, and from the part around
+ * it unless that is the skin. */
 skg_status skg_thorax_fit(skg_thorax *thorax, const char *label, double hounsfield, int64_t inside,
                           skg_mesh_arrays *arrays);
 

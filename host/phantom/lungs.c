@@ -5,8 +5,13 @@
 #include "phantom/airways.h"
 #include "phantom/cage.h"
 #include "phantom/fold.h"
+#include "phantom/grid.h"
+#include "phantom/heart.h"
 #include "phantom/makers.h"
 #include "phantom/star.h"
+#include "phantom/tree.h"
+
+#include <string.h>
 
 typedef struct {
     const skg_thorax_plan *plan;
@@ -16,6 +21,9 @@ typedef struct {
 } lung;
 
 static const double apex = 160; /* mm */
+
+/* g/cm3 of the lung between its vessels, which weigh about 0.015 g for each cm3 of the whole; see builder.c. */
+static const double between_vessels = 0.225;
 
 /* z down to which the lung fills the recess between diaphragm and wall: lowest at the back, beside the spine. At
  * end-expiration most of the recess is empty (mm, a choice). */
@@ -57,6 +65,7 @@ static double height_of(const lung *l, double level, double x, double y) {
 static void axis_at(const lung *l, double level, double axis[2]) {
     /* Farther out on the left: from there the part of the lung in front of the heart is seen. */
     axis[0] = l->side * ((l->side > 0 ? 84 : 72) * (1 - level) + 40 * level), axis[1] = -48 + 10 * level;
+    if (!l->plan->simple && l->side > 0) axis[0] += 16 * (1 - level);
 }
 
 /* Region of the lung at one level: 0 is the base, 1 the apex. z of the points is ignored. */
@@ -69,15 +78,25 @@ static double lung_region(const void *shape, const double flat[3]) {
     const lung_level *at = shape;
     const lung *l = at->l;
     const double p[3] = {flat[0], flat[1], height_of(l, at->level, flat[0], flat[1])};
-    double most = skg_cage_inside(p, 9.5 + l->plan->gap);
+    double most = skg_cage_inside(p, (l->plan->simple ? 9.5 : 7.5) + l->plan->gap);
     /* the mediastinum: vessels, thymus and oesophagus between the lungs, widest at the root with its bronchus */
     double up = (p[2] - 78) / 28, across = (p[1] + 37) / 28;
-    most = fmax(most, 11 + 32 * exp(-up * up - across * across) - l->side * p[0]);
+    double wide = 11, root = 32;
+    if (!l->plan->simple) { /* the great vessels, and above them the vessels of the neck */
+        most = fmax(most, l->plan->gap + 1 - skg_vessel_distance(l->plan->vessel, p));
+        root = 22;
+        wide += 9 / (1 + exp((122 - p[2]) / 6));
+    }
+    most = fmax(most, wide + root * exp(-up * up - across * across) - l->side * p[0]);
     /* beside the spine the diaphragm's rim has a fold, which the lung does not fill */
     double fold = 15 / (1 + exp((p[2] - 15) / 12));
     most = fmax(most, skg_spine_inside(p, l->plan->gap + fold));
-    most = fmax(most, -skg_ellipsoid_inside(&skg_heart, p, l->plan->gap + 0.5));
-    most = fmax(most, l->plan->gap - skg_airway_distance(p));
+    most = fmax(most, -skg_heart_inside(l->plan, p, l->plan->gap + 0.5));
+    most = fmax(most, l->plan->gap - skg_airway_distance(l->plan->simple, p));
+    if (!l->plan->simple) { /* no wedge of lung between the heart and the diaphragm on which it lies */
+        const double above[3] = {p[0], p[1], p[2] + 12};
+        most = fmax(most, -skg_heart_inside(l->plan, above, 0));
+    }
     if (p[2] > 95) { /* the apex is a dome: the upper half of an ellipsoid */
         double u = (p[0] - l->side * 44) / 62, v = (p[1] + 36) / 66, w = (p[2] - 95) / (apex + 1 - 95);
         most = fmax(most, 30 * (u * u + v * v + w * w - 1));
@@ -107,6 +126,49 @@ static void lung_place(const void *shape, int64_t ring, double azimuth, double p
     p[2] = height_of(l, level, p[0], p[1]);
 }
 
+/* How far a point lies outside the wall that the radii found make; < 0 inside. */
+static double outside_wall(const lung *l, const double p[3]) {
+    const double base = base_height(l, p[0], p[1]), level = (p[2] - base) / (apex - base);
+    if (level < 0 || level >= 1) return 30;
+    const double ring = level * (double)l->sides;
+    const int64_t low = (int64_t)ring, high = low + 1 < l->sides ? low + 1 : low;
+    double axis[2], w = ring - (double)low;
+    axis_at(l, level, axis);
+    const double x = p[0] - axis[0], y = p[1] - axis[1], turn = atan2(y, x) / (2 * SKG_PI);
+    const double azimuth = turn - floor(turn);
+    const double radius = (1 - w) * radius_at(l, low, azimuth) + w * radius_at(l, high, azimuth);
+    return fmax(hypot(x, y) - radius, 0.7 * (base - p[2])); /* 0.7: the base is oblique */
+}
+
+/* The lung that holds the vessels, and its surface as it became. */
+typedef struct {
+    lung wall;
+    skg_triangle_grid grid;
+} vessel_room;
+
+static int meets_wall(const void *unused, const double *triangle, const double *other, int64_t number) {
+    (void)unused, (void)number;
+    return skg_triangles_meet(triangle, other);
+}
+
+/* Whether a ball, 2 mm larger than given, lies in the lung: its middle does, and no triangle about it in the three
+ * planes of the axes meets the wall. */
+static int has_room(const void *shape, const double p[3], double radius) {
+    const vessel_room *room = shape;
+    const double clear = radius + 2;
+    if (outside_wall(&room->wall, p) > -clear) return 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double triangle[9];
+        for (int c = 0; c < 3; c++) { /* the inner circle has the radius `clear` */
+            memcpy(triangle + 3 * c, p, 3 * sizeof *triangle);
+            triangle[3 * c + axis] += 2 * clear * cos(2 * SKG_PI * c / 3);
+            triangle[3 * c + (axis + 1) % 3] += 2 * clear * sin(2 * SKG_PI * c / 3);
+        }
+        if (skg_grid_any(&room->grid, triangle, meets_wall, NULL)) return 0;
+    }
+    return 1;
+}
+
 static void find_radii(const lung *l, double *radius) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (int64_t s = 0; s < l->sides; s++) {
@@ -118,8 +180,9 @@ static void find_radii(const lung *l, double *radius) {
             const double direction[3] = {cos(angle), sin(angle), 0};
             radius[s * l->around + i] = skg_shape_exit(lung_region, &at, from, direction, 150);
         }
-        skg_shape_limit(radius + s * l->around, l->around, 2.5);
-        skg_shape_smooth(radius + s * l->around, l->around, 3);
+        /* The full thorax has sharper edges, because the left lung wraps the heart. */
+        skg_shape_limit(radius + s * l->around, l->around, l->plan->simple ? 2.5 : 5);
+        skg_shape_smooth(radius + s * l->around, l->around, l->plan->simple ? 3 : 2);
     }
     /* From level to level a radius may change by 2 mm for each mm of height; a lung is 250 mm high. */
     double rise = 2 * 250 / (double)l->sides;
@@ -130,6 +193,28 @@ static void find_radii(const lung *l, double *radius) {
         for (int64_t s = l->sides - 1; s > 0; s--)
             column[(s - 1) * l->around] = fmin(column[(s - 1) * l->around], rise + column[s * l->around]);
     }
+}
+
+/* The vessels of the lung that was added last. */
+static skg_status add_vessels(const char *label, const lung *l, skg_thorax *thorax) {
+    const skg_mesh *mesh = thorax->part[thorax->parts - 1].mesh;
+    const double *bounds = mesh->health.bounds;
+    vessel_room room = {.wall = *l};
+    skg_mesh_arrays arrays = {0};
+    double *radius = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(l->sides * l->around, sizeof *radius, label, &radius));
+    find_radii(l, radius);
+    room.wall.radius = radius;
+    SKG_TRY_CLEANUP(skg_grid_add_mesh(mesh, bounds, bounds + 3, &room.grid));
+    SKG_TRY_CLEANUP(skg_grid_sort(bounds, bounds + 3, &room.grid));
+    SKG_TRY_CLEANUP(skg_shape_tree(label, has_room, &room, l->side, l->plan->resolution, &arrays));
+    SKG_TRY_CLEANUP(skg_thorax_add(thorax, label, 45, thorax->parts - 1, &arrays));
+cleanup:
+    skg_grid_free(&room.grid);
+    skg_mesh_arrays_free(&arrays);
+    skg_free(&radius);
+    return status;
 }
 
 static skg_status add_lung(const char *label, int64_t skin, lung *l, skg_thorax *thorax) {
@@ -148,6 +233,7 @@ static skg_status add_lung(const char *label, int64_t skin, lung *l, skg_thorax 
     SKG_TRY_CLEANUP(skg_shape_rings(label, rings, counts, lung_place, l, &arrays));
     SKG_TRY_CLEANUP(skg_shape_unfold(label, &arrays));
     SKG_TRY_CLEANUP(skg_thorax_fit(thorax, label, -790, skin, &arrays));
+    if (!l->plan->simple) thorax->part[thorax->parts - 1].density = between_vessels;
 cleanup:
     skg_mesh_arrays_free(&arrays);
     skg_free(&counts);
@@ -162,6 +248,8 @@ skg_status skg_thorax_lungs(const skg_thorax_plan *plan, int64_t skin, skg_thora
         l.sides = skg_shape_count(plan->resolution, 29, 8);
         l.around = skg_shape_count(plan->resolution, 46, 12);
         SKG_TRY(add_lung(side > 0 ? "lung left" : "lung right", skin, &l, thorax));
+        if (!plan->simple)
+            SKG_TRY(add_vessels(side > 0 ? "pulmonary vessels left" : "pulmonary vessels right", &l, thorax));
     }
     return SKG_OK;
 }

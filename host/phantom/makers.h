@@ -11,6 +11,11 @@
 #include "phantom/builder.h"
 #include "phantom/plan.h"
 
+skg_status skg_thorax_muscle(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
+skg_status skg_thorax_scapulae(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
+skg_status skg_thorax_spine(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
+skg_status skg_thorax_vessels(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
+skg_status skg_thorax_belly(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
 skg_status skg_thorax_airways(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
 skg_status skg_thorax_bones(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);
 skg_status skg_thorax_diaphragm(const skg_thorax_plan *plan, int64_t skin, skg_thorax *thorax);

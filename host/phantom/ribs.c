@@ -24,7 +24,21 @@ static const struct {
                      {{{21, -5, -72}, {76, 21, -129}, {114, -40, -185}, {109, -43, -194}}, 59},
                      {{{20, -16, -107}, {46, 21, -150}, {66, 9, -194}, {64, 11, -200}}, 51}};
 
-skg_status skg_rib_fill(int k, skg_rib *rib) {
+/* Rounds the corner where a line meets the cage, over about 10 mm: means of three neighbours, their middle twice. */
+static void round_angle(double (*line)[3]) {
+    for (int pass = 0; pass < 16; pass++) {
+        double before[3];
+        memcpy(before, line[0], sizeof before);
+        for (int i = 1; i + 1 < RIB_POINTS; i++)
+            for (int k = 0; k < 3; k++) {
+                const double here = line[i][k];
+                line[i][k] = 0.25 * before[k] + 0.5 * here + 0.25 * line[i + 1][k];
+                before[k] = here;
+            }
+    }
+}
+
+skg_status skg_rib_fill(int k, int simple, skg_rib *rib) {
     const double ratio = 1.6; /* of height to thickness: ribs are 12 to 14 mm high and 7 to 9 mm thick */
     rib->width = sqrt(rib_table[k].section / (SKG_PI * ratio)), rib->height = ratio * rib->width;
     double p[5][3];
@@ -36,16 +50,24 @@ skg_status skg_rib_fill(int k, skg_rib *rib) {
     p[1][0] = fmax(0.45 * p[2][0], p[0][0] + 8);
     p[1][2] = p[0][2] - 0.2 * (p[0][2] - p[2][2]);
     p[1][1] = skg_cage_back(p[1][0], p[1][2]);
+    if (!simple) /* or the neck would be seen end-on from the front */
+        for (int pass = 0; pass < 4; pass++) {
+            p[1][0] = fmin(p[0][0] + 1.1 * (p[1][1] - p[0][1]), fmax(0.8 * p[2][0], p[0][0] + 8));
+            p[1][1] = skg_cage_back(p[1][0], p[1][2]);
+        }
     int points = 5;
     /* The last two points of ribs 11 and 12 are so near each other that the rib would fold. */
     if (k >= 10) memcpy(p[3], p[4], sizeof p[3]), points = 4;
     for (int i = 2; i < points; i++) skg_cage_project(p[i]);
+    if (!simple && k == 11) /* it has no angle */
+        for (int i = 0; i < 3; i++) p[1][i] = 0.45 * p[0][i] + 0.55 * p[2][i] + (i == 1 ? 5 : 0);
     SKG_TRY(skg_shape_spline((const double(*)[3])p, points, RIB_POINTS, rib->line));
     int behind = 1;
     for (int i = 0; i < RIB_POINTS; i++) {
-        behind = behind && rib->line[i][0] < p[1][0];
+        behind = behind && rib->line[i][0] < (simple || k < 11 ? p[1][0] : p[2][0]);
         if (!behind) skg_cage_project(rib->line[i]);
     }
+    if (!simple) round_angle(rib->line);
     return SKG_OK;
 }
 

@@ -13,8 +13,8 @@ typedef struct {
 } skg_rib;
 
 /* Fills rib number k + 1: from the head beside the spine backward to the angle, which is on the cage, and from there
- * along the cage. */
-skg_status skg_rib_fill(int k, skg_rib *rib);
+ * along the cage. Where not simple, the neck runs to the side as much as backward. */
+skg_status skg_rib_fill(int k, int simple, skg_rib *rib);
 
 /* Distance in mm to the nearest point of a middle line, on the point's own side. */
 double skg_rib_distance(const skg_rib ribs[RIBS], const double point[3]);

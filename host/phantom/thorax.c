@@ -5,8 +5,9 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* Triangles at resolution 1, as the counts of the makers give them: about those of the paper's scene. */
-enum { STANDARD_TRIANGLES = 42000 };
+/* STANDARD: triangles by default, about those of the paper's scene. FULL: triangles at resolution 1, as the counts of
+ * the makers give them; the simple thorax has STANDARD there. */
+enum { STANDARD_TRIANGLES = 42000, FULL_TRIANGLES = 77800 };
 
 void skg_thorax_options_init_sized(void *options, int32_t size) {
     const skg_thorax_options defaults = {.triangles = STANDARD_TRIANGLES};
@@ -18,17 +19,22 @@ void skg_thorax_part_init_sized(void *part, int32_t size) {
     skg_struct_init(part, size, &defaults, sizeof defaults);
 }
 
-static skg_status fill(double resolution, skg_thorax *thorax) {
+static skg_status fill(int simple, double triangles, skg_thorax *thorax) {
     skg_thorax_plan *plan;
+    const double resolution = sqrt(triangles / (simple ? STANDARD_TRIANGLES : FULL_TRIANGLES));
+    const int64_t outer = simple ? 0 : 1; /* skin or muscle */
     SKG_TRY(skg_alloc(1, sizeof *plan, "thorax", &plan));
-    skg_status status = skg_thorax_plan_fill(resolution, plan);
+    skg_status status = skg_thorax_plan_fill(simple, resolution, plan);
     if (status == SKG_OK) status = skg_thorax_skin(plan, thorax);
+    if (status == SKG_OK && !simple) status = skg_thorax_muscle(plan, 0, thorax);
     /* A part draws back from those before it, so bones come first and lungs last. */
-    if (status == SKG_OK) status = skg_thorax_bones(plan, 0, thorax);
-    if (status == SKG_OK) status = skg_thorax_airways(plan, 0, thorax);
-    if (status == SKG_OK) status = skg_thorax_diaphragm(plan, 0, thorax);
-    if (status == SKG_OK) status = skg_thorax_organs(plan, 0, thorax);
-    if (status == SKG_OK) status = skg_thorax_lungs(plan, 0, thorax);
+    if (status == SKG_OK) status = skg_thorax_bones(plan, outer, thorax);
+    if (status == SKG_OK) status = skg_thorax_airways(plan, outer, thorax);
+    if (status == SKG_OK && !simple) status = skg_thorax_vessels(plan, outer, thorax);
+    if (status == SKG_OK) status = skg_thorax_diaphragm(plan, outer, thorax);
+    if (status == SKG_OK) status = skg_thorax_organs(plan, outer, thorax);
+    if (status == SKG_OK && !simple) status = skg_thorax_belly(plan, outer, thorax);
+    if (status == SKG_OK) status = skg_thorax_lungs(plan, outer, thorax);
     if (status == SKG_OK) status = skg_thorax_needle(thorax);
     skg_free(&plan);
     return status;
@@ -41,11 +47,13 @@ skg_status skg_thorax_create(const skg_thorax_options *options, skg_thorax **res
     SKG_NEEDS(result);
     *result = NULL;
     if (options) SKG_TRY(skg_struct_read(options, "skg_thorax_options", &ours, sizeof ours));
+    if (ours.simple < 0 || ours.simple > 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "thorax: simple is %" PRId32 "; 0 or 1", ours.simple);
     if (ours.triangles < 10000 || ours.triangles > 20000000)
         return skg_fail(SKG_ERR_ARGUMENT, "thorax: %" PRId64 " triangles; 10000 to 20000000", ours.triangles);
     skg_thorax *thorax;
     SKG_TRY(skg_alloc(1, sizeof *thorax, "thorax", &thorax));
-    skg_status status = fill(sqrt((double)ours.triangles / STANDARD_TRIANGLES), thorax);
+    skg_status status = fill(ours.simple, (double)ours.triangles, thorax);
     if (status != SKG_OK) {
         skg_thorax_release(&thorax);
         return status;

@@ -19,4 +19,9 @@ skg_status skg_shape_tube(const char *name, int64_t rings, const skg_tube_ring *
 skg_status skg_shape_cord(const char *name, const double (*curve)[3], int64_t points, double height,
                           double width, double side, int64_t rings, int64_t around, skg_mesh_arrays *arrays);
 
+/* Adds a tube of round section along a curve, with rounded ends, whose radius goes evenly from `first` to `last` mm.
+ * Unlike a cord it may turn to any direction. side: as above. */
+skg_status skg_shape_hose(const char *name, const double (*curve)[3], int64_t points, double first,
+                          double last, double side, int64_t rings, int64_t around, skg_mesh_arrays *arrays);
+
 #endif

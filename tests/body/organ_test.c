@@ -300,6 +300,7 @@ static void make_thorax(const skg_body_options *options, void (*say)(const char 
     int64_t parts;
     skg_thorax_options_init(&size);
     size.triangles = 10000;
+    size.simple = 1;
     ck_skg(skg_thorax_create(&size, &thorax));
     ck_skg(skg_thorax_part_count(thorax, &parts));
     start(options);

@@ -96,6 +96,7 @@ static int find_organ(int i, organ *o, char path[DATA_PATH]) {
     skg_thorax_options options;
     skg_thorax_options_init(&options);
     options.triangles = 10000;
+    options.simple = 1;
     ck_skg(skg_thorax_create(&options, &thorax));
     skg_thorax_part part;
     skg_thorax_part_init(&part);

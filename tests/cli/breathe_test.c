@@ -14,7 +14,7 @@ enum { MOST_BYTES = 1 << 20 };
 
 static void set_up_thorax(void) {
     set_up();
-    ck_run(0, "thorax -o . --triangles 10000 --json");
+    ck_run(0, "thorax -o . --simple --triangles 10000 --json");
     json_t *object = said_json();
     ck_assert_int_gt(json_integer_value(member(object, "parts")), 60);
     ck_assert_int_gt(json_integer_value(member(object, "triangles")), 8000);

@@ -239,7 +239,7 @@ START_TEST(thorax_and_breath_are_swept) {
     static const char small[] = "--set Detector.NumberOfPixels=[33,25] --set "
                                 "'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
     double rms[16], mm[16];
-    ck_run(0, "thorax -o t --triangles 10000 --quiet");
+    ck_run(0, "thorax -o t --simple --triangles 10000 --quiet");
     ck_run(0, "cost t/thorax.json --quick --json %s", small);
     json_t *study = said_json();
     int count = list_dial(study, "triangles", "rms_mm", mm);

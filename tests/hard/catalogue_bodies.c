@@ -96,6 +96,7 @@ static void inverted(hard_outcome *o) {
     o->danger = "triangles turned inside out; negative lengths";
     skg_thorax_options_init(&options);
     options.triangles = 10000;
+    options.simple = 1;
     ck_skg(skg_thorax_create(&options, &thorax));
     skg_body_options_init(&deep);
     deep.tendon_mm[2] = -100;

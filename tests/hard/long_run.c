@@ -51,6 +51,7 @@ static void open_patient(patient *p) {
     *p = (patient){0};
     skg_thorax_options_init(&options);
     options.triangles = 10000;
+    options.simple = 1;
     ck_skg(skg_thorax_create(&options, &p->thorax));
     ck_skg(skg_body_create(run_context, NULL, &p->body));
     ck_skg(skg_scene_create(run_context, &p->scene));

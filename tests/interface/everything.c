@@ -32,6 +32,7 @@ static skg_setup *thorax_of(const char *folder, skg_motion **motion) {
     snprintf(path, sizeof path, "%s/thorax.json", folder);
     skg_thorax_options_init(&options);
     options.triangles = 10000;
+    options.simple = 1;
     ck_skg(skg_thorax_create(&options, &thorax));
     ck_skg(skg_thorax_save(thorax, folder));
     skg_thorax_release(&thorax);

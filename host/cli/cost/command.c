@@ -45,7 +45,8 @@ static void put_scene(FILE *stream, const cost_study *study, const cost_meshing 
         return;
     }
     const long long triangles = (long long)meshing->thorax;
-    fprintf(stream, "skiagraph thorax --quiet -o thorax-%lld --triangles %lld && cp", triangles, triangles);
+    fprintf(stream, "skiagraph thorax %s--quiet -o thorax-%lld --triangles %lld && cp",
+            study->thorax_is_simple ? "--simple " : "", triangles, triangles);
     put_word(stream, path);
     fprintf(stream, " thorax-%lld/ && skiagraph image", triangles);
     snprintf(copy, sizeof copy, "thorax-%lld/%s", triangles, slash ? slash + 1 : path);

@@ -122,6 +122,7 @@ typedef struct {
     double pass_ms;                            /* of one ray per pixel at the scene's setting */
     cost_meshing meshings[COST_MOST_MESHINGS]; /* rising in triangles; the last one is the reference */
     int meshing_count;
+    int thorax_is_simple; /* 1: the thorax of the scene is that of `thorax --simple` */
     cost_reference references[COST_REFERENCES];
     cost_point points[COST_MOST_POINTS];
     int count;

@@ -32,23 +32,22 @@ static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
     return 1;
 }
 
-static skg_status make_thorax(int64_t triangles, skg_thorax **thorax) {
+static skg_status make_thorax(int simple, int64_t triangles, skg_thorax **thorax) {
     skg_thorax_options options;
     skg_thorax_options_init(&options);
+    options.simple = simple;
     options.triangles = triangles;
     return skg_thorax_create(&options, thorax);
 }
 
-int cost_is_thorax(const cost_study *study) {
+static int is_this_thorax(const cost_study *study, int simple) {
     int64_t parts = 0, id = 0, same = 0;
     skg_thorax *thorax = NULL;
     skg_thorax_part generated;
     skg_part part;
     skg_thorax_part_init(&generated);
     skg_part_init(&part);
-    if (skg_scene_find(study->session.scene, "common bile duct", &id) != SKG_OK)
-        return 0; /* most scenes end here, without generating a thorax */
-    if (make_thorax(study->triangles, &thorax) == SKG_OK) skg_thorax_part_count(thorax, &parts);
+    if (make_thorax(simple, study->triangles, &thorax) == SKG_OK) skg_thorax_part_count(thorax, &parts);
     for (int64_t i = 0; i < parts; i++)
         same += skg_thorax_part_get(thorax, i, &generated) == SKG_OK &&
                 skg_scene_find(study->session.scene, generated.label, &id) == SKG_OK &&
@@ -56,6 +55,14 @@ int cost_is_thorax(const cost_study *study) {
                 has_same_bounds(part.mesh, generated.mesh);
     skg_thorax_release(&thorax);
     return parts > 0 && same == parts;
+}
+
+int cost_is_thorax(cost_study *study) {
+    int64_t id = 0;
+    if (skg_scene_find(study->session.scene, "common bile duct", &id) != SKG_OK)
+        return 0; /* most scenes end here, without generating a thorax */
+    study->thorax_is_simple = skg_scene_find(study->session.scene, "muscle", &id) != SKG_OK;
+    return is_this_thorax(study, study->thorax_is_simple);
 }
 
 /* Copies the scene, with the thorax's mesh for every part that the thorax has. */
@@ -77,7 +84,7 @@ static skg_status take_thorax(const cost_study *study, const skg_thorax *thorax,
 static skg_status add_thorax(cost_study *study, int64_t wanted) {
     cost_meshing meshing = {.thorax = wanted};
     skg_thorax *thorax = NULL;
-    skg_status status = make_thorax(wanted, &thorax);
+    skg_status status = make_thorax(study->thorax_is_simple, wanted, &thorax);
     if (status == SKG_OK) status = skg_scene_create(NULL, &meshing.scene);
     if (status == SKG_OK) status = take_thorax(study, thorax, meshing.scene);
     if (status == SKG_OK) status = cost_count_triangles(meshing.scene, &meshing.triangles);

@@ -5,7 +5,7 @@
 #include "cost/study.h"
 
 /* Whether every part of the generated thorax is in the scene, in its place. */
-int cost_is_thorax(const cost_study *study);
+int cost_is_thorax(cost_study *study);
 
 /* Adds meshings, coarser to finer, in which these parts are generated again. */
 skg_status cost_find_thorax(cost_study *study);

@@ -69,7 +69,7 @@ extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_f
 extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_angle, cli_flag_beam_anode,
     cli_flag_beam_model, cli_flag_beam_bin, cli_flag_beam_mas, cli_flag_beam_distance, cli_flag_beam_output,
     cli_flag_beam_file, cli_flag_beam_unit;
-extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles;
+extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles, cli_flag_thorax_simple;
 extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_flag_breathe_fps,
     cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,

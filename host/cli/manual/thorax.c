@@ -7,20 +7,29 @@ const cli_flag cli_flag_thorax_triangles = {
     "The approximate number of triangles of all meshes, 10000 to 20000000. The default is 42000.", NULL,
     CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_thorax_simple = {
+    "--simple", NULL,
+    "Generates the simple thorax: 67 parts in a body of fat, without muscle, great vessels, vessels of the lungs, "
+    "marrow, shoulder blades and bowel.",
+    NULL, CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
-    "Generates a thorax at end-expiration: spine, ribs, sternum, cartilage, diaphragm, lungs, heart, liver, bile "
-    "ducts with contrast, skin, a Chiba needle and more. Each part is one closed mesh.",
+    "Generates a thorax at end-expiration: fat, muscle, spine, ribs with marrow, shoulder blades, lungs with their "
+    "vessels, heart, great vessels, diaphragm, liver, bile ducts with contrast, bowel, a Chiba needle and more. "
+    "Each part is one closed mesh.",
     "The scene file names tissues, the beam of a tube, and a percutaneous cholangiography for `breathe`.",
     "--json prints {parts, triangles, folder}.", NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_thorax_output, &cli_flag_thorax_triangles, &cli_flag_json,
-                                        &cli_flag_quiet, NULL};
+static const cli_flag *const flags[] = {&cli_flag_thorax_output, &cli_flag_thorax_triangles,
+                                        &cli_flag_thorax_simple, &cli_flag_json,
+                                        &cli_flag_quiet,         NULL};
 
 static const cli_item files[] = {
     {"DIR/thorax.json", "the scene file"}, {"DIR/*.ply", "a mesh for each part"}, {NULL, NULL}};
 
 static const cli_item examples[] = {
     {"skiagraph thorax -o thorax", "writes the meshes and thorax/thorax.json"},
+    {"skiagraph thorax --simple -o simple", "writes the simple thorax"},
     {"skiagraph thorax -o fine --triangles 1000000", "writes finer meshes"},
     {NULL, NULL}};
 

@@ -44,6 +44,7 @@ int cli_thorax(const cli_arguments *arguments) {
     const char *folder = cli_value(arguments, &cli_flag_thorax_output);
     skg_thorax_options_init(&options);
     if (!folder) return cli_error(CLI_USAGE, "thorax: no folder is named; add -o DIR");
+    options.simple = cli_given(arguments, &cli_flag_thorax_simple);
     int exit_status = cli_integer(arguments, &cli_flag_thorax_triangles, 10000, 20000000, &options.triangles);
     if (exit_status == CLI_DONE) exit_status = cli_make_folder(folder);
     if (exit_status != CLI_DONE) return exit_status;

@@ -12,15 +12,19 @@
  *   side. Deformable, linked to ribs and sternum; the boxes of its links turn with them.
  * - "diaphragm": the tendon is rigid above a plane, the muscle below it deformable, the rim moves with the
  *   ribs.
- * - "lung ...", "liver", "heart", "skin": deformable, linked to the diaphragm, the ribs or both.
+ * - "lung ...", "liver", "heart", "skin", "muscle": deformable, linked to the diaphragm, the ribs or both.
  * - "gallbladder": with the liver. "common bile duct": its upper end with the liver.
- * - "stomach", "spleen", "kidney ...": with the tendon, kidneys 0.65 of it.
- * - "trachea", "bronchus ...": with the lungs; the upper end of the trachea stays.
+ * - "stomach", "spleen", "kidney ...", "perirenal fat ...": with the tendon, kidneys and their fat 0.65 of it.
+ * - "bowel": its upper end with the tendon; the lower one stays. "pulmonary vessels ...": with the tendon, in
+ *   full at the base of the lung and not at all at the apex.
+ * - "trachea", "bronchus ...", "pulmonary artery ...": with the lungs; the upper end of the trachea stays.
+ * - "ascending aorta", "vena cava ...", "pulmonary trunk": the lower end with the heart; the upper one stays.
  * - "needle": rigid, pivots where it enters the skin, its tip moves with the liver.
- * - "spine", "vertebra ...", "clavicle ...", "scapula ...": stay.
+ * - "spine", "vertebra ...", "disc ...", "spinal canal", "clavicle ...", "scapula ...", "aorta ...",
+ *   "brachiocephalic ...", "oesophagus": stay.
  *
- * Any other organ moves with the one that it lies inside, if that is deformable and not the skin. Otherwise
- * it stays, and a warning says so. x must point to the patient's left, y to the back, z to the head.
+ * Any other organ moves with the one that it lies inside, if that is deformable and neither the skin nor the
+ * muscle, or if that is rigid, as marrow in a rib. Otherwise it stays, and a warning says so. x must point to the patient's left, y to the back, z to the head.
  *
  * A body is used by one thread at a time. */
 #ifndef SKIAGRAPH_BODY_H

@@ -5,7 +5,11 @@
  * the diaphragm. Sizes are from the literature and from averages of real bones. Every mesh is closed and
  * outward. Two meshes are disjoint or one lies inside the other, except the needle, which passes through
  * others; with fewer than 42,000 triangles facets may cut into a neighbour by up to 3 mm. Labels are English:
- * "rib 5 left", "liver", "lung right", "skin". */
+ * "rib 5 left", "liver", "lung right", "skin".
+ *
+ * The skin is a layer of fat, 10 to 25 mm thick; inside it "muscle" fills what the other parts leave: the wall of
+ * the chest and the belly, the back, the shoulders, and the soft tissue between the lungs. A bone of cortex holds
+ * its marrow, a lung its vessels, fat a kidney, stomach and bowel their gas. There are no arms. */
 #ifndef SKIAGRAPH_THORAX_H
 #define SKIAGRAPH_THORAX_H
 
@@ -22,10 +26,11 @@ typedef struct skg_thorax skg_thorax;
 typedef struct {
     /** Set by skg_thorax_options_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 0: the full thorax. 1: the simple one, 67 parts without muscle, great vessels, marrow, vessels of the lungs,
+     * shoulder blades and bowel, in a body of fat; for comparison with earlier figures. */
+    int32_t simple;
     /** Approximate number of triangles, 10,000 to 20,000,000; 42,000 by default (the paper's scene has
-     * 41,710). */
+     * 41,710). The full thorax has at least about 18,000. */
     int64_t triangles;
 } skg_thorax_options;
 
