@@ -241,7 +241,7 @@ skg_status skg_fdk_write(const skg_fdk *fdk, const char *path) {
     SKG_TRY(skg_output_open(path, &file));
     fprintf(
         file.stream,
-        "ObjectType = Image\nNDims = 3\nComment = attenuation coefficient (1/cm)\nBinaryData = True\n"
+        "ObjectType = Image\nNDims = 3\nComment = attenuation coefficient (1/cm), skiagraph\nBinaryData = True\n"
         "BinaryDataByteOrderMSB = %s\nCompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = %s\n"
         "CenterOfRotation = 0 0 0\nElementSpacing = %s\nDimSize = %" PRId64 " %" PRId64 " %" PRId64
         "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n",

@@ -89,6 +89,7 @@ int cli_check_overwrite(const cli_arguments *arguments, const char *path) {
 }
 
 int cli_check_overwrites(const cli_arguments *arguments) {
+    if (arguments->manual->checks_outputs) return CLI_DONE;
     int exit_status = CLI_DONE;
     for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++)
         if (strcmp(arguments->given[i].flag->name, "-o") == 0)

@@ -34,6 +34,7 @@ typedef struct {
     const cli_item *examples;     /* command line and what it does */
     const char *check;            /* the check that exit status 1 stands for; NULL: none */
     int has_device;               /* it opens an OpenCL device */
+    int checks_outputs;           /* it refuses outputs that are not its own itself */
 } cli_manual;
 
 /* Whether a value follows the flag, and what the help calls it: "FILE", "single|double|half". */

@@ -79,6 +79,7 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_tolerance,
                                         &cli_flag_strategy,
                                         &cli_flag_set,
+                                        &cli_flag_lenient,
                                         &cli_flag_json,
                                         &cli_flag_quiet,
                                         NULL};
@@ -109,4 +110,5 @@ const cli_manual cli_manual_scan = {.name = "scan",
                                     .flags = flags,
                                     .files = files,
                                     .examples = examples,
-                                    .has_device = 1};
+                                    .has_device = 1,
+                                    .checks_outputs = 1};
