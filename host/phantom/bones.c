@@ -24,7 +24,7 @@ static skg_status add_tube(skg_thorax *thorax, const char *label, double hounsfi
 static skg_status add_marrow(skg_thorax *thorax, const char *bone, const double (*curve)[3], int64_t points,
                              double height, double width, double side, int64_t rings, int64_t around) {
     const double cortex = 0.9; /* mm; a rib's is 0.9 to 2.6 at its thickest */
-    const int64_t inside = thorax->parts - 1, fewer = around * 3 / 4;
+    const int64_t inside = thorax->parts - 1;
     char label[40];
     double curves[2 * RIB_POINTS][3];
     const double cut = 1.0 / (double)(rings - 1); /* the end rings, narrower and round, stay solid */
@@ -36,7 +36,7 @@ static skg_status add_marrow(skg_thorax *thorax, const char *bone, const double 
     }
     snprintf(label, sizeof label, "marrow of %s", bone);
     return add_tube(thorax, label, 150, inside, (const double(*)[3])curves, points, height - cortex,
-                    width - cortex, side, rings - 2, fewer > 5 ? fewer : 5);
+                    width - cortex, side, rings - 2, around);
 }
 
 static const double cortex_hounsfield = 1330;
