@@ -8,8 +8,7 @@
  *     tungsten     20, 25, 30, 35, 40, 50, 60, 70, 80, 90, 100, 120, 150 kV at 6, 8, 12, 16, 20 degrees
  *     molybdenum   20, 25, 28, 30, 32, 35, 40, 49 kV at 12, 16, 20 degrees
  *     rhodium      the same
- *
- * bench/validate/calibration.py makes them anew. */
+ */
 #include "beam/spectrum.h"
 #include "material/material.h"
 
