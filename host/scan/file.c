@@ -1,5 +1,5 @@
 /* Opening, writing and ending a file of projections. */
-#include "scan/file.h"
+#include "scan/format.h"
 
 #include "core/names.h"
 #include "core/output.h"

@@ -3,9 +3,9 @@
  * written in place without it. Its own metadata never changes again, and whoever opens the file finds it whole. */
 #include "core/maths.h"
 #include "core/output.h"
-#include "scan/file.h"
+#include "scan/format.h"
 #include "scan/hdf5_errors.h"
-#include "trajectory/scan.h"
+#include "trajectory/types.h"
 
 #include <skiagraph/version.h>
 

@@ -1,7 +1,7 @@
 /* One writer at a time: a lock of the operating system on NAME.lock, which goes when its process ends however that
  * happens. The file says who has it. */
 #include "core/output.h"
-#include "scan/file.h"
+#include "scan/format.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 /* A build without HDF5. */
-#include "scan/file.h"
+#include "scan/format.h"
 
 #include <skiagraph/scan_reader.h>
 

@@ -1,7 +1,7 @@
 /* Bytes at their places in a file, and the text that says which scan a file holds. */
 #include "core/output.h"
 #include "core/path_hint.h"
-#include "scan/file.h"
+#include "scan/format.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -3,7 +3,7 @@
 #include "core/output.h"
 #include "core/vector.h"
 #include "image/image.h"
-#include "scan/file.h"
+#include "scan/format.h"
 
 #include <skiagraph/version.h>
 

@@ -4,7 +4,7 @@
 #include "core/output.h"
 #include "core/plain.h"
 #include "core/vector.h"
-#include "trajectory/scan.h"
+#include "trajectory/types.h"
 
 #include <inttypes.h>
 #include <math.h>

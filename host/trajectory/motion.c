@@ -3,7 +3,7 @@
 #include "core/plain.h"
 #include "core/random.h"
 #include "core/vector.h"
-#include "trajectory/scan.h"
+#include "trajectory/types.h"
 
 #include <skiagraph/scene.h>
 

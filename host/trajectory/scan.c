@@ -1,5 +1,5 @@
 /* Scans as handles, and the view of a projection. */
-#include "trajectory/scan.h"
+#include "trajectory/types.h"
 
 #include "core/maths.h"
 #include "core/plain.h"

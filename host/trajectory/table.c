@@ -2,7 +2,7 @@
 #include "core/columns.h"
 #include "core/path_hint.h"
 #include "core/plain.h"
-#include "trajectory/scan.h"
+#include "trajectory/types.h"
 
 #include <ctype.h>
 #include <errno.h>

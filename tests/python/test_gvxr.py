@@ -182,7 +182,7 @@ def test_scene_files(tmp_path):
 
 
 def test_scene_files_by_json2gvxr(tmp_path):
-    path = pathlib.Path(__file__).parents[2] / "examples" / "phantom.json"
+    path = pathlib.Path(__file__).parents[2] / "examples" / "scenes" / "phantom.json"
     with pytest.raises(sk.FileError, match="nowhere.json"):
         json2gvxr.initGVXR(str(tmp_path / "nowhere.json"))
     json2gvxr.initGVXR(str(path), "EGL")

@@ -47,7 +47,7 @@ static const struct {
     {{"counts.cl"}, "", 0},
     {{"leaky.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"},
-     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1",
+     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1 -D SKG_SHADES=1 -D SKG_PLANES=2",
      0},
     {{"blur.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1", 0},

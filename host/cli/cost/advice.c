@@ -1,5 +1,6 @@
 #include "cost/advice.h"
 
+#include "common/progress.h"
 #include "common/say.h"
 #include "cost/command.h"
 #include "cost/compare.h"
@@ -136,6 +137,7 @@ int cost_advise(cost_study *study) {
     find_frontier(study);
     if (choose_rays(study, 0) < 0)
         return cli_error(CLI_DEVICE, "no setting could be measured: one image of the scene takes too long");
+    cli_progress_begin("measuring the settings that are recommended", COST_TOLERANCES);
     for (int i = 0; i < COST_TOLERANCES; i++) {
         cost_advice *advice = &study->advice[i];
         advice->tolerance = cost_tolerances[i];
@@ -153,6 +155,8 @@ int cost_advise(cost_study *study) {
         advice->whole_command = cost_command(study, &advice->whole.setting);
         if (!advice->rays_command || !advice->whole_command)
             return cli_error(CLI_DEVICE, "out of host memory");
+        cli_progress_step(i + 1);
     }
+    cli_progress_end();
     return CLI_DONE;
 }

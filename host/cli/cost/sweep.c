@@ -252,9 +252,12 @@ int cost_sweep(cost_study *study) {
         cost_note(study, "the device has no fp64: single precision is compared with itself");
     if (study->session.options.spot && study->session.options.spot->grid > 0)
         cost_note(study, "source samples are not swept: the scene fixes them by a grid");
+    cli_progress_begin("timing the scene as it is", 0);
     int exit_status = find_pass_time(study, image);
     if (exit_status == CLI_DONE) exit_status = find_noise(study, image);
+    cli_progress_begin("making meshes with fewer and with more triangles", 0);
     if (exit_status == CLI_DONE) exit_status = cost_find_meshings(study);
+    cli_progress_end();
     if (exit_status == CLI_DONE) {
         add_rays(study);
         add_samples(study);
@@ -262,7 +265,9 @@ int cost_sweep(cost_study *study) {
         add_repair(study);
         add_triangles(study);
         add_breath(study);
+        cli_progress_begin("computing what settings are compared with", 0);
         exit_status = make_references(study);
+        cli_progress_end();
     }
     if (exit_status == CLI_DONE) exit_status = measure_all(study, image);
     free(image);

@@ -3,8 +3,8 @@
  * A file is found unfinished or finished, never half laid out: the header and the room for all projections are made
  * under a temporary name. In NAME.progress stand 256 bytes of text, then a byte for each projection: 1 once the disk
  * has it. HDF5 keeps these bytes inside. */
-#ifndef SKG_SCAN_FILE_PRIVATE_H
-#define SKG_SCAN_FILE_PRIVATE_H
+#ifndef SKG_SCAN_FORMAT_H
+#define SKG_SCAN_FORMAT_H
 
 #include "core/core.h"
 #include "core/digest.h"

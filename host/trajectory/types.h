@@ -1,6 +1,6 @@
 /* A scan as it is kept. Private. */
-#ifndef SKG_TRAJECTORY_SCAN_H
-#define SKG_TRAJECTORY_SCAN_H
+#ifndef SKG_TRAJECTORY_TYPES_H
+#define SKG_TRAJECTORY_TYPES_H
 
 #include "core/core.h"
 
