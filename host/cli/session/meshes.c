@@ -73,7 +73,7 @@ static int read_filters(const cli_arguments *arguments, json_t *list) {
 }
 
 static int read_beam(const cli_arguments *arguments, json_t *source) {
-    double kvp = NAN, kev = NAN;
+    double kvp = (double)NAN, kev = (double)NAN;
     int exit_status = cli_number(arguments, &cli_flag_meshes_kvp, 10, 450, &kvp);
     if (exit_status == CLI_DONE) exit_status = cli_number(arguments, &cli_flag_meshes_kev, 1, 20000, &kev);
     if (exit_status != CLI_DONE) return exit_status;
