@@ -157,11 +157,11 @@ static skg_status lay_out_tiff(skg_scan_file *file, const char *temporary) {
     const int64_t length = tiff_data(file);
     const uint64_t first = TIFF_HEADER + TIFF_TEXT;
     const uint16_t start[3] = {43, 8, 0};
-    char *header = NULL, heading[200], identity[160];
+    char *header = NULL, heading[200], identity[160], begin[TIFF_HEADER];
     SKG_TRY(skg_alloc(length, 1, "directories of a TIFF file", &header));
-    char *to = put(header, skg_host_is_big_endian() ? "MM" : "II", 2);
-    to = put(to, start, sizeof start);
-    to = put(to, &first, sizeof first);
+    put(put(put(begin, skg_host_is_big_endian() ? "MM" : "II", 2), start, sizeof start), &first,
+        sizeof first);
+    char *to = put(header, begin, sizeof begin);
     title(file, heading, sizeof heading);
     skg_scan_write_identity(file, identity, sizeof identity);
     snprintf(to, TIFF_TEXT, "%s\n%sFlatField = %.17g\nskiagraph %s\n", heading, identity,
