@@ -284,6 +284,9 @@ CODE(clWaitForEvents, (cl_uint count, const cl_event *events), (count, events))
 EVENT(clEnqueueNDRangeKernel, (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset,
                                const size_t *global, const size_t *local, cl_uint count, const cl_event *waits,
                                cl_event *event), (queue, kernel, dimensions, offset, global, local, count, waits, event))
+EVENT(clEnqueueCopyBuffer, (cl_command_queue queue, cl_mem from, cl_mem to, size_t from_at, size_t to_at, size_t bytes,
+                            cl_uint count, const cl_event *list, cl_event *event),
+      (queue, from, to, from_at, to_at, bytes, count, list, event))
 EVENT(clEnqueueFillBuffer, (cl_command_queue queue, cl_mem memory, const void *pattern, size_t size, size_t offset,
                             size_t bytes, cl_uint count, const cl_event *waits, cl_event *event),
       (queue, memory, pattern, size, offset, bytes, count, waits, event))

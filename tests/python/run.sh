@@ -54,7 +54,7 @@ wheel)
     echo "the repaired library takes nothing from the system but the C library's and the compiler's:"
     package=$(cd "$stage" && $python -c 'import skiagraph; print(skiagraph.__path__[0])')
     if ldd "$package"/lib/libskiagraph.so.* | grep '=> /' | grep -v "$stage" |
-        grep -vE '^[[:space:]]*(libc|libm|libpthread|libdl|librt|libgcc_s|libstdc\+\+|libz)\.so'; then
+        grep -vE '^[[:space:]]*(libc|libm|libpthread|libresolv|libdl|librt|libgcc_s|libstdc\+\+|libz)\.so'; then
         exit 1
     fi
     run_tests "$python" "$package"
