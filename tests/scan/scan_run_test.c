@@ -152,6 +152,7 @@ START_TEST(subframes_are_averaged) {
     skg_plan_release(&plan);
     plan = run_plan(scene, &view, (run_choice){.quantity = SKG_QUANTITY_ATTENUATION});
     memcpy(expected, got, sizeof got);
+    arrived = 0;
     ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
     for (int i = 0; i < PIXELS; i++)
         ck_assert_double_eq_tol(exp(-(double)got[5][i]), (double)expected[5][i],

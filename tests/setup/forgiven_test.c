@@ -32,6 +32,7 @@ static void tear_down_log(void) {
 
 /* Loads the good file with one piece of its text replaced by another. */
 static void load_edited(const char *from, const char *to) {
+    skg_setup_release(&setup);
     write_edited(from, to);
     ck_skg(skg_setup_load(context, path, 0, NULL, &setup));
 }
