@@ -3,6 +3,7 @@
 #include "common/device.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "core/names.h"
 #include "session/meshes.h"
 
 #include <inttypes.h>
@@ -75,8 +76,8 @@ static void tell_scene(const cli_session *session) {
                  health.triangles, health.closed ? "closed" : "leaky", material);
     }
     if (skg_spectrum_bin_count(session->spectrum, &bins) == SKG_OK)
-        cli_tell("beam of %" PRId64 " energies; detector of %" PRId64 " x %" PRId64 " pixels", bins,
-                 session->view.columns, session->view.rows);
+        cli_tell("beam of %" PRId64 " %s; detector of %" PRId64 " x %" PRId64 " pixels", bins,
+                 skg_plural(bins, "energy", "energies"), session->view.columns, session->view.rows);
 }
 
 int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_session *session) {
