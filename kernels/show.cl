@@ -20,9 +20,6 @@ typedef SKG_CAT(uint, SKG_SHOW_PIXELS) skg_pixels;
 #define SKG_TO_PIXELS SKG_CAT(convert_uint, SKG_SHOW_PIXELS)
 #define SKG_STORE_PIXELS SKG_CAT(vstore, SKG_SHOW_PIXELS)
 
-/* By how much of a sample a triangle reaches over its edges, so that no gap opens between neighbours by rounding. */
-#define SKG_SHOW_OVERLAP 0x1p-8f
-
 /* The number of no triangle. */
 #define SKG_SHOW_NONE INT_MAX
 
@@ -35,12 +32,14 @@ static void skg_show_plane(__global float *plane, float2 b, float2 c, float area
     plane[2] = at_a - plane[0] * a.x - plane[1] * a.y;
 }
 
-/* The side of an edge from p towards q on which r lies. */
-static void skg_show_edge(__global float *plane, float2 p, float2 q, float side) {
-    const float2 d = side * (q - p);
-    plane[0] = -d.y;
-    plane[1] = d.x;
-    plane[2] = d.y * p.x - d.x * p.y + SKG_SHOW_OVERLAP * (fabs(d.x) + fabs(d.y));
+/* The edge between p and q, from whichever comes first. Both triangles of an edge then compute the same bits for a sample,
+ * which belongs to exactly one of them. opposite: the third corner. Returns 1 if it lies where the normal points to. */
+static int skg_show_edge(__global float *edge, float2 p, float2 q, float2 opposite) {
+    const int swap = q.x < p.x || (q.x == p.x && q.y < p.y);
+    const float2 first = swap ? q : p, d = swap ? p - q : q - p;
+    edge[0] = -d.y, edge[1] = d.x;
+    edge[2] = first.x, edge[3] = first.y;
+    return d.x * (opposite.y - first.y) - d.y * (opposite.x - first.x) >= 0.0f;
 }
 
 static float4 skg_show_clip(skg_show_args args, __global const float *v) {
@@ -88,17 +87,14 @@ __kernel void skg_show_count(skg_show_args args, __global const float *vertices,
     const float4 clip_c = skg_show_clip(args, vertices + 3 * corner[2]);
     float3 a = skg_show_place(args, clip_a), b = skg_show_place(args, clip_b), c = skg_show_place(args, clip_c);
     const float2 low = fmin(a.xy, fmin(b.xy, c.xy)), high = fmax(a.xy, fmax(b.xy, c.xy));
-    const int4 box = (int4)(max(convert_int2_rtp(low - SKG_SHOW_OVERLAP), 0),
-                            min(convert_int2_rtn(high + SKG_SHOW_OVERLAP),
-                                (int2)(2 * args.columns - 1, 2 * args.rows - 1)));
-    const float2 origin = convert_float2(box.xy);
-    a.xy -= origin, b.xy -= origin, c.xy -= origin;
+    const int4 box = (int4)(max(convert_int2_rtp(low), 0),
+                            min(convert_int2_rtn(high), (int2)(2 * args.columns - 1, 2 * args.rows - 1)));
     const float2 ab = b.xy - a.xy, ac = c.xy - a.xy;
-    const float area = ab.x * ac.y - ac.x * ab.y, side = area < 0.0f ? -1.0f : 1.0f;
+    const float area = ab.x * ac.y - ac.x * ab.y;
     if (box.x > box.z || box.y > box.w || !(fabs(area) > 1e-6f) || colour >> 24 == 0) return;
-    skg_show_edge(face->inside, a.xy, b.xy, side);
-    skg_show_edge(face->inside + 3, b.xy, c.xy, side);
-    skg_show_edge(face->inside + 6, c.xy, a.xy, side);
+    face->sides = skg_show_edge(face->edges, a.xy, b.xy, c.xy) | skg_show_edge(face->edges + 4, b.xy, c.xy, a.xy) << 1 |
+                  skg_show_edge(face->edges + 8, c.xy, a.xy, b.xy) << 2;
+    a.xy -= convert_float2(box.xy);
     skg_show_plane(face->depth, ab, ac, area, a.z, b.z, c.z, a.xy);
     if (face->image) { /* its corners, in the order of the host: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) */
         const float4 u = triangle == args.triangles - 2 ? (float4)(0, 1, 1, 0) : (float4)(0, 1, 0, 0);
@@ -188,10 +184,16 @@ typedef struct {
     skg_floatv through[SKG_SHOW_TILE], red[SKG_SHOW_TILE], green[SKG_SHOW_TILE], blue[SKG_SHOW_TILE];
 } skg_show_strip;
 
-/* The samples of a row that a triangle covers. */
+/* Which samples lie on the triangle's side of edge k. x, y: in the picture. */
+static skg_intv skg_show_beside(__global const skg_show_face *face, int k, skg_floatv x, float y) {
+    __global const float *edge = face->edges + 4 * k;
+    const skg_floatv side = fma(edge[0], x - edge[2], edge[1] * (y - edge[3]));
+    return (side >= 0.0f) ^ (skg_intv)((face->sides >> k & 1) - 1);
+}
+
+/* Which samples of a row a triangle covers. */
 static skg_intv skg_show_covered(__global const skg_show_face *face, skg_floatv x, float y) {
-    return skg_show_value(face->inside, x, y) >= 0.0f && skg_show_value(face->inside + 3, x, y) >= 0.0f &&
-           skg_show_value(face->inside + 6, x, y) >= 0.0f;
+    return skg_show_beside(face, 0, x, y) & skg_show_beside(face, 1, x, y) & skg_show_beside(face, 2, x, y);
 }
 
 /* Colours of a row of samples whose triangles are known; `none` where the number is SKG_SHOW_NONE. Shading each triangle
@@ -216,12 +218,12 @@ static skg_uintv skg_show_colours(skg_show_args args, __global const skg_show_fa
 
 /* Keeps the nearest opaque surface. */
 static void skg_show_opaque(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row) {
-    const skg_floatv x = SKG_LANES + (float)(column - face->box[0]);
+    const skg_floatv at = SKG_LANES + (float)column, x = at - (float)face->box[0];
     const int first = max(face->box[1] - row, 0), last = min(face->box[3] - row, SKG_SHOW_TILE - 1);
     for (int r = first; r <= last; r++) {
         const float y = (float)(row + r - face->box[1]);
         const skg_floatv depth = skg_show_value(face->depth, x, y);
-        const skg_intv mask = skg_show_covered(face, x, y) && (depth < strip->depth[r] ||
+        const skg_intv mask = skg_show_covered(face, at, (float)(row + r)) && (depth < strip->depth[r] ||
                               (depth == strip->depth[r] && triangle < strip->number[r]));
         strip->depth[r] = select(strip->depth[r], depth, mask);
         strip->number[r] = select(strip->number[r], (skg_intv)(triangle), mask);
@@ -231,14 +233,14 @@ static void skg_show_opaque(skg_show_strip *strip, __global const skg_show_face 
 /* Keeps the nearest translucent surface between the one that was drawn last and the opaque one. Returns whether this is
  * one. */
 static int skg_show_next(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row) {
-    const skg_floatv x = SKG_LANES + (float)(column - face->box[0]);
+    const skg_floatv at = SKG_LANES + (float)column, x = at - (float)face->box[0];
     const int first = max(face->box[1] - row, 0), last = min(face->box[3] - row, SKG_SHOW_TILE - 1);
     skg_intv found = 0;
     for (int r = first; r <= last; r++) {
         const float y = (float)(row + r - face->box[1]);
         const skg_floatv depth = skg_show_value(face->depth, x, y);
         const skg_intv mask =
-            skg_show_covered(face, x, y) && depth < strip->depth[r] &&
+            skg_show_covered(face, at, (float)(row + r)) && depth < strip->depth[r] &&
             (depth > strip->passed[r] || (depth == strip->passed[r] && triangle > strip->passed_number[r])) &&
             (depth < strip->next[r] || (depth == strip->next[r] && triangle < strip->next_number[r]));
         strip->next[r] = select(strip->next[r], depth, mask);

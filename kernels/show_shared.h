@@ -30,18 +30,23 @@ typedef struct {
 /* A triangle in the picture. Each plane p has the value p[0] x + p[1] y + p[2] at the sample that lies x columns and y
  * rows from the first of the box. */
 typedef struct {
-    float inside[9]; /* three planes that are not negative inside */
+    float edges
+        [12]; /* of each edge its normal and its first end, in samples; the same for both triangles of an edge */
     float depth[3];
     float values[9]; /* three planes: the normal in the eye's axes; of the detector u / w, v / w, 1 / w */
     float colour[4]; /* red, green, blue, opacity: 0 to 1 */
-    SKG_SHOW_INT box
-        [4]; /* first column, first row, last column, last row of samples; empty if the first exceeds the last */
+    SKG_SHOW_INT
+        box[4]; /* first column, first row, last column, last row of samples; empty if the first exceeds
+                          * the last */
+    SKG_SHOW_INT
+        sides; /* bit k: the triangle is where the normal of edge k points to, edge included; otherwise it is on
+                          * the other side, edge excluded */
     SKG_SHOW_INT image; /* 1: shows the detector's image */
     SKG_SHOW_INT reserved[2];
 } skg_show_face;
 
 #ifndef __OPENCL_C_VERSION__
 _Static_assert(sizeof(skg_show_args) == 31 * 4 + 9 * 4, "layout of the 3D view's arguments");
-_Static_assert(sizeof(skg_show_face) == 32 * 4, "layout of a triangle of the 3D view");
+_Static_assert(sizeof(skg_show_face) == 36 * 4, "layout of a triangle of the 3D view");
 #endif
 #endif
