@@ -20,6 +20,16 @@ static const double VARIATION = 0.07;
 /* The opacity of a part that holds others. */
 enum { TRANSLUCENT = 46, OPAQUE = 255 };
 
+/* The attenuation coefficient of water at an energy where that of tissues follows their density (NIST, XCOM), 1/cm. */
+static const double WATER = 0.1929, ENERGY = 70;
+
+/* The density of a material; if it is unknown, that of water with the same attenuation. 0: it attenuates nothing. */
+static double density_of(const skg_material *material) {
+    double density = 0, per_cm = 0;
+    if (skg_material_density_get(material, &density) == SKG_OK && density > 0) return density;
+    return skg_material_attenuation_get(material, ENERGY, &per_cm) == SKG_OK ? per_cm / WATER : 0;
+}
+
 static void of_density(double density, double colour[3]) {
     int upper = 1;
     while (upper < TISSUES - 1 && tissues[upper].density < density) upper++;
@@ -53,8 +63,8 @@ skg_status skg_look_colours_get(const skg_scene *scene, uint8_t *colours) {
     SKG_TRY(skg_alloc(scene->count, sizeof *inside, "parts inside others", &inside));
     count_inside(scene, inside);
     for (int64_t i = 0; i < scene->count; i++) {
-        double density = 0, colour[3];
-        skg_material_density_get(scene->parts[i].material, &density);
+        const double density = density_of(scene->parts[i].material);
+        double colour[3];
         if (density > 0)
             of_density(density, colour);
         else

@@ -49,13 +49,14 @@ static int by_row(const void *a, const void *b) {
     return (*above)->at[1] > (*below)->at[1] ? 1 : -((*above)->at[1] < (*below)->at[1]);
 }
 
-/* A label without digits and the words left and right: "rib 5 right" and "rib 6 left" are of one kind. */
+/* A label without digits and the words left, right, l and r: "rib 5 right" and "rib_l06" are of one kind. */
 static void kind_of(const char *label, char *kind, size_t size) {
     size_t used = 0;
     while (*label && used + 1 < size) {
         const size_t word = strcspn(label, " -_.0123456789");
-        const int is_side =
-            (word == 4 && strncmp(label, "left", 4) == 0) || (word == 5 && strncmp(label, "right", 5) == 0);
+        const int is_side = (word == 1 && strchr("lrLR", *label)) ||
+                            (word == 4 && strncmp(label, "left", 4) == 0) ||
+                            (word == 5 && strncmp(label, "right", 5) == 0);
         for (size_t i = 0; i < word && !is_side && used + 1 < size; i++) kind[used++] = label[i];
         label += word + (label[word] != '\0');
     }

@@ -53,8 +53,8 @@ static inline void skg_look_init(skg_look *look) {
 }
 
 /** Gets the colours in which parts are drawn unless the look has others. Tissues and metals are coloured by their
- * density, matter of unknown density by the part's number. A part that holds several others, or the whole scene,
- * is translucent.
+ * density; if it is unknown, by that of water with the same attenuation at 70 keV. Parts that attenuate nothing
+ * are coloured by their number. A part that holds several others, or the whole scene, is translucent.
  *
  *     colours   result: [parts][4] red, green, blue and opacity, 0 to 255
  *     errors    SKG_ERR_MEMORY */
