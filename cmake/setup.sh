@@ -3,7 +3,7 @@
 
 # shellcheck disable=SC2034
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
-libassimp-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
+libassimp-dev libcglm-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
 
 # Without these the build leaves something out: HDF5 files of scans, scans under MPI.
 # shellcheck disable=SC2034

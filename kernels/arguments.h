@@ -134,6 +134,17 @@
     X(DETECT, rows) X(DETECT, key) X(DETECT, electronic) X(DETECT, spacing) X(DETECT, factor) X(DETECT, scale) \
     X(DETECT, flat_field) /* SKG_FLAT_FIELD */
 
+#define SKG_ARGUMENTS_SHOW_COUNT(X) \
+    X(SHOW_COUNT, args) X(SHOW_COUNT, vertices) X(SHOW_COUNT, corners) X(SHOW_COUNT, normals) \
+    X(SHOW_COUNT, colours) X(SHOW_COUNT, faces) X(SHOW_COUNT, counts)
+
+#define SKG_ARGUMENTS_SHOW_FILL(X) \
+    X(SHOW_FILL, args) X(SHOW_FILL, faces) X(SHOW_FILL, cursors) X(SHOW_FILL, list)
+
+#define SKG_ARGUMENTS_SHOW_DRAW(X) \
+    X(SHOW_DRAW, args) X(SHOW_DRAW, faces) X(SHOW_DRAW, starts) X(SHOW_DRAW, list) X(SHOW_DRAW, image) \
+    X(SHOW_DRAW, rgba)
+
 /* X(KERNEL, function) for each kernel. */
 #define SKG_KERNELS(X) \
     X(PROJECT, skg_project) X(RASTER_COPIES, skg_raster_copies) X(RASTER_ATOMICS, skg_raster_atomics) \
@@ -144,7 +155,8 @@
     X(HITS_SETTLE, skg_hits_settle) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
     X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(LOGARITHM, skg_logarithm) \
-    X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(DETECT, skg_detect)
+    X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(DETECT, skg_detect) \
+    X(SHOW_COUNT, skg_show_count) X(SHOW_FILL, skg_show_fill) X(SHOW_DRAW, skg_show_draw)
 /* clang-format on */
 
 /* SKG_<KERNEL>_<name>: the argument's position; SKG_<KERNEL>_ARGUMENTS: how many there are. */

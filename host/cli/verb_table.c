@@ -4,11 +4,13 @@
 #include "cost/cost.h"
 #include "scan/scan.h"
 #include "verbs/verbs.h"
+#include "view/view.h"
 
 const cli_verb cli_verbs[] = {
     {&cli_manual_image, cli_image},
     {&cli_manual_lbuffer, cli_lbuffer},
     {&cli_manual_plan, cli_plan},
+    {&cli_manual_view, cli_view},
     {&cli_manual_cost, cli_cost},
     {&cli_manual_mesh, cli_mesh},
     {&cli_manual_material, cli_material},

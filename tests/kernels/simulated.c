@@ -28,6 +28,7 @@ typedef struct {
     int32_t inside;   /* the source stands in the box */
     int32_t parallel, colours, world, bands, noise, blur, spot;
     double electronic, step, tolerance;
+    int32_t picture; /* draws the 3D view instead of an image */
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -60,7 +61,8 @@ static const group groups[] = {
     {.name = "blur", .blur = BLUR_LINES},
     {.name = "blur_point", .blur = BLUR_POINT},
     {.name = "noise", .noise = 1, .colours = 1},
-    {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1}};
+    {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1},
+    {.name = "show", .picture = 1}};
 
 static const group *find(const char *name) {
     for (size_t n = 0; n < sizeof groups / sizeof *groups; n++)
@@ -146,6 +148,21 @@ static int lies_between(const float *values, int64_t count, double least, double
     return 1;
 }
 
+/* The 3D view; one part is translucent, and the detector shows an image. */
+static int draw_picture(skg_context *context, const skg_scene *scene, const skg_view *view) {
+    static uint8_t rgba[4 * PIXELS], image[PIXELS];
+    const uint8_t colours[8] = {200, 100, 50, 90, 50, 100, 200, 255};
+    skg_look look;
+    skg_look_init(&look);
+    look.columns = COLUMNS, look.rows = ROWS;
+    look.colours = colours;
+    look.image = image;
+    TRY(skg_view_picture(context, scene, view, &look, rgba));
+    for (int p = 0; p < PIXELS; p++)
+        if (rgba[4 * p + 3] != 255) return 0;
+    return 1;
+}
+
 int main(int count, char **words) {
     static float image[2 * PIXELS];
     const group *g = find(count == 2 ? words[1] : "");
@@ -154,6 +171,12 @@ int main(int count, char **words) {
     TRY(skg_context_create(NULL, &context));
     skg_scene *scene = make_scene(context, g);
     const skg_view view = make_view(g);
+    if (g->picture) {
+        const int drawn = draw_picture(context, scene, &view);
+        skg_scene_release(&scene);
+        skg_context_release(&context);
+        return drawn ? EXIT_SUCCESS : EXIT_FAILURE;
+    }
     skg_plan *plan = make_plan(context, scene, &view, g);
     skg_output_init(&output);
     output.data = image;

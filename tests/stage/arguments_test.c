@@ -51,6 +51,7 @@ static const struct {
      0},
     {{"blur.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1", 0},
+    {{"show_shared.h", "show.cl"}, "", 0},
 };
 
 static const kernel_list *list_of(const char *function) {

@@ -3,6 +3,7 @@
 const cli_manual *const cli_manuals[] = {&cli_manual_image,
                                          &cli_manual_lbuffer,
                                          &cli_manual_plan,
+                                         &cli_manual_view,
                                          &cli_manual_cost,
                                          &cli_manual_mesh,
                                          &cli_manual_material,

@@ -43,7 +43,7 @@ void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
     cli_manual_image, cli_manual_lbuffer, cli_manual_material, cli_manual_mesh, cli_manual_plan,
-    cli_manual_reconstruct, cli_manual_scan, cli_manual_thorax;
+    cli_manual_reconstruct, cli_manual_scan, cli_manual_thorax, cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -73,6 +73,8 @@ extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_ang
 extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles, cli_flag_thorax_simple;
 extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_flag_breathe_fps,
     cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
+extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_size, cli_flag_view_orthographic,
+    cli_flag_view_phase, cli_flag_view_at;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
     cli_flag_reconstruct_filter;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,

@@ -33,5 +33,6 @@
 #include <skiagraph/thorax.h>
 #include <skiagraph/types.h>
 #include <skiagraph/version.h>
+#include <skiagraph/view_picture.h>
 
 #endif

@@ -1,0 +1,56 @@
+#include "manual/manual.h"
+
+const cli_flag cli_flag_view_output = {"-o", "FILE", "The picture to write, a .png. May be repeated.", NULL,
+                                       CLI_NAMES_FILE};
+const cli_flag cli_flag_view_from = {
+    "--from", "front|side|top|X,Y,Z",
+    "The side from which the scene is seen: front is -y, side is +x, top is +z; or the direction from the scene to the "
+    "eye. From a side +z is up, from the top +y. By default the scene is seen obliquely from the side of the source, with "
+    "the detector's row 0 on top.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_view_size = {"--size", "W,H", "Columns and rows of the picture; 1280,800 by default.",
+                                     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_view_orthographic = {
+    "--orthographic", NULL, "Keeps parallel lines parallel, without perspective.", NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_view_phase = {
+    "--phase", "P", "Shows the scene at this phase of its breath: 0 is end-inspiration, 1 the next one.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_view_at = {"--at", "SECONDS", "Shows the scene at this time of its breath.", NULL,
+                                   CLI_NAMES_NOTHING};
+
+static const char *const text[] = {
+    "Draws a scene as it stands in the room: source, beam, detector with its image, every part shaded and named, and the "
+    "axes. It shows whether everything is where it should be before images are computed.",
+    "A part that holds several others, and one that holds the whole scene, is translucent. Colours follow the density of "
+    "the material. With a Scan, the path of the source is drawn. The caption has the distances and the magnification of "
+    "the centre of the parts.",
+    "The detector shows the attenuation, dense matter white, between the percentiles 0.5 and 99.5. It is plain if the "
+    "scene has no beam.",
+    "--json prints {files, source_detector_mm, source_object_mm, magnification, parts: [{label, column, row, colour}]}; "
+    "column and row are where the centre of a part is in the picture.",
+    NULL};
+
+static const cli_flag *const flags[] = {&cli_flag_view_output, &cli_flag_view_from,
+                                        &cli_flag_view_size,   &cli_flag_view_orthographic,
+                                        &cli_flag_view_phase,  &cli_flag_view_at,
+                                        &cli_flag_device,      &cli_flag_tolerance,
+                                        &cli_flag_set,         &cli_flag_lenient,
+                                        &cli_flag_json,        &cli_flag_verbose,
+                                        &cli_flag_quiet,       NULL};
+
+static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "draws the scene"},
+                                    {"skiagraph view thorax/thorax.json --from top --phase 0.5 -o view.png",
+                                     "the breathing thorax from above, at half of its cycle"},
+                                    {NULL, NULL}};
+
+const cli_manual cli_manual_view = {.name = "view",
+                                    .operands = "SCENE",
+                                    .required = "-o FILE",
+                                    .summary = "a picture of the scene: source, beam, detector, parts",
+                                    .text = text,
+                                    .least = 1,
+                                    .most = 1,
+                                    .names = CLI_NAMES_SCENE,
+                                    .flags = flags,
+                                    .examples = examples,
+                                    .has_device = 1};

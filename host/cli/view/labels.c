@@ -1,0 +1,243 @@
+#include "view/labels.h"
+
+#include "common/say.h"
+#include "core/vector.h"
+
+#include <cairo.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How many parts are named at most. */
+enum { MOST_NAMED = 20 };
+
+/* What is drawn: lengths are in units of the text's height. */
+typedef struct {
+    cairo_t *cairo;
+    double text; /* height of the text, pixels */
+    double columns, rows;
+} sheet;
+
+/* Text with a light rim, so that it can be read over anything. */
+static void write_text(const sheet *s, double x, double y, const char *text) {
+    cairo_move_to(s->cairo, x, y);
+    cairo_text_path(s->cairo, text);
+    cairo_set_source_rgba(s->cairo, 0.957, 0.961, 0.969, 0.85);
+    cairo_set_line_width(s->cairo, 0.3 * s->text);
+    cairo_set_line_join(s->cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_stroke_preserve(s->cairo);
+    cairo_set_source_rgb(s->cairo, 0.1, 0.11, 0.13);
+    cairo_fill(s->cairo);
+}
+
+static double text_width(const sheet *s, const char *text) {
+    cairo_text_extents_t size;
+    cairo_text_extents(s->cairo, text, &size);
+    return size.x_advance;
+}
+
+static int by_area(const void *a, const void *b) {
+    const view_part *const *left = a, *const *right = b;
+    return (*left)->area < (*right)->area ? 1 : -((*left)->area > (*right)->area);
+}
+
+static int by_row(const void *a, const void *b) {
+    const view_part *const *above = a, *const *below = b;
+    return (*above)->at[1] > (*below)->at[1] ? 1 : -((*above)->at[1] < (*below)->at[1]);
+}
+
+/* A label without digits and the words left, right, l and r: "rib 5 right" and "rib_l06" are of one kind. */
+static void kind_of(const char *label, char *kind, size_t size) {
+    size_t used = 0;
+    while (*label && used + 1 < size) {
+        const size_t word = strcspn(label, " -_.0123456789");
+        const int is_side = (word == 1 && strchr("lrLR", *label)) ||
+                            (word == 4 && strncmp(label, "left", 4) == 0) ||
+                            (word == 5 && strncmp(label, "right", 5) == 0);
+        for (size_t i = 0; i < word && !is_side && used + 1 < size; i++) kind[used++] = label[i];
+        label += word + (label[word] != '\0');
+    }
+    kind[used] = '\0';
+}
+
+/* Whether a part lies inside an opaque one, which hides it. */
+static int is_hidden(const cli_session *session, const uint8_t *colours, int64_t id) {
+    skg_part part;
+    skg_part_init(&part);
+    while (skg_scene_part_get(session->scene, id, &part) == SKG_OK && part.inside >= 0) {
+        id = part.inside;
+        if (colours[4 * id + 3] == 255) return 1;
+    }
+    return 0;
+}
+
+/* The largest part of each kind that can be seen, at most MOST_NAMED. Returns how many. */
+static int choose_parts(const cli_session *session, const view_places *places, const view_part **parts) {
+    int64_t seen = 0;
+    int chosen = 0;
+    uint8_t *colours = malloc((size_t)places->count * 4 + 1);
+    if (colours && skg_look_colours_get(session->scene, colours) == SKG_OK)
+        for (int64_t i = 0; i < places->count; i++)
+            if (!is_hidden(session, colours, i)) parts[seen++] = places->parts + i;
+    free(colours);
+    qsort(parts, (size_t)seen, sizeof *parts, by_area);
+    for (int64_t i = 0; i < seen && chosen < MOST_NAMED; i++) {
+        char kind[64], other[64];
+        int is_new = 1;
+        kind_of(parts[i]->label, kind, sizeof kind);
+        for (int k = 0; k < chosen && is_new; k++) {
+            kind_of(parts[k]->label, other, sizeof other);
+            is_new = !kind[0] || strcmp(kind, other) != 0;
+        }
+        if (is_new) parts[chosen++] = parts[i];
+    }
+    return chosen;
+}
+
+/* Names in a column beside the parts, each with a line to its part. x: where the names end on the left side, and where they
+ * begin on the right. */
+static void name_side(const sheet *s, const view_part *const *parts, int count, int is_right, double x) {
+    const double line = 1.5 * s->text, low = 1.5 * line, high = s->rows - 2.5 * line;
+    double least = low;
+    for (int i = 0; i < count; i++) {
+        /* near its part, but the names after it need room as well */
+        const double y = fmin(fmax(parts[i]->at[1], least), high - (count - 1 - i) * line);
+        const double width = text_width(s, parts[i]->label);
+        const double begin =
+            is_right ? fmin(x, s->columns - width - 0.5 * s->text) : fmax(x - width, 0.5 * s->text);
+        const double end = is_right ? begin - 0.4 * s->text : begin + width + 0.4 * s->text;
+        cairo_set_source_rgba(s->cairo, 0.25, 0.27, 0.3, 0.6);
+        cairo_set_line_width(s->cairo, fmax(1, s->text / 16));
+        cairo_move_to(s->cairo, end, y);
+        cairo_line_to(s->cairo, parts[i]->at[0] + 0.5, parts[i]->at[1] + 0.5);
+        cairo_stroke(s->cairo);
+        cairo_arc(s->cairo, parts[i]->at[0] + 0.5, parts[i]->at[1] + 0.5, s->text / 6, 0, 7);
+        cairo_fill(s->cairo);
+        write_text(s, begin, y + 0.35 * s->text, parts[i]->label);
+        least = y + line;
+    }
+}
+
+/* Returns how many parts are named. */
+static int64_t name_parts(const sheet *s, const cli_session *session, const view_places *places) {
+    const int room = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
+    const view_part **parts = calloc((size_t)places->count + 1, sizeof *parts), *of_side[2][MOST_NAMED];
+    int count[2] = {0, 0};
+    double middle = 0, left = INFINITY, right = -INFINITY;
+    if (!parts) return 0;
+    const int chosen = choose_parts(session, places, parts);
+    for (int i = 0; i < chosen; i++) {
+        middle += parts[i]->at[0] / chosen;
+        left = fmin(left, parts[i]->low_column), right = fmax(right, parts[i]->high_column);
+    }
+    for (int i = 0; i < chosen; i++) {
+        const int side = parts[i]->at[0] > middle;
+        if (count[side] < room) of_side[side][count[side]++] = parts[i];
+    }
+    for (int side = 0; side < 2; side++) {
+        qsort(of_side[side], (size_t)count[side], sizeof *of_side[side], by_row);
+        name_side(s, of_side[side], count[side], side, side ? right + 2 * s->text : left - 2 * s->text);
+    }
+    free(parts);
+    return count[0] + count[1];
+}
+
+static void name_point(const sheet *s, const cli_session *session, const skg_look *look,
+                       const double point[3], const char *name) {
+    double at[2];
+    if (skg_view_places_get(session->scene, &session->view, look, 1, point, at) != SKG_OK) return;
+    const double width = text_width(s, name);
+    write_text(s, fmin(fmax(at[0] + 0.8 * s->text, 0), s->columns - width - 2),
+               fmax(at[1] - 0.5 * s->text, s->text), name);
+}
+
+static void name_markers(const sheet *s, const cli_session *session, const skg_look *look,
+                         const view_places *places) {
+    static const char *const axes[3] = {"x", "y", "z"};
+    const skg_view *view = &session->view;
+    double at[3], length = 0;
+    view_source(view, places, at);
+    name_point(s, session, look, at, view->projection == SKG_PROJECTION_POINT ? "source" : "parallel beam");
+    skg_add_scaled(view->centre, -0.5 * (double)view->rows, view->row_step, at);
+    name_point(s, session, look, at, "detector");
+    for (int k = 0; k < 3; k++) length = fmax(length, places->high[k] - places->low[k]);
+    for (int k = 0; k < 3; k++) {
+        memcpy(at, places->low, sizeof at);
+        at[k] += 0.2 * length;
+        name_point(s, session, look, at, axes[k]);
+    }
+}
+
+static void write_caption(const sheet *s, const cli_session *session, const view_places *places,
+                          int64_t named) {
+    const skg_view *view = &session->view;
+    const double width = skg_length(view->column_step), height = skg_length(view->row_step);
+    char text[512], *at = text;
+    char *const end = text + sizeof text;
+    if (!isnan(places->source_detector))
+        at += snprintf(at, (size_t)(end - at),
+                       "source to detector %.4g mm, to the centre of the parts %.4g mm; ",
+                       places->source_detector, places->source_object);
+    at += snprintf(at, (size_t)(end - at),
+                   "magnification %.4g; detector %.4g x %.4g mm, %" PRId64 " x %" PRId64 " pixels",
+                   places->magnification, width * (double)view->columns, height * (double)view->rows,
+                   view->columns, view->rows);
+    if (named < places->count)
+        snprintf(at, (size_t)(end - at), "; %" PRId64 " of %" PRId64 " parts are named", named,
+                 places->count);
+    cairo_set_font_size(s->cairo, fmin(s->text, s->text * (s->columns - 2 * s->text) / text_width(s, text)));
+    write_text(s, s->text, s->rows - s->text, text);
+}
+
+static cairo_status_t take_bytes(void *stream, const unsigned char *bytes, unsigned int count) {
+    return fwrite(bytes, 1, count, stream) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
+
+static void copy_pixels(cairo_surface_t *surface, const skg_look *look, const uint8_t *rgba) {
+    unsigned char *pixels = cairo_image_surface_get_data(surface);
+    const int stride = cairo_image_surface_get_stride(surface);
+    cairo_surface_flush(surface);
+    for (int64_t row = 0; row < look->rows; row++)
+        for (int64_t column = 0; column < look->columns; column++) {
+            const uint8_t *from = rgba + 4 * (row * look->columns + column);
+            const uint32_t pixel = (uint32_t)from[0] << 16 | (uint32_t)from[1] << 8 | from[2];
+            memcpy(pixels + row * stride + 4 * column, &pixel, sizeof pixel);
+        }
+    cairo_surface_mark_dirty(surface);
+}
+
+int view_label(const cli_session *session, const skg_look *look, const view_places *places,
+               const uint8_t *rgba, char **bytes, size_t *count) {
+    cairo_surface_t *surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)look->columns, (int)look->rows);
+    cairo_status_t status = cairo_surface_status(surface);
+    *bytes = NULL;
+    FILE *stream = open_memstream(bytes, count);
+    if (stream && status == CAIRO_STATUS_SUCCESS) {
+        copy_pixels(surface, look, rgba);
+        sheet s = {
+            .cairo = cairo_create(surface), .columns = (double)look->columns, .rows = (double)look->rows};
+        s.text = fmax(9, fmin(s.columns / 80, s.rows / 50));
+        cairo_select_font_face(s.cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+        cairo_set_font_size(s.cairo, s.text);
+        const int64_t named = name_parts(&s, session, places);
+        name_markers(&s, session, look, places);
+        write_caption(&s, session, places, named);
+        status = cairo_status(s.cairo);
+        cairo_destroy(s.cairo);
+        if (status == CAIRO_STATUS_SUCCESS)
+            status = cairo_surface_write_to_png_stream(surface, take_bytes, stream);
+    }
+    cairo_surface_destroy(surface);
+    if (!stream || fclose(stream) != 0 || status != CAIRO_STATUS_SUCCESS) {
+        free(*bytes);
+        *bytes = NULL;
+        return cli_error(CLI_DEVICE, "the picture cannot be drawn: %s",
+                         status == CAIRO_STATUS_SUCCESS ? "out of host memory"
+                                                        : cairo_status_to_string(status));
+    }
+    return CLI_DONE;
+}

@@ -1,0 +1,88 @@
+/** @file
+ * A picture of a scene: source, beam, detector and parts, seen from outside. It shows whether everything stands
+ * where it should before an X-ray image is computed.
+ *
+ * Positions are in mm. The picture has perspective unless the look says otherwise, and always holds everything:
+ * parts, source, detector and the path of the source. */
+#ifndef SKIAGRAPH_VIEW_PICTURE_H
+#define SKIAGRAPH_VIEW_PICTURE_H
+
+#include <skiagraph/context.h>
+#include <skiagraph/scene.h>
+#include <skiagraph/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Largest number of columns and rows of a picture of a scene. */
+#define SKG_LOOK_MOST_PIXELS 8192
+
+/** How a picture of a scene is drawn. Prepare with skg_look_init: 1024 x 768 pixels from the side of the source,
+ * in perspective, without an image on the detector. */
+typedef struct {
+    /** Set by skg_look_init. */
+    int32_t size;
+    /** 1: parallel lines stay parallel; 0: perspective */
+    int32_t orthographic;
+    /** Number of columns of the picture, 1 to SKG_LOOK_MOST_PIXELS. */
+    int64_t columns;
+    /** Number of rows of the picture, 1 to SKG_LOOK_MOST_PIXELS. */
+    int64_t rows;
+    /** Direction from the scene to the eye, of any length. Zero: obliquely from the side of the source. */
+    double from[3];
+    /** Direction that is up in the picture. Zero: against the detector's rows, so that row 0 is on top. */
+    double up[3];
+    /** [view.rows][view.columns] grey values that are shown on the detector, dense; NULL: the detector is plain. */
+    const uint8_t *image;
+    /** [parts][4] red, green, blue and opacity of each part, 0 to 255; opacity 0 leaves a part out. NULL: those of
+     * skg_look_colours_get. */
+    const uint8_t *colours;
+    /** [path_count][3] points of a line to draw, such as the positions of the source in a scan; may be NULL. */
+    const double *path;
+    /** Number of points of the path. */
+    int64_t path_count;
+} skg_look;
+
+/** Prepares a look of `size` bytes (export.h). */
+SKG_API void skg_look_init_sized(void *look, int32_t size);
+
+/** Prepares a look. */
+static inline void skg_look_init(skg_look *look) {
+    skg_look_init_sized(look, (int32_t)sizeof *look);
+}
+
+/** Gets the colours in which parts are drawn unless the look has others. Tissues and metals are coloured by their
+ * density; if it is unknown, by that of water with the same attenuation at 70 keV. Parts that attenuate nothing
+ * are coloured by their number. A part that holds several others, or the whole scene, is translucent.
+ *
+ *     colours   result: [parts][4] red, green, blue and opacity, 0 to 255
+ *     errors    SKG_ERR_MEMORY */
+SKG_API skg_status skg_look_colours_get(const skg_scene *scene, uint8_t *colours);
+
+/** Draws a picture of a scene on the device of the context and waits for it.
+ *
+ *     look      NULL: as skg_look_init prepares it
+ *     rgba      result: [rows][columns][4] red, green, blue and 255, 0 to 255 (sRGB), row 0 on top
+ *     errors    SKG_ERR_SCENE (no parts, every part left out, a vertex that is not finite, a view that
+ *               skg_view_check refuses), SKG_ERR_ARGUMENT (sizes, a direction that is not finite),
+ *               SKG_ERR_DEVICE_MEMORY, SKG_ERR_MEMORY
+ *     method    Triangles are sorted into tiles of the picture; in each tile the device keeps the nearest opaque
+ *               surface, then adds the translucent ones in front of it, nearest first (depth peeling, Everitt
+ *               2001; at most 8 layers). 2 x 2 samples a pixel. The bytes do not depend on the number of threads. */
+SKG_API skg_status skg_view_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
+                                    const skg_look *look, uint8_t *rgba);
+
+/** Gets where points of the world appear in the picture that skg_view_picture draws with the same arguments, for
+ * labels.
+ *
+ *     points    [count][3] mm
+ *     places    result: [count][2] column and row; pixel centres are whole numbers
+ *     errors    as skg_view_picture */
+SKG_API skg_status skg_view_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
+                                       int64_t count, const double *points, double *places);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

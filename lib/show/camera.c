@@ -1,0 +1,169 @@
+#include "show/camera.h"
+
+#include "core/maths.h"
+#include "core/vector.h"
+
+#include <cglm/cglm.h>
+
+#include <math.h>
+
+/* Height of the field of view, and the part of the picture that the scene fills at most. */
+static const double FIELD = 28 * SKG_PI / 180, FILLED = 0.92;
+
+/* Distance of the eye from the nearest point, as a share of half the scene's depth. */
+static const double NEAREST = 0.5;
+
+/* What has to be in the picture, one point after the other: extents in the eye's axes. */
+typedef struct {
+    const double (*axes)[3];
+    double tangent[2]; /* of half the field: across, up; 0: orthographic */
+    double highest[2]; /* max (x + z tan), min (x - z tan), x across or up, z towards the eye */
+    double lowest[2];
+    double near, far; /* the range of z */
+} frame;
+
+static void frame_point(frame *f, const double point[3]) {
+    const double z = skg_dot(f->axes[2], point);
+    for (int k = 0; k < 2; k++) {
+        const double x = skg_dot(f->axes[k], point);
+        f->highest[k] = fmax(f->highest[k], x + z * f->tangent[k]);
+        f->lowest[k] = fmin(f->lowest[k], x - z * f->tangent[k]);
+    }
+    f->near = fmax(f->near, z);
+    f->far = fmin(f->far, z);
+}
+
+void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]) {
+    skg_add_scaled(view->centre, (column - 0.5) * (double)view->columns, view->column_step, corner);
+    skg_add_scaled(corner, (row - 0.5) * (double)view->rows, view->row_step, corner);
+}
+
+void skg_show_beam_start(const skg_view *view, const double low[3], const double high[3], const double at[3],
+                         double start[3]) {
+    double along[3], farthest = 0;
+    memcpy(start, view->source, 3 * sizeof *start);
+    if (view->projection == SKG_PROJECTION_POINT) return;
+    if (view->projection == SKG_PROJECTION_PARALLEL) {
+        skg_add_scaled(view->source, -1, view->centre, along);
+        skg_add_scaled(at, 1, along, start);
+        return;
+    }
+    skg_scale_vector(-1 / skg_length(view->source), view->source, along);
+    for (int corner = 0; corner < 8; corner++) {
+        double from[3];
+        for (int k = 0; k < 3; k++) from[k] = (corner >> k & 1 ? high[k] : low[k]) - view->centre[k];
+        farthest = fmax(farthest, skg_dot(along, from));
+    }
+    skg_add_scaled(at, 1.1 * farthest, along, start);
+}
+
+/* A direction of length 1 across another one of length 1: `wanted` if that is across enough, otherwise any. */
+static void across(const double wanted[3], const double direction[3], double result[3]) {
+    double candidate[3];
+    memcpy(candidate, wanted, sizeof candidate);
+    for (int k = 2; k >= 0; k--) {
+        const double length = skg_length(candidate);
+        if (length > 0) {
+            skg_scale_vector(1 / length, candidate, candidate);
+            skg_add_scaled(candidate, -skg_dot(candidate, direction), direction, result);
+            if (skg_length(result) > 1e-3) break;
+        }
+        for (int axis = 0; axis < 3; axis++) candidate[axis] = axis == k;
+    }
+    skg_scale_vector(1 / skg_length(result), result, result);
+}
+
+static skg_status find_axes(const skg_view *view, const skg_look *look, double axes[3][3]) {
+    double *toward = axes[2], beam[3], start[3], up[3];
+    if (!skg_all_finite(look->from, 3) || !skg_all_finite(look->up, 3))
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_view_picture: a direction of the look is not finite");
+    memcpy(up, look->up, sizeof up);
+    if (skg_length(up) == 0) skg_scale_vector(-1, view->row_step, up);
+    memcpy(toward, look->from, sizeof axes[2]);
+    if (skg_length(toward) == 0) { /* obliquely: across the beam, a little from the source and from above */
+        skg_show_beam_start(view, view->centre, view->centre, view->centre, start);
+        skg_add_scaled(view->centre, -1, start, beam);
+        if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+            memcpy(beam, view->source, sizeof beam);
+        skg_scale_vector(1 / skg_length(beam), beam, beam);
+        skg_scale_vector(1 / skg_length(up), up, up);
+        skg_cross(beam, up, toward);
+        skg_scale_vector(1 / skg_length(toward), toward, toward);
+        skg_add_scaled(toward, -0.55, beam, toward);
+        skg_add_scaled(toward, 0.42, up, toward);
+    }
+    skg_scale_vector(1 / skg_length(toward), toward, toward);
+    across(up, toward, axes[1]);
+    skg_cross(axes[1], toward, axes[0]);
+    return SKG_OK;
+}
+
+static void frame_everything(frame *f, const skg_view *view, const skg_look *look, const double low[3],
+                             const double high[3]) {
+    double point[3], start[3];
+    for (int corner = 0; corner < 8; corner++) {
+        for (int k = 0; k < 3; k++) point[k] = corner >> k & 1 ? high[k] : low[k];
+        frame_point(f, point);
+    }
+    for (int corner = 0; corner < 4; corner++) {
+        skg_show_detector_corner(view, corner & 1, corner >> 1, point);
+        skg_show_beam_start(view, low, high, point, start);
+        frame_point(f, point);
+        frame_point(f, start);
+    }
+    for (int64_t i = 0; i < look->path_count; i++) frame_point(f, look->path + 3 * i);
+}
+
+skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, const double low[3],
+                                const double high[3], skg_show_camera *camera) {
+    SKG_TRY(find_axes(view, look, camera->axes));
+    const double aspect = (double)look->columns / (double)look->rows, tangent = tan(FIELD / 2) * FILLED;
+    frame f = {.axes = (const double(*)[3])camera->axes,
+               .tangent = {look->orthographic ? 0 : tangent * aspect, look->orthographic ? 0 : tangent},
+               .highest = {-INFINITY, -INFINITY},
+               .lowest = {INFINITY, INFINITY},
+               .near = -INFINITY,
+               .far = INFINITY};
+    frame_everything(&f, view, look, low, high);
+    double half[2], middle = 0.5 * (f.near + f.far);
+    for (int k = 0; k < 3; k++) camera->centre[k] = middle * camera->axes[2][k];
+    for (int k = 0; k < 2; k++) {
+        half[k] = 0.5 * (f.highest[k] - f.lowest[k]);
+        skg_add_scaled(camera->centre, 0.5 * (f.highest[k] + f.lowest[k]), camera->axes[k], camera->centre);
+    }
+    /* everything may lie on the axis */
+    const double height = fmax(fmax(half[1], half[0] / aspect), 1e-6 * (1 + f.near - f.far));
+    const double depth = fmax(0.5 * (f.near - f.far), 0.01 * height);
+    /* in perspective everything is in the picture from z = height / tangent on; the eye keeps off the nearest point */
+    const double eye_z = fmax(height / tangent, f.near + NEAREST * depth);
+    const double distance = look->orthographic ? 2 * depth : eye_z - middle;
+    camera->pixel = look->orthographic ? 2 * height / FILLED / (double)look->rows
+                                       : 2 * distance * tan(FIELD / 2) / (double)look->rows;
+    vec3 eye, up, origin = {0, 0, 0};
+    mat4 seen, lens, whole;
+    for (int k = 0; k < 3; k++) {
+        eye[k] = (float)(distance * camera->axes[2][k]);
+        up[k] = (float)camera->axes[1][k];
+    }
+    glm_lookat(eye, origin, up, seen);
+    const float near = (float)(distance - 1.05 * depth), far = (float)(distance + 1.05 * depth);
+    const float top = (float)(height / FILLED);
+    if (look->orthographic)
+        glm_ortho(-top * (float)aspect, top * (float)aspect, -top, top, near, far, lens);
+    else
+        glm_perspective((float)FIELD, (float)aspect, fmaxf(near, 1e-3f * far), far, lens);
+    glm_mat4_mul(lens, seen, whole);
+    memcpy(camera->matrix, whole, sizeof camera->matrix);
+    return SKG_OK;
+}
+
+void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, const double point[3],
+                           double place[2]) {
+    vec4 position = {0, 0, 0, 1}, clip;
+    mat4 matrix;
+    memcpy(matrix, camera->matrix, sizeof matrix);
+    for (int k = 0; k < 3; k++) position[k] = (float)(point[k] - camera->centre[k]);
+    glm_mat4_mulv(matrix, position, clip);
+    place[0] = 0.5 * (double)look->columns * (1 + (double)(clip[0] / clip[3])) - 0.5;
+    place[1] = 0.5 * (double)look->rows * (1 - (double)(clip[1] / clip[3])) - 0.5;
+}

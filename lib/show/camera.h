@@ -1,0 +1,34 @@
+/* The eye of the 3D view. Its matrices are float, by cglm; X-ray images never pass through them. Private. */
+#ifndef SKG_SHOW_CAMERA_H
+#define SKG_SHOW_CAMERA_H
+
+#include "core/core.h"
+
+#include <skiagraph/types.h>
+#include <skiagraph/view_picture.h>
+
+typedef struct {
+    double centre[3];  /* mm: where the axis of the eye passes the scene; positions are relative to it */
+    double axes[3][3]; /* right, up and towards the eye, length 1 */
+    double pixel;      /* mm that a pixel covers at the centre */
+    float matrix[16];  /* from positions to clip coordinates, column after column */
+} skg_show_camera;
+
+/* Where the beam starts that meets a point of the detector: the source, or a point from which a parallel ray passes all
+ * `low` to `high`. */
+void skg_show_beam_start(const skg_view *view, const double low[3], const double high[3], const double at[3],
+                         double start[3]);
+
+/* A corner of the detector's area: of the edge of pixels, not of their centres. column, row: 0 or 1. */
+void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]);
+
+/* Places the eye so that everything is in the picture: the box of the parts (mm), source, detector, path. Errors:
+ * SKG_ERR_ARGUMENT for directions that are not finite. */
+skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, const double low[3],
+                                const double high[3], skg_show_camera *camera);
+
+/* Column and row of a point in the picture. */
+void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, const double point[3],
+                           double place[2]);
+
+#endif

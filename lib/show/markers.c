@@ -1,0 +1,158 @@
+#include "show/markers.h"
+
+#include "core/maths.h"
+#include "core/vector.h"
+
+#include <math.h>
+
+enum { SIDES = 8 };
+
+/* Sizes in pixels at the centre of the picture. */
+static const double BEAM_RADIUS = 0.7, FRAME_RADIUS = 1.1, AXIS_RADIUS = 1.6, SOURCE_RADIUS = 7,
+                    POINT_RADIUS = 2.2;
+
+#define BEAM_COLOUR SKG_SHOW_COLOUR(236, 158, 30, 255)
+#define FRAME_COLOUR SKG_SHOW_COLOUR(70, 74, 82, 255)
+#define PATH_COLOUR SKG_SHOW_COLOUR(120, 70, 190, 255)
+
+/* Two directions of length 1 across a third one. */
+static void frame_of(const double along[3], double u[3], double v[3]) {
+    int least = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(along[k]) < fabs(along[least])) least = k;
+    const double axis[3] = {least == 0, least == 1, least == 2};
+    skg_cross(along, axis, u);
+    skg_scale_vector(1 / skg_length(u), u, u);
+    skg_cross(along, u, v);
+}
+
+/* A tube, or a cone if the radius at its end is 0. */
+static skg_status add_tube(skg_show_model *model, const double from[3], const double to[3], double radius,
+                           double end_radius, uint32_t colour) {
+    double along[3], u[3], v[3], ring[SIDES][3];
+    const int64_t first = model->vertices;
+    skg_add_scaled(to, -1, from, along);
+    if (skg_length(along) == 0) return SKG_OK;
+    SKG_TRY(skg_show_model_reserve(model, 2 * SIDES, 2 * SIDES));
+    skg_scale_vector(1 / skg_length(along), along, along);
+    frame_of(along, u, v);
+    for (int i = 0; i < SIDES; i++) {
+        const double angle = 2 * SKG_PI * i / SIDES;
+        double at[3];
+        for (int k = 0; k < 3; k++) ring[i][k] = cos(angle) * u[k] + sin(angle) * v[k];
+        skg_add_scaled(from, radius, ring[i], at);
+        skg_show_model_add_vertex(model, at);
+        skg_add_scaled(to, end_radius, ring[i], at);
+        skg_show_model_add_vertex(model, at);
+    }
+    for (int i = 0; i < SIDES; i++) {
+        const int next = (i + 1) % SIDES;
+        const int64_t a = first + 2 * i, b = first + 2 * next;
+        double lower[3][3], upper[3][3];
+        for (int k = 0; k < 3; k++) {
+            lower[0][k] = lower[1][k] = upper[0][k] = ring[i][k];
+            lower[2][k] = upper[1][k] = upper[2][k] = ring[next][k];
+        }
+        skg_show_model_add_triangle(model, (const int64_t[3]){a, a + 1, b}, lower, colour);
+        skg_show_model_add_triangle(model, (const int64_t[3]){a + 1, b + 1, b}, upper, colour);
+    }
+    return SKG_OK;
+}
+
+/* A ball of rings and meridians. */
+static skg_status add_ball(skg_show_model *model, const double centre[3], double radius, uint32_t colour) {
+    enum { RINGS = 6, TURN = 12 };
+    const int64_t first = model->vertices;
+    double normals[RINGS + 1][TURN][3];
+    SKG_TRY(skg_show_model_reserve(model, (RINGS + 1) * TURN, 2 * RINGS * TURN));
+    for (int i = 0; i <= RINGS; i++)
+        for (int j = 0; j < TURN; j++) {
+            const double polar = SKG_PI * i / RINGS, around = 2 * SKG_PI * j / TURN;
+            double *n = normals[i][j], at[3];
+            n[0] = sin(polar) * cos(around), n[1] = sin(polar) * sin(around), n[2] = cos(polar);
+            skg_add_scaled(centre, radius, n, at);
+            skg_show_model_add_vertex(model, at);
+        }
+    for (int i = 0; i < RINGS; i++)
+        for (int j = 0; j < TURN; j++) {
+            const int next = (j + 1) % TURN,
+                      of[2][3][2] = {{{i, j}, {i + 1, j}, {i + 1, next}}, {{i, j}, {i + 1, next}, {i, next}}};
+            for (int t = 0; t < 2; t++) {
+                int64_t corners[3];
+                double at[3][3];
+                for (int k = 0; k < 3; k++) {
+                    corners[k] = first + of[t][k][0] * TURN + of[t][k][1];
+                    memcpy(at[k], normals[of[t][k][0]][of[t][k][1]], sizeof at[k]);
+                }
+                skg_show_model_add_triangle(model, corners, at, colour);
+            }
+        }
+    return SKG_OK;
+}
+
+static skg_status add_beam(skg_show_model *model, const skg_view *view, double pixel, const double low[3],
+                           const double high[3]) {
+    double at[3], start[3];
+    for (int corner = 0; corner < 4; corner++) {
+        skg_show_detector_corner(view, corner & 1, corner >> 1, at);
+        skg_show_beam_start(view, low, high, at, start);
+        SKG_TRY(add_tube(model, start, at, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
+        if (view->projection == SKG_PROJECTION_POINT) continue;
+        double next[3], next_start[3]; /* the plane where parallel rays start */
+        skg_show_detector_corner(view, corner == 0 || corner == 1, corner == 1 || corner == 3, next);
+        skg_show_beam_start(view, low, high, next, next_start);
+        SKG_TRY(add_tube(model, start, next_start, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
+    }
+    skg_show_beam_start(view, low, high, view->centre, start);
+    return add_ball(model, start, SOURCE_RADIUS * pixel, BEAM_COLOUR);
+}
+
+static skg_status add_axes(skg_show_model *model, double pixel, const double low[3], const double high[3]) {
+    static const uint32_t colours[3] = {SKG_SHOW_COLOUR(208, 52, 44, 255), SKG_SHOW_COLOUR(46, 150, 60, 255),
+                                        SKG_SHOW_COLOUR(44, 92, 210, 255)};
+    const double length = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2])) * 0.2;
+    for (int k = 0; k < 3; k++) {
+        const double along[3] = {k == 0, k == 1, k == 2};
+        double neck[3], tip[3];
+        skg_add_scaled(low, 0.8 * length, along, neck);
+        skg_add_scaled(low, length, along, tip);
+        SKG_TRY(add_tube(model, low, neck, AXIS_RADIUS * pixel, AXIS_RADIUS * pixel, colours[k]));
+        SKG_TRY(add_tube(model, neck, tip, 3 * AXIS_RADIUS * pixel, 0, colours[k]));
+    }
+    return SKG_OK;
+}
+
+static skg_status add_path(skg_show_model *model, const skg_look *look, double pixel) {
+    for (int64_t i = 0; i < look->path_count; i++) {
+        const double *at = look->path + 3 * i;
+        SKG_TRY(add_ball(model, at, POINT_RADIUS * pixel, PATH_COLOUR));
+        if (i > 0)
+            SKG_TRY(add_tube(model, at - 3, at, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, PATH_COLOUR));
+    }
+    return SKG_OK;
+}
+
+/* The frame, then the area: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) in widths and heights. */
+static skg_status add_detector(skg_show_model *model, const skg_view *view, double pixel) {
+    static const int turn[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    double corners[4][3], normals[3][3] = {{0}};
+    for (int i = 0; i < 4; i++) skg_show_detector_corner(view, turn[i][0], turn[i][1], corners[i]);
+    for (int i = 0; i < 4; i++)
+        SKG_TRY(add_tube(model, corners[i], corners[(i + 1) % 4], FRAME_RADIUS * pixel, FRAME_RADIUS * pixel,
+                         FRAME_COLOUR));
+    const int64_t first = model->vertices;
+    SKG_TRY(skg_show_model_reserve(model, 4, 2));
+    for (int i = 0; i < 4; i++) skg_show_model_add_vertex(model, corners[i]);
+    for (int t = 0; t < 2; t++)
+        skg_show_model_add_triangle(model, (const int64_t[3]){first, first + t + 1, first + t + 2}, normals,
+                                    SKG_SHOW_COLOUR(255, 255, 255, 255));
+    return SKG_OK;
+}
+
+skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, const skg_look *look,
+                                const skg_show_camera *camera, const double low[3], const double high[3]) {
+    SKG_TRY(add_beam(model, view, camera->pixel, low, high));
+    SKG_TRY(add_axes(model, camera->pixel, low, high));
+    SKG_TRY(add_path(model, look, camera->pixel));
+    return add_detector(model, view, camera->pixel);
+}

@@ -1,0 +1,109 @@
+#include "core/context.h"
+#include "core/plain.h"
+#include "core/vector.h"
+#include "show/draw.h"
+#include "show/markers.h"
+#include "show/parts.h"
+
+#include <skiagraph/view_picture.h>
+
+#include <inttypes.h>
+#include <math.h>
+
+/* What the detector shows without an image. */
+static const uint8_t PLAIN = 176;
+
+void skg_look_init_sized(void *look, int32_t size) {
+    const skg_look defaults = {.columns = 1024, .rows = 768};
+    skg_struct_init(look, size, &defaults, sizeof defaults);
+}
+
+static skg_status read_look(const skg_look *theirs, skg_look *look) {
+    skg_look_init(look);
+    if (theirs) SKG_TRY(skg_struct_read(theirs, "skg_look", look, sizeof *look));
+    if (look->columns < 1 || look->rows < 1 || look->columns > SKG_LOOK_MOST_PIXELS ||
+        look->rows > SKG_LOOK_MOST_PIXELS)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "the picture has %" PRId64 " columns and %" PRId64
+                        " rows; 1 to %d of each can be drawn",
+                        look->columns, look->rows, SKG_LOOK_MOST_PIXELS);
+    if (look->path_count < 0 || (look->path_count > 0 && !look->path))
+        return skg_fail(SKG_ERR_ARGUMENT, "the look has %" PRId64 " points of a path, and %s",
+                        look->path_count, look->path ? "a count cannot be negative" : "path is NULL");
+    for (int64_t i = 0; i < look->path_count; i++)
+        if (!skg_all_finite(look->path + 3 * i, 3))
+            return skg_fail(SKG_ERR_ARGUMENT, "point %" PRId64 " of the look's path is not finite", i);
+    return SKG_OK;
+}
+
+/* The box of the parts that are drawn, mm. */
+static skg_status find_box(const skg_scene *scene, const uint8_t *colours, double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (int64_t i = 0; i < scene->count; i++)
+        if (colours[4 * i + 3] > 0) skg_show_part_bounds(scene->parts + i, low, high);
+    if (scene->count == 0)
+        return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_add");
+    if (!(low[0] <= high[0]))
+        return skg_fail(SKG_ERR_SCENE, "the picture would be empty: every part of the scene is left out");
+    return SKG_OK;
+}
+
+/* Checks everything and finds colours, box and eye. colours is to be freed, also after a failure. */
+static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look *look, uint8_t **colours,
+                          double low[3], double high[3], skg_show_camera *camera) {
+    SKG_TRY(skg_view_check(view));
+    if (!look->colours) {
+        SKG_TRY(skg_alloc(scene->count, 4, "colours of parts", colours));
+        SKG_TRY(skg_look_colours_get(scene, *colours));
+        look->colours = *colours;
+    }
+    SKG_TRY(find_box(scene, look->colours, low, high));
+    return skg_show_camera_make(view, look, low, high, camera);
+}
+
+skg_status skg_view_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
+                            const skg_look *look, uint8_t *rgba) {
+    SKG_PLAIN;
+    SKG_TRY(skg_context_enter(context));
+    SKG_NEEDS(scene);
+    SKG_NEEDS(view);
+    SKG_NEEDS(rgba);
+    skg_look ours;
+    uint8_t *colours = NULL;
+    double low[3], high[3];
+    skg_show_camera camera;
+    skg_show_model model = {0};
+    SKG_TRY(read_look(look, &ours));
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(prepare(scene, view, &ours, &colours, low, high, &camera));
+    for (int k = 0; k < 3; k++) model.centre[k] = camera.centre[k];
+    SKG_TRY_CLEANUP(skg_show_parts_add(&model, scene, ours.colours));
+    SKG_TRY_CLEANUP(skg_show_markers_add(&model, view, &ours, &camera, low, high));
+    SKG_TRY_CLEANUP(skg_show_draw(context, &model, &camera, &ours, ours.image ? view->columns : 1,
+                                  ours.image ? view->rows : 1, ours.image ? ours.image : &PLAIN, rgba));
+cleanup:
+    skg_show_model_free(&model);
+    skg_free(&colours);
+    return status;
+}
+
+skg_status skg_view_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
+                               int64_t count, const double *points, double *places) {
+    SKG_PLAIN;
+    SKG_NEEDS(scene);
+    SKG_NEEDS(view);
+    if (count > 0) {
+        SKG_NEEDS(points);
+        SKG_NEEDS(places);
+    }
+    skg_look ours;
+    uint8_t *colours = NULL;
+    double low[3], high[3];
+    skg_show_camera camera;
+    SKG_TRY(read_look(look, &ours));
+    const skg_status status = prepare(scene, view, &ours, &colours, low, high, &camera);
+    skg_free(&colours);
+    for (int64_t i = 0; status == SKG_OK && i < count; i++)
+        skg_show_camera_place(&camera, &ours, points + 3 * i, places + 2 * i);
+    return status;
+}

@@ -1,0 +1,93 @@
+/* skiagraph view. */
+#include "cli/command.h"
+
+#include <math.h>
+
+static const char scene[] =
+    "{\"Source\": {\"Position\": [0, -40, 0, \"cm\"], \"Shape\": \"PointSource\","
+    "\"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]},"
+    "\"Detector\": {\"Position\": [0, 10, 0, \"cm\"], \"UpVector\": [0, 0, -1], \"NumberOfPixels\": [32, 24],"
+    "\"Size\": [32, 24, \"cm\"]},"
+    "\"Samples\": [{\"Label\": \"tissue\", \"Cube\": [80, \"mm\"], \"Material\": [\"mu\", 0.2], \"Type\": \"outer\"},"
+    "{\"Label\": \"bone\", \"Cylinder\": [32, 60, 12, \"mm\"], \"Material\": [\"mu\", 0.5]}]}";
+
+static void set_up_scene(void) {
+    set_up();
+    write_text("s.json", scene);
+}
+
+/* Width and height of a PNG file: bytes 16 to 23. */
+static void check_size(const char *name, int width, int height) {
+    char path[512];
+    unsigned char head[24];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    ck_assert_int_eq((int)fread(head, 1, sizeof head, stream), (int)sizeof head);
+    fclose(stream);
+    ck_assert_int_eq(head[18] << 8 | head[19], width);
+    ck_assert_int_eq(head[22] << 8 | head[23], height);
+}
+
+START_TEST(a_picture_of_the_scene) {
+    ck_run(0, "view s.json -o v.png --json");
+    check_size("v.png", 1280, 800);
+    json_t *object = said_json();
+    ck_assert_double_eq(json_number_value(member(object, "source_detector_mm")), 500);
+    /* the middle of the box of the cube is at 0 exactly; 1e-9: some roundings of 400 */
+    ck_assert_double_eq_tol(json_number_value(member(object, "source_object_mm")), 400, 1e-9);
+    ck_assert_double_eq_tol(json_number_value(member(object, "magnification")), 1.25, 1e-9);
+    const json_t *part = json_array_get(member(object, "parts"), 1);
+    ck_assert_str_eq(json_string_value(json_object_get(part, "label")), "bone");
+    ck_assert(json_number_value(json_object_get(part, "column")) > 0);
+    json_decref(object);
+}
+END_TEST
+
+START_TEST(sides_sizes_and_files) {
+    ck_run(0, "view s.json -o a.png -o b.png --from top --size 320,200 --orthographic");
+    check_size("a.png", 320, 200);
+    ck_assert_ptr_nonnull(strstr(said, "wrote a.png"));
+    ck_assert_ptr_nonnull(strstr(said, "wrote b.png"));
+    ck_run(0, "view s.json -o a.png --from 1,-2,0.5 --quiet"); /* its own file is overwritten */
+    ck_assert_str_eq(said, "");
+    write_text("mine.png", "holiday");
+    ck_run(5, "view s.json -o mine.png");
+    ck_assert_ptr_nonnull(strstr(complained, "was not written by skiagraph"));
+}
+END_TEST
+
+/* A scene without beam and material is seen as well, and one with a Scan with the path of its source. */
+START_TEST(other_scenes) {
+    ck_run(0, "view s.json -o a.png --set Source.Beam=null --set Samples.bone.Material=null");
+    ck_run(0, "view s.json -o b.png --set 'Scan={\"NumberOfProjections\": 8, \"FinalAngle\": 360}'");
+    ck_run(0, "view s.json -o c.png --set Source.Shape=ParallelBeam");
+}
+END_TEST
+
+START_TEST(wrong_words) {
+    ck_run(2, "view s.json");
+    ck_assert_ptr_nonnull(strstr(complained, "add -o FILE.png"));
+    ck_run(2, "view s.json -o v.jpg");
+    ck_assert_ptr_nonnull(strstr(complained, "v.jpg"));
+    ck_run(2, "view s.json -o v.png --from below");
+    ck_assert_ptr_nonnull(strstr(complained, "neither front, side or top"));
+    ck_run(2, "view s.json -o v.png --size 10,10");
+    ck_assert_ptr_nonnull(strstr(complained, "64 to 8192"));
+    ck_run(2, "view s.json -o v.png --phase 0.5 --at 1");
+    ck_run(3, "view s.json -o v.png --phase 0.5");
+    ck_assert_ptr_nonnull(strstr(complained, "no organ that moves"));
+    ck_run(5, "view s.json -o nowhere/v.png");
+    ck_assert(!has_file("v.png"));
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scene, tear_down);
+    tcase_add_test(tests, a_picture_of_the_scene);
+    tcase_add_test(tests, sides_sizes_and_files);
+    tcase_add_test(tests, other_scenes);
+    tcase_add_test(tests, wrong_words);
+}
+
+SKG_SUITE_MAIN("view", add_tests)
