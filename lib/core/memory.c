@@ -1,7 +1,7 @@
+#include "core/allocator.h"
 #include "core/core.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A caller's pointer has a type of its own, so that an access through void ** would be undefined (and link-time
@@ -30,7 +30,7 @@ static skg_status no_memory(int64_t count, size_t size, const char *what) {
 skg_status skg_alloc(int64_t count, size_t size, const char *what, void *pointer_address) {
     store_pointer(pointer_address, NULL);
     SKG_TRY(check_bytes(count, size, what));
-    void *made = calloc(count > 0 ? (size_t)count : 1, size);
+    void *made = skg_block_make(count > 0 ? (size_t)count : 1, size);
     if (!made) return no_memory(count, size, what);
     store_pointer(pointer_address, made);
     return SKG_OK;
@@ -38,14 +38,14 @@ skg_status skg_alloc(int64_t count, size_t size, const char *what, void *pointer
 
 skg_status skg_realloc(int64_t count, size_t size, const char *what, void *pointer_address) {
     SKG_TRY(check_bytes(count, size, what));
-    void *grown = realloc(load_pointer(pointer_address), count > 0 ? (size_t)count * size : 1);
+    void *grown = skg_block_resize(load_pointer(pointer_address), count > 0 ? (size_t)count * size : 1);
     if (!grown) return no_memory(count, size, what);
     store_pointer(pointer_address, grown);
     return SKG_OK;
 }
 
 void skg_free(void *pointer_address) {
-    free(load_pointer(pointer_address));
+    skg_block_drop(load_pointer(pointer_address));
     store_pointer(pointer_address, NULL);
 }
 

@@ -32,8 +32,8 @@ static skg_status submit(skg_plan *plan, const skg_submission *s, skg_job **job)
     return SKG_OK;
 }
 
-skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
-                           skg_job **job) {
+static skg_status submit_images(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                const skg_output *output, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1};
@@ -41,7 +41,13 @@ skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frame
     return submit(plan, &s, job);
 }
 
-skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
+skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
+                           skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_images(plan, count, frames, output, job));
+}
+
+static skg_status make_image(skg_plan *plan, const skg_output *output) {
     SKG_PLAIN;
     skg_job *job = NULL;
     SKG_TRY(begin("skg_plan_image", plan, &job));
@@ -49,6 +55,11 @@ skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
     SKG_TRY(prepare(plan, &s, output));
     SKG_TRY(submit(plan, &s, &job));
     return skg_job_wait(&job);
+}
+
+skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, make_image(plan, output));
 }
 
 static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t part, int32_t kind) {
@@ -62,14 +73,20 @@ static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t 
     return SKG_OK;
 }
 
-skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                            const skg_frame *frames, const skg_output *output, skg_job **job) {
+static skg_status submit_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                 const skg_frame *frames, const skg_output *output, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths", plan, job));
     SKG_TRY(check_lengths("skg_plan_lengths", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind};
     SKG_TRY(prepare(plan, &s, output));
     return submit(plan, &s, job);
+}
+
+skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                            const skg_frame *frames, const skg_output *output, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_lengths(plan, part, kind, count, frames, output, job));
 }
 
 /* --- into the caller's device memory */
@@ -108,9 +125,9 @@ static skg_status submit_cl(const char *call, skg_plan *plan, skg_submission *s,
     return SKG_OK;
 }
 
-skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
-                              const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
-                              const cl_event *wait_list, cl_event *done, skg_job **job) {
+static skg_status submit_images_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                   const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
+                                   const cl_event *wait_list, cl_event *done, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit_cl", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1, .buffer = buffer};
@@ -118,14 +135,31 @@ skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *fr
     return submit_cl("skg_plan_submit_cl", plan, &s, output, offset, &given, job);
 }
 
-skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                               const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                               int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
-                               skg_job **job) {
+skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
+                              const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
+                              const cl_event *wait_list, cl_event *done, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(
+        handler, submit_images_cl(plan, count, frames, output, buffer, offset, waits, wait_list, done, job));
+}
+
+static skg_status submit_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                    const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                                    int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
+                                    skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths_cl", plan, job));
     SKG_TRY(check_lengths("skg_plan_lengths_cl", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind, .buffer = buffer};
     const skg_caller_events given = {waits, wait_list, done};
     return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, &given, job);
+}
+
+skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                               const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                               int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
+                               skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_lengths_cl(plan, part, kind, count, frames, output, buffer, offset,
+                                                   waits, wait_list, done, job));
 }
