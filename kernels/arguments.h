@@ -11,6 +11,9 @@
     X(PROJECT, frame) X(PROJECT, parts) X(PROJECT, blocks) X(PROJECT, vertices) X(PROJECT, projected) \
     X(PROJECT, bad_vertex)
 
+#define SKG_ARGUMENTS_PLACE(X) \
+    X(PLACE, args) X(PLACE, given) X(PLACE, first) X(PLACE, taken) X(PLACE, vertices) X(PLACE, outside)
+
 #define SKG_ARGUMENTS_RASTER_COPIES(X) \
     X(RASTER_COPIES, frame) X(RASTER_COPIES, corners) X(RASTER_COPIES, projected) X(RASTER_COPIES, parts) \
     X(RASTER_COPIES, contributions) X(RASTER_COPIES, blocks) X(RASTER_COPIES, copies) X(RASTER_COPIES, used)
@@ -147,7 +150,7 @@
 
 /* X(KERNEL, function) for each kernel. */
 #define SKG_KERNELS(X) \
-    X(PROJECT, skg_project) X(RASTER_COPIES, skg_raster_copies) X(RASTER_ATOMICS, skg_raster_atomics) \
+    X(PROJECT, skg_project) X(PLACE, skg_place) X(RASTER_COPIES, skg_raster_copies) X(RASTER_ATOMICS, skg_raster_atomics) \
     X(RASTER_QUEUE, skg_raster_queue) X(TILES_COUNT, skg_tiles_count) X(TILES_SCAN, skg_tiles_scan) \
     X(TILES_FILL, skg_tiles_fill) X(RASTER_SQUARES, skg_raster_squares) X(BANDS_SORT, skg_bands_sort) \
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \

@@ -83,6 +83,13 @@ typedef struct {
     SKG_INT reserved;
 } skg_frame_args;
 
+/* Positions of a mesh from the caller's memory, and their bounds, mm from the mesh's origin. */
+typedef struct {
+    SKG_INT vertices, mesh, mesh_vertex; /* number of the mesh; its first vertex in the vertex buffer */
+    float lowest[3], highest[3];
+    SKG_INT reserved;
+} skg_place_args;
+
 /* The key of a frame's noise (random.clh). sample: of the source; each sample has draws of its own. */
 typedef struct {
     SKG_INT seed[2], frame[2]; /* low word first */
@@ -147,6 +154,7 @@ _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_d
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
+_Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
 #endif

@@ -1,5 +1,6 @@
 /* A body as a handle. */
 #include "body/types.h"
+#include "core/context.h"
 
 #include "body/link.h"
 #include "body/organ.h"
@@ -37,9 +38,9 @@ static skg_status check_options(const skg_body_options *o) {
     return SKG_OK;
 }
 
-skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **result) {
+static skg_status create(skg_context *context, const skg_body_options *options, skg_body **result) {
     SKG_PLAIN;
-    SKG_NEEDS(result);
+    SKG_NEEDS_OF("skg_body_create", result);
     *result = NULL;
     skg_body_options ours;
     skg_body_options_init(&ours);
@@ -52,6 +53,11 @@ skg_status skg_body_create(skg_context *context, const skg_body_options *options
     body->options = ours;
     *result = body;
     return SKG_OK;
+}
+
+skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **result) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, options, result));
 }
 
 static void free_organ(skg_body_organ *o) {

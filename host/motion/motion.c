@@ -1,6 +1,7 @@
 /* A set-up that breathes. */
 #include "body/measure.h"
 #include "body/types.h"
+#include "core/context.h"
 #include "core/plain.h"
 #include "scene/scene.h"
 #include "setup/organs.h"
@@ -128,11 +129,11 @@ static skg_status make(skg_context *context, skg_motion *motion) {
     return SKG_OK;
 }
 
-skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **result) {
+static skg_status create(skg_context *context, const skg_setup *setup, skg_motion **result) {
     SKG_PLAIN;
     skg_motion *motion = NULL;
-    SKG_NEEDS(setup);
-    SKG_NEEDS(result);
+    SKG_NEEDS_OF("skg_motion_create", setup);
+    SKG_NEEDS_OF("skg_motion_create", result);
     *result = NULL;
     SKG_TRY(skg_alloc(1, sizeof *motion, "motion", &motion));
     motion->setup = setup;
@@ -144,6 +145,11 @@ skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_m
     else
         *result = motion;
     return status;
+}
+
+skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **result) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, setup, result));
 }
 
 void skg_motion_release(skg_motion **motion) {

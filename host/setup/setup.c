@@ -222,12 +222,12 @@ cleanup:
     return status;
 }
 
-skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
-                          skg_setup **setup) {
+static skg_status load(skg_context *context, const char *path, int64_t count, const char *const *settings,
+                       skg_setup **setup) {
     SKG_PLAIN;
-    SKG_NEEDS(setup);
+    SKG_NEEDS_OF("skg_setup_load", setup);
     *setup = NULL;
-    SKG_NEEDS(path);
+    SKG_NEEDS_OF("skg_setup_load", path);
     skg_setup_reader reader = {.context = context};
     reader.source.path = path;
     reader.source.settings = settings;
@@ -235,9 +235,15 @@ skg_status skg_setup_load(skg_context *context, const char *path, int64_t count,
     return make(&reader, setup);
 }
 
-skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
+skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
+                          skg_setup **setup) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, load(context, path, count, settings, setup));
+}
+
+static skg_status create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
     SKG_PLAIN;
-    SKG_NEEDS(setup);
+    SKG_NEEDS_OF("skg_setup_create", setup);
     *setup = NULL;
     skg_setup_reader reader = {.context = context};
     SKG_TRY(skg_struct_read(source, "skg_setup_source", &reader.source, sizeof reader.source));
@@ -245,6 +251,11 @@ skg_status skg_setup_create(skg_context *context, const skg_setup_source *source
         return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_source: both text and path are NULL; give one of them");
     if (!reader.source.path) reader.source.path = "scene";
     return make(&reader, setup);
+}
+
+skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, source, setup));
 }
 
 void skg_setup_release(skg_setup **setup) {

@@ -32,6 +32,24 @@ skg_status skg_context_log_set(skg_context *context, skg_log_function log, void 
     return SKG_OK;
 }
 
+skg_status skg_context_error_set(skg_context *context, skg_error_function error, void *user) {
+    SKG_TRY(skg_context_enter(context));
+    context->error = (skg_error_handler){error, user};
+    return SKG_OK;
+}
+
+static _Thread_local int depth; /* of public calls */
+
+skg_error_handler skg_call_begin(const skg_context *context) {
+    depth++;
+    return context ? context->error : (skg_error_handler){0};
+}
+
+skg_status skg_call_end(skg_error_handler handler, skg_status status) {
+    if (--depth == 0 && status < SKG_OK && handler.call) handler.call(status, skg_last_error(), handler.user);
+    return status;
+}
+
 skg_status skg_context_enter(const skg_context *context) {
     if (!context) return skg_fail(SKG_ERR_ARGUMENT, "no context; make one with skg_context_create");
     if (context->process != (int64_t)getpid())

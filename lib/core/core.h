@@ -24,10 +24,12 @@ void skg_one_line(char *sentence);
 
 /* At the start of a public call: returns SKG_ERR_ARGUMENT when the argument is NULL. The sentence names the call
  * and the argument as the header has them: "skg_plan_move: the argument view is NULL". */
-#define SKG_NEEDS(argument)                                                                                  \
+#define SKG_NEEDS(argument) SKG_NEEDS_OF(__func__, argument)
+
+/* The same in a function that a public one calls, whose name is given. */
+#define SKG_NEEDS_OF(call, argument)                                                                         \
     do {                                                                                                     \
-        if (!(argument))                                                                                     \
-            return skg_fail(SKG_ERR_ARGUMENT, "%s: the argument %s is NULL", __func__, #argument);           \
+        if (!(argument)) return skg_fail(SKG_ERR_ARGUMENT, "%s: the argument %s is NULL", call, #argument);  \
     } while (0)
 
 /* Like SKG_TRY, but leaves by the label `cleanup` with the local `status` set. */

@@ -2,11 +2,9 @@
 
 #include <inttypes.h>
 
-skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t bytes, cl_mem_flags flags,
-                              const char *what) {
-    const skg_device *device = context->device;
-    if (bytes < 1) bytes = 1;
-    if (buffer->bytes >= bytes) return SKG_OK;
+/* Makes a buffer in the place of what there is. data: its contents; NULL: none. */
+static skg_status create(const skg_device *device, int64_t bytes, cl_mem_flags flags, const void *data,
+                         const char *what, skg_buffer *buffer) {
     if (bytes > device->info.max_allocation)
         return skg_fail(SKG_ERR_DEVICE_MEMORY,
                         "%s: %" PRId64 " MiB in one piece, but %s gives at most %" PRId64
@@ -14,7 +12,8 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
                         what, bytes >> 20, device->info.name, device->info.max_allocation >> 20);
     skg_buffer_release(buffer);
     cl_int code = CL_SUCCESS;
-    cl_mem memory = clCreateBuffer(device->cl, flags, (size_t)bytes, NULL, &code);
+    /* OpenCL copies the data, and takes no pointer to const. */
+    cl_mem memory = clCreateBuffer(device->cl, flags, (size_t)bytes, (void *)(uintptr_t)data, &code);
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clCreateBuffer", __FILE__, __LINE__);
         return skg_fail(SKG_ERR_DEVICE_MEMORY, "%s: %s has no room for %" PRId64 " bytes (%s)", what,
@@ -23,6 +22,19 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
     buffer->memory = memory;
     buffer->bytes = bytes;
     return SKG_OK;
+}
+
+skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t bytes, cl_mem_flags flags,
+                              const char *what) {
+    if (bytes < 1) bytes = 1;
+    if (buffer->bytes >= bytes) return SKG_OK;
+    return create(context->device, bytes, flags, NULL, what, buffer);
+}
+
+skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *data, const char *what,
+                             skg_buffer *buffer) {
+    if (bytes < 1) return skg_buffer_reserve(context, buffer, 1, CL_MEM_READ_ONLY, what);
+    return create(context->device, bytes, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, data, what, buffer);
 }
 
 void skg_buffer_release(skg_buffer *buffer) {

@@ -91,6 +91,10 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
 
+/* Makes a buffer that kernels read, with these bytes in it. The queue is not used, so nothing is waited for. */
+skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *data, const char *what,
+                             skg_buffer *buffer);
+
 /* Reserves the bytes and writes the data. The call returns when the data has been copied. */
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what);

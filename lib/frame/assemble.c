@@ -63,8 +63,10 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe, 
     SKG_TRY(
         skg_buffer_reserve(context, &machine->negative, 3 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
     SKG_TRY(skg_leaky_memory_create(context, recipe->leaky_count, &machine->leaky));
-    return skg_pass_memory_create(recipe->scene->count, recipe->view.columns, recipe->view.rows,
-                                  &machine->pass);
+    SKG_TRY(skg_pass_memory_create(recipe->scene->count, recipe->view.columns, recipe->view.rows,
+                                   &machine->pass));
+    machine->pass.placement = &machine->placement;
+    return SKG_OK;
 }
 
 skg_status skg_machine_renew(const skg_recipe *recipe, skg_machine *machine) {

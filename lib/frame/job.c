@@ -59,9 +59,9 @@ skg_status skg_job_complete(skg_job **job) {
     return status;
 }
 
-skg_status skg_job_test(const skg_job *job, int32_t *done) {
-    SKG_NEEDS(job);
-    SKG_NEEDS(done);
+static skg_status test(const skg_job *job, int32_t *done) {
+    SKG_NEEDS_OF("skg_job_test", job);
+    SKG_NEEDS_OF("skg_job_test", done);
     SKG_TRY(skg_context_enter(job->machine->context));
     cl_int stage = CL_COMPLETE;
     SKG_CL_TRY(clGetEventInfo(job->last, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage, NULL));
@@ -70,9 +70,19 @@ skg_status skg_job_test(const skg_job *job, int32_t *done) {
     return SKG_OK;
 }
 
-skg_status skg_job_wait(skg_job **job) {
+skg_status skg_job_test(const skg_job *job, int32_t *done) {
+    const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
+    return skg_call_end(handler, test(job, done));
+}
+
+static skg_status wait_for(skg_job **job) {
     SKG_PLAIN;
     if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
     SKG_TRY(skg_context_enter((*job)->machine->context));
     return skg_job_complete(job);
+}
+
+skg_status skg_job_wait(skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(job && *job ? (*job)->machine->context : NULL);
+    return skg_call_end(handler, wait_for(job));
 }

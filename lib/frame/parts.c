@@ -69,7 +69,11 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
         const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
         const int64_t count = pass->first[p + 1] - pass->first[p];
         skg_extent *extent = &pass->extents[p];
-        skg_extent_find(&pass->camera, mesh, pose, extent);
+        const skg_placed_mesh *placed = skg_placement_of(memory->placement, mesh, recipe->meshes.of_part[p]);
+        if (placed)
+            skg_extent_find_within(&pass->camera, mesh, placed->lowest, placed->highest, pose, extent);
+        else
+            skg_extent_find(&pass->camera, mesh, pose, extent);
         pass->parts[p] =
             (skg_geometry_part){.pose = pose,
                                 .origin = mesh->origin,

@@ -28,9 +28,9 @@ static void replace(skg_plan *plan, skg_recipe *recipe) {
     plan->recipe = recipe;
 }
 
-skg_status skg_plan_move(skg_plan *plan, const skg_view *view) {
+static skg_status move(skg_plan *plan, const skg_view *view) {
     SKG_PLAIN;
-    SKG_NEEDS(plan);
+    SKG_NEEDS_OF("skg_plan_move", plan);
     SKG_TRY(skg_context_enter(plan->context));
     SKG_TRY(skg_view_check(view));
     skg_view moved;
@@ -42,6 +42,11 @@ skg_status skg_plan_move(skg_plan *plan, const skg_view *view) {
     recipe->view = moved;
     replace(plan, recipe);
     return SKG_OK;
+}
+
+skg_status skg_plan_move(skg_plan *plan, const skg_view *view) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, move(plan, view));
 }
 
 skg_status skg_plan_renew(skg_plan *plan) {

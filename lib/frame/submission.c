@@ -192,6 +192,26 @@ static skg_status clear_counters(const skg_machine *machine) {
     return SKG_OK;
 }
 
+/* Enqueues the read of which vertices have left the bounds that the caller gave with their positions. Meshes whose positions
+ * are those of the host again are left out. */
+static skg_status read_outside(const skg_submission *s, skg_job *job) {
+    const skg_plan_meshes *meshes = &s->recipe->meshes;
+    const skg_placement *placement = &s->machine->placement;
+    int32_t **outside = &job->results.outside;
+    for (int64_t m = 0; m < meshes->count; m++) {
+        if (!skg_placement_of(placement, meshes->meshes[m], m)) continue;
+        if (!*outside) {
+            SKG_TRY(
+                skg_staging_take(&job->staging, meshes->count, sizeof **outside, "vertex check", outside));
+            for (int64_t n = 0; n < meshes->count; n++) (*outside)[n] = INT32_MAX;
+        }
+        SKG_CL_TRY(clEnqueueReadBuffer(s->machine->context->device->queue, placement->outside.memory,
+                                       CL_FALSE, (size_t)m * sizeof **outside, sizeof **outside, *outside + m,
+                                       0, NULL, NULL));
+    }
+    return SKG_OK;
+}
+
 /* Enqueues the reads of what is reported, then the marker that is waited for. */
 static skg_status finish(const skg_submission *s, const skg_raster_pin *main, skg_job *job) {
     const skg_machine *machine = s->machine;
@@ -200,6 +220,7 @@ static skg_status finish(const skg_submission *s, const skg_raster_pin *main, sk
     SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 3 * sizeof *results->negative,
                              results->negative));
     SKG_TRY(skg_raster_read_listed(main->raster, results->listed));
+    SKG_TRY(read_outside(s, job));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     SKG_CL_TRY(clFlush(queue));
     return SKG_OK;

@@ -1,4 +1,5 @@
 #include "core/plain.h"
+#include "frame/caller.h"
 #include "frame/submission.h"
 
 #include <skiagraph/opencl.h>
@@ -31,8 +32,8 @@ static skg_status submit(skg_plan *plan, const skg_submission *s, skg_job **job)
     return SKG_OK;
 }
 
-skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
-                           skg_job **job) {
+static skg_status submit_images(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                const skg_output *output, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1};
@@ -40,7 +41,13 @@ skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frame
     return submit(plan, &s, job);
 }
 
-skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
+skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
+                           skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_images(plan, count, frames, output, job));
+}
+
+static skg_status make_image(skg_plan *plan, const skg_output *output) {
     SKG_PLAIN;
     skg_job *job = NULL;
     SKG_TRY(begin("skg_plan_image", plan, &job));
@@ -48,6 +55,11 @@ skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
     SKG_TRY(prepare(plan, &s, output));
     SKG_TRY(submit(plan, &s, &job));
     return skg_job_wait(&job);
+}
+
+skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, make_image(plan, output));
 }
 
 static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t part, int32_t kind) {
@@ -61,8 +73,8 @@ static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t 
     return SKG_OK;
 }
 
-skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                            const skg_frame *frames, const skg_output *output, skg_job **job) {
+static skg_status submit_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                 const skg_frame *frames, const skg_output *output, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths", plan, job));
     SKG_TRY(check_lengths("skg_plan_lengths", plan, part, kind));
@@ -71,21 +83,20 @@ skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t 
     return submit(plan, &s, job);
 }
 
+skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                            const skg_frame *frames, const skg_output *output, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_lengths(plan, part, kind, count, frames, output, job));
+}
+
 /* --- into the caller's device memory */
 
 /* Checks that the images fit the buffer, and fills in where they begin. */
 static skg_status check_buffer(const char *call, skg_submission *s, int64_t offset) {
     const skg_output *output = &s->output;
     const int64_t element = skg_submission_element(s);
-    size_t bytes = 0;
-    cl_context of = NULL;
-    SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_CONTEXT, sizeof of, &of, NULL));
-    if (of != s->machine->context->device->cl)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "%s: the buffer is another OpenCL context's; make it in that of the plan "
-                        "(skg_context_create_cl)",
-                        call);
-    SKG_CL_TRY(clGetMemObjectInfo(s->buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL));
+    int64_t bytes = 0;
+    SKG_TRY(skg_caller_buffer_check(call, s->machine->context, s->buffer, &bytes));
     if (offset < 0 || offset % element)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "an offset of %" PRId64 " bytes is no multiple of an element's %" PRId64, offset,
@@ -93,31 +104,19 @@ static skg_status check_buffer(const char *call, skg_submission *s, int64_t offs
     s->first = offset / element;
     const int64_t last = (s->count - 1) * output->frame_stride + (s->channels - 1) * output->channel_stride +
                          (s->recipe->view.rows - 1) * output->row_stride + s->recipe->view.columns;
-    if ((s->first + last) * element > (int64_t)bytes)
+    if ((s->first + last) * element > bytes)
         return skg_fail(SKG_ERR_ARGUMENT, "the images end at byte %" PRId64 ", the buffer at %" PRId64,
-                        (s->first + last) * element, (int64_t)bytes);
+                        (s->first + last) * element, bytes);
     return SKG_OK;
 }
 
-/* The caller's events, and where it wants the last one. */
-typedef struct {
-    int32_t waits;
-    const cl_event *wait_list;
-    cl_event *done;
-} caller_events;
-
 static skg_status submit_cl(const char *call, skg_plan *plan, skg_submission *s, const skg_output *output,
-                            int64_t offset, const caller_events *events, skg_job **job) {
-    if (events->done) *events->done = NULL;
+                            int64_t offset, const skg_caller_events *events, skg_job **job) {
+    SKG_TRY(skg_caller_events_check(call, events));
     if (!s->buffer) return skg_fail(SKG_ERR_ARGUMENT, "%s: no buffer", call);
-    if (events->waits < 0 || (events->waits > 0 && !events->wait_list))
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId32 " events to wait for, but no list", call,
-                        events->waits);
     SKG_TRY(prepare(plan, s, output));
     SKG_TRY(check_buffer(call, s, offset));
-    if (events->waits > 0)
-        SKG_CL_TRY(clEnqueueBarrierWithWaitList(plan->context->device->queue, (cl_uint)events->waits,
-                                                events->wait_list, NULL));
+    SKG_TRY(skg_caller_events_wait(plan->context, events));
     SKG_TRY(submit(plan, s, job));
     if (events->done) {
         SKG_CL_TRY(clRetainEvent((*job)->last));
@@ -126,24 +125,41 @@ static skg_status submit_cl(const char *call, skg_plan *plan, skg_submission *s,
     return SKG_OK;
 }
 
-skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
-                              const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
-                              const cl_event *wait_list, cl_event *done, skg_job **job) {
+static skg_status submit_images_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                   const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
+                                   const cl_event *wait_list, cl_event *done, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_submit_cl", plan, job));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = -1, .buffer = buffer};
-    const caller_events given = {waits, wait_list, done};
+    const skg_caller_events given = {waits, wait_list, done};
     return submit_cl("skg_plan_submit_cl", plan, &s, output, offset, &given, job);
+}
+
+skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
+                              const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
+                              const cl_event *wait_list, cl_event *done, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(
+        handler, submit_images_cl(plan, count, frames, output, buffer, offset, waits, wait_list, done, job));
+}
+
+static skg_status submit_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                    const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                                    int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
+                                    skg_job **job) {
+    SKG_PLAIN;
+    SKG_TRY(begin("skg_plan_lengths_cl", plan, job));
+    SKG_TRY(check_lengths("skg_plan_lengths_cl", plan, part, kind));
+    skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind, .buffer = buffer};
+    const skg_caller_events given = {waits, wait_list, done};
+    return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, &given, job);
 }
 
 skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
                                const skg_frame *frames, const skg_output *output, cl_mem buffer,
                                int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
                                skg_job **job) {
-    SKG_PLAIN;
-    SKG_TRY(begin("skg_plan_lengths_cl", plan, job));
-    SKG_TRY(check_lengths("skg_plan_lengths_cl", plan, part, kind));
-    skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind, .buffer = buffer};
-    const caller_events given = {waits, wait_list, done};
-    return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, &given, job);
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_lengths_cl(plan, part, kind, count, frames, output, buffer, offset,
+                                                   waits, wait_list, done, job));
 }

@@ -4,17 +4,22 @@
 
 #include <math.h>
 
-/* h (pixel times t, and t) of the corners of the mesh's box: that of the lowest corner, and from there along the
+typedef struct {
+    const double *origin;
+    const float *lowest, *highest; /* mm from the origin */
+} box;
+
+/* h (pixel times t, and t) of the corners of a box: that of the lowest corner, and from there along the
  * edges. A frame may have a million parts, so only one corner and three edges of each are transformed. */
-static void see_corners(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double h[8][3]) {
+static void see_corners(const skg_camera *camera, const box *of, const double *pose, double h[8][3]) {
     double lowest[3], world[3], edge[3][3];
-    for (int k = 0; k < 3; k++) lowest[k] = mesh->origin[k] + (double)mesh->lowest[k];
+    for (int k = 0; k < 3; k++) lowest[k] = of->origin[k] + (double)of->lowest[k];
     skg_pose_point(pose, lowest, world);
     skg_camera_see(camera, world, h[0]);
     if (camera->parallel) h[0][2] += 1; /* t, counted as for a point source */
     for (int k = 0; k < 3; k++) {
         const double along[3] = {pose[k], pose[4 + k], pose[8 + k]};
-        const double length = (double)mesh->highest[k] - (double)mesh->lowest[k];
+        const double length = (double)of->highest[k] - (double)of->lowest[k];
         for (int r = 0; r < 3; r++) edge[k][r] = length * skg_dot(camera->matrix[r], along);
     }
     for (int corner = 1; corner < 8; corner++) { /* one edge away from a corner that is known */
@@ -41,10 +46,16 @@ static void start_range(const skg_camera *camera, double *first, double *last) {
 }
 
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent) {
+    skg_extent_find_within(camera, mesh, mesh->lowest, mesh->highest, pose, extent);
+}
+
+void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
+                            const float highest[3], const double *pose, skg_extent *extent) {
+    const box of = {mesh->origin, lowest, highest};
     double h[8][3], low = HUGE_VAL, high = -HUGE_VAL, first = 0, last = 0;
     skg_scale_part *part = &extent->scale;
     *extent = (skg_extent){.scale = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0, 0, 0, mesh->layers}};
-    see_corners(camera, mesh, pose, h);
+    see_corners(camera, &of, pose, h);
     for (int k = 0; k < 8; k++) low = lesser(low, h[k][2]), high = greater(high, h[k][2]);
     if (camera->parallel) start_range(camera, &first, &last);
     /* Twice the limit of the kernels, which compare vertices in float; the box is compared in double. */

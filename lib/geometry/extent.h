@@ -17,6 +17,10 @@ typedef struct {
 /* The extent of a mesh at a pose, from the present bounds of the mesh. */
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, skg_extent *extent);
 
+/* The same from other bounds, mm from the mesh's origin. */
+void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
+                            const float highest[3], const double *pose, skg_extent *extent);
+
 /* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
  * outward as skg_shared.h wants them. The last row may lie beyond the detector. */
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);

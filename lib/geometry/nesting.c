@@ -3,6 +3,7 @@
  * whether it lies in the open or inside another. Components that were found to be inverted count as turned for the
  * smaller ones. */
 #include "geometry/nesting.h"
+#include "core/context.h"
 
 #include "core/plain.h"
 #include "core/vector.h"
@@ -251,11 +252,11 @@ skg_status skg_mesh_nesting_describe(const skg_mesh_nesting *nesting, int64_t le
     return SKG_OK;
 }
 
-skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented) {
+static skg_status create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented) {
     SKG_PLAIN;
-    SKG_NEEDS(oriented);
+    SKG_NEEDS_OF("skg_mesh_create_oriented", oriented);
     *oriented = NULL;
-    SKG_NEEDS(mesh);
+    SKG_NEEDS_OF("skg_mesh_create_oriented", mesh);
     skg_mesh_nesting nesting;
     unsigned char *turned = NULL;
     double *positions = NULL;
@@ -280,4 +281,9 @@ cleanup:
     skg_free(&positions);
     skg_free(&corners);
     return status;
+}
+
+skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create_oriented(context, mesh, oriented));
 }

@@ -173,12 +173,31 @@ cleanup:
     return status;
 }
 
+static skg_status create_double(skg_context *context, const char *name, int64_t vertices,
+                                const double *positions, int64_t position_stride, int64_t triangles,
+                                const int32_t *corners, int64_t triangle_stride, double unit_mm,
+                                skg_mesh **mesh) {
+    SKG_PLAIN;
+    SKG_NEEDS_OF("skg_mesh_create", mesh);
+    return create(context, name, vertices, positions, NULL, position_stride, triangles, corners,
+                  triangle_stride, unit_mm, mesh);
+}
+
 skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices, const double *positions,
                            int64_t position_stride, int64_t triangles, const int32_t *corners,
                            int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create_double(context, name, vertices, positions, position_stride, triangles,
+                                               corners, triangle_stride, unit_mm, mesh));
+}
+
+static skg_status create_float(skg_context *context, const char *name, int64_t vertices,
+                               const float *positions, int64_t position_stride, int64_t triangles,
+                               const int32_t *corners, int64_t triangle_stride, double unit_mm,
+                               skg_mesh **mesh) {
     SKG_PLAIN;
-    SKG_NEEDS(mesh);
-    return create(context, name, vertices, positions, NULL, position_stride, triangles, corners,
+    SKG_NEEDS_OF("skg_mesh_create_float", mesh);
+    return create(context, name, vertices, NULL, positions, position_stride, triangles, corners,
                   triangle_stride, unit_mm, mesh);
 }
 
@@ -186,10 +205,9 @@ skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t
                                  const float *positions, int64_t position_stride, int64_t triangles,
                                  const int32_t *corners, int64_t triangle_stride, double unit_mm,
                                  skg_mesh **mesh) {
-    SKG_PLAIN;
-    SKG_NEEDS(mesh);
-    return create(context, name, vertices, NULL, positions, position_stride, triangles, corners,
-                  triangle_stride, unit_mm, mesh);
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create_float(context, name, vertices, positions, position_stride, triangles,
+                                              corners, triangle_stride, unit_mm, mesh));
 }
 
 skg_status skg_mesh_retain(skg_mesh *mesh) {

@@ -114,12 +114,12 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     return status;
 }
 
-skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+static skg_status load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
     SKG_PLAIN;
     skg_mesh_arrays arrays = {0};
-    SKG_NEEDS(mesh);
+    SKG_NEEDS_OF("skg_mesh_load", mesh);
     *mesh = NULL;
-    SKG_NEEDS(path);
+    SKG_NEEDS_OF("skg_mesh_load", path);
     if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
     if (!isfinite(unit_mm) || unit_mm <= 0)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
@@ -135,4 +135,9 @@ skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm,
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name, arrays.left_out);
     for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
     return skg_mesh_adopt(context, name, &arrays, mesh);
+}
+
+skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, load(context, path, unit_mm, mesh));
 }

@@ -109,6 +109,21 @@ static skg_status report_outside(const skg_recipe *recipe, int32_t pixels, skg_o
         pixels, skg_plural(pixels, "pixel", "pixels"), recipe->model.bound);
 }
 
+/* A mesh from the caller's memory that leaves the bounds that were given with it. */
+static skg_status report_left_bounds(const skg_recipe *recipe, const skg_results *results) {
+    const skg_plan_meshes *meshes = &recipe->meshes;
+    int64_t m = 0, part = 0;
+    while (results->outside && m < meshes->count && results->outside[m] == INT32_MAX) m++;
+    if (!results->outside || m == meshes->count) return SKG_OK;
+    while (meshes->of_part[part] != m) part++;
+    return skg_fail(
+        SKG_RANGE,
+        "part %s: vertex %" PRId32
+        " lies outside of the bounds that skg_plan_positions_set_cl was given; such vertices were "
+        "put on the bounds; give bounds that hold all positions",
+        recipe->scene->parts[part].label, results->outside[m]);
+}
+
 skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const skg_geometry *geometry,
                            const skg_results *results, const skg_stage_log *log, skg_outcome *outcome) {
     skg_plan_report *report = &outcome->report;
@@ -126,5 +141,8 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
     }
     const skg_status outside = report_outside(recipe, results->negative[1], outcome);
     const skg_status infinite = report_infinite(recipe, context, results->negative[2], outcome);
-    return infinite != SKG_OK ? infinite : outside; /* the sentence is the last one's */
+    const skg_status left = report_left_bounds(recipe, results);
+    return left != SKG_OK       ? left
+           : infinite != SKG_OK ? infinite
+                                : outside; /* the sentence is the last one's */
 }

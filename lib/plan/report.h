@@ -14,6 +14,9 @@ typedef struct {
     int32_t
         *bad_vertex; /* [frames] the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
     skg_leaky_verdicts leaky; /* of the last frame */
+    /* [meshes] the lowest vertex of each mesh outside of the bounds that the caller gave with it; INT32_MAX: none, or none
+     * were given. NULL: for no mesh */
+    int32_t *outside;
 } skg_results;
 
 /* Reports finished work, with its warnings. SKG_ERR_MESH for a vertex that could not be projected; SKG_RANGE if the

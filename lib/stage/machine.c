@@ -3,6 +3,7 @@
 void skg_machine_release(skg_machine *machine) {
     skg_raster_cache_release(&machine->rasters);
     skg_geometry_release(&machine->geometry);
+    skg_placement_release(&machine->placement);
     skg_attenuation_release(&machine->images);
     skg_attenuation_release(&machine->lengths);
     skg_attenuator_release(&machine->attenuator);
@@ -20,8 +21,9 @@ void skg_machine_release(skg_machine *machine) {
 int64_t skg_machine_bytes(const skg_machine *machine) {
     int64_t bytes = skg_geometry_bytes(&machine->geometry) + machine->image.bytes + machine->negative.bytes +
                     skg_leaky_memory_bytes(&machine->leaky) + machine->flat_field.image.bytes +
-                    skg_hits_memory_bytes(&machine->hits) + skg_attenuation_bytes(&machine->images) +
-                    skg_attenuation_bytes(&machine->lengths) + skg_raster_cache_bytes(&machine->rasters);
+                    skg_hits_memory_bytes(&machine->hits) + skg_placement_bytes(&machine->placement) +
+                    skg_attenuation_bytes(&machine->images) + skg_attenuation_bytes(&machine->lengths) +
+                    skg_raster_cache_bytes(&machine->rasters);
     if (machine->blur) bytes += skg_blur_bytes(machine->blur);
     if (machine->detector) bytes += skg_detector_bytes(machine->detector);
     return bytes;

@@ -11,10 +11,12 @@
 #include "stage/hits.h"
 #include "stage/leaky.h"
 #include "stage/mix_lists.h"
+#include "stage/place.h"
 
 typedef struct {
     skg_context *context;
     skg_geometry geometry;
+    skg_placement placement;
     skg_attenuation images;  /* planes to images */
     skg_attenuation lengths; /* one plane to path lengths: the plane itself */
     skg_attenuator *attenuator;

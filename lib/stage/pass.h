@@ -6,15 +6,17 @@
 #include "geometry/extent.h"
 #include "geometry/priority.h"
 #include "spectral/mix.h"
+#include "stage/place.h"
 #include "stage/raster_cache.h"
 
 /* Host memory for what a pass knows of its parts, kept from pass to pass: a million parts take as long to allocate as to
  * fill. All NULL: not allocated. */
 typedef struct {
-    skg_geometry_part *parts; /* [parts] */
-    skg_extent *extents;      /* [parts] */
-    skg_scale_part *scales;   /* [parts] of those that contribute */
-    skg_scale_grid grid;      /* workspace of the scale */
+    skg_geometry_part *parts;       /* [parts] */
+    skg_extent *extents;            /* [parts] */
+    skg_scale_part *scales;         /* [parts] of those that contribute */
+    skg_scale_grid grid;            /* workspace of the scale */
+    const skg_placement *placement; /* borrowed: of the machine */
 } skg_pass_memory;
 
 skg_status skg_pass_memory_create(int64_t parts, int64_t columns, int64_t rows, skg_pass_memory *memory);

@@ -28,14 +28,14 @@ static uint32_t tests_of(const skg_plan *plan) {
     return tests;
 }
 
-skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
-                           skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
+static skg_status create(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
+                         const skg_plan_options *options, skg_plan **plan) {
     SKG_PLAIN;
     SKG_TRY(skg_context_enter(context));
-    SKG_NEEDS(plan);
+    SKG_NEEDS_OF("skg_plan_create", plan);
     *plan = NULL;
-    SKG_NEEDS(scene);
-    SKG_NEEDS(spectrum);
+    SKG_NEEDS_OF("skg_plan_create", scene);
+    SKG_NEEDS_OF("skg_plan_create", spectrum);
     SKG_TRY(skg_plan_make(context, scene, view, spectrum, options, plan));
     const uint32_t tests = tests_of(*plan);
     for (int test = 0; test < SKG_TRIALS; test++) {
@@ -46,4 +46,10 @@ skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_vie
         return status;
     }
     return SKG_OK;
+}
+
+skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
+                           skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, scene, view, spectrum, options, plan));
 }

@@ -23,10 +23,11 @@ from .matrices import rotate, translate
 from .mesh import Mesh
 from .part import Part
 from .report import Report
+from .scan import Scan
 from .scene import Scene
 from .thorax import thorax
 from .view import View
 
 __version__ = _text(_lib.skg_version())
-__all__ = [*_errors, "Beam", "Device", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scene",
+__all__ = [*_errors, "Beam", "Device", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scan", "Scene",
            "SkiagraphWarning", "View", "devices", "element_number", "materials", "rotate", "thorax", "translate"]

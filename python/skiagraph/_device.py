@@ -9,7 +9,7 @@ import sys
 import threading
 import warnings
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Any
 
@@ -78,7 +78,7 @@ class Device:
         self._lock = threading.RLock()
         self._depth = 0
         self._garbage: list[tuple[str, Any]] = []
-        self._unfinished: list[Any] = []
+        self._unfinished: list[tuple[Callable[[], object], Any]] = []
         self._log = Log()
         self._handle = ffi.NULL
         _all.add(self)
@@ -121,10 +121,10 @@ class Device:
         self.close()
 
     def _collect(self) -> None:
-        """Frees what was dropped meanwhile. Jobs that nobody waited for have to end first."""
+        """Frees what was dropped meanwhile. Work that nobody waited for has to end first."""
         while self._unfinished:
-            job, _keep = self._unfinished[0]
-            lib.skg_job_wait(job)
+            finish, _keep = self._unfinished[0]
+            finish()
             self._unfinished.pop(0)
         while self._garbage:
             release(*self._garbage.pop())
@@ -133,9 +133,9 @@ class Device:
         """Releases a handle that belongs to this device, now or with the next call."""
         self._garbage.append((kind, handle))
 
-    def abandon(self, job: Any, keep: Any) -> None:
-        """Takes a job that was not waited for, and what has to stay as long as it runs."""
-        self._unfinished.append((job, keep))
+    def abandon(self, finish: Callable[[], object], keep: Any) -> None:
+        """Takes work that was not waited for: a function that waits, and what has to stay as long as it runs."""
+        self._unfinished.append((finish, keep))
 
     def close(self) -> None:
         """Frees the device. Scenes that use it cannot be used any more."""

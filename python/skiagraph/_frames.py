@@ -1,6 +1,7 @@
 """Batches of frames: submitted a few at a time, so that an interrupt is answered at once. Private."""
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -82,7 +83,7 @@ def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progres
             meter.update(done)
     finally:
         for job, keep, _, _ in started:
-            device.abandon(job, (keep, out))
+            device.abandon(functools.partial(lib.skg_job_wait, job), (keep, out))
     if ranged:
         warn(ranged, RangeWarning)
 

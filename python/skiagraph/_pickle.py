@@ -24,6 +24,7 @@ def content(scene: Scene) -> dict[str, Any]:
         "poses": [part.pose for part in old],
         "materials": {number: material for number, material in scene._materials.items() if number < len(old)},
         "vertices": moved, "breath": scene._breath,
+        "trajectory": scene._trajectory,
         "added": [{"label": part.label, "mesh": part.mesh, "material": part.material, "inside": part.inside,
                    "pose": part.pose, "priority": part.priority} for part in new],
     }
@@ -42,6 +43,7 @@ def restore(scene: Scene, state: dict[str, Any]) -> None:
     for part in state["added"]:
         scene.add(part.pop("label"), part.pop("mesh"), **part)
     scene._view, scene._changed = state["view"], state["changed"]
+    scene._trajectory = state["trajectory"]
     if state["beam"] is not None:
         scene.beam = state["beam"]
     if state["breath"]:

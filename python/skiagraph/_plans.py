@@ -46,9 +46,16 @@ class Plans:
 
     def _make(self, setup: Any, scene: Any, view: View, beam: Beam, given: dict[str, Any]) -> Any:
         keep: list[Any] = []
+        options = self.options(setup, given, keep)
+        return make("skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")),
+                    beam._handle, options)
+
+    @staticmethod
+    def options(setup: Any, given: Mapping[str, Any], keep: list[Any]) -> Any:
+        """The library's skg_plan_options: what the file says, and what is given besides."""
         options = struct("skg_plan_options")
         call("skg_setup_options_get", setup, options)
-        values = dict(given)
+        values = {name: value for name, value in given.items() if value is not None}
         bands, views, blur = values.pop("bands", None), values.pop("views", None), values.pop("blur", None)
         if bands is not None:
             edges = np.atleast_1d(np.asarray(bands, dtype=float))
@@ -62,9 +69,7 @@ class Plans:
                 one._write(written + i)
             keep.append(written)
             options.views, options.view_count = written, len(sample)
-        fill(options, "skg_plan_options", values, keep, "option")
-        return make("skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")),
-                    beam._handle, options)
+        return fill(options, "skg_plan_options", values, keep, "option")
 
 
 def _blur(blur: Mapping[str, Any]) -> dict[str, Any]:

@@ -36,18 +36,29 @@ def rotate(axis: str | Sequence[float] | NDArray[Any], degrees: float,
     >>> (rotate("z", 180, about=(1, 0, 0)) @ (0, 3, 0, 1)).round(12).tolist()
     [2.0, -3.0, 0.0, 1.0]
     """
-    if isinstance(axis, str):
-        if axis not in _AXES:
-            raise ArgumentError(f"axis is {axis!r}; give 'x', 'y', 'z' or a direction")
-        axis = _AXES[axis]
-    direction, centre = vector(axis, "axis"), vector(about, "about")
-    length = np.linalg.norm(direction)
-    if not np.isfinite(length) or length == 0:
-        raise ArgumentError(f"axis is {direction.tolist()}, which is no direction")
-    x, y, z = direction / length
+    centre = vector(about, "about")
+    x, y, z = direction(axis)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     angle = np.radians(float(degrees))
     made = np.eye(4)
     made[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
     made[:3, 3] = centre - made[:3, :3] @ centre
+    return made
+
+
+def direction(axis: str | Sequence[float] | NDArray[Any]) -> NDArray[np.float64]:
+    """The direction of an axis, of length 1.
+
+    >>> direction("y").tolist(), direction((0, 0, 2)).tolist()
+    ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
+    """
+    if isinstance(axis, str):
+        if axis not in _AXES:
+            raise ArgumentError(f"axis is {axis!r}; give 'x', 'y', 'z' or a direction")
+        axis = _AXES[axis]
+    given = vector(axis, "axis")
+    length = np.linalg.norm(given)
+    if not np.isfinite(length) or length == 0:
+        raise ArgumentError(f"axis is {given.tolist()}, which is no direction")
+    made: NDArray[np.float64] = given / length
     return made

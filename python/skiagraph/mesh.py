@@ -102,8 +102,11 @@ class Mesh:
         positions = _arrays.rows(value, "vertices", (np.float64,))
         if len(positions) != self._counts()[0]:
             raise ArgumentError(f"vertices has {_arrays.describe(positions)}; the mesh has {self._counts()[0]} vertices")
-        call("skg_mesh_positions_set", self._handle, *_strided(positions, "double *")[1:])
+        self._place(positions)
         self._changed = True
+
+    def _place(self, positions: NDArray[np.float64]) -> None:
+        call("skg_mesh_positions_set", self._handle, *_strided(positions, "double *")[1:])
 
     @property
     def faces(self) -> NDArray[np.int32]:

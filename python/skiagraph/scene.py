@@ -1,16 +1,17 @@
 """Scenes: parts, source and detector, and their images."""
 from __future__ import annotations
 
+import copy
 import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from types import TracebackType
-from typing import Any, ContextManager
+from typing import Any, ContextManager, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _pickle, _source
+from . import _arrays, _command, _pickle, _projections, _source
 from ._device import Device, device_of
 from ._frames import Batch, Stale, run
 from ._interface import ArgumentError, SceneError
@@ -23,6 +24,7 @@ from .mesh import Mesh, as_mesh
 from ._picture import write_picture
 from .part import Part
 from .report import Report
+from .scan import Scan
 from .view import View, as_views
 
 #: The keV of a unit in which energies may be given.
@@ -67,6 +69,7 @@ class Scene:
         self._materials: dict[int, Material] = {}
         self._breath: dict[str, float] | None = None
         self._changed: set[str] = set()
+        self._trajectory: Scan | None = None
         with self._calls():
             self._setup = source.load(self._device.handle, elsewhere)
             handle = ffi.new("skg_scene **")
@@ -79,6 +82,8 @@ class Scene:
             self._view = View._read(view) if view.columns else None
             self._plans = Plans(self._device)
             self._file_parts = len(self)
+            self._read_view = copy.deepcopy(self._view)
+            self._read_poses = [part.pose for part in self]
 
     def _calls(self) -> ContextManager[None]:
         if self._setup == ffi.NULL and hasattr(self, "_plans"):
@@ -219,6 +224,73 @@ class Scene:
         with self._calls():
             return self._run(submit, batch, out, progress, one, False, {"precision": precision, **options})
 
+    # Scans
+
+    @property
+    def trajectory(self) -> Scan:
+        """Source and detector in each projection of scan(): the key Scan of the file. Assign a Scan to replace it."""
+        if self._trajectory is not None:
+            return self._trajectory
+        with self._calls():
+            if self._view != self._read_view:
+                raise SceneError("the view was changed since the scene was read, and the key Scan turns the one of the "
+                                 "file; assign a Scan of the new view to scene.trajectory")
+            handle = ffi.new("skg_scan **")
+            call("skg_setup_scan_get", self._setup, handle)
+            return Scan._borrowed(handle[0])
+
+    @trajectory.setter
+    def trajectory(self, value: Scan) -> None:
+        if not isinstance(value, Scan):
+            raise ArgumentError(f"trajectory is a {type(value).__name__}; give a Scan")
+        self._trajectory = value
+
+    @overload
+    def scan(self, out: str | os.PathLike[str], quantity: str | None = None, *, only: Sequence[int] | None = None,
+             breathing: bool = False, subframes: int = 1, precision: str | None = None, tolerance: float | None = None,
+             flats: int = 1, darks: int = 1, overwrite: bool = False, progress: Progress = False,
+             **options: Any) -> dict[str, Any]: ...
+
+    @overload
+    def scan(self, out: Any = None, quantity: str | None = None, *, only: Sequence[int] | None = None,
+             breathing: bool = False, subframes: int = 1, precision: str | None = None, tolerance: float | None = None,
+             progress: Progress = False, **options: Any) -> NDArray[Any]: ...
+
+    def scan(self, out: Any = None, quantity: str | None = None, *, only: Sequence[int] | None = None,
+             breathing: bool = False, subframes: int = 1, precision: str | None = None, tolerance: float | None = None,
+             flats: int = 1, darks: int = 1, overwrite: bool = False, progress: Progress = False,
+             **options: Any) -> Any:
+        """The projections of the scene's trajectory, [n, row, column], or a file of them.
+
+        out: None; an array to write to; or the path of a file (.h5, .mha, .raw, .tif, or a folder), as the command
+        `skiagraph scan` writes it. A file of the same scan that is not finished is continued, a finished one is left as it
+        is, and one of another scan is refused unless overwrite is true. Then the result says what was done: projections,
+        found, computed, finished, hash and file. flats, darks: fields in an .h5.
+        only: numbers of projections, rising. breathing: poses the scene at the time of each projection. subframes: frames
+        from which each projection is averaged over its exposure. The rest is as in images(). An interrupt (Ctrl-C) ends
+        the scan at once, and what a file has by then it keeps.
+
+        >>> from skiagraph import Beam, Mesh, Scan, Scene, View
+        >>> scene = Scene()
+        >>> scene.add("ball", Mesh.sphere(40, 64), material="water")
+        <Part 'ball': Water, Liquid>
+        >>> scene.view = View(source=(0, 0, -1000), detector=(0, 0, 200), column_step=(2, 0, 0), row_step=(0, 2, 0),
+        ...                   pixels=(64, 48))
+        >>> scene.beam = Beam.mono(60, 1000)
+        >>> scene.trajectory = Scan(scene.view, 8, axis="y")
+        >>> scene.scan(quantity="attenuation").shape
+        (8, 48, 64)
+        """
+        given = {"quantity": quantity, "precision": precision, "tolerance": tolerance, **options}
+        wanted = _projections.Wanted(only, breathing, subframes, given, progress)
+        if self._breath and not breathing:
+            raise SceneError("the scene was posed by breathe(); give breathing=True to pose it at the time of each "
+                             "projection, or images(views=scene.trajectory) for this pose")
+        with self._calls():
+            if isinstance(out, (str, os.PathLike)):
+                return _projections.write(self, self.trajectory, wanted, out, (int(flats), int(darks)), overwrite)
+            return _projections.compute(self, self.trajectory, wanted, out)
+
     def _batch(self, poses: Mapping[str, Any] | None, views: Sequence[View] | None, index: int) -> Batch:
         count: int | None = None
         source = ""
@@ -315,15 +387,21 @@ class Scene:
         if (phase is None) == (time is None):
             raise ArgumentError("give breathe(phase=...) or breathe(time=...), one of them")
         with self._calls():
-            if self._motion == ffi.NULL:
-                self._motion = make("skg_motion_create", "skg_motion", self._device.handle, self._setup)
-            if phase is not None:
-                call("skg_motion_pose_at_phase", self._motion, float(phase))
-                self._breath = {"phase": float(phase)}
-            elif time is not None:
-                call("skg_motion_pose_at_time", self._motion, float(time))
-                self._breath = {"time": float(time)}
-            return filled("skg_motion_state", "skg_motion_state_get", self._motion)
+            motion = self._linked()
+            breath = {"phase": float(phase)} if phase is not None else {"time": float(time or 0)}
+            self._pose(breath)
+            self._breath = breath
+            return filled("skg_motion_state", "skg_motion_state_get", motion)
+
+    def _linked(self) -> Any:
+        """The motion of the scene."""
+        if self._motion == ffi.NULL:
+            self._motion = make("skg_motion_create", "skg_motion", self._device.handle, self._setup)
+        return self._motion
+
+    def _pose(self, breath: dict[str, float]) -> None:
+        for name, value in breath.items():
+            call(f"skg_motion_pose_at_{name}", self._motion, value)
 
     def _complete(self) -> Any:
         if self._motion == ffi.NULL or self._breath is None:
@@ -351,8 +429,10 @@ class Scene:
         return _command.cost(self._source, quick)
 
     def _is_changed(self) -> bool:
-        moved = any(mesh._changed for mesh in self._meshes.values())
-        return bool(self._changed or self._materials or len(self) > self._file_parts or moved or self._breath)
+        moved = any(mesh._changed for mesh in self._meshes.values()) or any(
+            (part.pose != pose).any() for part, pose in zip(self, self._read_poses))
+        return bool(self._changed or self._materials or len(self) > self._file_parts or moved or self._breath
+                    or self._view != self._read_view)
 
     # Life
 

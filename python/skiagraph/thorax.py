@@ -7,7 +7,8 @@ from ._library import call, encode, fill, make, release, struct
 
 
 def thorax(folder: str | os.PathLike[str], triangles: int | None = None) -> str:
-    """Writes the meshes and the scene file of a thorax into a folder that exists; returns the path of the file.
+    """Writes the meshes and the scene file of a thorax into a folder, which is made if need be; returns the
+    path of the file.
 
     triangles: about how many, 10,000 or more.
 
@@ -17,6 +18,7 @@ def thorax(folder: str | os.PathLike[str], triangles: int | None = None) -> str:
     ...     scene.breathe(phase=0.5)["amplitude"] < 0.1
     True
     """
+    os.makedirs(folder, exist_ok=True)
     options = struct("skg_thorax_options")
     fill(options, "skg_thorax_options", {"triangles": triangles}, [], "option")
     made = make("skg_thorax_create", "skg_thorax", options)

@@ -25,6 +25,8 @@ fortran)
         gfortran -std=f2018 -Wall -Wno-unused-dummy-argument "$module" "$program.f90" $(pkg-config --libs skiagraph) -o "$name"
     done
     ./every_call_f
+    gfortran -fc-prototypes -fsyntax-only -J. "$module" >prototypes.h
+    python3 "$source/tests/package/fortran_signatures.py" "$source/lib/bindings/interface.json" "$module" prototypes.h
     ./first_image_f
     sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/scenes/phantom.json" >small.json
     ./thousand_images_f small.json marker

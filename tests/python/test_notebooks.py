@@ -2,6 +2,7 @@
 import ast
 import json
 import pathlib
+import runpy
 
 import pytest
 
@@ -20,3 +21,8 @@ def test_a_notebook_runs(path):
             shown = eval(compile(ast.Expression(last.value), path.name, "eval"), names)
             assert "<table>" in shown._repr_html_()
     assert cells
+
+
+def test_memory_is_shared(capsys):
+    runpy.run_path(str(EXAMPLES / "share_memory.py"))
+    assert "mean transmission 0." in capsys.readouterr().out

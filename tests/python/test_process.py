@@ -46,7 +46,7 @@ def test_changes_are_pickled(scene):
 
 
 def test_a_breath_is_pickled(tmp_path):
-    scene = sk.Scene(sk.thorax(tmp_path, 10000), settings={"Detector.NumberOfPixels": [16, 16]})
+    scene = sk.Scene(sk.thorax(tmp_path / "a" / "folder", 10000), settings={"Detector.NumberOfPixels": [16, 16]})
     scene.breathe(phase=0.3)
     assert (pickle.loads(pickle.dumps(scene)).image() == scene.image()).all()
 

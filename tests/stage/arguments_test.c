@@ -37,6 +37,7 @@ static const struct {
     int32_t half;
 } programs[] = {
     {{"project.cl"}, "", 0},
+    {{"place.cl"}, "", 0},
     {{"batch.clh", "draw.clh", "raster_copies.cl"}, "", 0},
     {{"pixel.clh", "raster_atomics.cl"}, "", 0},
     {{"pixel.clh", "tiles.cl", "raster_squares.cl"}, "", 0},

@@ -20,6 +20,7 @@
 #include <skiagraph/error.h>
 #include <skiagraph/image.h>
 #include <skiagraph/material.h>
+#include <skiagraph/memory.h>
 #include <skiagraph/mesh.h>
 #include <skiagraph/motion.h>
 #include <skiagraph/plan.h>

@@ -98,6 +98,19 @@ typedef void (*skg_log_function)(int32_t level, const char *sentence, void *user
 /** Sets where the lines of a context's log go. NULL, the default, drops them. */
 SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user);
 
+/** Receives a failure. It is called by the thread that is inside the call that fails, just before that call returns, once
+ * for each such call. It must not call the library with the same context.
+ *
+ *     status     the negative status that the call returns; SKG_STALE and SKG_RANGE are no failures
+ *     sentence   what skg_last_error gives; valid during the call only
+ *     user       as given to skg_context_error_set */
+typedef void (*skg_error_function)(skg_status status, const char *sentence, void *user);
+
+/** Sets a function that hears of the failures of calls with this context: those that take a context, a plan or a job, except
+ * for calls that retain one, read what a plan reports, or compute a scan, of which the calls that they make are heard of.
+ * NULL, the default: none. */
+SKG_API skg_status skg_context_error_set(skg_context *context, skg_error_function error, void *user);
+
 /** A device of OpenCL. The library fills it; prepare with skg_device_info_init. */
 typedef struct {
     /** Set by skg_device_info_init. */

@@ -43,6 +43,31 @@ SKG_API skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kin
                                        int64_t offset, int32_t waits, const cl_event *wait_list,
                                        cl_event *done, skg_job **job);
 
+/** Takes the positions of a part's mesh from device memory, for the frames that are submitted to this plan afterwards.
+ * A device copy is enqueued; nothing is waited for, and nothing passes through host memory. Poses stay on the host.
+ *
+ *     part        number in the scene. All parts with the same mesh move
+ *     buffer      float: rows of x, y, z in mm from the mesh's origin (skg_mesh_offsets_get), a row for each vertex.
+ *                 It must not change until the copy is made
+ *     offset      byte of the buffer at which the rows begin, a multiple of 4
+ *     lowest      [3] bounds of all positions, mm from the mesh's origin; copied. Narrow bounds are faster and finer
+ *     highest     [3]
+ *     waits       number of events in wait_list
+ *     wait_list   [waits] the copy is made after these; NULL if waits is 0
+ *     done        result: an event of the copy, which the caller releases; may be NULL
+ *     errors      SKG_ERR_ARGUMENT (part, buffer, bounds); SKG_ERR_UNSUPPORTED for a leaky mesh with SKG_REPAIR_EXACT,
+ *                 which traces rays through the positions on the host
+ *     stale       SKG_STALE if parts were added to the scene or put elsewhere
+ *
+ * Triangles, and which way they face, are those of the mesh on the host. Vertices of a closed mesh that have equal
+ * positions there move together, with the position of the first of them, so that the mesh stays closed. A vertex
+ * outside of the bounds is put on them, and skg_job_wait returns SKG_RANGE with part and vertex. A vertex that is not
+ * finite is SKG_ERR_MESH as in other frames. The positions on the host do not change; skg_mesh_positions_set and
+ * skg_mesh_offsets_moved make the plan use them again. */
+SKG_API skg_status skg_plan_positions_set_cl(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
+                                             const float *lowest, const float *highest, int32_t waits,
+                                             const cl_event *wait_list, cl_event *done);
+
 /** The code of the last OpenCL call that failed in the calling thread; CL_SUCCESS if none did. */
 SKG_API cl_int skg_last_cl_error(void);
 

@@ -1,0 +1,79 @@
+"""What identifies a scan whose scene was changed since it was read. Private."""
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .beam import Beam, Response
+from .material import Material
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    from .scan import Scan
+    from .scene import Scene
+
+#: Options that skg_scan_hash_get knows, and options on which no image depends.
+_KNOWN = frozenset(("precision", "quantity", "tolerance", "falloff", "supersampling", "noise", "repair", "clip", "bands",
+                    "band_weight", "noise_seed", "swank", "electronic_kev", "quantum_step_kev"))
+_IDLE = frozenset(("strategy", "tile", "overlaps", "profile"))
+
+
+def digest(given: str, scene: Scene, trajectory: Scan | None, options: Mapping[str, Any]) -> str:
+    """The hash of a scan: that of the library if nothing was changed, so that the command knows the scan as well."""
+    kev = scene.beam.energies
+    changes = _changes(scene)
+    others = {name: value for name, value in options.items() if value is not None and name not in _KNOWN | _IDLE}
+    if trajectory is not None:
+        changes["views"] = [np.concatenate((v.source, v.detector, v.column_step, v.row_step)) for v in trajectory]
+        changes["pixels"] = [*trajectory[0].pixels, trajectory[0].projection]
+    if not changes and not others:
+        return given
+    made = hashlib.sha256(given.encode())
+    for item in (changes, others):
+        _add(made, item, kev)
+    return made.hexdigest()
+
+
+def _changes(scene: Scene) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for number, part in enumerate(scene):
+        added, mesh = number >= scene._file_parts, part.mesh
+        if added or (part.pose != scene._read_poses[number]).any():
+            found[f"pose {number}"] = part.pose
+        if added:
+            found[f"part {number}"] = [part.inside or "", part.priority, mesh.faces]
+        if added or number in scene._materials:
+            found[f"material {number}"] = part.material
+        if added or mesh._changed:
+            found[f"vertices {number}"] = mesh
+    if "beam" in scene._changed:
+        found["beam"] = scene.beam
+    return found
+
+
+def _add(made: Any, value: Any, kev: Any) -> None:
+    """Adds a value by its content, with its kind, so that different values give different bytes."""
+    made.update(f"[{type(value).__name__} ".encode())
+    if isinstance(value, Mapping):
+        for name in sorted(value):
+            made.update(f"{name}=".encode())
+            _add(made, value[name], kev)
+    elif isinstance(value, (list, tuple)):
+        for item in value:
+            _add(made, item, kev)
+    elif isinstance(value, Mesh):
+        made.update(value.vertices.tobytes())
+    elif isinstance(value, Material):
+        made.update(value.attenuation(kev).tobytes())
+    elif isinstance(value, Beam):
+        made.update(value.energies.tobytes() + value.photons.tobytes())
+    elif isinstance(value, Response):
+        made.update(np.array([value.at(float(e)) for e in kev]).tobytes())
+    elif isinstance(value, np.ndarray):
+        made.update(f"{value.shape} {value.dtype} ".encode() + value.tobytes())
+    else:
+        made.update(repr(value).encode())
+    made.update(b"]")

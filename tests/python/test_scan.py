@@ -1,0 +1,278 @@
+"""Scans: the same projections as batches of views, files of them, breath, interrupts."""
+import json
+import pickle
+import shutil
+import signal
+import subprocess
+import threading
+
+import numpy as np
+import pytest
+
+import skiagraph as sk
+
+N = 6
+
+
+@pytest.fixture
+def scanned(scene, view):
+    scene.trajectory = sk.Scan(view, N, axis="y")
+    return scene
+
+
+@pytest.fixture
+def path(tmp_path):
+    """A scene file with a scan."""
+    made = tmp_path / "scene.json"
+    made.write_text(json.dumps({
+        "Source": {"Position": [0, -40, 0, "cm"], "Shape": "PointSource",
+                   "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+        "Detector": {"Position": [0, 10, 0, "cm"], "UpVector": [0, 0, -1], "NumberOfPixels": [32, 24],
+                     "Size": [32, 24, "cm"]},
+        "Samples": [{"Label": "block", "Cuboid": [60, 40, 80, "mm"], "Material": ["mu", 0.2]}],
+        "Scan": {"NumberOfProjections": N, "FinalAngle": 360}}))
+    return made
+
+
+def stack(path):
+    """The values of a .raw file."""
+    return np.fromfile(path, np.float32).reshape(N, 24, 32)
+
+
+def test_a_scan_is_a_sequence_of_views(view):
+    scan = sk.Scan(view, 4, axis="y", start=10)
+    assert len(scan) == 4 and scan[0].pixels == view.pixels
+    np.testing.assert_allclose(scan.angles, [10, 100, 190, 280], rtol=1e-14)  # degrees by way of radians
+    # samples that turn one way are a source that turns the other way
+    turned = sk.rotate("y", -100) @ view
+    np.testing.assert_allclose(scan[1].source, turned.source, atol=1e-9)  # 1e6 roundings of 1000 mm
+    assert scan[-1] == scan[3] and [v for v in scan] == scan[:]
+    with pytest.raises(IndexError):
+        scan[4]
+    assert sk.Scan(view, 3, 0, interval_s=0.5, start_s=1).times.tolist() == [1, 1.5, 2]
+
+
+def test_fields_are_in_degrees(view):
+    tilted = sk.Scan(view, 1, detector_tilt=(0, 0, 90))[0]
+    np.testing.assert_allclose(tilted.column_step, view.row_step, atol=1e-12)  # the rounding of cos 90 degrees
+    with pytest.raises(sk.ArgumentError, match="the field of a scan 'pich_mm' is unknown; did you mean 'pitch_mm'"):
+        sk.Scan(view, 3, pich_mm=2)
+    with pytest.raises(sk.ArgumentError, match="projections is 0"):
+        sk.Scan(view, 0)
+    with pytest.raises(sk.ArgumentError, match="axis is 'w'"):
+        sk.Scan(view, 3, axis="w")
+
+
+def test_tables_of_poses(view, tmp_path):
+    circle = sk.Scan(view, N, axis="y")
+    circle.save(tmp_path / "poses.csv")
+    read = sk.Scan.load(view, tmp_path / "poses.csv")
+    rows = [np.concatenate((v.source, v.detector, v.column_step, v.row_step)) for v in circle]
+    for scan in (read, sk.Scan.table(view, rows), pickle.loads(pickle.dumps(read)), pickle.loads(pickle.dumps(circle))):
+        assert len(scan) == N
+        for one, other in zip(scan, circle):
+            np.testing.assert_allclose(one.source, other.source, atol=1e-9)  # the digits of the file
+    with pytest.raises(sk.ArgumentError, match=r"poses has the shape \(3, 4\)"):
+        sk.Scan.table(view, np.zeros((3, 4)))
+
+
+def test_projections_are_images_of_the_views(scanned):
+    found = scanned.scan(quantity="attenuation")
+    assert found.dtype == np.float32
+    assert (found == scanned.images("attenuation", views=scanned.trajectory)).all()
+    some = scanned.scan(quantity="attenuation", only=[1, 4])
+    assert (some == found[[1, 4]]).all()
+    out = np.zeros((N, *scanned.view.shape))
+    assert scanned.scan(out, "attenuation") is out and (out == found).all()
+    assert scanned.scan(precision="double").dtype == np.float64
+    scanned.beam = sk.Beam([30, 60], [100, 200])
+    assert scanned.scan(quantity="photons", bands=[20, 40, 80]).shape == (N, 2, *scanned.view.shape)
+
+
+def test_what_is_wrong_is_named(scanned, view, path):
+    with pytest.raises(sk.ArgumentError, match="out has the shape"):
+        scanned.scan(np.zeros((N, 3, 4)))
+    with pytest.raises(sk.ArgumentError, match="only has"):
+        scanned.scan(only=[0.5])
+    with pytest.raises(sk.ArgumentError, match="numbers rise"):
+        scanned.scan(only=[3, 1])
+    with pytest.raises(sk.ArgumentError, match="sub-frames"):
+        scanned.scan(subframes=0)
+    with pytest.raises(sk.ArgumentError, match="trajectory is a View"):
+        scanned.trajectory = view
+    assert scanned.scan().shape[0] == N
+    with pytest.raises(sk.SceneError, match="no key Scan"):
+        sk.Scene().trajectory
+    read = sk.Scene(path)
+    read.view.source[0] += 1
+    with pytest.raises(sk.SceneError, match="view was changed"):
+        read.scan()
+
+
+def test_a_stale_plan_is_made_anew(scanned):
+    scanned.beam = sk.Beam.tube(80, {"Al": 2.5})
+    scanned["block"].material = "water"
+    first = scanned.scan(quantity="transmission", tolerance=1e-3)
+    scanned["ball"].material = "bone cortical icru44"
+    second = scanned.scan(quantity="transmission", tolerance=1e-3)
+    assert second.min() < first.min()
+
+
+def test_subframes_blur_the_edges(scene, view):
+    scene.trajectory = sk.Scan(view, 3, 20, axis="y", interval_s=1, exposure_s=1)
+    sharp, blurred = scene.scan(quantity="transmission"), scene.scan(quantity="transmission", subframes=5)
+    assert not (sharp == blurred).all()
+    mean = np.mean([scene.images("transmission", views=[sk.rotate("y", -a) @ view])[0] for a in (-8, -4, 0, 4, 8)], 0)
+    np.testing.assert_allclose(blurred[0], mean, atol=1e-4)  # rounding of the moved views at edges
+
+
+def test_a_file_is_the_array(path, tmp_path):
+    scene = sk.Scene(path)
+    said = scene.scan(tmp_path / "scan.raw")
+    assert (stack(tmp_path / "scan.raw") == scene.scan()).all()
+    assert {k: said[k] for k in ("projections", "found", "computed", "finished")} == {
+        "projections": N, "found": 0, "computed": N, "finished": True}
+    assert scene.scan(tmp_path / "scan.raw")["computed"] == 0
+    with pytest.raises(sk.OutputError):
+        scene.scan(tmp_path / "scan.raw", "attenuation")
+    assert scene.scan(tmp_path / "scan.raw", "attenuation", overwrite=True)["computed"] == N
+    with pytest.raises(sk.ArgumentError, match="xyz"):
+        scene.scan(tmp_path / "scan.xyz")
+    with pytest.raises(sk.ArgumentError, match="bands"):
+        scene.scan(tmp_path / "bands.raw", bands=[10, 100])
+
+
+def test_a_file_is_continued(path, tmp_path):
+    scene = sk.Scene(path)
+    scene.scan(tmp_path / "whole.raw")
+    part = scene.scan(tmp_path / "scan.raw", only=[1, 4])
+    assert part["computed"] == 2 and not part["finished"]
+    seen = []
+    rest = sk.Scene(path).scan(str(tmp_path / "scan.raw"), progress=lambda done, of: seen.append((done, of)))
+    assert rest["found"] == 2 and rest["computed"] == 4 and rest["finished"]
+    assert seen[-1] == (4, 4)
+    assert (tmp_path / "scan.raw").read_bytes() == (tmp_path / "whole.raw").read_bytes()
+
+
+@pytest.mark.skipif(not shutil.which("skiagraph"), reason="the command is not on the PATH")
+def test_the_command_knows_the_scan(path, tmp_path):
+    scene = sk.Scene(path)
+    said = scene.scan(tmp_path / "scan.raw", "attenuation", only=[0, 3])
+    done = subprocess.run(["skiagraph", "scan", path, "-o", tmp_path / "scan.raw", "--quantity", "attenuation", "--json"],
+                          capture_output=True, text=True, check=True)
+    printed = json.loads(done.stdout)
+    assert printed["hash"] == said["hash"] and printed["found"] == 2 and printed["computed"] == N - 2
+    assert (stack(tmp_path / "scan.raw") == scene.scan(quantity="attenuation")).all()
+
+
+def test_a_scene_that_was_changed_is_another_scan(path, tmp_path):
+    def hash_of(change, **options):
+        scene = sk.Scene(path)
+        change(scene)
+        return scene.scan(tmp_path / "scan.raw", overwrite=True, **options)["hash"]
+
+    def add(scene):
+        scene.add("ball", sk.Mesh.sphere(5, 16), material="Al", inside="block")
+
+    hashes = [
+        hash_of(lambda scene: None), hash_of(lambda scene: None, world=sk.Material("air")), hash_of(add),
+        hash_of(lambda scene: setattr(scene["block"], "pose", sk.translate(1, 0, 0))),
+        hash_of(lambda scene: setattr(scene["block"], "pose", sk.translate(2, 0, 0))),
+        hash_of(lambda scene: setattr(scene["block"], "material", "Al")),
+        hash_of(lambda scene: setattr(scene, "beam", sk.Beam.mono(50, 1000))),
+        hash_of(lambda scene: setattr(scene["block"].mesh, "vertices", scene["block"].mesh.vertices * 0.9)),
+        hash_of(lambda scene: setattr(scene, "trajectory", sk.Scan(scene.view, N, 1))),
+        hash_of(lambda scene: None, response=sk.Response.scintillator("CsI", 0.6)),
+        hash_of(lambda scene: None, spot={"shape": "disc", "extent": 2, "samples": 4}),
+    ]
+    assert len(set(hashes)) == len(hashes)
+    assert hash_of(lambda scene: None, strategy="tiles") == hashes[0]
+    assert hash_of(add) == hashes[2]
+
+
+def test_hdf5_has_fields(path, tmp_path):
+    scene = sk.Scene(path)
+    try:
+        said = scene.scan(tmp_path / "scan.h5", flats=2, darks=1, noise=True)
+    except sk.UnsupportedError:
+        pytest.skip("a build without HDF5")
+    assert said["finished"]
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "scan.h5") as file:
+        assert (file["/exchange/data"][:] == scene.scan(noise=True)).all()
+        white = file["/exchange/data_white"][:]
+        assert white.shape[0] == 2 and not (white[0] == white[1]).all()
+        # 1000 photons of 60 keV a pixel; the mean of 768 pixels within 5 standard errors
+        assert abs(white[0].mean() / 60e3 - 1) < 5 / np.sqrt(1000 * 768)
+        assert not file["/exchange/data_dark"][:].any()
+
+
+def test_an_interrupt_ends_a_scan_and_the_file_is_continued(path, tmp_path):
+    scene = sk.Scene(path, settings={"Scan": {"NumberOfProjections": 20000, "FinalAngle": 360}})
+    seen = []
+
+    def interrupt(done, of):
+        if not seen:
+            signal.raise_signal(signal.SIGINT)
+        seen.append(done)
+
+    with pytest.raises(KeyboardInterrupt):
+        scene.scan(tmp_path / "scan.raw", progress=interrupt)
+    assert not seen and scene._device._unfinished
+    # The next call waits for what is under way; then the lock is given up.
+    assert scene.image().shape == (24, 32)
+    assert not scene._device._unfinished and not (tmp_path / "scan.raw.lock").exists()
+    said = scene.scan(tmp_path / "scan.raw", only=range(100))
+    assert 0 < said["found"] < 20000
+    with pytest.raises(KeyboardInterrupt):
+        scene.scan(progress=interrupt)
+    scene.image()
+    assert all(thread.name != "skiagraph scan" for thread in threading.enumerate())
+
+
+def test_progress_that_fails_ends_a_scan(scanned):
+    def fail(done, of):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        scanned.scan(progress=fail)
+    assert scanned.scan().shape[0] == N
+
+
+def test_progress_of_a_scan_is_drawn(scanned, capsys):
+    scanned.scan(progress=True)
+    assert f"{N}/{N}" in capsys.readouterr().err
+
+
+def test_trajectories_pickle_with_their_scenes(scanned):
+    assert (pickle.loads(pickle.dumps(scanned)).scan() == scanned.scan()).all()
+
+
+def test_a_breathing_scan(tmp_path):
+    settings = {"Detector.NumberOfPixels": [16, 16],
+                "Scan": {"NumberOfProjections": 3, "FinalAngle": 0, "Interval": 1.0}}
+    scene = sk.Scene(sk.thorax(tmp_path, 10000), settings=settings)
+    still, vertices = scene.image("attenuation"), scene["liver"].mesh.vertices
+    found = scene.scan(quantity="attenuation", breathing=True)
+    assert not (found[0] == found[1]).all()
+    # The meshes are where they were.
+    assert (scene["liver"].mesh.vertices == vertices).all() and not scene._is_changed()
+    assert (scene.image("attenuation") == still).all()
+    for image, time in zip(found, scene.trajectory.times):
+        scene.breathe(time=time)
+        assert (scene.images("attenuation", views=scene.trajectory[:1])[0] == image).all()
+    with pytest.raises(sk.SceneError, match="breathing=True"):
+        scene.scan()
+    posed = scene.image()
+    assert (scene.scan(quantity="attenuation", breathing=True) == found).all()
+    assert (scene.image() == posed).all()
+
+
+def test_cost_sees_every_change(path):
+    scene = sk.Scene(path)
+    assert not scene._is_changed()
+    scene["block"].pose = sk.translate(1, 0, 0)
+    assert scene._is_changed()
+    moved = sk.Scene(path)
+    moved.view.source[1] -= 10
+    assert moved._is_changed()
