@@ -72,6 +72,13 @@ void cli_file_discard(cli_file *file) {
     forget(file);
 }
 
+int cli_file_check(const char *path) {
+    cli_file file;
+    const int exit_status = cli_file_open(path, &file);
+    if (exit_status == CLI_DONE) cli_file_discard(&file);
+    return exit_status;
+}
+
 int cli_write_file(const char *path, const void *bytes, size_t count) {
     cli_file file;
     const int exit_status = cli_file_open(path, &file);

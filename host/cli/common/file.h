@@ -24,6 +24,9 @@ int cli_file_commit(cli_file *file);
 /* Closes and removes what is not finished. Does nothing after a commit or a failed open. */
 void cli_file_discard(cli_file *file);
 
+/* Refuses, before anything is computed, a file that could not be opened. */
+int cli_file_check(const char *path);
+
 /* Prints "path: cannot be written: reason". */
 int cli_file_fail(const char *path, const char *reason);
 

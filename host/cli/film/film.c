@@ -25,11 +25,8 @@ int film_is(const char *path) {
 }
 
 int film_check(const char *path, double fps) {
-    cli_file file;
-    int exit_status = find_writer(path)->check(path, fps);
-    if (exit_status == CLI_DONE) exit_status = cli_file_open(path, &file);
-    if (exit_status == CLI_DONE) cli_file_discard(&file);
-    return exit_status;
+    const int exit_status = find_writer(path)->check(path, fps);
+    return exit_status == CLI_DONE ? cli_file_check(path) : exit_status;
 }
 
 int film_open(const char *path, const film_format *format, film **opened) {
