@@ -126,7 +126,7 @@ static int64_t name_parts(const sheet *s, const cli_session *session, const view
     const int room = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
     const view_part **parts = calloc((size_t)places->count + 1, sizeof *parts), *of_side[2][MOST_NAMED];
     int count[2] = {0, 0};
-    double middle = 0, left = INFINITY, right = -INFINITY;
+    double middle = 0, left = HUGE_VAL, right = -HUGE_VAL;
     if (!parts) return 0;
     const int chosen = choose_parts(session, places, parts);
     for (int i = 0; i < chosen; i++) {
