@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* No part loses all of its shape. */
-enum { LEAST_TRIANGLES = 100 };
+enum { LEAST_TRIANGLES = 100, MOST_ROUNDS = 3 };
 
 static skg_status get_part(const skg_scene *scene, int64_t id, skg_part *part) {
     skg_part_init(part);
@@ -26,6 +26,12 @@ static skg_status count_triangles(const skg_scene *scene, view_shapes *shapes) {
     return status;
 }
 
+static void free_shape(view_shape *shape) {
+    view_surface_free(&shape->surface);
+    free(shape->positions);
+    *shape = (view_shape){0};
+}
+
 static int make_shape(const skg_scene *scene, int64_t id, int64_t frames, double share, view_shape *shape) {
     skg_part part;
     int64_t vertices = 0, triangles = 0;
@@ -40,16 +46,31 @@ static int make_shape(const skg_scene *scene, int64_t id, int64_t frames, double
     return shape->positions ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for %s", part.label);
 }
 
+/* Every part keeps this share of its triangles. */
+static int make_shapes(const skg_scene *scene, double share, view_shapes *shapes) {
+    int exit_status = CLI_DONE;
+    shapes->triangles = 0;
+    for (int64_t i = 0; i < shapes->count && exit_status == CLI_DONE; i++) {
+        free_shape(shapes->shapes + i);
+        exit_status = make_shape(scene, i, shapes->frames, share, shapes->shapes + i);
+        shapes->triangles += shapes->shapes[i].surface.triangles;
+    }
+    return exit_status;
+}
+
 int view_shapes_make(const skg_scene *scene, int64_t frames, int64_t most, view_shapes *shapes) {
     *shapes = (view_shapes){.frames = frames};
     const skg_status status = count_triangles(scene, shapes);
     if (status != SKG_OK) return cli_fail(status);
     shapes->shapes = calloc((size_t)shapes->count + 1, sizeof *shapes->shapes);
-    int exit_status = shapes->shapes ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
-    const double share = shapes->of > most ? (double)most / (double)shapes->of : 1;
-    for (int64_t i = 0; i < shapes->count && exit_status == CLI_DONE; i++) {
-        exit_status = make_shape(scene, i, frames, share, shapes->shapes + i);
-        shapes->triangles += shapes->shapes[i].surface.triangles;
+    if (!shapes->shapes) return cli_error(CLI_DEVICE, "out of host memory");
+    double share = shapes->of > most ? (double)most / (double)shapes->of : 1;
+    int exit_status = make_shapes(scene, share, shapes);
+    /* Where some surfaces keep more than they should, the others keep less. */
+    for (int round = 0; round < MOST_ROUNDS && exit_status == CLI_DONE && view_can_thin; round++) {
+        if (shapes->triangles <= most) break;
+        share *= (double)most / (double)shapes->triangles;
+        exit_status = make_shapes(scene, share, shapes);
     }
     return exit_status;
 }
@@ -85,10 +106,7 @@ int view_shapes_take(const skg_scene *scene, int64_t frame, view_shapes *shapes)
 }
 
 void view_shapes_free(view_shapes *shapes) {
-    for (int64_t i = 0; shapes->shapes && i < shapes->count; i++) {
-        view_surface_free(&shapes->shapes[i].surface);
-        free(shapes->shapes[i].positions);
-    }
+    for (int64_t i = 0; shapes->shapes && i < shapes->count; i++) free_shape(shapes->shapes + i);
     free(shapes->shapes);
     *shapes = (view_shapes){0};
 }
