@@ -5,9 +5,10 @@
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
 libassimp-dev libcglm-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
 
-# Without these the build leaves something out: HDF5 files of scans, scans under MPI.
+# Without these something is left out: HDF5 files of scans, scans under MPI, films as .gif, films as .mp4 and .webm, pages
+# of large scenes with fewer triangles.
 # shellcheck disable=SC2034
-skg_optional_packages="libhdf5-dev libopenmpi-dev openmpi-bin"
+skg_optional_packages="libhdf5-dev libopenmpi-dev openmpi-bin libgif-dev ffmpeg libmeshoptimizer-dev"
 
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {

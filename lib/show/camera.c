@@ -120,10 +120,10 @@ skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, cons
     const double aspect = (double)look->columns / (double)look->rows, tangent = tan(FIELD / 2) * FILLED;
     frame f = {.axes = (const double(*)[3])camera->axes,
                .tangent = {look->orthographic ? 0 : tangent * aspect, look->orthographic ? 0 : tangent},
-               .highest = {-INFINITY, -INFINITY},
-               .lowest = {INFINITY, INFINITY},
-               .near = -INFINITY,
-               .far = INFINITY};
+               .highest = {-HUGE_VAL, -HUGE_VAL},
+               .lowest = {HUGE_VAL, HUGE_VAL},
+               .near = -HUGE_VAL,
+               .far = HUGE_VAL};
     frame_everything(&f, view, look, low, high);
     double half[2], middle = 0.5 * (f.near + f.far);
     for (int k = 0; k < 3; k++) camera->centre[k] = middle * camera->axes[2][k];

@@ -38,7 +38,7 @@ static skg_status read_look(const skg_look *theirs, skg_look *look) {
 
 /* The box of the parts that are drawn, mm. */
 static skg_status find_box(const skg_scene *scene, const uint8_t *colours, double low[3], double high[3]) {
-    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
     for (int64_t i = 0; i < scene->count; i++)
         if (colours[4 * i + 3] > 0) skg_show_part_bounds(scene->parts + i, low, high);
     if (scene->count == 0)

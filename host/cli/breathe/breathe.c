@@ -1,16 +1,18 @@
 #include "breathe/breathe.h"
 
-#include "breathe/fluoroscopy.h"
 #include "breathe/meshes.h"
 #include "breathe/outline.h"
+#include "breathe/sequence.h"
 #include "breathe/sheet.h"
 #include "breathe/table.h"
+#include "breathe/write_film.h"
 #include "common/file.h"
 #include "common/interrupt.h"
 #include "common/json.h"
 #include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "film/film.h"
 #include "session/explain.h"
 
 #include <inttypes.h>
@@ -20,16 +22,6 @@
 
 enum { MOST_FRAMES = 1000000, RANGE_FRAMES = 16, RANGE_BINS = 4096 };
 static const double RANGE_HIGHEST = 32; /* -ln(I/I0) */
-
-/* The sequence of the flags, and its times. */
-typedef struct {
-    double seconds, fps;
-    double phase, at; /* of one picture; NaN: not given */
-    int64_t frames;
-    const char *place, *meshes;
-    double plan_ms, sequence_ms;
-    double pose_ms; /* of all frames of the sequence */
-} sequence;
 
 static int read_positive(const cli_arguments *arguments, const cli_flag *flag, double *number) {
     const char *value = cli_value(arguments, flag);
@@ -43,6 +35,15 @@ static int read_positive(const cli_arguments *arguments, const cli_flag *flag, d
 
 static int is_one(const sequence *s) {
     return !isnan(s->phase) || !isnan(s->at);
+}
+
+static int is_film(const sequence *s) {
+    return !is_one(s) && film_is(s->place);
+}
+
+/* Whether the frames become files in a folder. */
+static int has_folder(const sequence *s) {
+    return !is_one(s) && !film_is(s->place);
 }
 
 static int read_moment(const cli_arguments *arguments, const cli_flag *flag, double *number) {
@@ -61,15 +62,20 @@ static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *
     s->place = cli_value(arguments, &cli_flag_breathe_output);
     s->meshes = cli_value(arguments, &cli_flag_breathe_meshes);
     if (s->meshes) cli_guard_output(s->meshes);
-    if (!s->place) return cli_error(CLI_USAGE, "breathe: no output is named; add -o DIR");
+    if (!s->place) return cli_error(CLI_USAGE, "breathe: no output is named; add -o DIR or -o FILE.mp4");
     int exit_status = read_positive(arguments, &cli_flag_breathe_seconds, &s->seconds);
     if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &cli_flag_breathe_fps, &s->fps);
     if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &f->low, &f->high);
     if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_phase, &s->phase);
     if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_at, &s->at);
+    if (exit_status == CLI_DONE && is_film(s)) return film_check(s->place, s->fps);
     if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
     if (!isnan(s->phase) && !isnan(s->at))
         return cli_error(CLI_USAGE, "--phase and --at both choose one picture; give one of them");
+    if (film_is(s->place))
+        return cli_error(CLI_USAGE,
+                         "%s: %s makes one picture; name a .png, .tif or .mha, or leave %s out for a film",
+                         s->place, isnan(s->at) ? "--phase" : "--at", isnan(s->at) ? "--phase" : "--at");
     skg_status status = skg_picture_path_check(s->place);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -80,13 +86,6 @@ static int make_image(fluoroscopy *f, int which) {
     return exit_status == CLI_DONE ? fluoroscopy_wait_image(f, &job) : exit_status;
 }
 
-static int pose(fluoroscopy *f, const sequence *s, int64_t frame) {
-    const double time = isnan(s->at) ? (double)frame / s->fps : s->at;
-    skg_status status = isnan(s->phase) ? skg_motion_pose_at_time(f->motion, time)
-                                        : skg_motion_pose_at_phase(f->motion, s->phase);
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
-}
-
 /* One range for all frames, from frames that are spread over the whole time. Of the pixels behind a part, the
  * least dense 2 % and the densest 0.1 % lie outside the range. */
 static int find_range(fluoroscopy *f, const sequence *s) {
@@ -95,7 +94,7 @@ static int find_range(fluoroscopy *f, const sequence *s) {
     int exit_status = bin ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
     cli_progress_begin("looking for the range of grey, frames", looks);
     for (int64_t k = 0; k < looks && exit_status == CLI_DONE; k++) {
-        exit_status = pose(f, s, k * s->frames / looks);
+        exit_status = sequence_pose(f, s, k * s->frames / looks);
         if (exit_status == CLI_DONE) exit_status = make_image(f, 0);
         for (int64_t i = 0; i < f->pixels && exit_status == CLI_DONE; i++) {
             const double at = (double)f->image[0][i] / RANGE_HIGHEST * RANGE_BINS;
@@ -120,14 +119,14 @@ static int find_range(fluoroscopy *f, const sequence *s) {
 static int run_sequence(fluoroscopy *f, sequence *s) {
     skg_job *job = NULL;
     const double start = cli_now_ms();
-    int exit_status = pose(f, s, 0);
+    int exit_status = sequence_pose(f, s, 0);
     s->pose_ms = cli_now_ms() - start;
     cli_progress_begin("timing without writing, frames", s->frames);
     for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
         exit_status = fluoroscopy_start_image(f, (int)(i % 2), &job);
         if (exit_status != CLI_DONE) break;
         const double posing = cli_now_ms();
-        if (i + 1 < s->frames) exit_status = pose(f, s, i + 1);
+        if (i + 1 < s->frames) exit_status = sequence_pose(f, s, i + 1);
         s->pose_ms += cli_now_ms() - posing;
         int waited = fluoroscopy_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
@@ -143,7 +142,7 @@ static int write_frame(fluoroscopy *f, const sequence *s, int64_t i, motion_tabl
                        contact_sheet *sheet) {
     skg_job *job = NULL;
     char *path = cli_path_in(s->place, "frame-%04" PRId64 ".png", i);
-    int exit_status = path ? pose(f, s, i) : cli_error(CLI_DEVICE, "out of host memory");
+    int exit_status = path ? sequence_pose(f, s, i) : cli_error(CLI_DEVICE, "out of host memory");
     if (exit_status == CLI_DONE) exit_status = fluoroscopy_start_image(f, 0, &job);
     if (exit_status == CLI_DONE) exit_status = table_add(f, (double)i / s->fps, table);
     if (exit_status == CLI_DONE && s->meshes) exit_status = meshes_write(f, s->meshes, i);
@@ -193,6 +192,7 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
         json_object_set_new(object, "pose_ms", cli_json_number(s->pose_ms / (double)s->frames));
         json_object_set_new(object, "plan_ms", cli_json_number(s->plan_ms));
         json_object_set_new(object, "range", cli_json_numbers(range, 2));
+        if (is_film(s)) json_object_set_new(object, "file", json_string(s->place));
         json_object_set_new(object, "plan", cli_explain_json(f->plan, &f->session));
         return cli_json_print(object);
     }
@@ -207,6 +207,10 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
            "overlapped\nwith the image; -ln(I/I0) is shown from %.3g to %.3g\n",
            s->frames, (double)s->frames / s->fps, rate, s->sequence_ms / (double)s->frames,
            s->pose_ms / (double)s->frames, f->low, f->high);
+    if (is_film(s)) {
+        printf("wrote %s: %" PRId64 " frames, %g per second\n", s->place, s->frames, s->fps);
+        return CLI_DONE;
+    }
     printf("wrote %s/frame-0000.png to frame-%04" PRId64 ".png, contact.png, motion.csv\n", s->place,
            s->frames - 1);
     return CLI_DONE;
@@ -250,14 +254,16 @@ static int check_files(const cli_arguments *arguments, const sequence *s) {
 static int work(const cli_arguments *arguments, fluoroscopy *f) {
     sequence s;
     int exit_status = read_flags(arguments, f, &s);
-    if (exit_status == CLI_DONE && !is_one(&s)) exit_status = cli_make_folder(s.place);
+    if (exit_status == CLI_DONE && has_folder(&s)) exit_status = cli_make_folder(s.place);
     if (exit_status == CLI_DONE && s.meshes) exit_status = cli_make_folder(s.meshes);
     if (exit_status == CLI_DONE) exit_status = prepare(arguments, f, &s);
-    if (exit_status == CLI_DONE && !is_one(&s)) exit_status = check_files(arguments, &s);
+    if (exit_status == CLI_DONE && has_folder(&s)) exit_status = check_files(arguments, &s);
     if (exit_status == CLI_DONE && f->low == 0 && f->high == 0) exit_status = find_range(f, &s);
     if (exit_status == CLI_DONE) exit_status = run_sequence(f, &s);
     if (exit_status != CLI_DONE) return exit_status;
-    if (!is_one(&s)) {
+    if (is_film(&s)) {
+        exit_status = write_film(f, &s);
+    } else if (!is_one(&s)) {
         exit_status = write_sequence(f, &s);
     } else {
         if (s.meshes) exit_status = meshes_write(f, s.meshes, 0);

@@ -3,6 +3,8 @@
 #include "common/say.h"
 #include "session/frames.h"
 
+#include <math.h>
+
 int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job) {
     skg_output output;
     skg_frame frame;
@@ -33,10 +35,23 @@ void fluoroscopy_picture(const fluoroscopy *f, int64_t columns, int64_t rows, co
     picture->high = f->high;
 }
 
-int fluoroscopy_write(fluoroscopy *f, int which, const char *path) {
-    skg_picture picture;
+static void draw_outline(fluoroscopy *f, int which) {
     for (int64_t i = 0; f->outline && i < f->pixels; i++)
         if (f->outline[i]) f->image[which][i] = (float)f->high;
+}
+
+void fluoroscopy_greys(fluoroscopy *f, int which, unsigned char *greys) {
+    draw_outline(f, which);
+    for (int64_t i = 0; i < f->pixels; i++) {
+        const double grey = ((double)f->image[which][i] - f->low) / (f->high - f->low);
+        /* A value that is not a number is black. */
+        greys[i] = (unsigned char)(!(grey > 0) ? 0 : grey >= 1 ? 255 : lround(grey * 255));
+    }
+}
+
+int fluoroscopy_write(fluoroscopy *f, int which, const char *path) {
+    skg_picture picture;
+    draw_outline(f, which);
     fluoroscopy_picture(f, f->session.view.columns, f->session.view.rows, f->image[which], &picture);
     picture.view = &f->session.view;
     skg_status status = skg_picture_write(&picture, path);

@@ -23,6 +23,9 @@ int fluoroscopy_wait_image(fluoroscopy *f, skg_job **job);
 /* Writes image[which] with the outline drawn into it. */
 int fluoroscopy_write(fluoroscopy *f, int which, const char *path);
 
+/* The grey levels of image[which] with the outline drawn into it, as fluoroscopy_write shows it, but from 0 to 255. */
+void fluoroscopy_greys(fluoroscopy *f, int which, unsigned char *greys);
+
 /* Fills in a picture of -ln(I/I0) from low to high. */
 void fluoroscopy_picture(const fluoroscopy *f, int64_t columns, int64_t rows, const float *values,
                          skg_picture *picture);

@@ -11,31 +11,80 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { LONGEST_PATH = 4096 };
-
-static int fail(const char *path, const char *reason) {
+int cli_file_fail(const char *path, const char *reason) {
     return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, reason);
 }
 
-int cli_write_file(const char *path, const void *bytes, size_t count) {
-    char temporary[LONGEST_PATH];
+static void forget(cli_file *file) {
+    free(file->path);
+    free(file->temporary);
+    *file = (cli_file){0};
+}
+
+int cli_file_open(const char *path, cli_file *file) {
+    const size_t length = strlen(path) + 1, longest = length + 32;
     struct stat there;
-    int length = snprintf(temporary, sizeof temporary, "%s.part-%ld", path, (long)getpid());
-    if (length < 0 || length >= (int)sizeof temporary) return fail(path, strerror(ENAMETOOLONG));
+    *file = (cli_file){0};
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) /* rename() would replace the device */
-        return fail(path, "it is a folder or a device; name a file");
-    FILE *stream = fopen(temporary, "wbx");
-    if (!stream)
-        return fail(path, errno == ENOENT ? "its folder does not exist; make it first" : strerror(errno));
-    int reason = 0;
+        return cli_file_fail(path, "it is a folder or a device; name a file");
+    file->path = malloc(length);
+    file->temporary = malloc(longest);
+    if (!file->path || !file->temporary) {
+        forget(file);
+        return cli_error(CLI_DEVICE, "out of host memory for %s", path);
+    }
+    memcpy(file->path, path, length);
+    snprintf(file->temporary, longest, "%s.part-%ld", path, (long)getpid());
+    file->stream = fopen(file->temporary, "wbx");
+    if (file->stream) return CLI_DONE;
+    const int reason = errno;
+    forget(file);
+    return cli_file_fail(path,
+                         reason == ENOENT ? "its folder does not exist; make it first" : strerror(reason));
+}
+
+int cli_file_write(cli_file *file, const void *bytes, size_t count) {
     errno = 0;
-    if (fwrite(bytes, 1, count, stream) != count || fflush(stream) != 0 || fsync(fileno(stream)) != 0)
+    if (fwrite(bytes, 1, count, file->stream) == count) return 1;
+    if (!file->reason) file->reason = errno ? errno : EIO;
+    return 0;
+}
+
+int cli_file_commit(cli_file *file) {
+    int reason = file->reason, exit_status = CLI_DONE;
+    errno = 0;
+    if (!reason && (fflush(file->stream) != 0 || fsync(fileno(file->stream)) != 0))
         reason = errno ? errno : EIO;
-    if (fclose(stream) != 0 && !reason) reason = errno;
-    if (!reason && rename(temporary, path) != 0) reason = errno;
-    if (!reason) return CLI_DONE;
-    unlink(temporary);
-    return fail(path, strerror(reason));
+    if (fclose(file->stream) != 0 && !reason) reason = errno;
+    file->stream = NULL;
+    if (!reason && rename(file->temporary, file->path) != 0) reason = errno;
+    if (reason) {
+        unlink(file->temporary);
+        exit_status = cli_file_fail(file->path, strerror(reason));
+    }
+    forget(file);
+    return exit_status;
+}
+
+void cli_file_discard(cli_file *file) {
+    if (file->stream) fclose(file->stream);
+    if (file->temporary) unlink(file->temporary);
+    forget(file);
+}
+
+int cli_file_check(const char *path) {
+    cli_file file;
+    const int exit_status = cli_file_open(path, &file);
+    if (exit_status == CLI_DONE) cli_file_discard(&file);
+    return exit_status;
+}
+
+int cli_write_file(const char *path, const void *bytes, size_t count) {
+    cli_file file;
+    const int exit_status = cli_file_open(path, &file);
+    if (exit_status != CLI_DONE) return exit_status;
+    cli_file_write(&file, bytes, count);
+    return cli_file_commit(&file);
 }
 
 int cli_has_extension(const char *path, const char *extension) {

@@ -3,6 +3,32 @@
 #define SKG_CLI_FILE_H
 
 #include <stddef.h>
+#include <stdio.h>
+
+/* A file that appears whole or not at all: it is written as NAME.part-PID in the same folder, synced and renamed. */
+typedef struct {
+    FILE *stream;           /* write by cli_file_write */
+    char *path, *temporary; /* the name at the end, and until then */
+    int reason;             /* errno of the first failure to write; 0: none */
+} cli_file;
+
+/* Opens the file under its temporary name. A path that is a folder or a device is refused. */
+int cli_file_open(const char *path, cli_file *file);
+
+/* Returns 1; 0 if it fails, which cli_file_commit reports. */
+int cli_file_write(cli_file *file, const void *bytes, size_t count);
+
+/* Syncs, closes and renames the file. On failure no file is left. */
+int cli_file_commit(cli_file *file);
+
+/* Closes and removes what is not finished. Does nothing after a commit or a failed open. */
+void cli_file_discard(cli_file *file);
+
+/* Refuses, before anything is computed, a file that could not be opened. */
+int cli_file_check(const char *path);
+
+/* Prints "path: cannot be written: reason". */
+int cli_file_fail(const char *path, const char *reason);
 
 /* Writes bytes to a file that appears whole or not at all. */
 int cli_write_file(const char *path, const void *bytes, size_t count);

@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 enum { MOST_FOLDERS = 64, LONGEST_PATH = 4096, ENTRY_BYTES = 16384 };
@@ -19,6 +20,7 @@ static pthread_t writer;
 static char folders[MOST_FOLDERS][LONGEST_PATH];
 static volatile sig_atomic_t folder_count;
 static char suffix[32]; /* of unfinished files */
+static volatile sig_atomic_t guarded_child;
 
 /* Two sentences, so that the handler reads a whole one while the other is written. */
 static char kept[2][LONGEST_PATH] = {"no output was written", ""};
@@ -31,6 +33,10 @@ void cli_keep(const char *format, ...) {
     vsnprintf(kept[next], sizeof kept[next], format, arguments);
     va_end(arguments);
     kept_now = next;
+}
+
+void cli_guard_child(pid_t child) {
+    guarded_child = child;
 }
 
 /* Nothing can be done if it fails. */
@@ -64,6 +70,7 @@ static void end(int number) {
         pthread_kill(writer, number);
         return;
     }
+    if (guarded_child > 0 && kill(guarded_child, SIGKILL) == 0) waitpid(guarded_child, NULL, 0);
     for (int f = 0; f < folder_count; f++) clear_folder(folders[f]);
     say("\nskiagraph: interrupted; ");
     say(kept[kept_now]);

@@ -2,12 +2,17 @@
 #ifndef SKG_CLI_INTERRUPT_H
 #define SKG_CLI_INTERRUPT_H
 
+#include <sys/types.h>
+
 /* SIGINT, SIGTERM and SIGHUP, unless they were ignored before, remove the unfinished files (NAME.part-PID) of
  * guarded outputs and then end the process. Call it once, in the thread that writes. */
 void cli_catch_signals(void);
 
 /* Guards the folder that holds `path`, and `path` itself if it is a folder. */
 void cli_guard_output(const char *path);
+
+/* The handler kills this child process before it removes files, so that the child makes none. 0: there is no child. */
+void cli_guard_child(pid_t child);
 
 /* What the handler says after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
  * written". */

@@ -1,5 +1,6 @@
 #include "cost/page.h"
 
+#include "common/base64.h"
 #include "common/file.h"
 #include "common/json.h"
 #include "common/say.h"
@@ -14,27 +15,6 @@
 static const float LEAST_SHOWN = 1e-12f; /* of the flat field */
 
 extern const char cost_page[]; /* page.html, as built in */
-
-/* Bytes as "data:image/png;base64,..." (RFC 4648), which the caller frees; NULL if memory is exhausted. */
-static char *data_uri(const unsigned char *bytes, size_t count) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    static const char head[] = "data:image/png;base64,";
-    char *text = malloc(sizeof head + 4 * ((count + 2) / 3));
-    if (!text) return NULL;
-    memcpy(text, head, sizeof head - 1);
-    char *at = text + sizeof head - 1;
-    for (size_t i = 0; i < count; i += 3) {
-        unsigned group = (unsigned)bytes[i] << 16;
-        if (i + 1 < count) group |= (unsigned)bytes[i + 1] << 8;
-        if (i + 2 < count) group |= bytes[i + 2];
-        *at++ = digits[group >> 18];
-        *at++ = digits[group >> 12 & 63];
-        *at++ = i + 1 < count ? digits[group >> 6 & 63] : '=';
-        *at++ = i + 2 < count ? digits[group & 63] : '=';
-    }
-    *at = '\0';
-    return text;
-}
 
 /* The bytes of a file, which the caller frees; NULL if it cannot be read. */
 static unsigned char *read_all(const char *path, size_t *count) {
@@ -60,7 +40,7 @@ static int picture_json(const skg_picture *picture, json_t **uri) {
     size_t count = 0;
     skg_status status = skg_picture_write(picture, path);
     unsigned char *bytes = status == SKG_OK ? read_all(path, &count) : NULL;
-    char *text = bytes ? data_uri(bytes, count) : NULL;
+    char *text = bytes ? cli_base64("data:image/png;base64,", bytes, count) : NULL;
     int exit_status = CLI_DONE;
     if (status != SKG_OK)
         exit_status = cli_fail(status);

@@ -1,15 +1,16 @@
 #include "manual/manual.h"
 
 const cli_flag cli_flag_breathe_output = {
-    "-o", "DIR",
-    "The folder of the frames, made if it does not exist. With --phase or --at the file of the one picture: .png, "
-    ".tif or .mha.",
+    "-o", "DIR|FILE",
+    "The folder of the frames, made if it does not exist; or the file of a film, .gif, .mp4 or .webm. With --phase or "
+    "--at the file of the one picture: .png, .tif or .mha.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_breathe_seconds = {
     "--seconds", "T", "The length of the sequence in s. The default is one breath.", NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_breathe_fps = {
-    "--fps", "N", "The number of frames per second of the patient's time. The default is 30.", NULL,
-    CLI_NAMES_NOTHING};
+    "--fps", "N",
+    "The number of frames per second of the patient's time, which is also the rate of a film. The default is 30.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_breathe_phase = {
     "--phase", "P",
     "Makes one picture at this phase of the breath: 0 is end-inspiration, 0.5 is about end-expiration. Events are "
@@ -34,7 +35,12 @@ static const char *const text[] = {
     "an image of each frame. All frames are shown over one range of -ln(I/I0).",
     "Before writing, the whole sequence is computed once to report the frames per second; the next pose is computed "
     "while the device makes an image. A frame is the same whether it is made alone or in a sequence.",
-    "--json prints {frames, frames_per_s, frame_ms, pose_ms, plan_ms, range, plan}.", NULL};
+    "A film shows the grey levels of the frames in 8 bit. A .gif has each of them exactly; it is repeated for ever, and "
+    "counts time in hundredths of a second, so that at 30 frames per second some frames last 3 and some 4 of them, and the "
+    "whole as long as it should. It has at most 50 frames per second. Files .mp4 (H.264) and .webm (VP9) lose a little, and "
+    "need the program ffmpeg; an odd number of columns or rows becomes even: the last one is repeated.",
+    "--json prints {frames, frames_per_s, frame_ms, pose_ms, plan_ms, range, plan}, and for a film {file}.",
+    NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_breathe_output,
                                         &cli_flag_breathe_seconds,
@@ -59,17 +65,19 @@ static const cli_item files[] = {
     {"DIR/frame-0000.png, ...", "the frames"},
     {"DIR/contact.png", "small pictures of up to 16 of them, side by side"},
     {"DIR/motion.csv", "volumes, displacements and density of the lungs, a line for each frame"},
+    {"FILE.gif, FILE.mp4, FILE.webm", "the film, instead of the three above"},
     {NULL, NULL}};
 
 static const cli_item examples[] = {
     {"skiagraph breathe thorax/thorax.json -o frames", "writes the frames of one breath"},
+    {"skiagraph breathe thorax/thorax.json -o breath.gif --fps 20", "writes one breath as a film"},
     {"skiagraph breathe thorax/thorax.json -o inspired.png --phase 0 --outline ribs,diaphragm@0.5",
      "writes the thorax at end-inspiration with the outlines that it has at expiration"},
     {NULL, NULL}};
 
 const cli_manual cli_manual_breathe = {.name = "breathe",
                                        .operands = "SCENE",
-                                       .required = "-o DIR",
+                                       .required = "-o DIR|FILE",
                                        .summary = "a scene that breathes, under fluoroscopy",
                                        .text = text,
                                        .least = 1,

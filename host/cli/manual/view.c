@@ -1,7 +1,10 @@
 #include "manual/manual.h"
 
-const cli_flag cli_flag_view_output = {"-o", "FILE", "The picture to write, a .png. May be repeated.", NULL,
-                                       CLI_NAMES_FILE};
+const cli_flag cli_flag_view_output = {
+    "-o", "FILE",
+    "The file to write: a picture, .png; a page, .html, in which the scene can be turned; or a film, .gif, .mp4 or .webm. "
+    "May be repeated.",
+    NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_view_from = {
     "--from", "front|side|top|X,Y,Z",
     "The side from which the scene is seen: front is -y, side is +x, top is +z; or the direction from the scene to the "
@@ -18,6 +21,11 @@ const cli_flag cli_flag_view_phase = {
 const cli_flag cli_flag_view_at = {"--at", "SECONDS", "Shows the scene at this time of its breath.", NULL,
                                    CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_view_seconds = {
+    "--seconds", "T",
+    "Shows the breath for T seconds: in a page, or as a film, which lasts one breath otherwise.", NULL,
+    CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Draws a scene as it stands in the room: source, beam, detector with its image, every part shaded and named, and the "
     "axes. It shows whether everything is where it should be before images are computed.",
@@ -26,19 +34,24 @@ static const char *const text[] = {
     "the centre of the parts.",
     "The detector shows the attenuation, dense matter white, between the percentiles 0.5 and 99.5. It is plain if the "
     "scene has no beam.",
+    "A page is one file that needs nothing else: drag to turn the scene, with Shift to move it, roll to zoom; fingers and the "
+    "arrow keys do the same. It lists the parts, which can be hidden and made translucent, and names the one pointed at. It "
+    "stays below 5 MB: of more than 100000 triangles it shows fewer, and says so. With --seconds it breathes.",
+    "A film shows the detector's image over the range of its first frame, and the labels where they are in it. See "
+    "`skiagraph help breathe` about formats.",
     "--json prints {files, source_detector_mm, source_object_mm, magnification, parts: [{label, column, row, colour}]}; "
     "column and row are where the centre of a part is in the picture.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_view_output, &cli_flag_view_from,
-                                        &cli_flag_view_size,   &cli_flag_view_orthographic,
-                                        &cli_flag_view_phase,  &cli_flag_view_at,
-                                        &cli_flag_device,      &cli_flag_tolerance,
-                                        &cli_flag_set,         &cli_flag_lenient,
-                                        &cli_flag_json,        &cli_flag_verbose,
-                                        &cli_flag_quiet,       NULL};
+static const cli_flag *const flags[] = {
+    &cli_flag_view_output, &cli_flag_view_from, &cli_flag_view_size,    &cli_flag_view_orthographic,
+    &cli_flag_view_phase,  &cli_flag_view_at,   &cli_flag_view_seconds, &cli_flag_breathe_fps,
+    &cli_flag_device,      &cli_flag_tolerance, &cli_flag_set,          &cli_flag_lenient,
+    &cli_flag_json,        &cli_flag_verbose,   &cli_flag_quiet,        NULL};
 
 static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "draws the scene"},
+                                    {"skiagraph view thorax/thorax.json --seconds 4 -o view.html",
+                                     "makes a page in which the thorax breathes and can be turned"},
                                     {"skiagraph view thorax/thorax.json --from top --phase 0.5 -o view.png",
                                      "the breathing thorax from above, at half of its cycle"},
                                     {NULL, NULL}};
@@ -46,7 +59,7 @@ static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "d
 const cli_manual cli_manual_view = {.name = "view",
                                     .operands = "SCENE",
                                     .required = "-o FILE",
-                                    .summary = "a picture of the scene: source, beam, detector, parts",
+                                    .summary = "a picture of the scene, a page to turn it in, or a film",
                                     .text = text,
                                     .least = 1,
                                     .most = 1,

@@ -126,7 +126,7 @@ static int64_t name_parts(const sheet *s, const cli_session *session, const view
     const int room = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
     const view_part **parts = calloc((size_t)places->count + 1, sizeof *parts), *of_side[2][MOST_NAMED];
     int count[2] = {0, 0};
-    double middle = 0, left = INFINITY, right = -INFINITY;
+    double middle = 0, left = HUGE_VAL, right = -HUGE_VAL;
     if (!parts) return 0;
     const int chosen = choose_parts(session, places, parts);
     for (int i = 0; i < chosen; i++) {
@@ -196,7 +196,8 @@ static cairo_status_t take_bytes(void *stream, const unsigned char *bytes, unsig
     return fwrite(bytes, 1, count, stream) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
-static void copy_pixels(cairo_surface_t *surface, const skg_look *look, const uint8_t *rgba) {
+/* Cairo's pixels are numbers with red, green and blue from the 24th bit down. */
+static void copy_to(cairo_surface_t *surface, const skg_look *look, const uint8_t *rgba) {
     unsigned char *pixels = cairo_image_surface_get_data(surface);
     const int stride = cairo_image_surface_get_stride(surface);
     cairo_surface_flush(surface);
@@ -209,15 +210,35 @@ static void copy_pixels(cairo_surface_t *surface, const skg_look *look, const ui
     cairo_surface_mark_dirty(surface);
 }
 
-int view_label(const cli_session *session, const skg_look *look, const view_places *places,
-               const uint8_t *rgba, char **bytes, size_t *count) {
+static void copy_from(cairo_surface_t *surface, const skg_look *look, uint8_t *rgba) {
+    const unsigned char *pixels = cairo_image_surface_get_data(surface);
+    const int stride = cairo_image_surface_get_stride(surface);
+    for (int64_t row = 0; row < look->rows; row++)
+        for (int64_t column = 0; column < look->columns; column++) {
+            uint8_t *to = rgba + 4 * (row * look->columns + column);
+            uint32_t pixel;
+            memcpy(&pixel, pixels + row * stride + 4 * column, sizeof pixel);
+            for (int k = 0; k < 3; k++) to[k] = (uint8_t)(pixel >> 8 * (2 - k));
+        }
+}
+
+static int fail(cairo_status_t status) {
+    return cli_error(CLI_DEVICE, "the picture cannot be drawn: %s",
+                     status == CAIRO_STATUS_SUCCESS ? "out of host memory" : cairo_status_to_string(status));
+}
+
+/* A surface with the picture, which the caller destroys whatever its status is. */
+static cairo_surface_t *make_surface(const skg_look *look, const uint8_t *rgba) {
     cairo_surface_t *surface =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)look->columns, (int)look->rows);
+    if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) copy_to(surface, look, rgba);
+    return surface;
+}
+
+int view_label(const cli_session *session, const skg_look *look, const view_places *places, uint8_t *rgba) {
+    cairo_surface_t *surface = make_surface(look, rgba);
     cairo_status_t status = cairo_surface_status(surface);
-    *bytes = NULL;
-    FILE *stream = open_memstream(bytes, count);
-    if (stream && status == CAIRO_STATUS_SUCCESS) {
-        copy_pixels(surface, look, rgba);
+    if (status == CAIRO_STATUS_SUCCESS) {
         sheet s = {
             .cairo = cairo_create(surface), .columns = (double)look->columns, .rows = (double)look->rows};
         s.text = fmax(9, fmin(s.columns / 80, s.rows / 50));
@@ -228,16 +249,23 @@ int view_label(const cli_session *session, const skg_look *look, const view_plac
         write_caption(&s, session, places, named);
         status = cairo_status(s.cairo);
         cairo_destroy(s.cairo);
-        if (status == CAIRO_STATUS_SUCCESS)
-            status = cairo_surface_write_to_png_stream(surface, take_bytes, stream);
+        cairo_surface_flush(surface);
+        if (status == CAIRO_STATUS_SUCCESS) copy_from(surface, look, rgba);
     }
     cairo_surface_destroy(surface);
-    if (!stream || fclose(stream) != 0 || status != CAIRO_STATUS_SUCCESS) {
-        free(*bytes);
-        *bytes = NULL;
-        return cli_error(CLI_DEVICE, "the picture cannot be drawn: %s",
-                         status == CAIRO_STATUS_SUCCESS ? "out of host memory"
-                                                        : cairo_status_to_string(status));
-    }
-    return CLI_DONE;
+    return status == CAIRO_STATUS_SUCCESS ? CLI_DONE : fail(status);
+}
+
+int view_encode(const skg_look *look, const uint8_t *rgba, char **bytes, size_t *count) {
+    cairo_surface_t *surface = make_surface(look, rgba);
+    cairo_status_t status = cairo_surface_status(surface);
+    *bytes = NULL;
+    FILE *stream = open_memstream(bytes, count);
+    if (stream && status == CAIRO_STATUS_SUCCESS)
+        status = cairo_surface_write_to_png_stream(surface, take_bytes, stream);
+    cairo_surface_destroy(surface);
+    if (stream && fclose(stream) == 0 && status == CAIRO_STATUS_SUCCESS) return CLI_DONE;
+    free(*bytes);
+    *bytes = NULL;
+    return fail(status);
 }

@@ -4,12 +4,11 @@
 
 #include "view/place.h"
 
-/* Draws the labels and the caption over the picture and makes a PNG file of it. Returns an exit status and prints the
- * error.
- *
- * rgba    [rows][columns][4]
- * bytes   result: the file, which the caller frees */
-int view_label(const cli_session *session, const skg_look *look, const view_places *places,
-               const uint8_t *rgba, char **bytes, size_t *count);
+/* Draws the labels and the caption over the picture, rgba [rows][columns][4]. Returns an exit status and prints the
+ * error. */
+int view_label(const cli_session *session, const skg_look *look, const view_places *places, uint8_t *rgba);
+
+/* Makes a PNG file of the picture, which the caller frees. Returns an exit status and prints the error. */
+int view_encode(const skg_look *look, const uint8_t *rgba, char **bytes, size_t *count);
 
 #endif

@@ -13,7 +13,7 @@ static int measure_part(const skg_part *part, view_part *to) {
     if (status != SKG_OK) return cli_fail(status);
     double *positions = malloc((size_t)vertices * 3 * sizeof *positions + 1);
     if (!positions) return cli_error(CLI_DEVICE, "out of host memory");
-    for (int k = 0; k < 3; k++) to->low[k] = INFINITY, to->high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) to->low[k] = HUGE_VAL, to->high[k] = -HUGE_VAL;
     status = skg_mesh_positions_get(part->mesh, positions, 3);
     for (int64_t v = 0; v < vertices && status == SKG_OK; v++) {
         double at[3];
@@ -34,7 +34,7 @@ static skg_status find_in_picture(const cli_session *session, const skg_look *lo
     const skg_status status =
         skg_view_places_get(session->scene, &session->view, look, 9, points[0], seen[0]);
     if (status != SKG_OK) return status;
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int corner = 0; corner < 8; corner++)
         for (int k = 0; k < 2; k++)
             low[k] = fmin(low[k], seen[corner][k]), high[k] = fmax(high[k], seen[corner][k]);
@@ -77,7 +77,7 @@ int view_find_places(const cli_session *session, const skg_look *look, view_plac
     if (status != SKG_OK) return cli_fail(status);
     places->parts = calloc((size_t)places->count + 1, sizeof *places->parts);
     if (!places->parts) return cli_error(CLI_DEVICE, "out of host memory");
-    for (int k = 0; k < 3; k++) places->low[k] = INFINITY, places->high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) places->low[k] = HUGE_VAL, places->high[k] = -HUGE_VAL;
     for (int64_t i = 0; i < places->count; i++) {
         view_part *to = places->parts + i;
         skg_part part;

@@ -4,27 +4,15 @@
 #include "common/json.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "session/explain.h"
+#include "film/film.h"
 #include "view/labels.h"
-#include "view/place.h"
+#include "view/moving.h"
 #include "view/sign.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* What the flags ask for, and what is made of it. */
-typedef struct {
-    const cli_arguments *arguments;
-    cli_session session;
-    skg_motion *motion;
-    skg_look look;
-    double phase, at; /* NaN: not given */
-    uint8_t *image, *rgba;
-    double *path;
-    view_places places;
-} view_work;
 
 /* Three numbers "X,Y,Z", or two "W,H". Returns 0 if the text is anything else. */
 static int read_numbers(const char *text, int count, double *numbers) {
@@ -71,16 +59,60 @@ static int read_size(view_work *w) {
     return CLI_DONE;
 }
 
-static int read_flags(view_work *w) {
+/* Kinds of output. */
+static int is_page(const char *path) {
+    return cli_has_extension(path, ".html");
+}
+
+static int is_picture(const char *path) {
+    return cli_has_extension(path, ".png");
+}
+
+static const char *nth_output(const view_work *w, int index) {
+    return cli_nth_value(w->arguments, &cli_flag_view_output, index);
+}
+
+static int has_output(const view_work *w, int (*is_kind)(const char *path)) {
     const char *path;
+    for (int i = 0; (path = nth_output(w, i)); i++)
+        if (is_kind(path)) return 1;
+    return 0;
+}
+
+static int check_output(const view_work *w, const char *path) {
+    const int is_moment = !isnan(w->phase) || !isnan(w->at);
+    if (is_picture(path) && !isnan(w->seconds))
+        return cli_error(CLI_USAGE, "-o %s: a picture has no --seconds; choose its moment by --phase or --at",
+                         path);
+    if (is_picture(path) || is_page(path)) return cli_file_check(path);
+    if (!film_is(path))
+        return cli_error(CLI_USAGE, "-o %s: the extension is not .png, .html, .gif, .mp4 or .webm", path);
+    if (is_moment)
+        return cli_error(CLI_USAGE, "-o %s: a film has more than one moment; leave out --phase and --at",
+                         path);
+    return film_check(path, w->fps);
+}
+
+static int read_time(view_work *w) {
+    const char *path;
+    w->fps = 30, w->seconds = (double)NAN;
+    int exit_status = cli_number(w->arguments, &cli_flag_breathe_fps, 1e-3, 1000, &w->fps);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_number(w->arguments, &cli_flag_view_seconds, 0.01, 1e5, &w->seconds);
+    if (exit_status == CLI_DONE && !isnan(w->seconds) && (!isnan(w->phase) || !isnan(w->at)))
+        return cli_error(CLI_USAGE,
+                         "--seconds shows the breath, --phase and --at one moment of it; give one of them");
+    for (int i = 0; exit_status == CLI_DONE && (path = nth_output(w, i)); i++)
+        exit_status = check_output(w, path);
+    return exit_status;
+}
+
+static int read_flags(view_work *w) {
     w->phase = w->at = (double)NAN;
     skg_look_init(&w->look);
     w->look.orthographic = cli_given(w->arguments, &cli_flag_view_orthographic);
     if (!cli_given(w->arguments, &cli_flag_view_output))
-        return cli_error(CLI_USAGE, "view: no output is named; add -o FILE.png");
-    for (int i = 0; (path = cli_nth_value(w->arguments, &cli_flag_view_output, i)); i++)
-        if (!cli_has_extension(path, ".png"))
-            return cli_error(CLI_USAGE, "-o %s: the extension is not .png", path);
+        return cli_error(CLI_USAGE, "view: no output is named; add -o FILE.png or -o FILE.html");
     int exit_status = read_side(w);
     if (exit_status == CLI_DONE) exit_status = read_size(w);
     if (exit_status == CLI_DONE)
@@ -88,64 +120,21 @@ static int read_flags(view_work *w) {
     if (exit_status == CLI_DONE) exit_status = cli_number(w->arguments, &cli_flag_view_at, -1e9, 1e9, &w->at);
     if (exit_status == CLI_DONE && !isnan(w->phase) && !isnan(w->at))
         return cli_error(CLI_USAGE, "--phase and --at both choose one moment; give one of them");
-    return exit_status;
+    return exit_status == CLI_DONE ? read_time(w) : exit_status;
 }
 
+/* A film lasts one breath unless --seconds is given. */
 static int pose(view_work *w) {
-    if (isnan(w->phase) && isnan(w->at)) return CLI_DONE;
+    const int is_moving = has_output(w, film_is) || !isnan(w->seconds);
+    double period = 0;
+    if (!is_moving && isnan(w->phase) && isnan(w->at)) return CLI_DONE;
     skg_status status = skg_motion_create(w->session.context, w->session.setup, &w->motion);
+    if (status == SKG_OK) status = skg_motion_period_get(w->motion, &period);
+    if (status == SKG_OK && is_moving && isnan(w->seconds)) w->seconds = period;
     if (status == SKG_OK)
-        status = isnan(w->phase) ? skg_motion_pose_at_time(w->motion, w->at)
+        status = isnan(w->phase) ? skg_motion_pose_at_time(w->motion, isnan(w->at) ? 0 : w->at)
                                  : skg_motion_pose_at_phase(w->motion, w->phase);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
-}
-
-/* The scene's image as greys of the detector. */
-static int show_image(view_work *w, const float *values) {
-    const int64_t pixels = w->session.view.columns * w->session.view.rows;
-    skg_picture picture;
-    skg_picture_init(&picture);
-    picture.columns = w->session.view.columns, picture.rows = w->session.view.rows;
-    picture.data = values;
-    picture.quantity = SKG_QUANTITY_ATTENUATION;
-    double low = 0, high = 1;
-    const skg_status status = skg_picture_window_get(&picture, 0.005, 0.005, &low, &high);
-    if (status != SKG_OK) return cli_fail(status);
-    if (!(high > low)) return CLI_DONE; /* nothing to see: the detector stays plain */
-    for (int64_t i = 0; i < pixels; i++) {
-        const double grey = ((double)values[i] - low) / (high - low);
-        w->image[i] = (uint8_t)(grey > 0 ? grey < 1 ? lround(255 * grey) : 255 : 0);
-    }
-    w->look.image = w->image;
-    return CLI_DONE;
-}
-
-static int make_image(view_work *w) {
-    const int64_t pixels = w->session.view.columns * w->session.view.rows;
-    skg_plan *plan = NULL;
-    skg_job *job = NULL;
-    int64_t channels = 1;
-    double plan_ms;
-    skg_output output;
-    skg_frame frame;
-    skg_output_init(&output);
-    skg_frame_init(&frame);
-    w->session.options.quantity = SKG_QUANTITY_ATTENUATION;
-    int exit_status = cli_make_plan(&w->session, &plan, &plan_ms);
-    skg_status status = exit_status == CLI_DONE ? skg_plan_channel_count(plan, &channels) : SKG_OK;
-    float *values = calloc((size_t)(pixels * channels), sizeof *values);
-    w->image = malloc((size_t)pixels);
-    if (exit_status == CLI_DONE && (!values || !w->image))
-        exit_status = cli_error(CLI_DEVICE, "out of host memory for the image");
-    output.data = values;
-    if (exit_status == CLI_DONE && status == SKG_OK && w->motion) status = skg_motion_fill(w->motion, &frame);
-    if (exit_status == CLI_DONE && status == SKG_OK) status = skg_plan_submit(plan, 1, &frame, &output, &job);
-    if (job) status = skg_job_wait(&job);
-    if (exit_status == CLI_DONE && status != SKG_OK && status != SKG_RANGE) exit_status = cli_fail(status);
-    if (exit_status == CLI_DONE) exit_status = show_image(w, values);
-    free(values);
-    skg_plan_release(&plan);
-    return exit_status;
 }
 
 /* The positions of the source in the scene's Scan, if it has one. */
@@ -168,27 +157,30 @@ static int find_path(view_work *w) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-static int write_files(view_work *w) {
+static int write_pictures(view_work *w) {
     char *bytes = NULL;
     const char *path;
     size_t count = 0;
-    int exit_status = view_label(&w->session, &w->look, &w->places, w->rgba, &bytes, &count);
+    if (!has_output(w, is_picture)) return CLI_DONE;
+    cli_progress_begin("drawing", 0);
+    int exit_status = view_draw(w);
+    if (exit_status == CLI_DONE) exit_status = view_encode(&w->look, w->rgba, &bytes, &count);
+    cli_progress_end();
     if (exit_status == CLI_DONE) exit_status = view_sign(&bytes, &count);
-    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(w->arguments, &cli_flag_view_output, i));
-         i++)
-        exit_status = cli_write_file(path, bytes, count);
+    for (int i = 0; exit_status == CLI_DONE && (path = nth_output(w, i)); i++)
+        if (is_picture(path)) exit_status = cli_write_file(path, bytes, count);
     free(bytes);
     return exit_status;
 }
 
-static int draw(view_work *w) {
-    w->rgba = malloc((size_t)(4 * w->look.columns * w->look.rows));
-    if (!w->rgba) return cli_error(CLI_DEVICE, "out of host memory for the picture");
-    cli_progress_begin("drawing", 0);
-    const skg_status status =
-        skg_view_picture(w->session.context, w->session.scene, &w->session.view, &w->look, w->rgba);
-    cli_progress_end();
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+static int write_others(view_work *w) {
+    const char *path;
+    int exit_status = CLI_DONE;
+    for (int i = 0; exit_status == CLI_DONE && (path = nth_output(w, i)); i++) {
+        if (is_page(path)) exit_status = view_write_page(w, path);
+        if (film_is(path)) exit_status = view_write_film(w, path);
+    }
+    return exit_status;
 }
 
 static json_t *parts_json(const view_work *w) {
@@ -216,8 +208,7 @@ static int print(const view_work *w) {
     const char *path;
     if (cli_given(w->arguments, &cli_flag_json)) {
         json_t *object = json_object(), *files = json_array();
-        for (int i = 0; (path = cli_nth_value(w->arguments, &cli_flag_view_output, i)); i++)
-            json_array_append_new(files, cli_json_text(path));
+        for (int i = 0; (path = nth_output(w, i)); i++) json_array_append_new(files, cli_json_text(path));
         json_object_set_new(object, "files", files);
         json_object_set_new(object, "source_detector_mm", cli_json_number(w->places.source_detector));
         json_object_set_new(object, "source_object_mm", cli_json_number(w->places.source_object));
@@ -225,8 +216,7 @@ static int print(const view_work *w) {
         json_object_set_new(object, "parts", parts_json(w));
         return cli_json_print(object);
     }
-    for (int i = 0; !cli_is_quiet() && (path = cli_nth_value(w->arguments, &cli_flag_view_output, i)); i++)
-        printf("wrote %s\n", path);
+    for (int i = 0; !cli_is_quiet() && (path = nth_output(w, i)); i++) printf("wrote %s\n", path);
     return CLI_DONE;
 }
 
@@ -235,16 +225,18 @@ int cli_view(const cli_arguments *arguments) {
     int exit_status = read_flags(&w);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 1, &w.session);
     if (exit_status == CLI_DONE) exit_status = pose(&w);
-    if (exit_status == CLI_DONE) exit_status = make_image(&w);
+    if (exit_status == CLI_DONE) exit_status = view_make_image(&w);
     if (exit_status == CLI_DONE) exit_status = find_path(&w);
     if (exit_status == CLI_DONE) exit_status = view_find_places(&w.session, &w.look, &w.places);
-    if (exit_status == CLI_DONE) exit_status = draw(&w);
-    if (exit_status == CLI_DONE) exit_status = write_files(&w);
+    if (exit_status == CLI_DONE) exit_status = write_pictures(&w);
+    if (exit_status == CLI_DONE) exit_status = write_others(&w);
     if (exit_status == CLI_DONE) exit_status = print(&w);
     free(w.places.parts);
+    free(w.values);
     free(w.image);
     free(w.rgba);
     free(w.path);
+    skg_plan_release(&w.plan);
     skg_motion_release(&w.motion);
     cli_close_session(&w.session);
     return exit_status;

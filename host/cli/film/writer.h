@@ -1,0 +1,27 @@
+/* What a format of film has to do. Functions that return int return an exit status and print the error. */
+#ifndef SKG_CLI_FILM_WRITER_H
+#define SKG_CLI_FILM_WRITER_H
+
+#include "common/file.h"
+#include "film/format.h"
+
+/* What a writer knows of its film. */
+typedef struct {
+    film_format format;
+    cli_file file;
+    int64_t frames; /* that were added */
+    void *state;    /* the writer's own */
+} film_reel;
+
+typedef struct {
+    const char *const *extensions; /* ends with NULL */
+    int (*check)(const char *path, double fps);
+    int (*open)(film_reel *reel);
+    int (*add)(film_reel *reel, const unsigned char *pixels);
+    int (*finish)(film_reel *reel);   /* before the file is committed */
+    void (*release)(film_reel *reel); /* after each of these, also if it failed; state may be NULL */
+} film_writer;
+
+extern const film_writer film_gif, film_encoded;
+
+#endif

@@ -1,0 +1,265 @@
+#include "view/page.h"
+
+#include "common/base64.h"
+#include "common/file.h"
+#include "common/json.h"
+#include "common/say.h"
+#include "core/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const char view_page_text[]; /* page/page.html with its scripts, as built in */
+
+/* What the page has besides its JSON: numbers in the order of the processor, which is that of the browsers: the lowest byte
+ * first. Every block begins at a multiple of 4. */
+typedef struct {
+    unsigned char *bytes;
+    size_t count, capacity;
+} blob;
+
+/* Room for a block; NULL if memory is exhausted. */
+static void *add_block(blob *to, size_t size) {
+    const size_t begin = (to->count + 3) / 4 * 4, end = begin + size;
+    if (end > to->capacity) {
+        const size_t capacity = 2 * end;
+        unsigned char *more = realloc(to->bytes, capacity);
+        if (!more) return NULL;
+        to->bytes = more;
+        to->capacity = capacity;
+    }
+    memset(to->bytes + to->count, 0, begin - to->count);
+    to->count = end;
+    return to->bytes + begin;
+}
+
+static size_t place_of(const blob *of, const void *block) {
+    return (size_t)((const unsigned char *)block - of->bytes);
+}
+
+/* Positions as 16 bits between the least and the largest of all frames. low, step: [3] mm. Returns NULL if memory is
+ * exhausted. */
+static uint16_t *add_positions(const view_shape *shape, int64_t frames, double *low, double *step, blob *to) {
+    const int64_t count = frames * shape->surface.vertices;
+    double high[3];
+    for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
+    for (int64_t i = 0; i < 3 * count; i++) {
+        low[i % 3] = fmin(low[i % 3], (double)shape->positions[i]);
+        high[i % 3] = fmax(high[i % 3], (double)shape->positions[i]);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (count == 0) low[k] = high[k] = 0;
+        step[k] = (high[k] - low[k]) / UINT16_MAX;
+    }
+    uint16_t *block = add_block(to, (size_t)(3 * count) * sizeof *block);
+    for (int64_t i = 0; block && i < 3 * count; i++)
+        block[i] =
+            step[i % 3] > 0 ? (uint16_t)lround(((double)shape->positions[i] - low[i % 3]) / step[i % 3]) : 0;
+    return block;
+}
+
+/* 16 bits for each corner, or 32 if there are more vertices. */
+static void *add_corners(const view_surface *surface, int wide, blob *to) {
+    const int64_t count = 3 * surface->triangles;
+    if (wide) {
+        uint32_t *block = add_block(to, (size_t)count * sizeof *block);
+        for (int64_t i = 0; block && i < count; i++) block[i] = (uint32_t)surface->corners[i];
+        return block;
+    }
+    uint16_t *block = add_block(to, (size_t)count * sizeof *block);
+    for (int64_t i = 0; block && i < count; i++) block[i] = (uint16_t)surface->corners[i];
+    return block;
+}
+
+static int fail_memory(void) {
+    return cli_error(CLI_DEVICE, "out of host memory for the page");
+}
+
+static json_t *colour_json(const uint8_t *colour) {
+    json_t *array = json_array();
+    for (int k = 0; k < 4; k++) json_array_append_new(array, json_integer(colour[k]));
+    return array;
+}
+
+static int part_json(const view_page *page, int64_t id, const uint8_t *colour, blob *to, json_t **made) {
+    const view_shape *shape = page->shapes->shapes + id;
+    const int64_t frames = shape->moves ? page->shapes->frames : 1;
+    const int wide = shape->surface.vertices > UINT16_MAX + 1;
+    skg_part part;
+    double low[3], step[3], density = 0;
+    const char *material = NULL;
+    json_t *object = *made = json_object();
+    skg_part_init(&part);
+    const skg_status status = skg_scene_part_get(page->session->scene, id, &part);
+    if (status != SKG_OK) return cli_fail(status);
+    const uint16_t *positions = add_positions(shape, frames, low, step, to);
+    if (!positions) return fail_memory();
+    json_object_set_new(object, "positions", json_integer((json_int_t)place_of(to, positions)));
+    const void *corners = add_corners(&shape->surface, wide, to);
+    if (!corners) return fail_memory();
+    json_object_set_new(object, "corners", json_integer((json_int_t)place_of(to, corners)));
+    if (skg_material_name_get(part.material, &material) == SKG_OK && material)
+        json_object_set_new(object, "material", cli_json_text(material));
+    skg_material_density_get(part.material, &density);
+    json_object_set_new(object, "label", cli_json_text(part.label));
+    json_object_set_new(object, "density", cli_json_number(density));
+    json_object_set_new(object, "inside", json_integer(part.inside));
+    json_object_set_new(object, "colour", colour_json(colour));
+    json_object_set_new(object, "shown", json_integer(shape->surface.triangles));
+    json_object_set_new(object, "of", json_integer(shape->surface.of));
+    json_object_set_new(object, "vertices", json_integer(shape->surface.vertices));
+    json_object_set_new(object, "frames", json_integer(frames));
+    json_object_set_new(object, "wide", json_boolean(wide));
+    json_object_set_new(object, "low", cli_json_numbers(low, 3));
+    json_object_set_new(object, "step", cli_json_numbers(step, 3));
+    return CLI_DONE;
+}
+
+static int parts_json(const view_page *page, blob *to, json_t **made) {
+    uint8_t *colours = malloc((size_t)page->shapes->count * 4 + 1);
+    *made = json_array();
+    if (!colours) return fail_memory();
+    const skg_status status = skg_look_colours_get(page->session->scene, colours);
+    int exit_status = status == SKG_OK ? CLI_DONE : cli_fail(status);
+    for (int64_t i = 0; i < page->shapes->count && exit_status == CLI_DONE; i++) {
+        json_t *part = NULL;
+        exit_status = part_json(page, i, colours + 4 * i, to, &part);
+        json_array_append_new(*made, part);
+    }
+    free(colours);
+    return exit_status;
+}
+
+/* The corners of the detector, one after the other, and where the beam to each of them starts. */
+static json_t *view_json(const view_page *page) {
+    static const char *const names[] = {"point", "parallel", "parallel"};
+    static const double turn[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    const skg_view *view = &page->session->view;
+    double source[3], up[3];
+    json_t *object = json_object(), *corners = json_array(), *starts = json_array();
+    view_source(view, page->places, source);
+    skg_scale_vector(-1, view->row_step, up);
+    for (int i = 0; i < 4; i++) {
+        double corner[3], start[3];
+        skg_add_scaled(view->centre, turn[i][0] * (double)view->columns, view->column_step, corner);
+        skg_add_scaled(corner, turn[i][1] * (double)view->rows, view->row_step, corner);
+        for (int k = 0; k < 3; k++)
+            start[k] = view->projection == SKG_PROJECTION_POINT ? source[k]
+                                                                : corner[k] + source[k] - view->centre[k];
+        json_array_append_new(corners, cli_json_numbers(corner, 3));
+        json_array_append_new(starts, cli_json_numbers(start, 3));
+    }
+    json_object_set_new(object, "projection", json_string(names[view->projection]));
+    json_object_set_new(object, "source", cli_json_numbers(source, 3));
+    json_object_set_new(object, "centre", cli_json_numbers(view->centre, 3));
+    json_object_set_new(object, "up", cli_json_numbers(up, 3));
+    json_object_set_new(object, "columns", json_integer(view->columns));
+    json_object_set_new(object, "rows", json_integer(view->rows));
+    json_object_set_new(object, "corners", corners);
+    json_object_set_new(object, "starts", starts);
+    return object;
+}
+
+static json_t *distances_json(const view_page *page) {
+    const skg_view *view = &page->session->view;
+    json_t *object = json_object();
+    json_object_set_new(object, "source_detector", cli_json_number(page->places->source_detector));
+    json_object_set_new(object, "source_object", cli_json_number(page->places->source_object));
+    json_object_set_new(object, "magnification", cli_json_number(page->places->magnification));
+    json_object_set_new(object, "width",
+                        cli_json_number((double)view->columns * skg_length(view->column_step)));
+    json_object_set_new(object, "height", cli_json_number((double)view->rows * skg_length(view->row_step)));
+    return object;
+}
+
+static int image_json(const view_page *page, blob *to, json_t **made) {
+    const int64_t count = page->image_columns * page->image_rows * page->image_frames;
+    *made = json_null();
+    if (!page->image) return CLI_DONE;
+    unsigned char *block = add_block(to, (size_t)count);
+    if (!block) return fail_memory();
+    memcpy(block, page->image, (size_t)count);
+    *made = json_object();
+    json_object_set_new(*made, "at", json_integer((json_int_t)place_of(to, block)));
+    json_object_set_new(*made, "columns", json_integer(page->image_columns));
+    json_object_set_new(*made, "rows", json_integer(page->image_rows));
+    json_object_set_new(*made, "frames", json_integer(page->image_frames));
+    return CLI_DONE;
+}
+
+static json_t *motion_json(const view_page *page) {
+    json_t *object = json_object();
+    if (page->shapes->frames < 2) {
+        json_decref(object);
+        return json_null();
+    }
+    json_object_set_new(object, "frames", json_integer(page->shapes->frames));
+    json_object_set_new(object, "seconds", cli_json_number(page->seconds));
+    return object;
+}
+
+static int scene_json(const view_page *page, blob *to, json_t *object) {
+    const skg_look *look = page->look;
+    const char *name = strrchr(page->session->path, '/');
+    json_t *box = json_array(), *triangles = json_object(), *parts = NULL, *image = NULL;
+    const int has_from = look->from[0] != 0 || look->from[1] != 0 || look->from[2] != 0;
+    int exit_status = parts_json(page, to, &parts);
+    json_object_set_new(object, "parts", parts);
+    if (exit_status == CLI_DONE) exit_status = image_json(page, to, &image);
+    json_object_set_new(object, "image", image ? image : json_null());
+    json_object_set_new(object, "name", cli_json_text(name ? name + 1 : page->session->path));
+    json_object_set_new(object, "view", view_json(page));
+    json_object_set_new(object, "distances", distances_json(page));
+    json_object_set_new(object, "motion", motion_json(page));
+    json_array_append_new(box, cli_json_numbers(page->places->low, 3));
+    json_array_append_new(box, cli_json_numbers(page->places->high, 3));
+    json_object_set_new(object, "box", box);
+    json_object_set_new(object, "path",
+                        look->path ? cli_json_numbers(look->path, (int)(3 * look->path_count))
+                                   : json_array());
+    json_object_set_new(object, "from", has_from ? cli_json_numbers(look->from, 3) : json_null());
+    json_object_set_new(object, "up", cli_json_numbers(look->up, 3));
+    json_object_set_new(object, "parallel", json_boolean(look->orthographic));
+    json_object_set_new(triangles, "shown", json_integer(page->shapes->triangles));
+    json_object_set_new(triangles, "of", json_integer(page->shapes->of));
+    json_object_set_new(object, "triangles", triangles);
+    return exit_status;
+}
+
+/* Writes the page with the scene and the bytes instead of their marks. */
+static int write_page(const char *scene, const char *bytes, const char *path) {
+    static const char scene_mark[] = "\"SCENE\"", bytes_mark[] = "BYTES";
+    const char *first = strstr(view_page_text, scene_mark);
+    const char *second = first ? strstr(first, bytes_mark) : NULL;
+    cli_file file;
+    if (!second) return cli_error(CLI_OUTPUT, "%s: the built-in page has no place for the scene", path);
+    const int exit_status = cli_file_open(path, &file);
+    if (exit_status != CLI_DONE) return exit_status;
+    const char *const after_first = first + sizeof scene_mark - 1, *const after_second =
+                                                                       second + sizeof bytes_mark - 1;
+    cli_file_write(&file, view_page_text, (size_t)(first - view_page_text));
+    cli_file_write(&file, scene, strlen(scene));
+    cli_file_write(&file, after_first, (size_t)(second - after_first));
+    cli_file_write(&file, bytes, strlen(bytes));
+    cli_file_write(&file, after_second, strlen(after_second));
+    return cli_file_commit(&file);
+}
+
+int view_page_write(const view_page *page, const char *path) {
+    blob data = {0};
+    json_t *object = json_object();
+    int exit_status = scene_json(page, &data, object);
+    /* "/" is escaped so that no text can end the script */
+    char *scene = exit_status == CLI_DONE
+                      ? json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_ENSURE_ASCII)
+                      : NULL;
+    char *bytes = exit_status == CLI_DONE ? cli_base64("", data.bytes, data.count) : NULL;
+    if (exit_status == CLI_DONE && (!scene || !bytes)) exit_status = fail_memory();
+    if (exit_status == CLI_DONE) exit_status = write_page(scene, bytes, path);
+    json_decref(object);
+    free(scene);
+    free(bytes);
+    free(data.bytes);
+    return exit_status;
+}

@@ -1,0 +1,315 @@
+// What the page shows beside the picture, and what mouse, fingers and keys do.
+'use strict';
+const byId = id => document.getElementById(id);
+const make = (kind, text = '', name = '') => Object.assign(document.createElement(kind), {textContent: text, className: name});
+const number = (x, digits = 4) => String(Number(x.toPrecision(digits)));
+const labels = []; // {element, point} at points of the world
+let dirty = true, playing = false, before = 0, rows = [];
+let standing = 'start'; // where the eye was put, until it is moved by hand
+const change = () => { dirty = true; };
+
+function resize() {
+  const ratio = window.devicePixelRatio || 1;
+  const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+  if (canvas.width === width && canvas.height === height) return;
+  canvas.width = width, canvas.height = height;
+  if (standing) lookAs(standing);
+  change();
+}
+
+// Draws now; tests call it before they read pixels.
+function draw() {
+  drawScene();
+  for (const {element, point} of labels) {
+    const at = place(shot.m, point, canvas.clientWidth, canvas.clientHeight);
+    element.hidden = !shot.marks || !at || at[0] < 0 || at[1] < 0 || at[0] > canvas.clientWidth || at[1] > canvas.clientHeight;
+    if (element.hidden) continue;
+    const x = clamp(at[0] + 8, 0, canvas.clientWidth - element.offsetWidth - 4);
+    element.style.transform = `translate(${x}px, ${at[1] - 22}px)`;
+  }
+  dirty = false;
+}
+
+function step(now) {
+  if (playing) {
+    setTime(shot.time + (now - before) / 1000 / scene.motion.seconds);
+    byId('moment').value = shot.time;
+  }
+  before = now;
+  if (dirty) draw();
+  requestAnimationFrame(step);
+}
+
+function setTime(time) {
+  shot.time = time - Math.floor(time);
+  byId('now').textContent = `${(shot.time * scene.motion.seconds).toFixed(2)} s of ${number(scene.motion.seconds, 3)} s`;
+  change();
+}
+
+function play(on) {
+  playing = on;
+  byId('play').textContent = on ? 'pause' : 'play';
+}
+
+// Where the eye stands at first: across the beam, a little from the source and from above, or as the command was told.
+function lookAs(name) {
+  const v = scene.view, up = v.up, aspect = canvas.width / canvas.height;
+  const beam = unit(add(v.centre, -1, v.source)), sides = {front: [0, -1, 0], side: [1, 0, 0], top: [0, 0, 1]};
+  if (sides[name]) look(sides[name], [0, 0, 1]);
+  else if (name === 'source') look(beam.map(x => -x), up);
+  else if (name === 'start' && scene.from) look(scene.from, scene.up);
+  else if (name === 'start') look(add(add(unit(cross(beam, up)), -0.55, beam), 0.42, unit(up)), up);
+  if (name === 'parts') {
+    const of = shot.chosen >= 0 ? [shot.chosen] : [...meshes.keys()].filter(i => meshes[i].visible);
+    fit((of.length ? of : [...meshes.keys()]).flatMap(i => boxPoints(scene.parts[i].low, meshes[i].high)), aspect);
+  } else fit(whole.points, aspect);
+  standing = name;
+  change();
+}
+
+function press(id, on) {
+  byId(id).setAttribute('aria-pressed', on);
+  change();
+}
+const toggles = {
+  parallel: () => press('parallel', camera.parallel = !camera.parallel),
+  marks: () => press('marks', shot.marks = !shot.marks),
+  panel: () => { press('panel', !document.querySelector('aside').classList.toggle('closed')); resize(); },
+  dark: () => setDark(!document.documentElement.classList.contains('dark')),
+};
+
+function setDark(on) {
+  document.documentElement.classList.toggle('dark', on);
+  const ground = getComputedStyle(document.documentElement).getPropertyValue('--ground').trim();
+  shot.ground = [1, 3, 5].map(i => parseInt(ground.slice(i, i + 2), 16) / 255);
+  press('dark', on);
+}
+
+function showRow(i) {
+  const part = scene.parts[i], mesh = meshes[i];
+  rows[i].className = i === shot.chosen ? 'chosen' : i === shot.under ? 'under' : '';
+  rows[i].firstChild.checked = mesh.visible;
+  rows[i].querySelector('.swatch').style.background = `rgb(${part.colour.slice(0, 3).join(' ')} / ${Math.max(mesh.colour[3], 0.2)})`;
+}
+
+function setUnder(i) {
+  const old = shot.under;
+  if (old === i) return;
+  shot.under = i;
+  for (const k of [old, i]) if (k >= 0) showRow(k);
+  change();
+}
+
+function setChosen(i) {
+  const old = shot.chosen;
+  shot.chosen = i;
+  for (const k of [old, i]) if (k >= 0) showRow(k);
+  if (i >= 0 && rows[i].scrollIntoViewIfNeeded) rows[i].scrollIntoViewIfNeeded();
+  describe();
+  change();
+}
+
+function setVisible(i, on) {
+  meshes[i].visible = on;
+  showRow(i);
+  change();
+}
+
+function fillTable(table, pairs) {
+  table.replaceChildren(...pairs.map(([name, value]) => {
+    const row = make('tr');
+    row.append(make('th', name), make('td', value));
+    return row;
+  }));
+}
+
+// The chosen part, and how opaque it is.
+function describe() {
+  const about = byId('about'), part = scene.parts[shot.chosen], mesh = meshes[shot.chosen];
+  if (!part) return about.replaceChildren(make('p', 'Point at a part to see its name; click it to choose it.', 'faint'));
+  const table = make('table'), row = make('div', '', 'row'), slider = make('input'), sides = mesh.high.map((x, k) => x - part.low[k]);
+  const pairs = [['box', sides.map(x => number(x, 3)).join(' x ') + ' mm'], ['triangles', part.shown === part.of ? part.of : `${part.shown} of ${part.of}`]];
+  if (part.material) pairs.unshift(['material', part.material]);
+  if (part.density > 0) pairs.splice(-2, 0, ['density', number(part.density) + ' g/cm\u00b3']);
+  if (part.inside >= 0) pairs.push(['inside', scene.parts[part.inside].label]);
+  fillTable(table, pairs);
+  Object.assign(slider, {type: 'range', min: 0, max: 1, step: 0.01, value: mesh.colour[3]});
+  slider.setAttribute('aria-label', 'Opacity');
+  slider.oninput = () => { mesh.colour[3] = Number(slider.value); showRow(shot.chosen); change(); };
+  const alone = make('button', 'only this');
+  alone.onclick = () => meshes.forEach((_, i) => setVisible(i, i === shot.chosen));
+  row.append(make('span', 'opacity', 'faint'), slider, alone);
+  about.replaceChildren(make('strong', part.label), table, row);
+}
+
+function fillPanel() {
+  const d = scene.distances, moves = scene.motion ? `, breathes for ${number(scene.motion.seconds, 3)} s` : '';
+  document.title = scene.name + ' - Skiagraph';
+  byId('name').textContent = scene.name;
+  const of = scene.triangles.shown === scene.triangles.of ? '' : ` of ${scene.triangles.of}`;
+  byId('size').textContent = `${scene.parts.length} parts, ${scene.triangles.shown}${of} triangles${moves}`;
+  const pairs = [['magnification', number(d.magnification)], ['detector', `${number(d.width)} x ${number(d.height)} mm`],
+    ['', `${scene.view.columns} x ${scene.view.rows} pixels`]];
+  if (d.source_detector !== null) pairs.unshift(['source to detector', number(d.source_detector) + ' mm'], ['source to centre', number(d.source_object) + ' mm']);
+  if (scene.path.length) pairs.push(['scan', `${scene.path.length / 3} positions of the source`]);
+  fillTable(byId('measures'), pairs);
+  rows = scene.parts.map((part, i) => {
+    const row = make('label'), box = make('input');
+    Object.assign(box, {type: 'checkbox', checked: true});
+    box.onchange = () => setVisible(i, box.checked);
+    const name = make('span', part.label, 'name');
+    row.title = part.label;
+    row.append(box, make('span', '', 'swatch'), name);
+    row.onpointerenter = () => setUnder(i);
+    row.onpointerleave = () => setUnder(-1);
+    name.onclick = event => { event.preventDefault(); setChosen(shot.chosen === i ? -1 : i); };
+    return row;
+  });
+  byId('list').append(...rows);
+  rows.forEach((_, i) => showRow(i));
+  byId('filter').oninput = () => {
+    const wanted = byId('filter').value.toLowerCase();
+    rows.forEach((row, i) => { row.hidden = !scene.parts[i].label.toLowerCase().includes(wanted); });
+  };
+  for (const [id, on] of [['all', true], ['none', false]])
+    byId(id).onclick = () => rows.forEach((row, i) => { if (!row.hidden) setVisible(i, on); });
+  describe();
+}
+
+function addLabel(text, point) {
+  const element = make('div', text, 'label');
+  byId('labels').append(element);
+  labels.push({element, point});
+}
+
+function fillLabels() {
+  const v = scene.view, d = scene.distances, [low, high] = scene.box, length = 0.2 * Math.max(...high.map((x, k) => x - low[k]));
+  addLabel(v.projection === 'point' ? 'source' : 'parallel beam', v.source);
+  addLabel(d.source_detector === null ? 'detector' : `detector at ${number(d.source_detector)} mm`, v.corners[0].map((x, k) => (x + v.corners[1][k]) / 2));
+  ['x', 'y', 'z'].forEach((name, k) => addLabel(name, low.map((x, i) => x + (i === k) * length)));
+  if (d.source_detector === null) return;
+  addLabel(`${number(d.source_object)} mm to the centre`, add(v.source, d.source_object / 2, unit(add(v.centre, -1, v.source))));
+}
+
+// One finger or the left button turns; two fingers, another button or Shift move; wheel and pinch zoom.
+const fingers = new Map();
+let moved = 0;
+function dragged(event) {
+  const old = fingers.get(event.pointerId), rect = canvas.getBoundingClientRect(), height = rect.height;
+  if (!old) return point(event);
+  const dx = event.clientX - old.x, dy = event.clientY - old.y;
+  moved += Math.hypot(dx, dy);
+  if (fingers.size === 1) {
+    if (event.shiftKey || event.buttons & 6) pan(dx / height, dy / height);
+    else orbit(dx / height * Math.PI, dy / height * Math.PI);
+  } else if (fingers.size === 2) {
+    const other = [...fingers.values()].find(f => f !== old), length = (x, y) => Math.max(Math.hypot(x - other.x, y - other.y), 1);
+    const x = (event.clientX + other.x) / 2 - rect.left, y = (event.clientY + other.y) / 2 - rect.top;
+    pan(dx / height / 2, dy / height / 2);
+    zoom(length(old.x, old.y) / length(event.clientX, event.clientY), (x - rect.width / 2) / height, (height / 2 - y) / height);
+  }
+  old.x = event.clientX, old.y = event.clientY;
+  standing = '';
+  change();
+}
+
+let waiting = null;
+function point(event) {
+  if (event.pointerType === 'touch') return;
+  if (!waiting) requestAnimationFrame(() => { pointAt(waiting.offsetX, waiting.offsetY); waiting = null; });
+  waiting = event;
+}
+
+function pointAt(x, y) {
+  const i = partAt(x, y), hint = byId('hint');
+  setUnder(i);
+  hint.hidden = i < 0;
+  if (i < 0) return;
+  hint.textContent = scene.parts[i].label;
+  hint.style.transform = `translate(${clamp(x + 14, 0, canvas.clientWidth - hint.offsetWidth - 4)}px, ${y + 16}px)`;
+}
+
+function listenToCanvas() {
+  canvas.onpointerdown = event => {
+    canvas.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, {x: event.clientX, y: event.clientY});
+    if (fingers.size === 1) moved = 0;
+    byId('hint').hidden = true;
+  };
+  canvas.onpointermove = dragged;
+  canvas.onpointerup = canvas.onpointercancel = event => {
+    fingers.delete(event.pointerId);
+    if (event.type === 'pointerup' && moved < 4 && event.button === 0) setChosen(partAt(event.offsetX, event.offsetY));
+  };
+  canvas.onpointerleave = () => { setUnder(-1); byId('hint').hidden = true; };
+  canvas.oncontextmenu = event => event.preventDefault();
+  canvas.ondblclick = () => lookAs('parts');
+  canvas.addEventListener('wheel', event => {
+    const height = canvas.clientHeight, lines = event.deltaMode === 1 ? 16 : 1;
+    event.preventDefault();
+    zoom(Math.exp(clamp(event.deltaY * lines, -240, 240) * 0.0015), (event.offsetX - canvas.clientWidth / 2) / height, (height / 2 - event.offsetY) / height);
+    standing = '';
+    change();
+  }, {passive: false});
+}
+
+const nearer = factor => { zoom(factor, 0, 0); standing = ''; };
+const keys = {
+  '0': () => lookAs('start'), Home: () => lookAs('start'), '1': () => lookAs('front'), '2': () => lookAs('side'), '3': () => lookAs('top'),
+  '4': () => lookAs('source'), f: () => lookAs('parts'), p: toggles.parallel, m: toggles.marks, d: toggles.dark, l: toggles.panel,
+  '+': () => nearer(0.9), '=': () => nearer(0.9), '-': () => nearer(1 / 0.9), Escape: () => setChosen(-1),
+  ' ': () => scene.motion && play(!playing),
+  h: () => shot.chosen >= 0 && setVisible(shot.chosen, !meshes[shot.chosen].visible),
+};
+const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+
+function listenToKeys() {
+  document.addEventListener('keydown', event => {
+    if (event.ctrlKey || event.metaKey || event.altKey || /^(text|search|range)$/.test(event.target.type)) return;
+    const arrow = arrows[event.key], act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (event.target.tagName === 'BUTTON' && event.key === ' ') return;
+    if (arrow && event.shiftKey) pan(arrow[0] * 0.04, arrow[1] * 0.04);
+    else if (arrow) orbit(arrow[0] * 0.09, arrow[1] * 0.09);
+    else if (act) act();
+    else return;
+    if (arrow) standing = '';
+    event.preventDefault();
+    change();
+  });
+}
+
+function begin() {
+  const dark = window.matchMedia('(prefers-color-scheme: dark)');
+  Object.keys(shaders).forEach(compile);
+  prepareMarks();
+  prepareParts();
+  fillPanel();
+  fillLabels();
+  listenToCanvas();
+  listenToKeys();
+  document.querySelectorAll('[data-look]').forEach(button => { button.onclick = () => lookAs(button.dataset.look); });
+  for (const id of Object.keys(toggles)) byId(id).onclick = toggles[id];
+  setDark(dark.matches);
+  dark.addEventListener('change', () => setDark(dark.matches));
+  camera.parallel = scene.parallel;
+  press('parallel', camera.parallel);
+  new ResizeObserver(resize).observe(canvas);
+  resize();
+  lookAs('start');
+  if (scene.motion) {
+    byId('time').hidden = false;
+    byId('moment').oninput = () => { play(false); setTime(Number(byId('moment').value)); };
+    byId('play').onclick = () => play(!playing);
+    setTime(0);
+    play(!window.matchMedia('(prefers-reduced-motion: reduce)').matches);
+  }
+  requestAnimationFrame(step);
+}
+
+function fail(reason) {
+  byId('failure').hidden = false;
+  byId('failure').textContent = 'The scene cannot be drawn: ' + reason;
+}
+canvas.addEventListener('webglcontextlost', () => fail('the browser took the graphics memory away; load the page again.'));
+if (!gl) fail('this browser has no WebGL 2, or it is switched off.');
+else try { begin(); } catch (error) { fail(error.message); throw error; }

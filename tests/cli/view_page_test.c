@@ -1,0 +1,171 @@
+/* The page of the verb view in a real browser, with WebGL in software: needs chromium. */
+#include "cli/command.h"
+
+enum { LARGEST_PAGE = 8 << 20 };
+
+/* A cube with a cylinder in it, 400 mm from a point source, the detector 100 mm behind. */
+static const char scene[] =
+    "{\"Source\": {\"Position\": [0, -40, 0, \"cm\"], \"Shape\": \"PointSource\","
+    "\"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]},"
+    "\"Detector\": {\"Position\": [0, 10, 0, \"cm\"], \"UpVector\": [0, 0, -1], \"NumberOfPixels\": [33, 25],"
+    "\"Size\": [33, 25, \"cm\"]},"
+    "\"Samples\": [{\"Label\": \"tissue\", \"Cube\": [80, \"mm\"], \"Material\": [\"mu\", 0.2], \"Type\": \"outer\"},"
+    "{\"Label\": \"bone\", \"Cylinder\": [32, 60, 12, \"mm\"], \"Material\": [\"mu\", 0.5]}]}";
+
+/* What both scripts begin and end with: the verdict becomes an attribute of the body. */
+static const char begin_script[] =
+    "<script>\n"
+    "const verdict = [], check = (name, is) => { if (!is) verdict.push(name); };\n"
+    "const width = () => canvas.width, height = () => canvas.height;\n"
+    "const pixels = () => { resize(); draw(); const p = new Uint8Array(4 * width() * height());\n"
+    "  gl.readPixels(0, 0, width(), height(), gl.RGBA, gl.UNSIGNED_BYTE, p); return p; };\n"
+    "const sum = () => { let s = 7; for (const x of pixels()) s = (Math.imul(s, 31) + x) | 0; return s; };\n"
+    "const differs = (name, act) => { const old = sum(); act(); check(name, sum() !== old); };\n"
+    "const fire = (kind, x, y, more = {}) => canvas.dispatchEvent(new PointerEvent(kind, {pointerId: 1, clientX: x, clientY: y,\n"
+    "  bubbles: true, cancelable: true, button: 0, buttons: kind === 'pointerup' ? 0 : 1, ...more}));\n"
+    "const drag = (x, y, dx, dy, more) => { fire('pointerdown', x, y, more); fire('pointermove', x + dx, y + dy, more);\n"
+    "  fire('pointerup', x + dx, y + dy, more); };\n"
+    "const key = (k, more = {}) => canvas.dispatchEvent(new KeyboardEvent('keydown', {key: k, bubbles: true, ...more}));\n"
+    "canvas.setPointerCapture = () => {};\n"
+    "const seen = p => place(shot.m, p, canvas.clientWidth, canvas.clientHeight);\n"
+    "function work() {\n"
+    "if (!gl) return verdict.push('no WebGL');\n"
+    "check('error', byId('failure').hidden);\n"
+    "const first = sum(); check('again', first === sum()); check('drawn', new Set(pixels()).size > 50);\n";
+
+static const char end_script[] =
+    "check('no error of WebGL', gl.getError() === 0);\n"
+    "}\n"
+    "try { work(); } catch (error) { verdict.push(error.stack); }\n"
+    "document.body.setAttribute('data-verdict', verdict.length ? 'failed: ' + verdict : 'all works');\n"
+    "</script>\n</body>";
+
+/* Camera, list, names, the detector's image. */
+static const char still_script[] =
+    "for (const [name, act] of [\n"
+    "  ['turn', () => drag(200, 200, 60, 20)], ['move', () => drag(200, 200, 40, 10, {shiftKey: true})],\n"
+    "  ['move by the right button', () => drag(200, 200, 40, 10, {button: 2, buttons: 2})],\n"
+    "  ['roll', () => canvas.dispatchEvent(new WheelEvent('wheel', {deltaY: -120, cancelable: true}))],\n"
+    "  ['left', () => key('ArrowLeft')], ['up', () => key('ArrowUp')], ['shift', () => key('ArrowUp', {shiftKey: true})],\n"
+    "  ['plus', () => key('+')], ['minus', () => key('-')], ['parallel', () => key('p')], ['fit', () => key('f')]])\n"
+    "  differs(name, act);\n"
+    "key('p'); key('0'); check('start', sum() === first);\n"
+    "const views = new Set([first]);\n"
+    "for (const name of ['front', 'side', 'top', 'source']) {\n"
+    "  document.querySelector('[data-look=' + name + ']').click(); views.add(sum()); }\n"
+    "check('views', views.size >= 4);\n" /* the front may be that of the source */
+    "fire('pointerdown', 100, 100); fire('pointerdown', 200, 100, {pointerId: 2});\n"
+    "differs('pinch', () => fire('pointermove', 260, 100, {pointerId: 2}));\n"
+    "fire('pointerup', 100, 100); fire('pointerup', 260, 100, {pointerId: 2}); key('0');\n"
+    "rows.forEach((row, i) => { const box = row.firstChild; differs('hide ' + i, () => box.click()); box.click(); });\n"
+    "check('shown again', sum() === first);\n"
+    "check('box of the cube', scene.parts[0].low.every(x => Math.abs(x + 40) < 1e-6)\n"
+    "  && meshes[0].high.every(x => Math.abs(x - 40) < 1e-6));\n" /* 65535 steps of a double */
+    "const centre = seen([0, 0, 0]), edge = seen([-38, -38, 38]);\n"
+    "check('bone', partAt(...centre) === 1); check('tissue', partAt(...edge) === 0); check('none', partAt(2, 2) === -1);\n"
+    "pointAt(...centre); check('hint', !byId('hint').hidden && byId('hint').textContent === 'bone');\n"
+    "check('under', rows[1].className === 'under'); pointAt(2, 2); check('no hint', byId('hint').hidden);\n"
+    "const rect = canvas.getBoundingClientRect();\n"
+    "differs('click', () => drag(rect.left + centre[0], rect.top + centre[1], 0, 0));\n"
+    "check('chosen', shot.chosen === 1 && rows[1].className === 'chosen' && byId('about').textContent.includes('bone'));\n"
+    "const slider = byId('about').querySelector('input'); slider.value = 0.3;\n"
+    "differs('opacity', () => slider.oninput()); slider.value = 1; slider.oninput();\n"
+    "key('Escape'); check('none chosen', shot.chosen === -1 && sum() === first);\n"
+    "byId('filter').value = 'BO'; byId('filter').oninput(); check('filter', rows[0].hidden && !rows[1].hidden);\n"
+    "byId('none').click(); check('only the found', meshes[0].visible && !meshes[1].visible); byId('all').click();\n"
+    "byId('filter').value = ''; byId('filter').oninput(); byId('none').click();\n"
+    "check('distances', byId('measures').textContent.includes('500 mm') && byId('measures').textContent.includes('1.25'));\n"
+    "check('labels', [...document.querySelectorAll('.label')].some(l => l.textContent === 'detector at 500 mm'));\n"
+    /* from the source, without parts and beam: the pixels of the detector are those of the image, and left is left */
+    "const kept = [lines, points]; lines = points = []; lookAs('source');\n"
+    "const image = scene.image, p = pixels(), v = scene.view, bad = [];\n"
+    "for (let r = 2; r < image.rows - 2; r++) for (let c = 2; c < image.columns - 2; c++) {\n"
+    "  const at = v.corners[0].map((x, k) => x + (c + 0.5) / image.columns * (v.corners[1][k] - x) + (r + 0.5) / image.rows * (v.corners[3][k] - x));\n"
+    "  const [x, y] = seen(at).map(q => q * width() / canvas.clientWidth);\n"
+    "  const grey = p[4 * (Math.floor(height() - y) * width() + Math.floor(x))];\n"
+    "  if (grey !== bytes[image.at + r * image.columns + c]) bad.push([r, c]); }\n"
+    "check('image ' + bad.slice(0, 5), bad.length === 0); [lines, points] = kept;\n"
+    "differs('no beam', () => key('m')); key('m'); byId('all').click();\n"
+    "key('0'); const ground = p[0]; setDark(!document.documentElement.classList.contains('dark'));\n"
+    "check('dark', Math.abs(pixels()[0] - ground) > 100);\n"
+    "check('panel', (key('l'), getComputedStyle(document.querySelector('aside')).display === 'none'));\n";
+
+/* Breath: time moves the parts, and comes round. */
+static const char moving_script[] =
+    "check('time', !byId('time').hidden); play(false); setTime(0); const start = sum();\n"
+    "differs('half', () => setTime(0.5)); setTime(1); check('round', sum() === start);\n"
+    "differs('between key frames', () => setTime(0.02));\n"
+    "byId('moment').value = 0.25; differs('slider', () => byId('moment').oninput()); check('stopped', !playing);\n"
+    "check('says the time', byId('now').textContent === '1.00 s of 4 s'); key(' '); check('plays', playing);\n"
+    "const liver = scene.parts.find(q => q.label === 'liver'), ofFrame = f => shorts(liver.positions, 3 * liver.vertices * liver.frames)\n"
+    "  .subarray(3 * liver.vertices * f, 3 * liver.vertices * (f + 1)).filter((_, i) => i % 3 === 2);\n"
+    "const mean = f => ofFrame(f).reduce((s, x) => s + x, 0) / liver.vertices * liver.step[2];\n"
+    "check('the liver goes down', mean(10) - mean(0) > 8);\n"; /* mm, from inspiration to expiration; breathe_test */
+
+static char *read_text(const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "rb");
+    char *text = calloc(LARGEST_PAGE, 1);
+    ck_assert(stream && text);
+    ck_assert_uint_lt(fread(text, 1, LARGEST_PAGE - 1, stream), LARGEST_PAGE - 1);
+    fclose(stream);
+    return text;
+}
+
+/* Adds the script to a.html and lets the browser work on it. */
+static void work(const char *script) {
+    char *page = read_text("a.html"), line[1024], profile[] = "/tmp/skg-browser-XXXXXX";
+    char *end = strstr(page, "</body>");
+    ck_assert_ptr_nonnull(end);
+    snprintf(end, (size_t)(LARGEST_PAGE - (end - page)), "%s%s%s", begin_script, script, end_script);
+    write_text("worked.html", page);
+    free(page);
+    ck_assert_ptr_nonnull(mkdtemp(profile));
+    snprintf(line, sizeof line,
+             "cd %s && HOME=%s timeout 200 \"${CHROMIUM:-chromium}\" --headless --no-sandbox --use-gl=angle "
+             "--use-angle=swiftshader --enable-unsafe-swiftshader --user-data-dir=%s --window-size=900,600 "
+             "--virtual-time-budget=60000 --dump-dom 'file://%s/worked.html' 2>/dev/null >dom.html",
+             folder, profile, profile, folder);
+    const int status = system(line);
+    snprintf(line, sizeof line, "rm -rf %s", profile);
+    ck_assert_int_eq(system(line), 0);
+    ck_assert_int_eq(status, 0);
+    page = read_text("dom.html");
+    const char *verdict = strstr(page, "data-verdict=\"");
+    ck_assert_msg(verdict != NULL, "the page's script did not end");
+    if (strncmp(verdict, "data-verdict=\"failed: no WebGL\"", 31) == 0)
+        skip_test("the browser has no WebGL 2");
+    ck_assert_msg(strncmp(verdict, "data-verdict=\"all works\"", 24) == 0, "%.600s", verdict);
+    free(page);
+}
+
+static int has_browser(void) {
+    return system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") == 0;
+}
+
+START_TEST(a_page_can_be_turned) {
+    if (!has_browser()) skip_test("no chromium; CHROMIUM names another browser of that kind");
+    write_text("s.json", scene);
+    ck_run(0, "view s.json -o a.html --quiet");
+    work(still_script);
+}
+END_TEST
+
+START_TEST(a_page_breathes) {
+    if (!has_browser()) skip_test("no chromium; CHROMIUM names another browser of that kind");
+    ck_run(0, "thorax -o . --simple --triangles 10000 --quiet");
+    ck_run(
+        0,
+        "view thorax.json --set Breathing=null --seconds 4 --set Detector.NumberOfPixels=[80,80] -o a.html --quiet");
+    work(moving_script);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_test(tests, a_page_can_be_turned);
+    tcase_add_test(tests, a_page_breathes);
+}
+
+SKG_SUITE_MAIN("view_page", add_tests)
