@@ -184,16 +184,41 @@ typedef struct {
     skg_floatv through[SKG_SHOW_TILE], red[SKG_SHOW_TILE], green[SKG_SHOW_TILE], blue[SKG_SHOW_TILE];
 } skg_show_strip;
 
-/* Which samples lie on the triangle's side of edge k. x, y: in the picture. */
-static skg_intv skg_show_beside(__global const skg_show_face *face, int k, skg_floatv x, float y) {
-    __global const float *edge = face->edges + 4 * k;
-    const skg_floatv side = fma(edge[0], x - edge[2], edge[1] * (y - edge[3]));
-    return (side >= 0.0f) ^ (skg_intv)((face->sides >> k & 1) - 1);
+/* What is the same for all rows of a triangle in a strip. */
+typedef struct {
+    skg_floatv sides[3], depth;          /* the terms of edges and depth that depend on the column */
+    float down[3], first[3], depth_down; /* and on the row */
+    skg_intv flips[3];
+    float box_row;
+    int first_row, last_row; /* in the tile */
+} skg_show_rows;
+
+static skg_show_rows skg_show_rows_of(__global const skg_show_face *face, int column, int row) {
+    skg_show_rows rows;
+    const skg_floatv x = SKG_LANES + (float)column;
+    for (int k = 0; k < 3; k++) {
+        __global const float *edge = face->edges + 4 * k;
+        rows.sides[k] = edge[0] * (x - edge[2]);
+        rows.down[k] = edge[1], rows.first[k] = edge[3];
+        rows.flips[k] = (face->sides >> k & 1) - 1;
+    }
+    rows.depth = fma(x - (float)face->box[0], face->depth[0], face->depth[2]);
+    rows.depth_down = face->depth[1];
+    rows.box_row = (float)face->box[1];
+    rows.first_row = max(face->box[1] - row, 0);
+    rows.last_row = min(face->box[3] - row, SKG_SHOW_TILE - 1);
+    return rows;
 }
 
-/* Which samples of a row a triangle covers. */
-static skg_intv skg_show_covered(__global const skg_show_face *face, skg_floatv x, float y) {
-    return skg_show_beside(face, 0, x, y) & skg_show_beside(face, 1, x, y) & skg_show_beside(face, 2, x, y);
+/* Which samples of a row lie on the triangle's side of edge k. y: in the picture. */
+static skg_intv skg_show_beside(const skg_show_rows *rows, int k, float y) {
+    return (rows->sides[k] + rows->down[k] * (y - rows->first[k]) >= 0.0f) ^ rows->flips[k];
+}
+
+/* Which samples of a row a triangle covers, and their depth. */
+static skg_intv skg_show_covered(const skg_show_rows *rows, float y, skg_floatv *depth) {
+    *depth = fma((skg_floatv)(y - rows->box_row), rows->depth_down, rows->depth);
+    return skg_show_beside(rows, 0, y) & skg_show_beside(rows, 1, y) & skg_show_beside(rows, 2, y);
 }
 
 /* Colours of a row of samples whose triangles are known; `none` where the number is SKG_SHOW_NONE. Shading each triangle
@@ -218,13 +243,12 @@ static skg_uintv skg_show_colours(skg_show_args args, __global const skg_show_fa
 
 /* Keeps the nearest opaque surface. */
 static void skg_show_opaque(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row) {
-    const skg_floatv at = SKG_LANES + (float)column, x = at - (float)face->box[0];
-    const int first = max(face->box[1] - row, 0), last = min(face->box[3] - row, SKG_SHOW_TILE - 1);
-    for (int r = first; r <= last; r++) {
-        const float y = (float)(row + r - face->box[1]);
-        const skg_floatv depth = skg_show_value(face->depth, x, y);
-        const skg_intv mask = skg_show_covered(face, at, (float)(row + r)) && (depth < strip->depth[r] ||
-                              (depth == strip->depth[r] && triangle < strip->number[r]));
+    const skg_show_rows rows = skg_show_rows_of(face, column, row);
+    for (int r = rows.first_row; r <= rows.last_row; r++) {
+        skg_floatv depth;
+        const skg_intv mask =
+            skg_show_covered(&rows, (float)(row + r), &depth) &
+            (depth < strip->depth[r] || (depth == strip->depth[r] && triangle < strip->number[r]));
         strip->depth[r] = select(strip->depth[r], depth, mask);
         strip->number[r] = select(strip->number[r], (skg_intv)(triangle), mask);
     }
@@ -233,14 +257,12 @@ static void skg_show_opaque(skg_show_strip *strip, __global const skg_show_face 
 /* Keeps the nearest translucent surface between the one that was drawn last and the opaque one. Returns whether this is
  * one. */
 static int skg_show_next(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row) {
-    const skg_floatv at = SKG_LANES + (float)column, x = at - (float)face->box[0];
-    const int first = max(face->box[1] - row, 0), last = min(face->box[3] - row, SKG_SHOW_TILE - 1);
+    const skg_show_rows rows = skg_show_rows_of(face, column, row);
     skg_intv found = 0;
-    for (int r = first; r <= last; r++) {
-        const float y = (float)(row + r - face->box[1]);
-        const skg_floatv depth = skg_show_value(face->depth, x, y);
+    for (int r = rows.first_row; r <= rows.last_row; r++) {
+        skg_floatv depth;
         const skg_intv mask =
-            skg_show_covered(face, at, (float)(row + r)) && depth < strip->depth[r] &&
+            (skg_show_covered(&rows, (float)(row + r), &depth) & (depth < strip->depth[r])) &&
             (depth > strip->passed[r] || (depth == strip->passed[r] && triangle > strip->passed_number[r])) &&
             (depth < strip->next[r] || (depth == strip->next[r] && triangle < strip->next_number[r]));
         strip->next[r] = select(strip->next[r], depth, mask);
