@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-const char *const hard_names[HARD_KINDS] = {"sphere",    "blob",  "torus", "shell",
-                                            "octahedra", "slabs", "sliver"};
+const char *const hard_names[HARD_KINDS] = {"sphere", "blob",   "torus", "shell", "octahedra",
+                                            "slabs",  "sliver", "fine",  "flat"};
 
 /* Every body fits a sphere of this radius around the origin, in mm. */
 static const double extent = 80;
@@ -70,8 +70,31 @@ static solid slabs(uint64_t *seed) {
     return all;
 }
 
+/* Shells anywhere in the picture, of triangles of 0.1 to 1 pixel. */
+static solid fine_shells(const skg_view *view, uint64_t *seed) {
+    enum { SHELLS = 4 };
+    solid all = {0};
+    for (int n = 0; n < SHELLS; n++) {
+        const double pixels = pow(10, draw(seed, -0.3, 1.1)); /* radius: half a pixel to twelve */
+        const double side = draw(seed, 0.1, 1);
+        int around = (int)(2 * 3.14 * pixels / side);
+        around = around < 12 ? 12 : around > 240 ? 240 : around;
+        const double radius = pixels * 1000 / 1200 * view->column_step[0];
+        solid one = solid_shell(radius, draw(seed, 0.2, 0.99) * radius, around, around / 2);
+        turn(&one, seed);
+        solid_shift(&one, draw(seed, -50, 50), draw(seed, -50, 50), draw(seed, -30, 30));
+        if (n == 0) {
+            all = one;
+        } else {
+            solid_add(&all, &one);
+            solid_free(&one);
+        }
+    }
+    return all;
+}
+
 static solid raw_body(int kind, const skg_view *view, uint64_t *seed) {
-    /* Triangles of 3 to 20 pixels: smaller ones would fold up when their corners go to the same rays. */
+    /* Triangles of 3 to 20 pixels: smaller ones fold up when their corners go to the same rays. */
     const int around = (int)((double)view->columns * draw(seed, 0.06, 0.18)), down = around / 2;
     solid s;
     switch (kind) {
@@ -88,6 +111,8 @@ static solid raw_body(int kind, const skg_view *view, uint64_t *seed) {
                                draw_bits(seed));
     case HARD_SLABS:
         return slabs(seed);
+    case HARD_FINE:
+        return fine_shells(view, seed);
     default: {
         s = solid_sphere(extent, around, down);
         const double flat = pow(10, draw(seed, -2, -0.5)), m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, flat, 0};
@@ -101,7 +126,7 @@ solid hard_body(int kind, const skg_view *view, uint64_t number) {
     uint64_t seed = number * HARD_KINDS + (uint64_t)kind + 1;
     solid s = raw_body(kind, view, &seed);
     if (kind == HARD_SLABS || kind == HARD_OCTAHEDRA) return s;
-    turn(&s, &seed);
+    if (kind != HARD_FINE) turn(&s, &seed);
     const int ulps = (int)draw_below(&seed, 3);
     for (int64_t n = 0; n < s.vertices && kind != HARD_SLIVER; n++)
         pull_onto_ray(s.positions + 3 * n, view, ulps, &seed);

@@ -4,7 +4,18 @@
 
 #include "support/shapes.h"
 
-enum { HARD_SPHERE, HARD_BLOB, HARD_TORUS, HARD_SHELL, HARD_OCTAHEDRA, HARD_SLABS, HARD_SLIVER, HARD_KINDS };
+enum {
+    HARD_SPHERE,
+    HARD_BLOB,
+    HARD_TORUS,
+    HARD_SHELL,
+    HARD_OCTAHEDRA,
+    HARD_SLABS,
+    HARD_SLIVER,
+    HARD_FINE, /* shells of triangles smaller than a pixel, corners on the rays: they fold up and vanish */
+    HARD_FLAT, /* flat ellipsoids, corners on the rays */
+    HARD_KINDS
+};
 
 extern const char *const hard_names[HARD_KINDS];
 

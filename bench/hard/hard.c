@@ -7,10 +7,12 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-static const char usage[] = "[--pixels N] [--size N] [--first N] [--device CONFIG] [--csv FILE]";
+static const char usage[] = "[--pixels N] [--size N] [--first N] [--kind N] [--device CONFIG] [--csv FILE]";
 
 typedef struct {
-    long pixels, size, first;
+    long pixels, size;
+    long first; /* picture; another run can go on where one ended */
+    long kind;  /* -1: all */
     const char *device, *csv;
 } settings;
 
@@ -28,7 +30,7 @@ typedef struct {
 static void read_settings(int count, char **words, settings *out) {
     bench_arguments arguments = {count, words, 1};
     const char *value = NULL;
-    *out = (settings){.pixels = 10000000, .size = 1024};
+    *out = (settings){.pixels = 10000000, .size = 1024, .kind = -1};
     while (arguments.next < arguments.count) {
         if (bench_option(&arguments, "--pixels", &value))
             bench_numbers(value, 1, 100000000000, 1, &out->pixels);
@@ -36,6 +38,8 @@ static void read_settings(int count, char **words, settings *out) {
             bench_numbers(value, 64, 8192, 1, &out->size);
         else if (bench_option(&arguments, "--first", &value))
             bench_numbers(value, 0, 1000000000, 1, &out->first);
+        else if (bench_option(&arguments, "--kind", &value))
+            bench_numbers(value, 0, HARD_KINDS - 1, 1, &out->kind);
         else if (!bench_option(&arguments, "--device", &out->device) &&
                  !bench_option(&arguments, "--csv", &out->csv))
             bench_usage(&arguments, usage);
@@ -110,6 +114,7 @@ static void take(const tools *t, const settings *set, uint64_t number, float *si
                  tally *total) {
     static const int32_t strategies[] = {SKG_STRATEGY_COPIES, SKG_STRATEGY_TILES, SKG_STRATEGY_ATOMICS};
     const int kind = (int)(number % HARD_KINDS);
+    if (set->kind >= 0 && kind != set->kind) return;
     const skg_view view = hard_view(set->size, number / HARD_KINDS);
     solid s = hard_body(kind, &view, number);
     solid_round(&s); /* what the library stores is what the caster sees */
@@ -119,7 +124,9 @@ static void take(const tools *t, const settings *set, uint64_t number, float *si
     its->unbalanced[1] += unbalanced(t, &s, &view, SKG_PRECISION_DOUBLE, twice);
     lengths_of(t, &s, &view, SKG_PRECISION_SINGLE, strategies[number % 3], single);
     lengths_of(t, &s, &view, SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO, twice);
-    hard_judge(&s, &view, single, twice, &its->verdict);
+    char name[64];
+    snprintf(name, sizeof name, "picture %" PRIu64 " (%s)", number, hard_names[kind]);
+    hard_judge(&s, &view, single, twice, name, &its->verdict);
     solid_free(&s);
 }
 
@@ -127,25 +134,25 @@ static void take(const tools *t, const settings *set, uint64_t number, float *si
 static int print(const tally *total, FILE *csv) {
     int bad = 0;
     printf(
-        "| bodies | pictures | pixels | met | unbalanced, single / double | judged | thin | out of bar | worst | lowest |\n"
-        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+        "| bodies | pictures | pixels | met | unbalanced, single / double | judged | thin | folded | out of bar | worst | lowest |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     if (csv)
         fprintf(
             csv,
-            "bodies,pictures,pixels,met,unbalanced_single,unbalanced_double,judged,thin,out,worst,lowest\n");
+            "bodies,pictures,pixels,met,unbalanced_single,unbalanced_double,judged,thin,folded,out,worst,lowest\n");
     for (int k = 0; k < HARD_KINDS; k++) {
         const tally *its = &total[k];
         const hard_verdict *v = &its->verdict;
         printf("| %s | %" PRId64 " | %" PRId64 " | %" PRId64 " | %" PRId64 " / %" PRId64 " | %" PRId64
-               " | %" PRId64 " | %" PRId64 " | %.2g | %.2g |\n",
+               " | %" PRId64 " | %" PRId64 " | %" PRId64 " | %.2g | %.2g |\n",
                hard_names[k], its->pictures, v->pixels, v->met, its->unbalanced[0], its->unbalanced[1],
-               v->judged, v->thin, v->out, v->worst, v->lowest);
+               v->judged, v->thin, v->folded, v->out, v->worst, v->lowest);
         if (csv)
             fprintf(csv,
                     "%s,%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64
-                    ",%" PRId64 ",%.3g,%.3g\n",
+                    ",%" PRId64 ",%" PRId64 ",%.3g,%.3g\n",
                     hard_names[k], its->pictures, v->pixels, v->met, its->unbalanced[0], its->unbalanced[1],
-                    v->judged, v->thin, v->out, v->worst, v->lowest);
+                    v->judged, v->thin, v->folded, v->out, v->worst, v->lowest);
         bad |= its->unbalanced[0] > 0 || its->unbalanced[1] > 0 || v->out > 0;
     }
     return bad;
@@ -170,8 +177,10 @@ int main(int count, char **words) {
     float *single = bench_alloc((size_t)per_picture, sizeof *single);
     double *twice = bench_alloc((size_t)per_picture, sizeof *twice);
     FILE *csv = set.csv ? bench_open(set.csv) : NULL;
-    for (int64_t done = 0, number = set.first; done < set.pixels; done += per_picture, number++)
+    const int64_t end = set.first + (set.pixels + per_picture - 1) / per_picture;
+    for (int64_t number = set.first; number < end; number++)
         take(&t, &set, (uint64_t)number, single, twice, total);
+    printf("Pictures %ld to %" PRId64 ", %ld x %ld pixels\n\n", set.first, end - 1, set.size, set.size);
     const int bad = print(total, csv);
     free(single);
     free(twice);

@@ -8,8 +8,9 @@
 typedef struct {
     int64_t pixels, met; /* all; those whose ray meets the body */
     int64_t judged;      /* by the ray caster: single and double precision differ by nearly the bar or more */
-    int64_t thin;        /* of these, beyond the bar, but between two steep faces that lie within the shift */
-    int64_t out;         /* of these, out of bar */
+    int64_t thin;   /* of these, beyond the bar, but between two steep faces that are nearer than the shift */
+    int64_t folded; /* of these, beyond that, but among more than two such faces, within their depths */
+    int64_t out;    /* of these, out of bar */
     double worst, lowest; /* distance from the interval of the judged ones; least length of all */
 } hard_verdict;
 
@@ -18,6 +19,6 @@ typedef struct {
  * to the part. Its length in double precision is a value of this interval, so that only the pixels in which the two
  * differ by more need the caster. */
 void hard_judge(const solid *s, const skg_view *view, const float *single, const double *twice,
-                hard_verdict *v);
+                const char *name, hard_verdict *v);
 
 #endif
