@@ -97,7 +97,7 @@ static int compare(const char *what, const double *ours, const double *reference
     if (least_ncc > 0) printf("NCC at least %g: %s", least_ncc, missed ? "MISSED" : "met");
     if (most > 0) printf("mean error at most %g: %s", most, missed ? "MISSED" : "met");
     printf(" |\n");
-    if (csv) fprintf(csv, "%s,%.8f,%.4g,%.4g\n", what, c.ncc, c.mean, c.worst);
+    if (csv) fprintf(csv, "\"%s\",%.8f,%.4g,%.4g\n", what, c.ncc, c.mean, c.worst);
     return missed;
 }
 

@@ -2,7 +2,8 @@
  * comparison with spectra measured with a Ge(Li) detector, Phys. Med. Biol. 24 (1979) 505-517.
  *
  * Electrons slow down by the Thomson-Whiddington law T0^2 - T^2 = b x. At each depth x (g/cm2) they radiate with the
- * cross section (1 + mc2/T) Q(E/T) / E, where Q is a polynomial, and the target absorbs along x cot(angle). */
+ * cross section (1 + mc2/T) Q(E/T) / E, where Q is a polynomial, and the target absorbs along x cot(angle).
+ * calibration.c multiplies x by a factor. */
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "material/material.h"
@@ -26,13 +27,13 @@ static double radiated(const skg_anode *anode, double energy_kev, double t, doub
     return sum * (1 + REST_KEV / t) * 2 * t / b * exp(-absorbed_per_depth * depth);
 }
 
-double skg_birch_continuum(const skg_anode *anode, double energy_kev) {
+double skg_birch_continuum(const skg_anode *anode, double energy_kev, double deeper) {
     double kv = anode->kvp, sections[SKG_PROCESSES];
     if (!(energy_kev < kv)) return 0;
     double b = (0.0029 * kv + 0.41) * 1e6; /* keV2 cm2/g */
     double angle = anode->angle_deg * (SKG_PI / 180);
     skg_element_sections(anode->z, energy_kev, sections);
-    double per_depth = skg_total_section(sections) / tan(angle), h = (kv - energy_kev) / STEPS;
+    double per_depth = deeper * skg_total_section(sections) / tan(angle), h = (kv - energy_kev) / STEPS;
     double sum =
         radiated(anode, energy_kev, energy_kev, per_depth, b) + radiated(anode, energy_kev, kv, per_depth, b);
     for (int i = 1; i < STEPS; i++)

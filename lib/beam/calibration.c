@@ -1,9 +1,10 @@
-/* The calibration of Ebel's model to spectra that SpekPy 2.5.4 computes (G. Poludniowski, A. Omar, R. Bujila, P. Andreo,
+/* The calibration of both models to spectra that SpekPy 2.5.4 computes (G. Poludniowski, A. Omar, R. Bujila, P. Andreo,
  * Technical Note: SpekPy v2.0, Medical Physics 48 (2021) 3630-3637), whose electrons follow Monte Carlo simulations.
  *
- * As published, Ebel's continuum is 45 to 60 % too high for tungsten, and the K lines are 3 to 4 times too weak; the L lines
- * are not calibrated at all. The factors were fitted by least squares to unfiltered spectra, continuum and lines separately,
- * each energy weighted by its share of the air kerma behind 0.5 and 2.5 mm of aluminium:
+ * As published, Ebel's continuum is 45 to 60 % too high for tungsten, and the K lines, which both models share, are 3 to 4
+ * times too weak; the L lines and Birch's continuum have no scale at all. The factors were fitted by least squares to
+ * unfiltered spectra, continua and lines separately, each energy weighted by its share of the air kerma behind 0.5 and 2.5 mm
+ * of aluminium (bench/validate/calibrate):
  *
  *     tungsten     20, 25, 30, 35, 40, 50, 60, 70, 80, 90, 100, 120, 150 kV at 6, 8, 12, 16, 20 degrees
  *     molybdenum   20, 25, 28, 30, 32, 35, 40, 49 kV at 12, 16, 20 degrees
@@ -21,39 +22,50 @@ enum { TUNGSTEN = 74 };
  *     continuum   factor exp(sum of c[i][j] x^i v^j), depth factor exp(d[0] + d[1] x + d[2] v + d[3] x v)
  *     K lines     factor exp(k[0] + k[1] t + k[3] t^2), depth factor exp(k[2] + k[4] t)
  *     L lines     factor 1e6 exp(l[0] + l[1] t + l[4] t^2), depth factor exp(l[2] + l[3] ln u); 0: none */
-typedef struct {
-    skg_tube_range range;
-    double c[4][3], d[4], k[5], l[5];
-} calibration;
-
-static const calibration calibrations[] = {
+static const skg_tube_calibration calibrations[] = {
     {.range = {.z = TUNGSTEN, .kvp = {20, 150}, .angle_deg = {6, 20}},
-     .c = {{-0.26528, -0.57181, -0.16581},
-           {-0.63719, 1.82084, 0.70077},
-           {0.52869, -2.93735, -1.34558},
-           {0.05661, 1.71574, 0.88452}},
-     .d = {-0.29947, 0.37146, -0.17210, 0.18890},
+     .continuum = {[SKG_TUBE_MODEL_EBEL] = {.c = {{-0.26528, -0.57181, -0.16581},
+                                                  {-0.63719, 1.82084, 0.70077},
+                                                  {0.52869, -2.93735, -1.34558},
+                                                  {0.05661, 1.71574, 0.88452}},
+                                            .d = {-0.29947, 0.37146, -0.17210, 0.18890}},
+                   [SKG_TUBE_MODEL_BIRCH] = {.c = {{17.95876, 0.40644, -0.15790},
+                                                   {5.72188, -1.21525, 1.08842},
+                                                   {-8.33552, 1.63493, -2.11539},
+                                                   {4.01228, -1.10565, 1.17225}},
+                                             .d = {-1.02967, 0.76355, -0.06929, 0.05092}}},
      .k = {1.13267, -0.20704, 1.27924, -0.01750, -0.84165},
      .l = {1.52205, -0.21778, 0.16689, -0.23292, -0.03205}},
     {.range = {.z = 42, .kvp = {20, 49}, .angle_deg = {12, 20}},
-     .c = {{0.03377, 0.52226, 0}, {-1.68634, -3.16945, 0}, {2.02033, 4.72521, 0}, {-0.63528, -2.35261, 0}},
-     .d = {0.24664, 0.09472, 0.85451, -0.92444},
+     .continuum = {[SKG_TUBE_MODEL_EBEL] = {.c = {{0.03377, 0.52226, 0},
+                                                  {-1.68634, -3.16945, 0},
+                                                  {2.02033, 4.72521, 0},
+                                                  {-0.63528, -2.35261, 0}},
+                                            .d = {0.24664, 0.09472, 0.85451, -0.92444}},
+                   [SKG_TUBE_MODEL_BIRCH] = {.c = {{18.37883, 1.53195, 0},
+                                                   {1.81948, -6.72314, 0},
+                                                   {-3.19278, 9.62122, 0},
+                                                   {1.46136, -4.80493, 0}},
+                                             .d = {0.16328, -0.91164, 1.89703, -2.83117}}},
      .k = {0.26222, -0.07114, 0.70916, 0.01645, -0.74285}},
     {.range = {.z = 45, .kvp = {20, 49}, .angle_deg = {12, 20}},
-     .c = {{-0.10035, 0.62262, 0}, {-0.81777, -3.13757, 0}, {0.56088, 4.29824, 0}, {0.10237, -2.04155, 0}},
-     .d = {0.07149, 0.86071, 1.16895, -0.53798},
+     .continuum = {[SKG_TUBE_MODEL_EBEL] = {.c = {{-0.10035, 0.62262, 0},
+                                                  {-0.81777, -3.13757, 0},
+                                                  {0.56088, 4.29824, 0},
+                                                  {0.10237, -2.04155, 0}},
+                                            .d = {0.07149, 0.86071, 1.16895, -0.53798}},
+                   [SKG_TUBE_MODEL_BIRCH] = {.c = {{18.37465, 1.76653, 0},
+                                                   {2.35126, -7.37030, 0},
+                                                   {-4.12197, 10.26741, 0},
+                                                   {1.97802, -5.03888, 0}},
+                                             .d = {0.22828, -0.72867, 2.49486, -3.15304}}},
      .k = {0.32165, -0.09980, 0.82460, 0.00940, -0.77039}},
 };
 
-static const calibration *find(int32_t z) {
+const skg_tube_calibration *skg_tube_calibration_of(int32_t z) {
     for (size_t i = 1; i < sizeof calibrations / sizeof *calibrations; i++)
         if (calibrations[i].range.z == z) return &calibrations[i];
     return &calibrations[0];
-}
-
-void skg_tube_range_find(int32_t z, skg_tube_range *range) {
-    *range = find(z)->range;
-    if (range->z != z) range->z = 0;
 }
 
 /* Beyond its range, a calibration continues as at the end of it: powers of the fit would grow without bounds. */
@@ -61,25 +73,29 @@ static double within(double kvp, const skg_tube_range *range) {
     return fmin(fmax(kvp, range->kvp[0]), range->kvp[1]);
 }
 
-double skg_tube_continuum(const skg_anode *anode, double energy_kev) {
-    const calibration *f = find(anode->z);
-    const double x = energy_kev / anode->kvp, v = log(within(anode->kvp, &f->range) / 80);
+double skg_tube_continuum(const skg_tube_calibration *calibration, int32_t model, const skg_anode *anode,
+                          double energy_kev) {
+    const skg_continuum_factors *f = &calibration->continuum[model];
+    const double x = energy_kev / anode->kvp, v = log(within(anode->kvp, &calibration->range) / 80);
     double logarithm = 0;
     for (int i = 3; i >= 0; i--) logarithm = logarithm * x + f->c[i][0] + v * (f->c[i][1] + v * f->c[i][2]);
     const double deeper = exp(f->d[0] + f->d[1] * x + (f->d[2] + f->d[3] * x) * v);
-    return exp(logarithm) * skg_ebel_continuum(anode, energy_kev, deeper);
+    return exp(logarithm) * (model == SKG_TUBE_MODEL_BIRCH ? skg_birch_continuum(anode, energy_kev, deeper)
+                                                           : skg_ebel_continuum(anode, energy_kev, deeper));
 }
 
-double skg_tube_line(const skg_anode *anode, int32_t shell, int line, double *energy_kev) {
-    const calibration *f = find(anode->z);
-    const double u = skg_ebel_overvoltage(anode, shell) * within(anode->kvp, &f->range) / anode->kvp;
+double skg_tube_line(const skg_tube_calibration *calibration, const skg_anode *anode, int32_t shell, int line,
+                     double *energy_kev) {
+    const double *k = calibration->k, *l = calibration->l;
+    const double u =
+        skg_ebel_overvoltage(anode, shell) * within(anode->kvp, &calibration->range) / anode->kvp;
     /* The fit begins 6 % above the edge; below, there are hardly any lines. */
     const double t = log(fmax(u - 1, 0.06));
     if (shell == SKG_SHELL_K)
-        return exp(f->k[0] + (f->k[1] + f->k[3] * t) * t) *
-               skg_ebel_line(anode, shell, line, exp(f->k[2] + f->k[4] * t), energy_kev);
+        return exp(k[0] + (k[1] + k[3] * t) * t) *
+               skg_ebel_line(anode, shell, line, exp(k[2] + k[4] * t), energy_kev);
     *energy_kev = 0;
-    if (f->l[0] == 0) return 0; /* 2 to 3 keV, which no window lets pass */
-    return 1e6 * exp(f->l[0] + (f->l[1] + f->l[4] * t) * t) *
-           skg_ebel_line(anode, shell, line, exp(f->l[2] + f->l[3] * log(fmax(u, 1))), energy_kev);
+    if (l[0] == 0) return 0; /* 2 to 3 keV, which no window lets pass */
+    return 1e6 * exp(l[0] + (l[1] + l[4] * t) * t) *
+           skg_ebel_line(anode, shell, line, exp(l[2] + l[3] * log(fmax(u, 1))), energy_kev);
 }

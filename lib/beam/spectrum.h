@@ -42,9 +42,9 @@ typedef struct {
 enum { SKG_SHELL_K = 0, SKG_SHELL_L = 1 };
 
 /* Bremsstrahlung photons per keV, mAs and mm2 at 1 m, without filters, as published if deeper is 1. deeper: factor on the
- * depth at which photons are made. Birch's continuum is a shape only: tube.c scales it. */
+ * depth at which photons are made. Birch's has an unknown unit, which the calibration knows. */
 double skg_ebel_continuum(const skg_anode *anode, double energy_kev, double deeper);
-double skg_birch_continuum(const skg_anode *anode, double energy_kev);
+double skg_birch_continuum(const skg_anode *anode, double energy_kev, double deeper);
 
 /* Tube voltage over the energy of the shell's edge; 0: the element's shell is not in the tables. */
 double skg_ebel_overvoltage(const skg_anode *anode, int32_t shell);
@@ -53,9 +53,31 @@ double skg_ebel_overvoltage(const skg_anode *anode, int32_t shell);
  * no such line or the voltage is too low. */
 double skg_ebel_line(const skg_anode *anode, int32_t shell, int line, double deeper, double *energy_kev);
 
-/* The same, calibrated (calibration.c). */
-double skg_tube_continuum(const skg_anode *anode, double energy_kev);
-double skg_tube_line(const skg_anode *anode, int32_t shell, int line, double *energy_kev);
+/* The range for which the calibration of an anode was made. */
+typedef struct {
+    int32_t z, reserved;
+    double kvp[2], angle_deg[2];
+} skg_tube_range;
+
+/* Factors on continuum and lines, and on the depths at which photons are made: calibration.c has their formulas. */
+typedef struct {
+    double c[4][3], d[4];
+} skg_continuum_factors;
+
+typedef struct {
+    skg_tube_range range;
+    skg_continuum_factors continuum[2]; /* by SKG_TUBE_MODEL_ */
+    double k[5], l[5];
+} skg_tube_calibration;
+
+/* The calibration of an anode; that of tungsten if the element has none. */
+const skg_tube_calibration *skg_tube_calibration_of(int32_t z);
+
+/* Continuum and lines, calibrated, in the units of above. */
+double skg_tube_continuum(const skg_tube_calibration *calibration, int32_t model, const skg_anode *anode,
+                          double energy_kev);
+double skg_tube_line(const skg_tube_calibration *calibration, const skg_anode *anode, int32_t shell, int line,
+                     double *energy_kev);
 
 skg_status skg_tube_check(const skg_tube *tube);
 
@@ -72,13 +94,5 @@ typedef struct {
  * the tube's. */
 skg_status skg_heel_losses(const skg_heel_tube *heel, double angle_deg, const skg_spectrum *spectrum,
                            double *losses);
-
-/* The range for which the calibration of an anode was made. z 0: this element has none, and has that of tungsten. */
-typedef struct {
-    int32_t z, reserved;
-    double kvp[2], angle_deg[2];
-} skg_tube_range;
-
-void skg_tube_range_find(int32_t z, skg_tube_range *range);
 
 #endif

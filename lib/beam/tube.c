@@ -48,9 +48,10 @@ skg_status skg_tube_check(const skg_tube *tube) {
     return check_value("an output's distance", tube->output_at_mm, 1e-3, 1e9, "mm");
 }
 
-/* The unfiltered continuum in bins. Birch's is still a shape without scale. */
-static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spectrum) {
-    skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
+/* The unfiltered continuum in bins. */
+static skg_status continuum(const skg_tube *tube, skg_spectrum **spectrum) {
+    const skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
+    const skg_tube_calibration *calibration = skg_tube_calibration_of(tube->anode);
     double w = tube->bin_kev, first = SKG_LOWEST_KEV;
     int64_t count = (int64_t)ceil((tube->kvp - first) / w - 1e-9);
     if (count < 2 || count > MOST_BINS)
@@ -61,8 +62,7 @@ static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spec
     for (int64_t i = 0; i < count; i++) {
         double low = first + (double)i * w, high = fmin(low + w, tube->kvp), middle = (low + high) / 2;
         s->energy_kev[i] = middle;
-        s->photons[i] = (high - low) * (model == SKG_TUBE_MODEL_EBEL ? skg_tube_continuum(&anode, middle)
-                                                                     : skg_birch_continuum(&anode, middle));
+        s->photons[i] = (high - low) * skg_tube_continuum(calibration, tube->model, &anode, middle);
     }
     return SKG_OK;
 }
@@ -70,16 +70,17 @@ static skg_status shape(const skg_tube *tube, int32_t model, skg_spectrum **spec
 /* Adds the lines of a shell, each to the bin that holds its energy. */
 static void add_lines(const skg_tube *tube, int32_t shell, skg_spectrum *spectrum) {
     const skg_anode anode = {tube->anode, tube->kvp, tube->angle_deg};
+    const skg_tube_calibration *calibration = skg_tube_calibration_of(tube->anode);
     const int lines = shell == SKG_SHELL_K ? SKG_K_LINES : SKG_L_LINES;
     for (int k = 0; k < lines; k++) {
-        double kev = 0, photons = skg_tube_line(&anode, shell, k, &kev);
+        double kev = 0, photons = skg_tube_line(calibration, &anode, shell, k, &kev);
         int64_t i = (int64_t)((kev - SKG_LOWEST_KEV) / tube->bin_kev);
         if (photons > 0 && i >= 0 && i < spectrum->count) spectrum->photons[i] += photons;
     }
 }
 
-/* The air kerma behind 2.5 mm of aluminium and, if hvl is given, the half-value layer there. */
-static skg_status hardened(const skg_spectrum *spectrum, double *kerma, double *hvl) {
+/* The first half-value layer behind 2.5 mm of aluminium. */
+static skg_status hardened(const skg_spectrum *spectrum, double *hvl) {
     skg_filter filter = {.size = (int32_t)sizeof filter, .thickness_mm = 2.5};
     skg_material *aluminium = NULL;
     skg_spectrum *behind = NULL;
@@ -88,8 +89,7 @@ static skg_status hardened(const skg_spectrum *spectrum, double *kerma, double *
     SKG_TRY(skg_material_create_element(13, &aluminium));
     filter.material = aluminium;
     SKG_TRY_CLEANUP(skg_spectrum_create_filtered(spectrum, 1, &filter, &behind));
-    *kerma = skg_spectrum_kerma(behind);
-    if (hvl) SKG_TRY_CLEANUP(skg_half_value_layers(behind, aluminium, hvl, &second));
+    SKG_TRY_CLEANUP(skg_half_value_layers(behind, aluminium, hvl, &second));
 cleanup:
     skg_spectrum_release(&behind);
     skg_material_release(&aluminium);
@@ -97,32 +97,17 @@ cleanup:
 }
 
 skg_status skg_tube_bare(const skg_tube *tube, skg_spectrum **spectrum) {
-    SKG_TRY(shape(tube, tube->model, spectrum));
-    skg_status status = SKG_OK;
-    if (tube->model == SKG_TUBE_MODEL_BIRCH) {
-        skg_spectrum *reference = NULL;
-        double own = 0, wanted = 0;
-        SKG_TRY_CLEANUP(hardened(*spectrum, &own, NULL));
-        SKG_TRY_CLEANUP(shape(tube, SKG_TUBE_MODEL_EBEL, &reference));
-        status = hardened(reference, &wanted, NULL);
-        skg_spectrum_release(&reference);
-        if (status != SKG_OK) goto cleanup;
-        for (int64_t i = 0; i < (*spectrum)->count; i++) (*spectrum)->photons[i] *= wanted / own;
-    }
+    SKG_TRY(continuum(tube, spectrum));
     add_lines(tube, SKG_SHELL_K, *spectrum);
     add_lines(tube, SKG_SHELL_L, *spectrum);
     return SKG_OK;
-cleanup:
-    skg_spectrum_release(spectrum);
-    return status;
 }
 
 /* Says what lies outside the range for which the model was compared with others. */
 static void warn_of_range(const skg_tube *tube, const skg_logger *log) {
     const char *symbol = skg_elements[tube->anode].symbol;
-    skg_tube_range range;
-    skg_tube_range_find(tube->anode, &range);
-    if (range.z == 0) {
+    const skg_tube_range *range = &skg_tube_calibration_of(tube->anode)->range;
+    if (range->z != tube->anode) {
         skg_logger_say(
             log, SKG_LOG_WARNING,
             "an anode of %s: the tube model is validated for W, Mo and Rh only; output and lines are "
@@ -130,16 +115,16 @@ static void warn_of_range(const skg_tube *tube, const skg_logger *log) {
             symbol);
         return;
     }
-    if (tube->kvp < range.kvp[0] || tube->kvp > range.kvp[1])
+    if (tube->kvp < range->kvp[0] || tube->kvp > range->kvp[1])
         skg_logger_say(log, SKG_LOG_WARNING,
                        "%g kV: the tube model is validated from %g to %g kV only, with an anode of %s",
-                       tube->kvp, range.kvp[0], range.kvp[1], symbol);
-    if (tube->angle_deg < range.angle_deg[0] || tube->angle_deg > range.angle_deg[1])
+                       tube->kvp, range->kvp[0], range->kvp[1], symbol);
+    if (tube->angle_deg < range->angle_deg[0] || tube->angle_deg > range->angle_deg[1])
         skg_logger_say(
             log, SKG_LOG_WARNING,
             "an anode angle of %g degrees: the tube model is validated from %g to %g degrees only, with "
             "an anode of %s",
-            tube->angle_deg, range.angle_deg[0], range.angle_deg[1], symbol);
+            tube->angle_deg, range->angle_deg[0], range->angle_deg[1], symbol);
 }
 
 /* The models are validated behind 0.5 mm of aluminium or as much of another metal, where next to nothing is left below
@@ -165,9 +150,9 @@ static skg_status warn(const skg_tube *tube, const skg_spectrum *bare, const skg
     warn_of_range(tube, &log);
     warn_of_filters(tube, behind, &log);
     if (tube->kvp < 70) return SKG_OK;
-    double kerma = 0, needed = 0, hvl = 0, second = 0;
+    double needed = 0, hvl = 0, second = 0;
     skg_material *aluminium = NULL;
-    SKG_TRY(hardened(bare, &kerma, &needed));
+    SKG_TRY(hardened(bare, &needed));
     SKG_TRY(skg_material_create_element(13, &aluminium));
     skg_status status = skg_half_value_layers(behind, aluminium, &hvl, &second);
     skg_material_release(&aluminium);

@@ -74,8 +74,8 @@ SKG_API skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, doub
 enum skg_tube_model {
     /** H. Ebel, X-Ray Spectrom. 28 (1999) 255: continuum and lines of a reflection target, calibrated. */
     SKG_TUBE_MODEL_EBEL = 0,
-    /** R. Birch and M. Marshall, Phys. Med. Biol. 24 (1979) 505: the continuum that the paper uses. Its output
-     * alone is calibrated: half-value layers are up to 8 % too large towards 150 kV. */
+    /** R. Birch and M. Marshall, Phys. Med. Biol. 24 (1979) 505: the continuum that the paper uses. It is calibrated
+     * as Ebel's is, and has the same lines. */
     SKG_TUBE_MODEL_BIRCH = 1
 };
 

@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Writes docs/validation.md to standard output; bench/validate/run calls it. Exit status 1: a bar is missed."""
+from __future__ import annotations
+
+import argparse
+import datetime
+import sys
+import warnings
+
+import attenuation
+import body
+import images
+import lengths
+import packages
+import skiagraph as sk
+import tubes
+from page import Page
+
+HEAD = """# Validation
+
+Every claim of this project that has a reference outside it: ours, the reference, its source and date, and the difference.
+`bench/validate/run` makes this page; do not edit it. The rows of this table sum it up; each has a section below.
+
+SpekPy and xraylib serve as references where Python has them, otherwise the tables of `bench/validate/tables` that they gave
+do (`bench/validate/packages.py` makes them again). Data that are not part of the repository lie in the folder `$SKG_DATA`.
+"""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--build", required=True)
+    parser.add_argument("--data", required=True)
+    parser.add_argument("--commit", required=True)
+    given = parser.parse_args()
+    warnings.simplefilter("ignore", sk.SkiagraphWarning)  # beams are softer than IEC 60601-1-3 asks for, on purpose
+    page = Page()
+    attenuation.add(page)
+    tubes.add(page)
+    lengths.add(page)
+    images.add(page)
+    body.add(page, given.build, given.data)
+    names = [packages.rows_of(name)[1] for name in packages.PACKAGES]
+    head = [*HEAD.splitlines(), f"Made {datetime.date.today()} from commit {given.commit}. Packages: {'; '.join(names)}."]
+    sys.stdout.write(page.write(head))
+    for missed in page.missed:
+        print(f"missed: {missed}", file=sys.stderr)
+    return 1 if page.missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
