@@ -44,6 +44,12 @@ typedef struct {
     const skg_scan_file *file;
     /** Seed of the noise of every frame. The number of the projection is its index. */
     int64_t noise_seed;
+    /** Number of parts that move from one projection to the next, beside what `motion` does. */
+    int64_t moving_count;
+    /** [moving_count] numbers of these parts; used until the run is released */
+    const int64_t *moving_parts;
+    /** [projections of the scan][moving_count][16] their poses; used until the run is released */
+    const double *moving_poses;
 } skg_scan_run_options;
 
 /** Prepares the options of a run, of `size` bytes (export.h). */
