@@ -265,7 +265,7 @@ START_TEST(phases_have_their_projections) {
         0,
         "scan thorax.json --breathing --phases 4 -o scan.mha --quiet --set Detector.NumberOfPixels=[16,16] "
         "--set Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]' --set "
-        "Breathing.Period=4 --set Breathing.StartPhase=0 --set Scan='{\"NumberOfProjections\":16,\"FinalAngle\":360,\"StartTime\":0.1,\"Interval\":0.5}'");
+        "Breathing.Period=4 --set Breathing.StartPhase=0 --set Breathing.Events=[] --set Scan='{\"NumberOfProjections\":16,\"FinalAngle\":360,\"StartTime\":0.1,\"Interval\":0.5}'");
     const size_t size = read_file("scan.mha", bytes);
     for (int bin = 0; bin < 4; bin++) {
         char name[64];
