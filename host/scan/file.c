@@ -1,6 +1,7 @@
 /* Opening, writing and ending a file of projections. */
 #include "scan/format.h"
 
+#include "core/element.h"
 #include "core/names.h"
 #include "core/output.h"
 #include "core/plain.h"
@@ -193,10 +194,11 @@ static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_
     SKG_TRY(skg_copy_text(o->hash, (char **)&file->options.hash));
     SKG_TRY(skg_copy_text(o->name ? o->name : "", (char **)&file->options.name));
     SKG_TRY(skg_copy_text(o->unit ? o->unit : "", (char **)&file->options.unit));
+    SKG_TRY(skg_copy_text(o->stem, (char **)&file->options.stem));
     SKG_TRY(find_part(file, o));
     skg_view_init(&file->view);
     SKG_TRY(skg_scan_view_get(o->scan, 0, &file->view));
-    file->bytes = file->view.columns * file->view.rows * (o->type == SKG_TYPE_FLOAT64 ? 8 : 4);
+    file->bytes = file->view.columns * file->view.rows * skg_element_bytes(o->type);
     return skg_alloc(file->projections, 1, "list of projections", &file->done);
 }
 
@@ -226,11 +228,11 @@ skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *opt
     if (o.flats < 0 || o.darks < 0 || o.flats > INT32_MAX || o.darks > INT32_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "scan file: %" PRId64 " flat and %" PRId64 " dark fields", o.flats,
                         o.darks);
-    if (o.type != SKG_TYPE_FLOAT32 && o.type != SKG_TYPE_FLOAT64)
+    if (o.type < SKG_TYPE_FLOAT32 || o.type > SKG_TYPE_UINT16)
         return skg_fail(SKG_ERR_ARGUMENT, "scan file: type %" PRId32 " is no SKG_TYPE_ value", o.type);
     SKG_TRY(skg_alloc(1, sizeof *file, "file of projections", &file));
     file->options = o;
-    file->options.hash = file->options.name = file->options.unit = NULL;
+    file->options.hash = file->options.name = file->options.unit = file->options.stem = NULL;
     file->lock = file->data = file->progress = -1;
     skg_scan_retain(o.scan);
     SKG_TRY_CLEANUP(prepare(file, path, &o));
@@ -252,6 +254,7 @@ void skg_scan_file_release(skg_scan_file **file) {
     skg_free(&f->options.hash);
     skg_free(&f->options.name);
     skg_free(&f->options.unit);
+    skg_free(&f->options.stem);
     skg_free(&f->path);
     skg_free(&f->lock_path);
     skg_free(&f->progress_path);
@@ -281,11 +284,12 @@ skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const 
     SKG_NEEDS(file);
     if (flats > 0) SKG_NEEDS(white);
     if (darks > 0) SKG_NEEDS(dark);
+    if (file->format->write_fields) return file->format->write_fields(file, flats, white, darks, dark);
     SKG_TRY(write_fields(file, file->white_at, file->options.flats, flats, white));
     return write_fields(file, file->dark_at, file->options.darks, darks, dark);
 }
 
-static skg_status check_index(const skg_scan_file *file, int64_t index) {
+skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index) {
     if (index >= file->first && index < file->first + file->projections) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT,
                     "%s: no projection %" PRId64 "; projections are %" PRId64 " to %" PRId64, file->path,
@@ -295,7 +299,7 @@ static skg_status check_index(const skg_scan_file *file, int64_t index) {
 skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done) {
     SKG_NEEDS(file);
     SKG_NEEDS(done);
-    SKG_TRY(check_index(file, index));
+    SKG_TRY(skg_scan_file_check_index(file, index));
     *done = file->done[index - file->first] == 1;
     return SKG_OK;
 }
@@ -321,7 +325,7 @@ skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t
     SKG_NEEDS(file);
     SKG_NEEDS(indices);
     SKG_NEEDS(images);
-    for (int64_t i = 0; i < count; i++) SKG_TRY(check_index(file, indices[i]));
+    for (int64_t i = 0; i < count; i++) SKG_TRY(skg_scan_file_check_index(file, indices[i]));
     for (int64_t i = 0; i < count; i++) {
         const char *image = (const char *)images + i * file->bytes;
         if (file->format->write)
@@ -334,47 +338,6 @@ skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t
                                       file->phase_at + (indices[i] - file->first) * (int64_t)sizeof none));
     }
     return mark(file, count, indices);
-}
-
-static skg_status read_at(const skg_scan_file *file, void *to, int64_t count, int64_t at) {
-    char *bytes = to;
-    while (count > 0) {
-        const ssize_t got = pread(file->data, bytes, (size_t)count, (off_t)at);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0)
-            return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", file->path,
-                            got < 0 ? strerror(errno) : "it ends");
-        bytes += got, at += got, count -= got;
-    }
-    return SKG_OK;
-}
-
-skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part) {
-    SKG_PLAIN;
-    char *image = NULL;
-    skg_status status = SKG_OK;
-    SKG_NEEDS(file);
-    SKG_NEEDS(part);
-    if (part->data < 0 || file->data < 0)
-        return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "%s: folders are not joined; write their projections to one folder", part->path);
-    SKG_TRY(check_index(file, part->first));
-    SKG_TRY(check_index(file, part->first + part->projections - 1));
-    if (part->bytes != file->bytes || part->options.samples != file->options.samples)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: has another type or number of source samples than %s",
-                        part->path, file->path);
-    SKG_TRY(skg_alloc(file->bytes, 1, "projection", &image));
-    for (int64_t k = 0; k < part->projections && status == SKG_OK; k++) {
-        const int64_t index = part->first + k;
-        double phase = (double)NAN;
-        if (part->done[k] != 1 || file->done[index - file->first] == 1) continue;
-        status = read_at(part, image, part->bytes, part->data_at + k * part->data_step);
-        if (status == SKG_OK && part->phase_at)
-            status = read_at(part, &phase, sizeof phase, part->phase_at + k * (int64_t)sizeof phase);
-        if (status == SKG_OK) status = skg_scan_file_write(file, 1, &index, image, &phase);
-    }
-    skg_free(&image);
-    return status;
 }
 
 skg_status skg_scan_file_finish(skg_scan_file *file) {

@@ -74,7 +74,7 @@ skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, s
     const int32_t warned = skg_plan_warned_unseen_set(plan, 1);
     for (int64_t f = 0; f < count && status == SKG_OK; f++) {
         frame.index = work.projections + f;
-        const int64_t at = f * work.image_elements * skg_scan_element(work.options.type);
+        const int64_t at = f * work.image_elements * skg_element_bytes(work.options.type);
         status = render(plan, &frame, work.options.type, (char *)images + at);
     }
     skg_plan_warned_unseen_set(plan, warned);

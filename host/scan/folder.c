@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { NAME_LENGTH = 64 };
+enum { NAME_LENGTH = 200 };
 
 static skg_status member(const char *path, const char *name, char **result) {
     char ending[NAME_LENGTH + 1];
@@ -23,7 +23,10 @@ static skg_status member(const char *path, const char *name, char **result) {
 
 static skg_status projection_path(const skg_scan_file *file, int64_t index, char **result) {
     char name[NAME_LENGTH];
-    snprintf(name, sizeof name, "projection-%05" PRId64 ".tif", index);
+    const char *stem = file->options.stem;
+    const int length = stem ? snprintf(name, sizeof name, "%s_%04" PRId64 ".tif", stem, index)
+                            : snprintf(name, sizeof name, "projection-%05" PRId64 ".tif", index);
+    if (length >= NAME_LENGTH) return skg_output_fail(file->path, ENAMETOOLONG, "");
     return member(file->path, name, result);
 }
 
@@ -64,25 +67,54 @@ static skg_status find_done(skg_scan_file *file) {
     return SKG_OK;
 }
 
+static skg_status write_picture(const skg_scan_file *file, const skg_view *view, const void *image,
+                                const char *path) {
+    skg_picture picture;
+    skg_picture_init(&picture);
+    picture.type = file->options.type;
+    picture.columns = view->columns;
+    picture.rows = view->rows;
+    picture.data = image;
+    picture.name = file->options.name;
+    picture.unit = file->options.unit;
+    picture.view = view;
+    return skg_picture_write(&picture, path);
+}
+
 static skg_status write_one(skg_scan_file *file, int64_t index, const void *image, double phase) {
     char *path = NULL;
-    skg_picture picture;
     skg_view view;
     (void)phase;
     skg_view_init(&view);
     SKG_TRY(skg_scan_view_get(file->options.scan, index, &view));
-    skg_picture_init(&picture);
-    picture.type = file->options.type;
-    picture.columns = view.columns;
-    picture.rows = view.rows;
-    picture.data = image;
-    picture.name = file->options.name;
-    picture.unit = file->options.unit;
-    picture.view = &view;
     SKG_TRY(projection_path(file, index, &path));
-    skg_status status = skg_picture_write(&picture, path);
+    skg_status status = write_picture(file, &view, image, path);
     skg_free(&path);
     return status;
+}
+
+/* STEM_flat_0000.tif, or STEM_flat.tif if there is one. */
+static skg_status write_field(skg_scan_file *file, const char *kind, int64_t field, int64_t count,
+                              const void *image) {
+    char name[NAME_LENGTH], number[32] = "", *path = NULL;
+    if (count > 1) snprintf(number, sizeof number, "_%04" PRId64, field);
+    if (snprintf(name, sizeof name, "%s_%s%s.tif", file->options.stem, kind, number) >= NAME_LENGTH)
+        return skg_output_fail(file->path, ENAMETOOLONG, "");
+    SKG_TRY(member(file->path, name, &path));
+    skg_status status = write_picture(file, &file->view, image, path);
+    skg_free(&path);
+    return status;
+}
+
+/* Only folders with a stem have them. */
+static skg_status write_fields(skg_scan_file *file, int64_t flats, const void *white, int64_t darks,
+                               const void *dark) {
+    if (!file->options.stem) return SKG_OK;
+    for (int64_t f = 0; f < flats; f++)
+        SKG_TRY(write_field(file, "flat", f, flats, (const char *)white + f * file->bytes));
+    for (int64_t d = 0; d < darks; d++)
+        SKG_TRY(write_field(file, "dark", d, darks, (const char *)dark + d * file->bytes));
+    return SKG_OK;
 }
 
 /* Removes the projections of another scan, as many as this one has; its own would take their names. */
@@ -100,5 +132,9 @@ static skg_status remove_all(skg_scan_file *file) {
     return SKG_OK;
 }
 
-const skg_scan_format skg_scan_format_folder = {{NULL},    lay_out,    NULL, identify, write_one,
-                                                find_done, remove_all, 0,    0};
+const skg_scan_format skg_scan_format_folder = {.lay_out = lay_out,
+                                                .identify = identify,
+                                                .write = write_one,
+                                                .write_fields = write_fields,
+                                                .find_done = find_done,
+                                                .remove = remove_all};

@@ -47,6 +47,9 @@ struct skg_scan_format {
     skg_status (*identify)(const char *path, skg_scan_identity *identity);
     /* Instead of writing in place. */
     skg_status (*write)(skg_scan_file *file, int64_t index, const void *image, double phase);
+    /* Writes flat and dark fields instead of white_at and dark_at. */
+    skg_status (*write_fields)(skg_scan_file *file, int64_t flats, const void *white, int64_t darks,
+                               const void *dark);
     /* Finds what is done where there is no NAME.progress. */
     skg_status (*find_done)(skg_scan_file *file);
     /* Removes the file for one that replaces it; NULL: it is one file. */
@@ -66,6 +69,9 @@ skg_status skg_scan_path_with(const char *path, const char *ending, char **resul
 /* "ScanHash = ...\nScanSamples = ...\n", and the other way from the first 4 KiB of a file. */
 void skg_scan_write_identity(const skg_scan_file *file, char *text, size_t size);
 skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity);
+
+/* Fails if a file does not have a projection of the scan. */
+skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index);
 
 /* Writes all bytes at a place. */
 skg_status skg_scan_write_at(const char *path, int descriptor, const void *bytes, int64_t count, int64_t at);

@@ -66,7 +66,9 @@ static int make_dataset(hid_t parent, const char *name, hid_t type, int rank, co
 }
 
 static hid_t element_type(const skg_scan_file *file) {
-    return file->options.type == SKG_TYPE_FLOAT64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    return file->options.type == SKG_TYPE_FLOAT64  ? H5T_NATIVE_DOUBLE
+           : file->options.type == SKG_TYPE_UINT16 ? H5T_NATIVE_UINT16
+                                                   : H5T_NATIVE_FLOAT;
 }
 
 /* What depends on the projection alone: [3] source, centre, column step, row step; time; angle in degrees. */
@@ -129,7 +131,7 @@ static int write_rotation(hid_t group, const skg_scan_file *file) {
         const double *vector;
     } vectors[] = {{"axis", o->axis}, {"centre_of_rotation", o->centre}};
     int done = write_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection);
-    for (int v = 0; v < 2 && done && !file->options.scan->poses; v++) {
+    for (int v = 0; v < 2 && done && (!file->options.scan->poses || o->step_rad != 0); v++) {
         const hid_t attribute =
             H5Acreate2(group, vectors[v].name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
         done = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, vectors[v].vector) >= 0;

@@ -43,6 +43,11 @@ static skg_status check_options(const skg_scan_run_options *o, int64_t projectio
                         SUBFRAMES_MOST);
     if (o->only_count < 0 || (o->only_count > 0 && !o->only))
         return skg_fail(SKG_ERR_ARGUMENT, "run: `only` has %" PRId64 " numbers, but no array", o->only_count);
+    if (o->moving_count < 0 || (o->moving_count > 0 && (!o->moving_parts || !o->moving_poses || o->motion)))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "run: %" PRId64 " moving parts; give their numbers and poses, and no motion beside "
+                        "them",
+                        o->moving_count);
     for (int64_t i = 0; i < o->only_count; i++)
         if (o->only[i] < 0 || o->only[i] >= projections || (i > 0 && o->only[i] <= o->only[i - 1]))
             return skg_fail(SKG_ERR_ARGUMENT,
@@ -81,7 +86,7 @@ static skg_status submit(skg_scan_run *run, skg_scan_slot *slot) {
 static skg_status prepare(skg_scan_run *run, const skg_scan_run_options *o) {
     SKG_TRY(skg_scan_work_init(&run->work));
     SKG_TRY(list_projections(run, o));
-    const int64_t bytes = run->work.image_elements * skg_scan_element(run->work.options.type) * o->subframes;
+    const int64_t bytes = run->work.image_elements * skg_element_bytes(run->work.options.type) * o->subframes;
     run->batch = BATCH_BYTES / bytes < BATCH_MOST ? BATCH_BYTES / bytes : BATCH_MOST;
     if (run->batch < 1) run->batch = 1;
     if (o->batch > 0) run->batch = o->batch;

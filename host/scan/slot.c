@@ -28,7 +28,7 @@ skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, in
     SKG_TRY(skg_alloc(frames, sizeof *slot->jobs, "batch of projections", &slot->jobs));
     SKG_TRY(skg_alloc(frames, sizeof *slot->frames, "batch of projections", &slot->frames));
     SKG_TRY(skg_alloc(frames, sizeof *slot->views, "batch of projections", &slot->views));
-    return skg_alloc(frames * work->image_elements, (size_t)skg_scan_element(work->options.type),
+    return skg_alloc(frames * work->image_elements, (size_t)skg_element_bytes(work->options.type),
                      "batch of projections", &slot->images);
 }
 
@@ -73,7 +73,7 @@ static skg_status submit_job(const skg_scan_work *work, skg_scan_slot *slot, int
     skg_output output;
     skg_output_init(&output);
     output.type = work->options.type;
-    output.data = (char *)slot->images + first * work->image_elements * skg_scan_element(output.type);
+    output.data = (char *)slot->images + first * work->image_elements * skg_element_bytes(output.type);
     SKG_TRY(skg_plan_submit(work->plan, count, slot->frames + first, &output, &slot->jobs[slot->job_count]));
     slot->job_count++;
     return SKG_OK;
@@ -90,6 +90,11 @@ static skg_status prepare_frame(const skg_scan_work *work, skg_scan_slot *slot, 
     slot->frames[f].view = &slot->views[f];
     slot->frames[f].noise_seed = work->options.noise_seed;
     slot->frames[f].index = slot->indices[p];
+    slot->frames[f].pose_count = work->options.moving_count;
+    slot->frames[f].pose_parts = work->options.moving_parts;
+    if (work->options.moving_count > 0)
+        slot->frames[f].poses =
+            work->options.moving_poses + slot->indices[p] * work->options.moving_count * 16;
     if (!work->options.motion) return SKG_OK;
     SKG_TRY(skg_motion_pose_at_time(work->options.motion, time));
     if (f % subframes == subframes / 2) {

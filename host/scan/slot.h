@@ -2,6 +2,8 @@
 #ifndef SKG_SCAN_SLOT_H
 #define SKG_SCAN_SLOT_H
 
+#include "core/element.h"
+
 #include <skiagraph/scan_run.h>
 
 /* What is computed and how; constant during a run. */
@@ -24,11 +26,6 @@ typedef struct {
     skg_frame *frames; /* of a job */
     skg_view *views;
 } skg_scan_slot;
-
-/* Bytes of an element of enum skg_type. */
-static inline int64_t skg_scan_element(int32_t type) {
-    return type == SKG_TYPE_FLOAT64 ? 8 : 4;
-}
 
 skg_status skg_scan_work_init(skg_scan_work *work);
 

@@ -1,5 +1,6 @@
 /* Stacks of projections without a library of their own: MetaImage with its header inside (.mha) or beside (.raw with
  * .mhd), and BigTIFF. */
+#include "core/element.h"
 #include "core/output.h"
 #include "core/vector.h"
 #include "image/image.h"
@@ -15,8 +16,10 @@
 
 enum { HEADER_LENGTH = 2048 };
 
-static int is_double(const skg_scan_file *file) {
-    return file->options.type == SKG_TYPE_FLOAT64;
+static const char *metaimage_type(const skg_scan_file *file) {
+    return file->options.type == SKG_TYPE_FLOAT64  ? "MET_DOUBLE"
+           : file->options.type == SKG_TYPE_UINT16 ? "MET_USHORT"
+                                                   : "MET_FLOAT";
 }
 
 static void title(const skg_scan_file *file, char *text, size_t size) {
@@ -45,8 +48,7 @@ static int metaimage_header(const skg_scan_file *file, const char *data, char *t
         "Offset = %s\nCenterOfRotation = 0 0 0\nElementSpacing = %s\nDimSize = %" PRId64 " %" PRId64
         " %" PRId64 "\nElementType = %s\nElementDataFile = %s\n",
         heading, identity, file->options.flat_field, skg_host_is_big_endian() ? "True" : "False", offset,
-        spacing, view->columns, view->rows, file->projections, is_double(file) ? "MET_DOUBLE" : "MET_FLOAT",
-        data);
+        spacing, view->columns, view->rows, file->projections, metaimage_type(file), data);
 }
 
 static skg_status lay_out_mha(skg_scan_file *file, const char *temporary) {
@@ -133,7 +135,7 @@ static int64_t tiff_data(const skg_scan_file *file) {
 static char *put_directory(const skg_scan_file *file, int64_t page, char *to) {
     enum { TEXT = 2, SHORT = 3, LONG8 = 16, WIDTH = 256, LENGTH = 257, BITS = 258, COMPRESSION = 259 };
     enum { PHOTOMETRIC = 262, DESCRIPTION = 270, STRIPS = 273, SAMPLES = 277, ROWS = 278, BYTES = 279 };
-    enum { PAGE_NUMBER = 254, FORMAT = 339, IEEE = 3 };
+    enum { PAGE_NUMBER = 254, FORMAT = 339, UNSIGNED = 1, IEEE = 3 };
     const uint64_t tags = TIFF_TAGS;
     const int64_t next = TIFF_HEADER + TIFF_TEXT + (page + 1) * TIFF_DIRECTORY;
     const uint64_t after = page + 1 < file->projections ? (uint64_t)next : 0;
@@ -141,7 +143,7 @@ static char *put_directory(const skg_scan_file *file, int64_t page, char *to) {
     to = put_tag(to, PAGE_NUMBER, SHORT, 1, 2); /* one page of several */
     to = put_tag(to, WIDTH, LONG8, 1, file->view.columns);
     to = put_tag(to, LENGTH, LONG8, 1, file->view.rows);
-    to = put_tag(to, BITS, SHORT, 1, is_double(file) ? 64 : 32);
+    to = put_tag(to, BITS, SHORT, 1, 8 * skg_element_bytes(file->options.type));
     to = put_tag(to, COMPRESSION, SHORT, 1, 1);
     to = put_tag(to, PHOTOMETRIC, SHORT, 1, 1);
     to = put_tag(to, DESCRIPTION, TEXT, TIFF_TEXT, TIFF_HEADER);
@@ -149,7 +151,7 @@ static char *put_directory(const skg_scan_file *file, int64_t page, char *to) {
     to = put_tag(to, SAMPLES, SHORT, 1, 1);
     to = put_tag(to, ROWS, LONG8, 1, file->view.rows);
     to = put_tag(to, BYTES, LONG8, 1, file->bytes);
-    to = put_tag(to, FORMAT, SHORT, 1, IEEE);
+    to = put_tag(to, FORMAT, SHORT, 1, file->options.type == SKG_TYPE_UINT16 ? UNSIGNED : IEEE);
     return put(to, &after, sizeof after);
 }
 
@@ -189,8 +191,13 @@ static skg_status remove_raw(skg_scan_file *file) {
 }
 
 const skg_scan_format skg_scan_format_mha = {
-    {".mha"}, lay_out_mha, locate_mha, skg_scan_read_identity, NULL, NULL, NULL, 0, 0};
-const skg_scan_format skg_scan_format_raw = {{".raw"},   lay_out_raw, locate_raw, identify_raw, NULL, NULL,
-                                             remove_raw, 0,           0};
-const skg_scan_format skg_scan_format_tiff = {
-    {".tif", ".tiff"}, lay_out_tiff, locate_tiff, skg_scan_read_identity, NULL, NULL, NULL, 0, 0};
+    .extensions = {".mha"}, .lay_out = lay_out_mha, .locate = locate_mha, .identify = skg_scan_read_identity};
+const skg_scan_format skg_scan_format_raw = {.extensions = {".raw"},
+                                             .lay_out = lay_out_raw,
+                                             .locate = locate_raw,
+                                             .identify = identify_raw,
+                                             .remove = remove_raw};
+const skg_scan_format skg_scan_format_tiff = {.extensions = {".tif", ".tiff"},
+                                              .lay_out = lay_out_tiff,
+                                              .locate = locate_tiff,
+                                              .identify = skg_scan_read_identity};

@@ -3,8 +3,8 @@
 #define SKG_READER_H
 
 #include "scene/scene.h"
-#include "setup/json.h"
 #include "setup/types.h"
+#include "json/json.h"
 
 typedef struct {
     skg_context *context;

@@ -22,6 +22,7 @@ static const skg_json_key sample_keys[] = {
     {"Type", NULL, SKG_KEY_READ},
     {"Parent", NULL, SKG_KEY_READ},
     {"Transform", NULL, SKG_KEY_READ},
+    {"Poses", NULL, SKG_KEY_READ},
     {"MoveToCentre", NULL, SKG_KEY_READ},
     {"MoveToCenter", "MoveToCentre", SKG_KEY_READ},
     {"FlipNormals", NULL, SKG_KEY_READ},
@@ -90,15 +91,16 @@ static skg_status centre_mesh(const skg_mesh *mesh, double *pose) {
     return SKG_OK;
 }
 
-static skg_status read_pose(const skg_json_object *sample, const skg_mesh *mesh, const double *own,
-                            double *pose) {
+/* own: pose of a generated mesh; result: what comes before Transform, and the whole pose */
+static skg_status read_pose(const skg_json_object *sample, const skg_mesh *mesh, double *own, double *pose) {
     int32_t centred = 0;
     skg_pose_identity(pose);
     skg_json_node transform = skg_json_member(sample, "Transform");
     if (transform.value) SKG_TRY(skg_setup_read_transform(&transform, pose));
-    skg_pose_multiply(pose, own, pose);
     SKG_TRY(read_flag(sample, "MoveToCentre", &centred));
-    return centred ? centre_mesh(mesh, pose) : SKG_OK;
+    if (centred) SKG_TRY(centre_mesh(mesh, own));
+    skg_pose_multiply(pose, own, pose);
+    return SKG_OK;
 }
 
 static int has_label(const skg_scene *scene, const char *label) {
@@ -157,7 +159,9 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
     SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
     status = skg_scene_add(reader->setup->scene, &part, id);
-    status = skg_json_at(sample->node, status);
+    SKG_TRY_CLEANUP(skg_json_at(sample->node, status));
+    const skg_json_node poses = skg_json_member(sample, "Poses");
+    if (poses.value) status = skg_setup_read_poses(reader, &poses, own, *id);
 cleanup:
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);

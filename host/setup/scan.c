@@ -24,6 +24,11 @@ static const skg_json_key scan_keys[] = {
     {"SourceTravel", NULL, SKG_KEY_READ},
     {"FixedDetector", NULL, SKG_KEY_READ},
     {"Table", NULL, SKG_KEY_READ},
+    {"KnownTable", NULL, SKG_KEY_READ},
+    {"Intensity", NULL, SKG_KEY_READ},
+    {"Flats", NULL, SKG_KEY_READ},
+    {"Darks", NULL, SKG_KEY_READ},
+    {"Layout", NULL, SKG_KEY_READ},
     {"DetectorOffset", NULL, SKG_KEY_READ},
     {"DetectorTilt", NULL, SKG_KEY_READ},
     {"DetectorSkew", NULL, SKG_KEY_READ},
@@ -173,17 +178,46 @@ static skg_status list_views(skg_scan_section *section, double last) {
     return SKG_OK;
 }
 
+/* A table of poses: a file, or the rows themselves. */
+static skg_status make_table(skg_setup_reader *reader, const skg_json_node *node,
+                             const skg_scan_options *options, skg_scan **scan) {
+    const skg_view *view = &reader->setup->view;
+    const char *text = NULL, *path = NULL;
+    double *poses = NULL;
+    int64_t count = 0;
+    if (!json_is_array(node->value)) {
+        SKG_TRY(skg_json_text(node, &text));
+        SKG_TRY(skg_setup_find_file(reader, text, &path));
+        return skg_json_at(node, skg_scan_load_table(view, options, path, scan));
+    }
+    skg_status status = skg_setup_read_rows(node, 12, "rows of 12 numbers", &count, &poses);
+    if (status == SKG_OK)
+        status = skg_json_at(node, skg_scan_create_table(view, options, count, poses, scan));
+    skg_free(&poses);
+    return status;
+}
+
+/* The poses as a reconstruction knows them. */
+static skg_status make_known(skg_setup_reader *reader, const skg_json_node *node,
+                             const skg_scan_options *options) {
+    skg_scan_section *section = &reader->setup->scan;
+    int64_t count = 0, known = 0;
+    SKG_TRY(make_table(reader, node, options, &section->known));
+    SKG_TRY(skg_scan_projection_count(section->scan, &count));
+    SKG_TRY(skg_scan_projection_count(section->known, &known));
+    if (known == count) return SKG_OK;
+    return skg_json_fail(node, SKG_ERR_FORMAT, "has %lld poses, but the scan has %lld projections",
+                         (long long)known, (long long)count);
+}
+
 static skg_status make_scan(skg_setup_reader *reader, const skg_json_node *node, const skg_json_node *table,
                             angles *a, skg_scan_options *options) {
     skg_setup *setup = reader->setup;
     double last = 0;
     if (table->value) {
-        const char *text = NULL;
-        const char *path = NULL;
-        SKG_TRY(skg_json_text(table, &text));
-        SKG_TRY(skg_setup_find_file(reader, text, &path));
-        SKG_TRY(skg_json_at(table, skg_scan_load_table(&setup->view, options, path, &setup->scan.scan)));
         int64_t count = 0;
+        if (a->has_step) options->step_rad = a->step * degree;
+        SKG_TRY(make_table(reader, table, options, &setup->scan.scan));
         SKG_TRY(skg_scan_projection_count(setup->scan.scan, &count));
         if (a->count > 0 && a->count != count)
             return skg_json_fail(table, SKG_ERR_FORMAT, "has %lld poses, but NumberOfProjections is %lld",
@@ -220,17 +254,24 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
     SKG_TRY(read_count(&object, "NumberOfWhiteImages", &scan->white_images));
     SKG_TRY(read_flag(&object, "Flat-Field Correction", &scan->flat_field));
     const skg_json_node folder = skg_json_member(&object, "OutFolder"),
-                        table = skg_json_member(&object, "Table");
+                        table = skg_json_member(&object, "Table"),
+                        known = skg_json_member(&object, "KnownTable");
     if (folder.value) {
         const char *text = NULL;
         SKG_TRY(skg_json_text(&folder, &text));
         SKG_TRY(skg_setup_resolve(reader, text, &scan->folder));
     }
-    return make_scan(reader, node, &table, &a, &options);
+    SKG_TRY(make_scan(reader, node, &table, &a, &options));
+    if (known.value) SKG_TRY(make_known(reader, &known, &options));
+    return skg_setup_read_record(reader, &object);
 }
 
 void skg_scan_section_free(skg_scan_section *section) {
     skg_scan_release(&section->scan);
     skg_free(&section->folder);
     skg_free(&section->views);
+    skg_scan_release(&section->known);
+    skg_free(&section->intensities);
+    skg_free(&section->moving);
+    skg_free(&section->poses);
 }

@@ -58,6 +58,22 @@ skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *n
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
 
+/* GreyValues of a detector. */
+skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector);
+void skg_grey_section_free(skg_grey_section *section);
+
+/* What the key Scan says of how its projections are recorded; after the scan is made. */
+skg_status skg_setup_read_record(skg_setup_reader *reader, const skg_json_object *scan);
+
+/* A table of rows of `width` numbers. The caller frees it. */
+skg_status skg_setup_read_rows(const skg_json_node *node, int64_t width, const char *example, int64_t *count,
+                               double **rows);
+
+/* Poses of a sample that moves during the scan, instead of its Transform. own: from the mesh's axes to those before
+ * them. part: its number */
+skg_status skg_setup_read_poses(skg_setup_reader *reader, const skg_json_node *node, const double *own,
+                                int64_t part);
+
 /* LSF or PSF of a detector, and the key Noise of the file (value NULL: none). */
 skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *detector);
 skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);

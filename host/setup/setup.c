@@ -2,8 +2,9 @@
 #include "core/context.h"
 #include "core/names.h"
 #include "core/plain.h"
-#include "setup/json_set.h"
+#include "ctsimu/ctsimu.h"
 #include "setup/sections.h"
+#include "json/json_set.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -111,12 +112,19 @@ static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
-/* A material, or "Vacuum". */
+/* A material, {"Material": ..., "Density": ...}, or "Vacuum". */
 static skg_status read_world(skg_setup_reader *reader, const skg_json_object *top) {
-    skg_json_node node = skg_json_member(top, "World"), no_density = {0};
+    static const skg_json_key keys[] = {{"Material", NULL, SKG_KEY_READ}, {"Density", NULL, SKG_KEY_READ}};
+    skg_json_node node = skg_json_member(top, "World"), density = {0}, material = node;
+    skg_json_object world;
     if (!node.value) return SKG_OK;
     if (json_is_string(node.value) && skg_same_name(json_string_value(node.value), "vacuum")) return SKG_OK;
-    return skg_setup_read_material(reader, &node, &no_density, "world", &reader->setup->world);
+    if (json_is_object(node.value)) {
+        SKG_TRY(skg_json_read_object(&node, keys, sizeof keys / sizeof *keys, &world));
+        SKG_TRY(skg_json_need(&world, "Material", "\"Air\"", &material));
+        density = skg_json_member(&world, "Density");
+    }
+    return skg_setup_read_material(reader, &material, &density, "world", &reader->setup->world);
 }
 
 /* A section that a file has to have. A partial text may leave it out together with `twin`. */
@@ -193,6 +201,11 @@ static skg_status check_texts(int64_t count, const char *const *texts, const cha
     return SKG_OK;
 }
 
+/* Of a scenario, before there is a set-up of it. */
+static skg_status find_file(void *user, const char *name, const char **path) {
+    return skg_setup_find_file(user, name, path);
+}
+
 /* Makes a set-up from reader->source; its text NULL: from the file of its path. */
 static skg_status make(skg_setup_reader *reader, skg_setup **setup) {
     const skg_setup_source *source = &reader->source;
@@ -210,6 +223,7 @@ static skg_status make(skg_setup_reader *reader, skg_setup **setup) {
         SKG_TRY_CLEANUP(skg_json_set(&reader->file, source->settings[i]));
     reader->file.lenient = source->lenient;
     reader->file.lengths = source->lengths_only;
+    if (skg_ctsimu_is(&reader->file)) SKG_TRY_CLEANUP(skg_ctsimu_translate(&reader->file, find_file, reader));
     SKG_TRY_CLEANUP(read_all(reader));
     SKG_TRY_CLEANUP(skg_setup_keep_text(reader));
     say_remarks(reader);
@@ -266,6 +280,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_material_release(&(*setup)->world);
     skg_free(&(*setup)->blur_samples);
     skg_scan_section_free(&(*setup)->scan);
+    skg_grey_section_free(&(*setup)->grey);
     skg_breathing_section_free(&(*setup)->breathing);
     skg_setup_files_free(*setup);
     skg_free(&(*setup)->text);

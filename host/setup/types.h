@@ -5,6 +5,7 @@
 #include "core/core.h"
 
 #include <skiagraph/breathing.h>
+#include <skiagraph/readout.h>
 #include <skiagraph/setup.h>
 
 /* The section Scan. */
@@ -15,8 +16,23 @@ typedef struct {
     int64_t white_images; /* as given, without effect */
     char *folder;         /* OutFolder relative to the scene file's own, or NULL */
     int64_t view_count;
-    skg_view *views; /* [view_count] a sample of the projections after the first */
+    skg_view *views;     /* [view_count] a sample of the projections after the first */
+    skg_scan *known;     /* KnownTable, or NULL */
+    double *intensities; /* [projections], or NULL */
+    int64_t flats, flat_frames, darks, dark_frames;
+    int32_t flat_noise, dark_noise, has_fields, is_ctsimu;
+    int64_t moving_count; /* samples with Poses */
+    int64_t *moving;      /* [moving_count] their parts */
+    double *poses;        /* [projections][moving_count][16] */
 } skg_scan_section;
+
+/* The key GreyValues of the detector. */
+typedef struct {
+    int32_t is_given;
+    skg_readout readout; /* points to the arrays below */
+    double *curve, *noise;
+    float *bad_pixels;
+} skg_grey_section;
 
 /* A value over time: linear between its points (s, value), constant beyond them. */
 typedef struct {
@@ -74,6 +90,7 @@ struct skg_setup {
     skg_detector_blur blur; /* columns 0: none */
     double *blur_samples;   /* to which blur points */
     skg_setup_noise noise;
+    skg_grey_section grey;
     skg_spot spot;
     skg_heel heel;         /* kvp, anode, angle and bins are those of the tube, if the beam is one */
     int32_t has_tube;      /* 1: the beam is a tube */

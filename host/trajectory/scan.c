@@ -93,6 +93,37 @@ cleanup:
     return status;
 }
 
+skg_status skg_scan_create_subset(skg_scan *whole, int64_t count, const int64_t *indices, skg_scan **scan) {
+    skg_scan *made = NULL;
+    int64_t all = 0;
+    skg_status status = SKG_OK;
+    SKG_NEEDS(scan);
+    *scan = NULL;
+    SKG_NEEDS(indices);
+    SKG_TRY(skg_scan_projection_count(whole, &all));
+    if (count < 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "a scan of %" PRId64 " projections; give 1 or more", count);
+    for (int64_t k = 0; k < count; k++)
+        if (indices[k] < 0 || indices[k] >= all)
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "scan: no projection %" PRId64 "; projections are 0 to %" PRId64, indices[k],
+                            all - 1);
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *made, "scan", &made));
+    skg_refs_init(&made->refs);
+    made->options = whole->options;
+    made->options.projections = count;
+    made->view = whole->view;
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *indices, "scan", &made->indices));
+    memcpy(made->indices, indices, (size_t)count * sizeof *indices);
+    skg_scan_retain(whole);
+    made->whole = whole;
+    *scan = made;
+    return SKG_OK;
+cleanup:
+    skg_scan_release(&made);
+    return status;
+}
+
 skg_status skg_scan_retain(skg_scan *scan) {
     SKG_NEEDS(scan);
     skg_ref(&scan->refs);
@@ -102,6 +133,8 @@ skg_status skg_scan_retain(skg_scan *scan) {
 void skg_scan_release(skg_scan **scan) {
     if (!scan || !*scan) return;
     if (skg_unref(&(*scan)->refs)) {
+        skg_scan_release(&(*scan)->whole);
+        skg_free(&(*scan)->indices);
         skg_free(&(*scan)->poses);
         skg_free(scan);
     }
@@ -152,6 +185,7 @@ skg_status skg_scan_view_get(const skg_scan *scan, int64_t index, skg_view *view
     skg_view ours;
     SKG_NEEDS(scan);
     SKG_TRY(check_index(scan, index));
+    if (scan->whole) return skg_scan_view_get(scan->whole, scan->indices[index], view);
     view_at(scan, (double)index, &ours);
     return skg_struct_write(&ours, sizeof ours, "skg_view", view);
 }
@@ -163,6 +197,7 @@ skg_status skg_scan_view_at(const skg_scan *scan, double position, skg_view *vie
     if (!(position >= -0.5 && position <= (double)scan->options.projections))
         return skg_fail(SKG_ERR_ARGUMENT, "scan: no position %g; positions are -0.5 to %" PRId64, position,
                         scan->options.projections);
+    if (scan->whole) return skg_scan_view_get(scan->whole, scan->indices[nearest(scan, position)], view);
     view_at(scan, position, &ours);
     return skg_struct_write(&ours, sizeof ours, "skg_view", view);
 }
@@ -172,7 +207,8 @@ skg_status skg_scan_angle_get(const skg_scan *scan, int64_t index, double *angle
     SKG_NEEDS(scan);
     SKG_NEEDS(angle_rad);
     SKG_TRY(check_index(scan, index));
-    *angle_rad = scan->poses ? 0 : scan->options.start_rad + (double)index * scan->options.step_rad;
+    if (scan->whole) return skg_scan_angle_get(scan->whole, scan->indices[index], angle_rad);
+    *angle_rad = scan->options.start_rad + (double)index * scan->options.step_rad;
     return SKG_OK;
 }
 
@@ -181,6 +217,7 @@ skg_status skg_scan_time_get(const skg_scan *scan, int64_t index, double *middle
     SKG_NEEDS(scan);
     SKG_NEEDS(middle_s);
     SKG_TRY(check_index(scan, index));
+    if (scan->whole) return skg_scan_time_get(scan->whole, scan->indices[index], middle_s, exposure_s);
     *middle_s = scan->options.start_s + (double)index * scan->options.interval_s;
     if (exposure_s) *exposure_s = scan->options.exposure_s;
     return SKG_OK;

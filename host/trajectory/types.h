@@ -13,6 +13,8 @@ struct skg_scan {
     skg_scan_options options; /* axis of length 1 */
     skg_view view;            /* with the detector displaced */
     double *poses;            /* [options.projections][12], or NULL: the options decide */
+    struct skg_scan *whole;   /* of a subset: the scan whose projections it has; otherwise NULL */
+    int64_t *indices;         /* [options.projections] their numbers in it */
 };
 
 /* Displaces, tilts and skews the detector of a view. */

@@ -6,8 +6,14 @@
 #include <stdlib.h>
 
 double skg_picture_value(const skg_picture *picture, int64_t index) {
-    return picture->type == SKG_TYPE_FLOAT64 ? ((const double *)picture->data)[index]
-                                             : (double)((const float *)picture->data)[index];
+    switch (picture->type) {
+    case SKG_TYPE_FLOAT64:
+        return ((const double *)picture->data)[index];
+    case SKG_TYPE_UINT16:
+        return (double)((const uint16_t *)picture->data)[index];
+    default:
+        return (double)((const float *)picture->data)[index];
+    }
 }
 
 /* Whether the picture is I/I0 or can be divided by its flat field I0. */

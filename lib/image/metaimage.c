@@ -1,4 +1,5 @@
 /* MetaImage (.mha): a text header and the values, in one file. Format as ITK's MetaIO documents it. */
+#include "core/element.h"
 #include "core/maths.h"
 #include "core/vector.h"
 #include "image/image.h"
@@ -72,12 +73,14 @@ static void write_header(const skg_picture *picture, FILE *stream) {
         fputc('\n', stream);
     }
     fprintf(stream, "ElementType = %s\nElementDataFile = LOCAL\n",
-            picture->type == SKG_TYPE_FLOAT64 ? "MET_DOUBLE" : "MET_FLOAT");
+            picture->type == SKG_TYPE_FLOAT64  ? "MET_DOUBLE"
+            : picture->type == SKG_TYPE_UINT16 ? "MET_USHORT"
+                                               : "MET_FLOAT");
 }
 
 /* Collects one row. MetaImage has the channels of a pixel side by side. */
 static void gather(const skg_picture *picture, int64_t row, char *to) {
-    size_t element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
+    size_t element = (size_t)skg_element_bytes(picture->type);
     for (int64_t c = 0; c < picture->columns; c++)
         for (int64_t channel = 0; channel < picture->channels; channel++) {
             int64_t at = (channel * picture->rows + row) * picture->columns + c;
@@ -89,7 +92,7 @@ static void gather(const skg_picture *picture, int64_t row, char *to) {
 /* Failures to write are found by skg_output_commit. */
 skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file) {
     char *row = NULL;
-    size_t element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
+    size_t element = (size_t)skg_element_bytes(picture->type);
     int64_t elements = picture->columns * picture->channels;
     SKG_TRY(skg_alloc(elements, element, "row of a MetaImage", &row));
     write_header(picture, file->stream);

@@ -40,10 +40,8 @@ static skg_status check_range(const skg_picture *picture) {
 static skg_status prepare(const skg_picture *theirs, skg_picture *picture) {
     skg_picture_init(picture);
     SKG_TRY(skg_struct_read(theirs, "skg_picture", picture, sizeof *picture));
-    if (picture->type != SKG_TYPE_FLOAT32 && picture->type != SKG_TYPE_FLOAT64)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "picture: type %" PRId32 " is neither SKG_TYPE_FLOAT32 nor SKG_TYPE_FLOAT64",
-                        picture->type);
+    if (picture->type < SKG_TYPE_FLOAT32 || picture->type > SKG_TYPE_UINT16)
+        return skg_fail(SKG_ERR_ARGUMENT, "picture: type %" PRId32 " is no SKG_TYPE_ value", picture->type);
     if (picture->columns < 1 || picture->rows < 1 || picture->channels < 1 || picture->columns > INT32_MAX ||
         picture->rows > INT32_MAX || picture->channels > UINT16_MAX)
         return skg_fail(SKG_ERR_ARGUMENT,

@@ -1,4 +1,5 @@
 /* TIFF: floats or doubles without conversion, one page for each channel. */
+#include "core/element.h"
 #include "core/vector.h"
 #include "image/image.h"
 
@@ -39,14 +40,15 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
 static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
     skg_picture page = *picture;
     char description[SKG_DESCRIPTION_LENGTH];
-    int bits = picture->type == SKG_TYPE_FLOAT64 ? 64 : 32;
+    const int bits = (int)(8 * skg_element_bytes(picture->type));
+    const int format = picture->type == SKG_TYPE_UINT16 ? SAMPLEFORMAT_UINT : SAMPLEFORMAT_IEEEFP;
     if (page.channel_names) page.name = page.channel_names[channel];
     skg_picture_describe(&page, description, sizeof description);
     int done = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, (uint32_t)picture->columns) &&
                TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, (uint32_t)picture->rows) &&
                TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits) &&
                TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) &&
-               TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP) &&
+               TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, format) &&
                TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) &&
                TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE) &&
                TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
@@ -65,7 +67,7 @@ static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
 
 /* row: a buffer for one row, because libtiff may change its data. */
 static int write_pages(TIFF *tiff, const skg_picture *picture, void *row) {
-    size_t row_bytes = (size_t)picture->columns * (picture->type == SKG_TYPE_FLOAT64 ? 8 : 4);
+    size_t row_bytes = (size_t)picture->columns * (size_t)skg_element_bytes(picture->type);
     for (int64_t channel = 0; channel < picture->channels; channel++) {
         if (!set_tags(tiff, picture, channel)) return 0;
         for (int64_t r = 0; r < picture->rows; r++) {
@@ -82,8 +84,10 @@ skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
     reason kept = {""};
     TIFF *tiff = NULL;
     char *row = NULL;
-    int written = 0, element = picture->type == SKG_TYPE_FLOAT64 ? 8 : 4;
-    double bytes = (double)picture->columns * (double)picture->rows * (double)picture->channels * element;
+    int written = 0;
+    const int64_t element = skg_element_bytes(picture->type);
+    double bytes =
+        (double)picture->columns * (double)picture->rows * (double)picture->channels * (double)element;
     SKG_TRY(skg_alloc(picture->columns, (size_t)element, "row of a TIFF file", &row));
     /* TIFFClose closes the descriptor that it was given. The stream keeps its own, which is synced later. */
     int descriptor = dup(fileno(file->stream));

@@ -257,6 +257,34 @@ START_TEST(each_projection_has_its_own_time) {
 }
 END_TEST
 
+/* A breath lasts 4 s, and projections are 0.5 s apart from 0.1 s on: each of four phases has two of every eight. */
+START_TEST(phases_have_their_projections) {
+    enum { SIDE = 16, IMAGE = SIDE * SIDE * sizeof(float), ALL = 16 };
+    ck_run(0, "thorax -o . --triangles 10000 --quiet");
+    ck_run(
+        0,
+        "scan thorax.json --breathing --phases 4 -o scan.mha --quiet --set Detector.NumberOfPixels=[16,16] "
+        "--set Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]' --set "
+        "Breathing.Period=4 --set Breathing.StartPhase=0 --set Breathing.Events=[] --set Scan='{\"NumberOfProjections\":16,\"FinalAngle\":360,\"StartTime\":0.1,\"Interval\":0.5}'");
+    const size_t size = read_file("scan.mha", bytes);
+    for (int bin = 0; bin < 4; bin++) {
+        char name[64];
+        snprintf(name, sizeof name, "scan.phase-%d-of-4.mha", bin + 1);
+        const size_t its = read_file(name, before);
+        ck_assert_ptr_nonnull(strstr(before, "DimSize = 16 16 4"));
+        /* Phase k/4 is at k seconds; half a second before it belongs to it, half a second behind it does not. */
+        for (int n = 0, k = 0; k < ALL; k++)
+            if ((k + 1) / 2 % 4 == bin) {
+                ck_assert_mem_eq(before + its - (size_t)(4 - n) * IMAGE,
+                                 bytes + size - (size_t)(ALL - k) * IMAGE, IMAGE);
+                n++;
+            }
+    }
+    ck_run_fails(2, "add --breathing", "scan thorax.json --phases 4 -o a.mha");
+    ck_run_fails(2, "phases are files", "scan thorax.json --breathing --phases 4 -o folder");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, projections_are_images);
@@ -267,6 +295,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_volume_has_the_coefficients);
     tcase_add_loop_test(tests, shards_are_joined, 0, 2);
     tcase_add_test(tests, each_projection_has_its_own_time);
+    tcase_add_test(tests, phases_have_their_projections);
     tcase_add_loop_test(tests, kills_leave_no_trace, 0, 4);
 }
 

@@ -218,8 +218,8 @@ START_TEST(an_unusable_picture_is_refused) {
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.low = 2, picture.high = 1;
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "range 2:1");
-    picture = picture_of(2);
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "type 2");
+    picture = picture_of(3);
+    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "type 3");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.data = NULL;
     ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "no data");

@@ -160,6 +160,82 @@ START_TEST(subframes_are_averaged) {
 }
 END_TEST
 
+/* Sub-frames of a scan that stands still are one exposure, and so is their noise: the photons are not counted anew. */
+START_TEST(subframes_have_the_noise_of_one_exposure) {
+    skg_plan_options noisy;
+    skg_spectrum *beam = NULL;
+    skg_plan_options_init(&noisy);
+    noisy.noise = 1;
+    ck_skg(skg_spectrum_create_mono(100, 400, &beam));
+    skg_plan_release(&plan);
+    ck_skg(skg_plan_create(run_context, scene, &view, beam, &noisy, &plan));
+    geometry.step_rad = 0;
+    geometry.interval_s = geometry.exposure_s = 1;
+    make_scan();
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    memcpy(expected, got, sizeof got);
+    options.subframes = 4;
+    arrived = 0;
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    ck_assert_mem_eq(got, expected, sizeof got); /* the mean of four equal floats is exact */
+    ck_assert_int_ne(memcmp(got[0], got[1], sizeof got[0]), 0);
+    skg_spectrum_release(&beam);
+}
+END_TEST
+
+/* A part that moves with the poses of each projection. */
+START_TEST(parts_move_from_one_projection_to_the_next) {
+    static double poses[COUNT][16];
+    const int64_t part = 0;
+    for (int64_t k = 0; k < COUNT; k++) {
+        for (int i = 0; i < 16; i++) poses[k][i] = i % 5 == 0;
+        poses[k][3] = 7.0 * (double)k;
+    }
+    options.moving_count = 1;
+    options.moving_parts = &part;
+    options.moving_poses = poses[0];
+    ck_skg(skg_scan_run_each(plan, scan, &options, take, NULL));
+    for (int64_t k = 0; k < COUNT; k++) {
+        skg_view of;
+        skg_view_init(&of);
+        ck_skg(skg_scan_view_get(scan, k, &of));
+        ck_skg(skg_scene_pose_set(scene, 0, poses[k]));
+        image(&of, expected[k]);
+    }
+    ck_assert_mem_eq(got, expected, sizeof got);
+    options.moving_poses = NULL;
+    ck_skg_fails(skg_scan_run_each(plan, scan, &options, take, NULL), SKG_ERR_ARGUMENT, "moving parts");
+}
+END_TEST
+
+/* Projections of another scan, with its views, angles and times. */
+START_TEST(a_subset_has_the_projections_of_the_whole) {
+    static const int64_t indices[] = {4, 1, 4};
+    skg_scan *subset = NULL;
+    geometry.interval_s = 2;
+    make_scan();
+    ck_skg(skg_scan_create_subset(scan, 3, indices, &subset));
+    for (int64_t k = 0; k < 3; k++) {
+        skg_view whole, its;
+        double angle = 0, its_angle = 0, time = 0;
+        skg_view_init(&whole);
+        skg_view_init(&its);
+        ck_skg(skg_scan_view_get(scan, indices[k], &whole));
+        ck_skg(skg_scan_view_get(subset, k, &its));
+        ck_assert_mem_eq(&its, &whole, sizeof its);
+        ck_skg(skg_scan_angle_get(scan, indices[k], &angle));
+        ck_skg(skg_scan_angle_get(subset, k, &its_angle));
+        ck_skg(skg_scan_time_get(subset, k, &time, NULL));
+        ck_assert(angle <= its_angle && its_angle <= angle);
+        ck_assert(time <= 2.0 * (double)indices[k] && 2.0 * (double)indices[k] <= time);
+    }
+    skg_scan_release(&subset);
+    ck_skg_fails(skg_scan_create_subset(scan, 0, indices, &subset), SKG_ERR_ARGUMENT, "0 projections");
+    const int64_t beyond = COUNT;
+    ck_skg_fails(skg_scan_create_subset(scan, 1, &beyond, &subset), SKG_ERR_ARGUMENT, "no projection");
+}
+END_TEST
+
 START_TEST(a_run_can_be_left) {
     skg_scan_run *run = NULL;
     skg_scan_batch batch;
@@ -219,6 +295,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, shards_are_the_whole);
     tcase_add_test(tests, some_projections);
     tcase_add_test(tests, subframes_are_averaged);
+    tcase_add_test(tests, subframes_have_the_noise_of_one_exposure);
+    tcase_add_test(tests, parts_move_from_one_projection_to_the_next);
+    tcase_add_test(tests, a_subset_has_the_projections_of_the_whole);
     tcase_add_test(tests, a_run_can_be_left);
     tcase_add_test(tests, what_is_refused);
 }

@@ -17,6 +17,11 @@ const cli_flag cli_flag_scan_breathing = {
     "--breathing", NULL,
     "Poses the scene for each projection at its own time (Interval and StartTime of Scan), as its key Breathing says.",
     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_phases = {
+    "--phases", "N",
+    "With --breathing: also writes the projections of each of N phases of the breath to a file of their own, when the scan "
+    "is finished: scan.phase-K-of-N.h5 for -o scan.h5. Phase 1 is end-inspiration.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_subframes = {
     "--subframes", "N",
     "Averages each projection from N frames, spread over its exposure (Exposure of Scan), during which the scan turns "
@@ -41,6 +46,12 @@ const cli_flag cli_flag_scan_mixed = {
     "--mixed", NULL,
     "Under MPI: allows devices that give different bits. Without this flag they are refused.", NULL,
     CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_grey16 = {
+    "--grey16", NULL,
+    "Writes grey values of 16 bits: as GreyValues of the detector says, or 60000 where the free beam is strongest and 0 "
+    "without radiation. Scenes with GreyValues, such as CTSimU scenarios, are written as grey values unless --quantity is "
+    "given.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
@@ -54,6 +65,8 @@ static const char *const text[] = {
     "that.",
     "An output that is finished is left as it is. One that holds another scan is refused: a scan is another one if the "
     "scene, a file that it names, the quantity, the precision, the tolerance or the version differs.",
+    "A CTSimU scenario is a scene, too. A folder then has its layout: NAME_0000.tif, NAME_flat_0000.tif, NAME_dark.tif and "
+    "NAME_metadata.json, where NAME is that of the scenario's file.",
     "Under mpirun or srun the processes take projections in turn and write them to one output; each has its own device or "
     "its share of the cores.",
     "--json prints {projections, computed, found, finished, plan_ms, seconds, projections_per_s, hash, file, plan}: how "
@@ -67,6 +80,7 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_scan_only,
                                         &cli_flag_scan_overwrite,
                                         &cli_flag_scan_breathing,
+                                        &cli_flag_scan_phases,
                                         &cli_flag_scan_subframes,
                                         &cli_flag_scan_geometry,
                                         &cli_flag_scan_flats,
@@ -74,6 +88,7 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_scan_shard,
                                         &cli_flag_scan_join,
                                         &cli_flag_scan_mixed,
+                                        &cli_flag_scan_grey16,
                                         &cli_flag_device,
                                         &cli_flag_precision,
                                         &cli_flag_tolerance,

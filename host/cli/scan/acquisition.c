@@ -3,6 +3,9 @@
 #include "common/file.h"
 #include "common/say.h"
 #include "scan/batches.h"
+#include "scan/grey.h"
+#include "scan/metadata.h"
+#include "scan/phases.h"
 #include "scan/shards.h"
 #include "scan/shared.h"
 #include "session/explain.h"
@@ -40,6 +43,9 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     if (!a->place)
         return cli_error(CLI_USAGE,
                          "scan: no output is named; add -o FILE (.h5, .mha, .raw, .tif or a folder)");
+    if (cli_given(arguments, &cli_flag_scan_grey16) && cli_given(arguments, &cli_flag_image_quantity))
+        return cli_error(CLI_USAGE,
+                         "--grey16 and --quantity exclude each other: grey values are made of energies");
     const skg_status status = skg_scan_file_path_check(a->place);
     if (status != SKG_OK) return cli_fail(status);
     int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, MOST_PROJECTIONS, &a->options.from);
@@ -55,6 +61,7 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
     a->options.to = to + 1;
     if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = phases_read_flag(arguments, a);
     return exit_status;
 }
 
@@ -72,7 +79,18 @@ static int choose_samples(cli_acquisition *a) {
     return CLI_DONE;
 }
 
-/* Flat fields as the plan makes them, and dark fields of zeros. Other files than HDF5 have none. */
+/* Grey values of the fields, instead of energies. */
+static skg_status read_fields_out(cli_acquisition *a, void **white, void *dark) {
+    void *grey = calloc((size_t)a->flats + 1, (size_t)grey_bytes(a));
+    if (!grey) return SKG_ERR_MEMORY;
+    skg_status status = grey_fields(a, a->flats, *white, grey);
+    if (status == SKG_OK) status = grey_fields(a, a->darks, NULL, dark);
+    free(*white);
+    *white = grey;
+    return status;
+}
+
+/* Flat fields as the plan makes them, and dark fields of zeros, or their grey values. Files that have none ignore them. */
 static int write_fields(cli_acquisition *a) {
     const skg_view *view = &a->session.view;
     const size_t bytes = (size_t)(view->columns * view->rows) * (a->options.type == SKG_TYPE_FLOAT64 ? 8 : 4);
@@ -82,6 +100,7 @@ static int write_fields(cli_acquisition *a) {
     if (exit_status == CLI_DONE && a->flats > 0)
         status =
             skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, a->flats, white);
+    if (exit_status == CLI_DONE && status >= SKG_OK && a->is_grey) status = read_fields_out(a, &white, dark);
     if (exit_status == CLI_DONE && status >= SKG_OK)
         status = skg_scan_file_fields_write(a->file, a->flats, white, a->darks, dark);
     free(white);
@@ -99,12 +118,13 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     skg_plan_report_init(&report);
     skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
     if (status == SKG_OK) status = skg_plan_report_get(a->plan, &report);
-    options.type = a->options.type;
-    options.scan = a->scan;
+    options.type = grey_type(a);
+    options.scan = a->record.known ? a->record.known : a->scan;
     options.hash = a->hash;
-    options.name = channel.name;
-    options.unit = channel.unit;
-    options.flat_field = channel.flat_field;
+    options.name = a->is_grey ? "grey value" : channel.name;
+    options.unit = a->is_grey ? "" : channel.unit;
+    options.flat_field = a->is_grey ? a->readout.full : channel.flat_field;
+    options.stem = a->stem;
     options.samples = report.samples;
     options.flats = a->flats;
     options.darks = a->darks;
@@ -112,6 +132,7 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.count = a->part_count;
     options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
     options.is_helper = a->ranks.rank > 0;
+    a->file_options = options;
     if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
     if (status != SKG_OK) return cli_fail(status);
     const int is_joined = cli_given(arguments, &cli_flag_scan_join) && a->ranks.rank == 0;
@@ -122,15 +143,16 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     status = skg_scan_file_done_count(a->file, &a->found);
     if (status != SKG_OK) return cli_fail(status);
     const int is_hdf5 = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5");
-    return is_hdf5 && a->ranks.rank == 0 && (is_joined || a->found < a->projections) ? write_fields(a)
-                                                                                     : CLI_DONE;
+    const int has_fields = is_hdf5 || a->stem;
+    return has_fields && a->ranks.rank == 0 && (is_joined || a->found < a->projections) ? write_fields(a)
+                                                                                        : CLI_DONE;
 }
 
 static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *path;
     for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
          i++) {
-        const skg_status status = skg_scan_geometry_write(a->scan, path);
+        const skg_status status = skg_scan_geometry_write(a->record.known ? a->record.known : a->scan, path);
         if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
         if (status != SKG_OK) return cli_fail(status);
     }
@@ -155,11 +177,13 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
         status =
             skg_scan_hash_get(a->session.setup, &a->session.options, &a->options, a->hash, sizeof a->hash);
     if (status != SKG_OK) return cli_fail(status);
-    exit_status = write_geometry(arguments, a);
+    a->whole_projections = a->projections;
+    exit_status = grey_decide(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
-    return exit_status;
+    return exit_status == CLI_DONE ? grey_prepare(a) : exit_status;
 }
 
 int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
@@ -178,6 +202,12 @@ static int run_alone(cli_acquisition *a) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
+/* What has no extension is a folder (skg_scan_file_open). */
+static int is_folder(const char *place) {
+    const char *slash = strrchr(place, '/'), *dot = strrchr(slash ? slash : place, '.');
+    return !dot || !dot[1] || dot[1] == '.';
+}
+
 int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
     if (a->ranks.rank == 0 && a->found > 0 && a->found < a->projections && !cli_is_quiet())
         cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
@@ -185,7 +215,9 @@ int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
     const int exit_status = a->ranks.count > 1 ? shared_run(arguments, a) : run_alone(a);
     if (exit_status != CLI_DONE || a->ranks.rank > 0) return exit_status;
     const skg_status status = skg_scan_file_finish(a->file);
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+    if (status != SKG_OK) return cli_fail(status);
+    if (a->phases > 0) return phases_write(a);
+    return a->stem && is_folder(a->place) ? metadata_write(a) : CLI_DONE;
 }
 
 void acquisition_close(cli_acquisition *a) {
@@ -195,4 +227,6 @@ void acquisition_close(cli_acquisition *a) {
     cli_close_session(&a->session);
     free(a->only);
     free(a->shard_place);
+    free(a->stem);
+    free(a->grey);
 }

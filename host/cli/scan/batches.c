@@ -1,6 +1,7 @@
 #include "scan/batches.h"
 
 #include "common/progress.h"
+#include "scan/grey.h"
 #include "session/frames.h"
 
 skg_status write_batches(cli_acquisition *a, skg_scan_run *run, int shows_progress) {
@@ -14,7 +15,10 @@ skg_status write_batches(cli_acquisition *a, skg_scan_run *run, int shows_progre
         status = skg_scan_run_next(run, &batch);
         if (status == SKG_RANGE) cli_end_image(status, &a->range_warned);
         if (status < SKG_OK || batch.count == 0) break;
-        status = skg_scan_file_write(a->file, batch.count, batch.indices, batch.images, batch.phases);
+        const void *images = NULL;
+        status = grey_batch(a, &batch, &images);
+        if (status == SKG_OK)
+            status = skg_scan_file_write(a->file, batch.count, batch.indices, images, batch.phases);
         a->computed += batch.count;
         if (shows_progress) cli_progress_step(a->computed);
     }

@@ -13,6 +13,8 @@ typedef struct {
     skg_motion *motion;
     skg_plan *plan;
     skg_scan_file *file;
+    skg_scan_file_options file_options; /* of the output */
+    int64_t phases;                     /* files of phases of the breath beside it; 0: none */
     skg_scan_run_options options;
     int64_t *only;
     char hash[65];
@@ -23,6 +25,13 @@ typedef struct {
     int64_t shard, shards; /* from 1; 0: none is asked for */
     char *shard_place;
     int64_t part_from, part_count; /* of a shard; 0 and 0: the whole scan */
+    int64_t whole_projections;     /* of the scan, whatever the shard */
+    skg_scan_record record;
+    skg_readout readout;
+    int is_grey; /* 1: grey values are written */
+    char *stem;  /* of the files of a folder; NULL: ours */
+    void *grey;  /* [grey_capacity] images that were read out */
+    int64_t grey_capacity;
 } cli_acquisition;
 
 #endif

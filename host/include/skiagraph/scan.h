@@ -97,7 +97,8 @@ SKG_API skg_status skg_scan_create(const skg_view *view, const skg_scan_options 
  *
  *     view      copied: kind of projection, numbers of columns and rows
  *     options   copied: the times, offset, tilt and skew of the detector, drift and jitter of positions. Options
- *               of the rotation and the number of projections have no effect. NULL: the defaults
+ *               of the rotation give the nominal angles only, and the number of projections has no effect. NULL: the
+ *               defaults
  *     count     number of projections, 1 to 10,000,000
  *     poses     [count][12]: x, y, z of source, centre of the detector, step of its columns and of its rows,
  *               mm; copied
@@ -113,6 +114,16 @@ SKG_API skg_status skg_scan_create_table(const skg_view *view, const skg_scan_op
  *     errors   SKG_ERR_FILE, SKG_ERR_FORMAT with the line, and as of skg_scan_create_table */
 SKG_API skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *options,
                                        const char *path, skg_scan **scan);
+
+/** Makes a scan of some projections of another one, such as those of a phase of the breath.
+ *
+ *     whole     retained
+ *     count     number of projections, at least 1
+ *     indices   [count] their numbers in `whole`; copied
+ *     scan      result; the caller releases it
+ *     errors    SKG_ERR_ARGUMENT (a number) */
+SKG_API skg_status skg_scan_create_subset(skg_scan *whole, int64_t count, const int64_t *indices,
+                                          skg_scan **scan);
 
 /** Adds an owner to a scan. */
 SKG_API skg_status skg_scan_retain(skg_scan *scan);
@@ -131,14 +142,14 @@ SKG_API skg_status skg_scan_projection_count(const skg_scan *scan, int64_t *coun
  *     errors   SKG_ERR_ARGUMENT (index) */
 SKG_API skg_status skg_scan_view_get(const skg_scan *scan, int64_t index, skg_view *view);
 
-/** Gets the view at a position between projections: 2.5 is the middle between projections 2 and 3. Jitter, and
- * the pose in a table of poses, are those of the nearest projection.
+/** Gets the view at a position between projections: 2.5 is the middle between projections 2 and 3. Jitter, the
+ * pose in a table of poses, and all of a subset, are those of the nearest projection.
  *
  *     position   -0.5 to the number of projections
  *     view       in and out: prepared with skg_view_init */
 SKG_API skg_status skg_scan_view_at(const skg_scan *scan, double position, skg_view *view);
 
-/** Gets the nominal angle of a projection; 0 in a table of poses. */
+/** Gets the nominal angle of a projection. */
 SKG_API skg_status skg_scan_angle_get(const skg_scan *scan, int64_t index, double *angle_rad);
 
 /** Gets when a projection is exposed, s.

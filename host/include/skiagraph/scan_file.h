@@ -36,14 +36,17 @@ typedef struct {
     int32_t overwrite;
     /** 1: another process has laid out the file and holds its lock; this one only writes projections. */
     int32_t is_helper;
-    /** Number of flat fields, of HDF5 only; 1 by default. */
+    /** Number of flat fields, of HDF5 and folders with a stem; 1 by default. */
     int64_t flats;
-    /** Number of dark fields, of HDF5 only; 1 by default. */
+    /** Number of dark fields, of the same; 1 by default. */
     int64_t darks;
     /** First projection of the file, which then is a part of the scan. */
     int64_t from;
     /** Number of its projections; 0: all from `from` on. */
     int64_t count;
+    /** Of a folder: the files are STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif
+     * without fields. */
+    const char *stem;
 } skg_scan_file_options;
 
 /** Prepares the options of a file, of `size` bytes (export.h). */
@@ -91,7 +94,7 @@ SKG_API skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *
  *     done   result: 1 or 0 */
 SKG_API skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done);
 
-/** Writes the flat and dark fields of an HDF5 file; other files have none, and ignore them.
+/** Writes the flat and dark fields of an HDF5 file or a folder with a stem; others have none, and ignore them.
  *
  *     flats    number of flat fields, as in the options of the file
  *     white    [flats][row][column]; NULL if flats is 0
@@ -117,6 +120,17 @@ SKG_API skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const
  *     errors   SKG_ERR_ARGUMENT if the part is of another type or lies outside of the file, SKG_ERR_OUTPUT;
  *              SKG_ERR_UNSUPPORTED for folders */
 SKG_API skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part);
+
+/** Copies projections of another file, and its flat and dark fields if it has as many.
+ *
+ *     file      has the projections of skg_scan_create_subset
+ *     from      of the same type
+ *     count     number of projections of `file`
+ *     indices   [count] their numbers in `from`, where they are finished
+ *     phases    [count] phase of the breath; NULL: none
+ *     errors    SKG_ERR_ARGUMENT, SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for folders */
+SKG_API skg_status skg_scan_file_copy(skg_scan_file *file, const skg_scan_file *from, int64_t count,
+                                      const int64_t *indices, const double *phases);
 
 /** Ends a file that has every projection: what only an unfinished file needs is removed. Does nothing if
  * projections are missing. */

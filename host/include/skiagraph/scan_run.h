@@ -44,6 +44,12 @@ typedef struct {
     const skg_scan_file *file;
     /** Seed of the noise of every frame. The number of the projection is its index. */
     int64_t noise_seed;
+    /** Number of parts that move from one projection to the next, beside what `motion` does. */
+    int64_t moving_count;
+    /** [moving_count] numbers of these parts; used until the run is released */
+    const int64_t *moving_parts;
+    /** [projections of the scan][moving_count][16] their poses; used until the run is released */
+    const double *moving_poses;
 } skg_scan_run_options;
 
 /** Prepares the options of a run, of `size` bytes (export.h). */
@@ -56,8 +62,8 @@ static inline void skg_scan_run_options_init(skg_scan_run_options *options) {
 
 /** Starts a run. Three batches are in memory at a time: the caller's, and two that are being computed.
  *
- *     plan      retained. With sub-frames the mean is taken of the intensity, whatever the quantity. Each sub-frame has
- *               the noise of a whole exposure: use them without noise
+ *     plan      retained. With sub-frames the mean is taken of the intensity, whatever the quantity. Sub-frames share
+ *               the random numbers of their projection: the mean has the noise of one exposure where nothing moves
  *     scan      retained
  *     options   NULL: the defaults
  *     run       result; the caller releases it

@@ -7,6 +7,7 @@
 #define SKIAGRAPH_SETUP_H
 
 #include <skiagraph/plan.h>
+#include <skiagraph/readout.h>
 #include <skiagraph/scan.h>
 
 #ifdef __cplusplus
@@ -104,6 +105,60 @@ SKG_API skg_status skg_setup_projection_count_get(const skg_setup *setup, int64_
  *     errors   SKG_ERR_SCENE if the file has no key Scan, or one that does not say how many projections there
  *              are */
 SKG_API skg_status skg_setup_scan_get(const skg_setup *setup, skg_scan **scan);
+
+/** How a scan is recorded, apart from its geometry. The library fills it; prepare with skg_scan_record_init. Its pointers
+ * are valid as long as the set-up. */
+typedef struct {
+    /** Set by skg_scan_record_init. */
+    int32_t size;
+    /** 1: the scene comes from a CTSimU scenario, and a folder is written in its layout. */
+    int32_t is_ctsimu;
+    /** 1: the scene has GreyValues (skg_setup_readout_get). */
+    int32_t has_grey_values;
+    /** 1: flat fields have the noise of the grey values. */
+    int32_t flat_noise;
+    /** 1: dark fields have it. */
+    int32_t dark_noise;
+    /** 1: the numbers of flat and dark fields are given. */
+    int32_t has_fields;
+    /** Number of flat fields. */
+    int64_t flats;
+    /** Frames of which each is averaged. */
+    int64_t flat_frames;
+    /** Number of dark fields. */
+    int64_t darks;
+    /** Frames of which each is averaged. */
+    int64_t dark_frames;
+    /** Geometry that the reconstruction is told, instead of the scan's own; NULL: the same. */
+    skg_scan *known;
+    /** [projections] intensity of the beam over that of the first projection, for grey values; NULL: 1 */
+    const double *intensities;
+    /** Number of parts that move from one projection to the next. */
+    int64_t moving_count;
+    /** [moving_count] numbers of these parts */
+    const int64_t *moving_parts;
+    /** [projections][moving_count][16] their poses */
+    const double *moving_poses;
+} skg_scan_record;
+
+/** Prepares a skg_scan_record of `size` bytes (export.h). */
+SKG_API void skg_scan_record_init_sized(void *record, int32_t size);
+
+/** Prepares a skg_scan_record. */
+static inline void skg_scan_record_init(skg_scan_record *record) {
+    skg_scan_record_init_sized(record, (int32_t)sizeof *record);
+}
+
+/** Gets how the scan of a set-up is recorded.
+ *
+ *     record   in and out: prepared with skg_scan_record_init */
+SKG_API skg_status skg_setup_record_get(const skg_setup *setup, skg_scan_record *record);
+
+/** Gets the grey values of the detector. Its full_kev is 0 and has to be set: the greatest value of a flat field of the
+ * first projection. Its pointers are valid as long as the set-up.
+ *
+ *     readout   in and out: prepared with skg_readout_init; unchanged if the scene has no GreyValues */
+SKG_API skg_status skg_setup_readout_get(const skg_setup *setup, skg_readout *readout);
 
 /** Gets the text that identifies what a set-up was read from: the SHA-256 of the scene file after its settings
  * and of the contents of every file that it names. Two set-ups with the same text are the same scene.

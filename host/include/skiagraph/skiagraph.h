@@ -24,6 +24,7 @@
 #include <skiagraph/mesh.h>
 #include <skiagraph/motion.h>
 #include <skiagraph/plan.h>
+#include <skiagraph/readout.h>
 #include <skiagraph/reconstruct.h>
 #include <skiagraph/scan.h>
 #include <skiagraph/scan_file.h>

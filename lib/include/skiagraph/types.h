@@ -21,7 +21,9 @@ enum skg_type {
     /** float, 32 bits */
     SKG_TYPE_FLOAT32 = 0,
     /** double, 64 bits */
-    SKG_TYPE_FLOAT64 = 1
+    SKG_TYPE_FLOAT64 = 1,
+    /** uint16_t: grey values (readout.h), which only files and pictures have */
+    SKG_TYPE_UINT16 = 2
 };
 
 /** With which precision path lengths and images are computed. */

@@ -2,7 +2,7 @@
 #ifndef SKG_JSON_SET_H
 #define SKG_JSON_SET_H
 
-#include "setup/json_file.h"
+#include "json/json_file.h"
 
 /* Applies one setting "KEY=VALUE" with a dotted path; elements of arrays by number or by their Label. The
  * value is JSON, or a string where it does not parse. SKG_ERR_ARGUMENT. */

@@ -1,8 +1,9 @@
-#include "setup/json_file.h"
+#include "json/json_file.h"
 
 #include "core/path_hint.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,21 +31,63 @@ cleanup:
     return status;
 }
 
+/* Blanks a comma before a closing bracket, which JSON does not allow but people write. Returns its line; 0: there is
+ * none. */
+static int64_t blank_comma(char *text, size_t length) {
+    char *comma = NULL;
+    int64_t line = 1, line_of_comma = 0;
+    int is_string = 0;
+    for (size_t i = 0; i < length; i++) {
+        const char c = text[i];
+        line += c == '\n';
+        if (is_string) {
+            if (c == '\\') i++;
+            is_string = c != '"';
+            continue;
+        }
+        if (comma && (c == ']' || c == '}')) {
+            *comma = ' ';
+            return line_of_comma;
+        }
+        is_string = c == '"';
+        if (c == ',')
+            comma = text + i, line_of_comma = line;
+        else if (!strchr(" \t\r\n", c))
+            comma = NULL;
+    }
+    return 0;
+}
+
+/* Parses the text without commas that are too many, each of which is a remark. *error: of the text as it was */
+static skg_status parse_with_commas(skg_json_file *file, size_t length, json_error_t *error) {
+    json_error_t again;
+    int64_t line = 0;
+    while (!file->root && (line = blank_comma(file->text, length)) > 0) {
+        char remark[128];
+        snprintf(remark, sizeof remark, "line %" PRId64 ": a comma before a closing bracket is passed over",
+                 line);
+        if (json_array_append_new(file->remarks, json_string(remark)) != 0)
+            return skg_fail(SKG_ERR_MEMORY, "%s: no memory for a warning", file->path);
+        file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &again);
+    }
+    if (file->root) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT, "%s: line %d, column %d: %s", file->path, error->line, error->column,
+                    error->text);
+}
+
 /* Parses the text of the file, which has this length. */
 static skg_status parse(skg_json_file *file, size_t length) {
     const char *path = file->path;
+    file->set = json_array();
+    file->remarks = json_array();
+    if (!file->set || !file->remarks) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
     /* Some editors write a byte order mark, which JSON does not allow. */
     if (length >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) memset(file->text, ' ', 3);
     json_error_t error;
     file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &error);
-    if (!file->root)
-        return skg_fail(SKG_ERR_FORMAT, "%s: line %d, column %d: %s", path, error.line, error.column,
-                        error.text);
+    if (!file->root) SKG_TRY(parse_with_commas(file, length, &error));
     if (!json_is_object(file->root))
         return skg_fail(SKG_ERR_FORMAT, "%s: a scene file holds one JSON object { ... }", path);
-    file->set = json_array();
-    file->remarks = json_array();
-    if (!file->set || !file->remarks) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for settings", path);
     return SKG_OK;
 }
 

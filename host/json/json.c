@@ -1,4 +1,4 @@
-#include "setup/json.h"
+#include "json/json.h"
 
 #include "core/names.h"
 #include "core/units.h"

@@ -6,7 +6,7 @@
 #ifndef SKG_JSON_H
 #define SKG_JSON_H
 
-#include "setup/json_file.h"
+#include "json/json_file.h"
 
 /* Fails with the sentence after "FILE: line N: PATH: ". SKG_ERR_ARGUMENT becomes SKG_ERR_FORMAT: the file is wrong,
  * not the caller of its reader. */

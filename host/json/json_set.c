@@ -1,6 +1,6 @@
-#include "setup/json_set.h"
+#include "json/json_set.h"
 
-#include "setup/json.h"
+#include "json/json.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,0 +1,124 @@
+#include "scan/grey.h"
+
+#include "common/file.h"
+#include "common/say.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The name of the scenario's file without its extension. The caller frees it. */
+static char *make_stem(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    const size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+    char *stem = calloc(length + 1, 1);
+    if (stem) memcpy(stem, name, length);
+    return stem;
+}
+
+/* Grey values are another scan than energies: the first digits of the hash are turned over. */
+static void mark_hash(char *hash) {
+    static const char digits[] = "0123456789abcdef";
+    for (int i = 0; i < 8; i++) hash[i] = digits[15 - (strchr(digits, hash[i]) - digits)];
+}
+
+int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
+    const int asked = cli_given(arguments, &cli_flag_scan_grey16);
+    const int has_quantity = cli_given(arguments, &cli_flag_image_quantity);
+    skg_scan_record_init(&a->record);
+    skg_readout_init(&a->readout);
+    skg_status status = skg_setup_record_get(a->session.setup, &a->record);
+    if (status == SKG_OK) status = skg_setup_readout_get(a->session.setup, &a->readout);
+    if (status != SKG_OK) return cli_fail(status);
+    a->is_grey = asked || (a->record.has_grey_values && !has_quantity);
+    if (asked) a->readout.bits = 16;
+    if (a->is_grey) mark_hash(a->hash);
+    if (a->record.has_fields && !cli_given(arguments, &cli_flag_scan_flats)) a->flats = a->record.flats;
+    if (a->record.has_fields && !cli_given(arguments, &cli_flag_scan_darks)) a->darks = a->record.darks;
+    a->options.moving_count = a->record.moving_count;
+    a->options.moving_parts = a->record.moving_parts;
+    a->options.moving_poses = a->record.moving_poses;
+    if (!a->is_grey && a->record.intensities)
+        cli_log(SKG_LOG_WARNING,
+                "the intensity of the beam changes in grey values only; this scan has another quantity",
+                NULL);
+    if (!a->record.is_ctsimu || !a->is_grey) return CLI_DONE;
+    a->stem = make_stem(a->session.path);
+    return a->stem ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+}
+
+static int64_t pixels_of(const cli_acquisition *a) {
+    return a->session.view.columns * a->session.view.rows;
+}
+
+static int64_t raw_bytes(const cli_acquisition *a) {
+    return pixels_of(a) * (a->options.type == SKG_TYPE_FLOAT64 ? 8 : 4);
+}
+
+int32_t grey_type(const cli_acquisition *a) {
+    if (!a->is_grey) return a->options.type;
+    return a->readout.bits ? SKG_TYPE_UINT16 : SKG_TYPE_FLOAT32;
+}
+
+int64_t grey_bytes(const cli_acquisition *a) {
+    if (!a->is_grey) return raw_bytes(a);
+    return pixels_of(a) * (a->readout.bits ? 2 : 4);
+}
+
+/* The greatest value of the flat field; with quantum noise, which would make it too great, I0. */
+int grey_prepare(cli_acquisition *a) {
+    skg_channel channel;
+    if (!a->is_grey) return CLI_DONE;
+    skg_channel_init(&channel);
+    void *flat = malloc((size_t)raw_bytes(a));
+    if (!flat) return cli_error(CLI_DEVICE, "out of host memory for a flat field");
+    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
+    if (status == SKG_OK)
+        status = skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, 1, flat);
+    if (status >= SKG_OK) status = SKG_OK;
+    const int is_noisy = a->session.options.noise || a->session.options.electronic_kev > 0;
+    a->readout.full_kev = is_noisy ? channel.flat_field : 0;
+    for (int64_t i = 0; status == SKG_OK && !is_noisy && i < pixels_of(a); i++) {
+        const double kev =
+            a->options.type == SKG_TYPE_FLOAT64 ? ((double *)flat)[i] : (double)((float *)flat)[i];
+        if (kev > a->readout.full_kev) a->readout.full_kev = kev;
+    }
+    free(flat);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const void **images) {
+    *images = batch->images;
+    if (!a->is_grey) return SKG_OK;
+    if (batch->count > a->grey_capacity) {
+        free(a->grey);
+        a->grey = malloc((size_t)(batch->count * grey_bytes(a)));
+        a->grey_capacity = a->grey ? batch->count : 0;
+        if (!a->grey) return SKG_ERR_MEMORY;
+    }
+    for (int64_t i = 0; i < batch->count; i++) {
+        const int64_t index = batch->indices[i];
+        const double share = a->record.intensities ? a->record.intensities[index] : 1;
+        const skg_status status = skg_readout_image(&a->readout, pixels_of(a), batch->type,
+                                                    (const char *)batch->images + i * raw_bytes(a), share,
+                                                    index, (char *)a->grey + i * grey_bytes(a));
+        if (status != SKG_OK) return status;
+    }
+    *images = a->grey;
+    return SKG_OK;
+}
+
+skg_status grey_fields(const cli_acquisition *a, int64_t count, const void *energies, void *to) {
+    skg_readout readout = a->readout;
+    const int is_noisy = energies ? a->record.flat_noise : a->record.dark_noise;
+    if (!is_noisy) readout.snr = 0, readout.noise_count = 0;
+    readout.frames = energies ? a->record.flat_frames : a->record.dark_frames;
+    for (int64_t f = 0; f < count; f++) {
+        /* Their numbers follow those of the projections: first the flat, then the dark fields. */
+        const int64_t index = a->whole_projections + f + (energies ? 0 : a->flats);
+        const char *from = energies ? (const char *)energies + f * raw_bytes(a) : NULL;
+        const skg_status status = skg_readout_image(&readout, pixels_of(a), a->options.type, from, 1, index,
+                                                    (char *)to + f * grey_bytes(a));
+        if (status != SKG_OK) return status;
+    }
+    return SKG_OK;
+}

@@ -1,0 +1,72 @@
+/** @file
+ * Grey values: what a detector writes for the energy that its pixels collect. The noise is that of a specification of
+ * the finished image; for noise from the photons themselves see skg_plan_options. */
+#ifndef SKIAGRAPH_READOUT_H
+#define SKIAGRAPH_READOUT_H
+
+#include <skiagraph/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** How a detector is read out. Prepare with skg_readout_init: 0 without radiation, 60000 where the free beam is strongest,
+ * 16 bits, no noise, no bad pixels. A pixel passes through these steps: grey value of its energy, noise, bad pixels, whole
+ * numbers. */
+typedef struct {
+    /** Set by skg_readout_init. */
+    int32_t size;
+    /** 8 to 16: whole numbers from 0 to 2^bits - 1. 0: numbers as they are. */
+    int32_t bits;
+    /** Grey value without radiation. */
+    double dark;
+    /** Grey value at full_kev. */
+    double full;
+    /** Energy of a pixel where the free beam is strongest, keV; above 0. */
+    double full_kev;
+    /** Grey values for each joule, added to `dark`, instead of `full`; 0: none. */
+    double per_joule;
+    /** Number of points of `curve`; 0: none. */
+    int64_t curve_count;
+    /** [curve_count][2] energy of a pixel in joules, rising, and its grey value, instead of `dark` and `full`; linear
+     * between them, and beyond them as between the nearest two. */
+    const double *curve;
+    /** Ratio of grey value to standard deviation at full_kev. The variance is proportional to the energy. 0: no noise. */
+    double snr;
+    /** Number of points of `noise`; 0: none. */
+    int64_t noise_count;
+    /** [noise_count][2] grey value, rising, and its ratio to the standard deviation, instead of `snr`. */
+    const double *noise;
+    /** Number of frames that are averaged; the variance is divided by it. 1 by default. */
+    int64_t frames;
+    /** [pixels] grey values of bad pixels, and -1 for each good one; NULL: all are good. */
+    const float *bad_pixels;
+    /** Seed of the noise. */
+    int64_t seed;
+} skg_readout;
+
+/** Prepares a readout of `size` bytes (export.h). */
+SKG_API void skg_readout_init_sized(void *readout, int32_t size);
+
+/** Prepares a readout. */
+static inline void skg_readout_init(skg_readout *readout) {
+    skg_readout_init_sized(readout, (int32_t)sizeof *readout);
+}
+
+/** Reads an image out.
+ *
+ *     readout   its full_kev has to be set
+ *     pixels    number of pixels
+ *     type      of energies: SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64
+ *     energies  [pixels] keV; NULL: no radiation (a dark field)
+ *     share     factor on all energies
+ *     index     number of the image: with the seed, it decides the noise
+ *     grey      result: [pixels] uint16_t if readout->bits is not 0, otherwise float
+ *     errors    SKG_ERR_ARGUMENT (a field of the readout) */
+SKG_API skg_status skg_readout_image(const skg_readout *readout, int64_t pixels, int32_t type,
+                                     const void *energies, double share, int64_t index, void *grey);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

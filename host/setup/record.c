@@ -1,0 +1,271 @@
+/* What the keys Scan, GreyValues and Poses say of how projections are recorded. */
+#include "core/core.h"
+#include "core/path_hint.h"
+#include "core/plain.h"
+#include "core/vector.h"
+#include "setup/sections.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static const skg_json_key grey_keys[] = {
+    {"Dark", NULL, SKG_KEY_READ},       {"Full", NULL, SKG_KEY_READ},   {"PerJoule", NULL, SKG_KEY_READ},
+    {"Curve", NULL, SKG_KEY_READ},      {"Bits", NULL, SKG_KEY_READ},   {"SNR", NULL, SKG_KEY_READ},
+    {"NoiseCurve", NULL, SKG_KEY_READ}, {"Frames", NULL, SKG_KEY_READ}, {"BadPixels", NULL, SKG_KEY_READ},
+    {"Seed", NULL, SKG_KEY_READ},
+};
+static const skg_json_key map_keys[] = {
+    {"Path", NULL, SKG_KEY_READ},
+    {"Format", NULL, SKG_KEY_READ},
+    {"ByteOrder", NULL, SKG_KEY_READ},
+    {"Header", NULL, SKG_KEY_READ},
+};
+static const skg_json_key fields_keys[] = {
+    {"Number", NULL, SKG_KEY_READ},
+    {"Frames", NULL, SKG_KEY_READ},
+    {"Noise", NULL, SKG_KEY_READ},
+};
+
+skg_status skg_setup_read_rows(const skg_json_node *node, int64_t width, const char *example, int64_t *count,
+                               double **rows) {
+    SKG_TRY(skg_json_array(node, example, count));
+    SKG_TRY(skg_alloc(*count * width, sizeof **rows, "table", rows));
+    skg_status status = SKG_OK;
+    for (int64_t i = 0; i < *count && status == SKG_OK; i++) {
+        const skg_json_node row = skg_json_element(node, i);
+        status = skg_json_numbers(&row, example, width, *rows + i * width);
+    }
+    if (status != SKG_OK) skg_free(rows);
+    return status;
+}
+
+/* A number that is not negative. */
+static skg_status read_number(const skg_json_object *object, const char *name, double *number) {
+    const skg_json_node node = skg_json_member(object, name);
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_number(&node, number));
+    return *number >= 0 ? SKG_OK : skg_json_fail(&node, SKG_ERR_FORMAT, "is %g; give 0 or more", *number);
+}
+
+static skg_status read_count(const skg_json_object *object, const char *name, int64_t least, int64_t *count) {
+    const skg_json_node node = skg_json_member(object, name);
+    return node.value ? skg_json_integer(&node, least, INT32_MAX, count) : SKG_OK;
+}
+
+static skg_status read_pairs(const skg_json_object *object, const char *name, int64_t *count,
+                             double **pairs) {
+    const skg_json_node node = skg_json_member(object, name);
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_setup_read_rows(&node, 2, "[[0, 100], [1, 200]]", count, pairs));
+    for (int64_t i = 0; i < *count; i++)
+        if (i > 0 && (*pairs)[2 * i] <= (*pairs)[2 * i - 2])
+            return skg_json_fail(&node, SKG_ERR_FORMAT, "does not rise from row %" PRId64 " to the next",
+                                 i - 1);
+    return *count >= 2 ? SKG_OK : skg_json_fail(&node, SKG_ERR_FORMAT, "has fewer than two rows");
+}
+
+/* Element i of a raw image as a number. */
+static float element_of(const unsigned char *bytes, int64_t size, int is_float, int is_signed, int is_big) {
+    unsigned char ordered[8];
+    uint64_t number = 0;
+    for (int64_t b = 0; b < size; b++) ordered[b] = bytes[is_big ? size - 1 - b : b];
+    for (int64_t b = 0; b < size; b++) number |= (uint64_t)ordered[b] << (8 * b);
+    if (is_float && size == 4) {
+        const uint32_t bits = (uint32_t)number;
+        float value;
+        memcpy(&value, &bits, sizeof value);
+        return value;
+    }
+    if (is_float) {
+        double value;
+        memcpy(&value, &number, sizeof value);
+        return (float)value;
+    }
+    const int64_t half = (int64_t)1 << (8 * size - 1), value = (int64_t)number;
+    return (float)(is_signed && value >= half ? value - 2 * half : value);
+}
+
+/* A raw image of the size of the detector. The caller frees it. */
+static skg_status load_map(const char *path, int64_t pixels, int64_t format, int is_big, int64_t header,
+                           float **map) {
+    static const int64_t sizes[] = {1, 1, 2, 2, 4, 8};
+    const int64_t size = sizes[format];
+    unsigned char *bytes = NULL;
+    skg_status status = SKG_OK;
+    FILE *file = fopen(path, "rb");
+    if (!file) return skg_fail_unreadable(path, errno);
+    SKG_TRY_CLEANUP(skg_alloc(pixels, (size_t)size, "map of bad pixels", &bytes));
+    SKG_TRY_CLEANUP(skg_alloc(pixels, sizeof **map, "map of bad pixels", map));
+    if (fseek(file, (long)header, SEEK_SET) != 0 ||
+        fread(bytes, (size_t)size, (size_t)pixels, file) != (size_t)pixels)
+        status = skg_fail(SKG_ERR_FORMAT, "%s: is too short for %" PRId64 " pixels of %" PRId64 " bytes",
+                          path, pixels, size);
+    for (int64_t i = 0; i < pixels && status == SKG_OK; i++)
+        (*map)[i] = element_of(bytes + i * size, size, format >= 4, format % 2 == 1, is_big);
+cleanup:
+    skg_free(&bytes);
+    fclose(file);
+    return status;
+}
+
+static skg_status read_map(skg_setup_reader *reader, const skg_json_node *node, skg_grey_section *grey) {
+    static const char *const formats[] = {"uint8", "int8", "uint16", "int16", "float32", "float64"};
+    static const char *const orders[] = {"little", "big"};
+    const skg_view *view = &reader->setup->view;
+    int64_t format = 3, order = 0, header = 0;
+    const char *name = NULL, *path = NULL;
+    skg_json_object map;
+    skg_json_node file;
+    SKG_TRY(skg_json_read_object(node, map_keys, sizeof map_keys / sizeof *map_keys, &map));
+    SKG_TRY(skg_json_need(&map, "Path", "\"bad.raw\"", &file));
+    const skg_json_node kind = skg_json_member(&map, "Format"), bytes = skg_json_member(&map, "ByteOrder");
+    if (kind.value) SKG_TRY(skg_json_choice(&kind, "format of pixels", formats, 6, &format));
+    if (bytes.value) SKG_TRY(skg_json_choice(&bytes, "order of bytes", orders, 2, &order));
+    SKG_TRY(read_count(&map, "Header", 0, &header));
+    SKG_TRY(skg_json_text(&file, &name));
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
+    const skg_status status =
+        load_map(path, view->columns * view->rows, format, order == 1, header, &grey->bad_pixels);
+    grey->readout.bad_pixels = grey->bad_pixels;
+    return skg_json_at(&file, status);
+}
+
+skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector) {
+    const skg_json_node node = skg_json_member(detector, "GreyValues");
+    skg_grey_section *grey = &reader->setup->grey;
+    skg_readout *r = &grey->readout;
+    skg_json_object object;
+    int64_t bits = 16;
+    skg_readout_init(r);
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_read_object(&node, grey_keys, sizeof grey_keys / sizeof *grey_keys, &object));
+    grey->is_given = 1;
+    SKG_TRY(read_number(&object, "Dark", &r->dark));
+    SKG_TRY(read_number(&object, "Full", &r->full));
+    SKG_TRY(read_number(&object, "PerJoule", &r->per_joule));
+    SKG_TRY(read_number(&object, "SNR", &r->snr));
+    SKG_TRY(read_pairs(&object, "Curve", &r->curve_count, &grey->curve));
+    SKG_TRY(read_pairs(&object, "NoiseCurve", &r->noise_count, &grey->noise));
+    r->curve = grey->curve, r->noise = grey->noise;
+    SKG_TRY(read_count(&object, "Bits", 0, &bits));
+    if (bits != 0 && (bits < 8 || bits > 16))
+        return skg_json_fail(&node, SKG_ERR_FORMAT, "Bits is %" PRId64 "; give 8 to 16, or 0 for floats",
+                             bits);
+    r->bits = (int32_t)bits;
+    SKG_TRY(read_count(&object, "Frames", 1, &r->frames));
+    SKG_TRY(read_count(&object, "Seed", 0, &r->seed));
+    const skg_json_node map = skg_json_member(&object, "BadPixels");
+    return map.value ? read_map(reader, &map, grey) : SKG_OK;
+}
+
+void skg_grey_section_free(skg_grey_section *section) {
+    skg_free(&section->curve);
+    skg_free(&section->noise);
+    skg_free(&section->bad_pixels);
+}
+
+static skg_status read_fields(const skg_json_object *scan, const char *name, int64_t *count, int64_t *frames,
+                              int32_t *noise) {
+    const skg_json_node node = skg_json_member(scan, name);
+    skg_json_object fields;
+    *count = 1, *frames = 1, *noise = 1;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_read_object(&node, fields_keys, sizeof fields_keys / sizeof *fields_keys, &fields));
+    const skg_json_node noisy = skg_json_member(&fields, "Noise");
+    SKG_TRY(read_count(&fields, "Number", 0, count));
+    SKG_TRY(read_count(&fields, "Frames", 1, frames));
+    return noisy.value ? skg_json_flag(&noisy, noise) : SKG_OK;
+}
+
+skg_status skg_setup_read_record(skg_setup_reader *reader, const skg_json_object *scan) {
+    static const char *const layouts[] = {"CTSimU"};
+    skg_scan_section *section = &reader->setup->scan;
+    const skg_json_node intensity = skg_json_member(scan, "Intensity"),
+                        layout = skg_json_member(scan, "Layout");
+    int64_t choice = 0, projections = 0;
+    SKG_TRY(read_fields(scan, "Flats", &section->flats, &section->flat_frames, &section->flat_noise));
+    SKG_TRY(read_fields(scan, "Darks", &section->darks, &section->dark_frames, &section->dark_noise));
+    section->has_fields = skg_json_member(scan, "Flats").value || skg_json_member(scan, "Darks").value;
+    if (layout.value) SKG_TRY(skg_json_choice(&layout, "layout of files", layouts, 1, &choice));
+    section->is_ctsimu = layout.value != NULL;
+    if (!intensity.value) return SKG_OK;
+    SKG_TRY(skg_scan_projection_count(section->scan, &projections));
+    SKG_TRY(skg_alloc(projections, sizeof(double), "intensities", &section->intensities));
+    return skg_json_numbers(&intensity, "a number for each projection", projections, section->intensities);
+}
+
+/* Puts the poses of one more part beside those of the others. */
+static skg_status add_moving(skg_scan_section *section, int64_t projections, int64_t part,
+                             const double *poses) {
+    const int64_t had = section->moving_count, has = had + 1;
+    double *all = NULL;
+    SKG_TRY(skg_realloc(has, sizeof *section->moving, "moving parts", &section->moving));
+    SKG_TRY(skg_alloc(projections * has * 16, sizeof *all, "poses", &all));
+    for (int64_t k = 0; k < projections; k++) {
+        double *to = all + k * has * 16;
+        if (had > 0) memcpy(to, section->poses + k * had * 16, (size_t)had * 16 * sizeof *to);
+        memcpy(to + had * 16, poses + k * 16, 16 * sizeof *to);
+    }
+    skg_free(&section->poses);
+    section->poses = all;
+    section->moving[had] = part;
+    section->moving_count = has;
+    return SKG_OK;
+}
+
+skg_status skg_setup_read_poses(skg_setup_reader *reader, const skg_json_node *node, const double *own,
+                                int64_t part) {
+    skg_scan_section *section = &reader->setup->scan;
+    double *columns = NULL;
+    int64_t count = 0, projections = 0;
+    if (!section->scan) return skg_json_fail(node, SKG_ERR_FORMAT, "needs the key Scan");
+    SKG_TRY(skg_scan_projection_count(section->scan, &projections));
+    SKG_TRY(skg_setup_read_rows(node, 16, "16 numbers for each projection", &count, &columns));
+    skg_status status = SKG_OK;
+    if (count != projections)
+        status = skg_json_fail(node, SKG_ERR_FORMAT, "has %" PRId64 " poses, but the scan has %" PRId64,
+                               count, projections);
+    for (int64_t k = 0; k < count; k++) {
+        double rows[16];
+        for (int i = 0; i < 16; i++) rows[i] = columns[16 * k + 4 * (i % 4) + i / 4];
+        skg_pose_multiply(rows, own, columns + 16 * k);
+    }
+    if (status == SKG_OK) status = add_moving(section, projections, part, columns);
+    /* The other verbs show the first projection. */
+    if (status == SKG_OK) status = skg_json_at(node, skg_scene_pose_set(reader->setup->scene, part, columns));
+    skg_free(&columns);
+    return status;
+}
+
+void skg_scan_record_init_sized(void *record, int32_t size) {
+    const skg_scan_record defaults = {.flats = 1, .flat_frames = 1, .darks = 1, .dark_frames = 1};
+    skg_struct_init(record, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_setup_record_get(const skg_setup *setup, skg_scan_record *record) {
+    SKG_NEEDS(setup);
+    const skg_scan_section *s = &setup->scan;
+    const skg_scan_record ours = {.is_ctsimu = s->is_ctsimu,
+                                  .has_grey_values = setup->grey.is_given,
+                                  .has_fields = s->has_fields,
+                                  .flats = s->flats,
+                                  .flat_frames = s->flat_frames,
+                                  .flat_noise = s->flat_noise,
+                                  .darks = s->darks,
+                                  .dark_frames = s->dark_frames,
+                                  .dark_noise = s->dark_noise,
+                                  .known = s->known,
+                                  .intensities = s->intensities,
+                                  .moving_count = s->moving_count,
+                                  .moving_parts = s->moving,
+                                  .moving_poses = s->poses};
+    return skg_struct_write(&ours, sizeof ours, "skg_scan_record", record);
+}
+
+skg_status skg_setup_readout_get(const skg_setup *setup, skg_readout *readout) {
+    SKG_NEEDS(setup);
+    if (!setup->grey.is_given) return SKG_OK;
+    return skg_struct_write(&setup->grey.readout, sizeof setup->grey.readout, "skg_readout", readout);
+}
