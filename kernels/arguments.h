@@ -116,7 +116,9 @@
     X(ATTENUATE, foot) /* SKG_FALLOFF */ \
     X(ATTENUATE, variances) X(ATTENUATE, key) X(ATTENUATE, photons) /* SKG_NOISE */ \
     X(ATTENUATE, range) /* SKG_RANGED */ \
-    X(ATTENUATE, shade_axis) X(ATTENUATE, shades) /* SKG_SHADES */
+    X(ATTENUATE, shades) /* SKG_SHADES */ \
+    X(ATTENUATE, polynomials) /* SKG_HEEL + SKG_OBLIQUE */ \
+    X(ATTENUATE, tables) /* SKG_BOWTIE + SKG_GRID */
 
 #define SKG_ARGUMENTS_LOGARITHM(X) \
     X(LOGARITHM, columns) X(LOGARITHM, rows) X(LOGARITHM, channels) X(LOGARITHM, output) X(LOGARITHM, offset) \

@@ -2,8 +2,6 @@
  * plane's weights. The exponent of node n is the sum over planes of coefficient[n][p] * x_p, and channel c shows the sum over
  * nodes of weight[n][c] * exp(-exponent_n). The host multiplies coefficients by -log2(e), because powers of two are computed. */
 
-/* Compilers that do not know the pragma ignore it. Results do not depend on it. */
-#define SKG_UNROLL _Pragma("unroll")
 #ifndef SKG_HALF_UNIT
 #define SKG_HALF_UNIT 1.0f
 #endif
@@ -93,8 +91,9 @@ typedef struct {
     skg_real photons;
 #endif
 #if SKG_SHADES
-    skg_real4 shade_axis;
-    __constant const skg_real *shades;
+    const skg_shade_args *shades;
+    __constant const skg_real *polynomials;
+    __global const skg_real *tables;
 #endif
 } skg_pass;
 
@@ -135,23 +134,6 @@ static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, _
 }
 
 #if SKG_SHADES
-/* Terms of the polynomials that amounts of shades are: SKG_SHADE_TERMS of lib/spectral/shades.h. */
-#define SKG_TERMS 12
-
-/* Sets the planes of the shades of run r to their amounts. length: of the rays. */
-static void skg_read_shades(const skg_pass *pass, int at, skg_realv length, skg_pixels *pixels, int r) {
-    const skg_real4 axis = pass->shade_axis;
-    const skg_realv along = fma((skg_realv)(axis.y), (skg_real)at + SKG_LANES,
-                                (skg_realv)(fma(axis.z, (skg_real)pass->row, axis.x)));
-    const skg_realv z = along / length + axis.w;
-    SKG_UNROLL for (int s = 0; s < SKG_SHADES; s++) {
-        __constant const skg_real *terms = pass->shades + s * SKG_TERMS;
-        skg_realv amount = (skg_realv)(terms[SKG_TERMS - 1]);
-        SKG_UNROLL for (int t = SKG_TERMS - 2; t >= 0; t--) amount = fma(amount, z, (skg_realv)(terms[t]));
-        pixels->x[SKG_SUMMED + s][r] = amount;
-    }
-}
-
 /* The power of two that the shades of run r add to node n. */
 static skg_realv skg_shade_power(const skg_pass *pass, const skg_pixels *pixels, int n, int r) {
     skg_realv power = (skg_realv)(0);
@@ -176,7 +158,9 @@ static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies
         SKG_EACH_PLANE(0) if (p == pass->world_plane) pixels->x[p][r] += pixels->world[r];
 #endif
 #if SKG_SHADES
-        skg_read_shades(pass, at, length, pixels, r);
+        skg_realv amounts[SKG_SHADES];
+        skg_shades_v(pass->shades, pass->polynomials, pass->tables, at, pass->row, length, amounts);
+        SKG_EACH_PLANE(SKG_SUMMED) pixels->x[p][r] = amounts[p - SKG_SUMMED];
 #endif
     }
 }
@@ -354,8 +338,8 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
     }
     /* Only what the parts subtract is counted as negative. */
 #if SKG_SHADES
-    pixels->highest[r] = -skg_shade_power(pass, pixels, 0, r);
-    SKG_EACH_PLANE(0)
+    pixels->highest[r] = (skg_realv)(0);
+    SKG_EACH_SUMMED
     pixels->highest[r] = fma((skg_realv)(pass->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
 #endif
 #if SKG_WORLD
@@ -378,8 +362,9 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  * variances      of the nodes, as weights
  * photons        if fewer are detected in a pixel they are drawn one by one; mean^2 / variance, which is never more than
  *                their number, decides
- * shades         amounts as polynomials of z, which are the last planes; z is (shade_axis.x + shade_axis.y i +
- *                shade_axis.z j) / |ray| + shade_axis.w
+ * shades         how the amounts of shades, which are the last planes, follow from the rays
+ * polynomials    [shades of heel and oblique scintillator][SKG_TERMS] coefficients of 1, z, z^2, ...
+ * tables         of bow-tie and grid (lib/spectral/shades.h)
  * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range */
 __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
                             __global const int *used, int nodes, __constant const skg_real *coefficients,
@@ -408,7 +393,15 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #endif
 #if SKG_SHADES
                             ,
-                            skg_real4 shade_axis, __constant const skg_real *shades
+                            skg_shade_args shades
+#endif
+#if SKG_HEEL + SKG_OBLIQUE
+                            ,
+                            __constant const skg_real *polynomials
+#endif
+#if SKG_BOWTIE + SKG_GRID
+                            ,
+                            __global const skg_real *tables
 #endif
 ) {
     skg_pass pass;
@@ -437,8 +430,15 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     pass.photons = photons;
 #endif
 #if SKG_SHADES
-    pass.shade_axis = shade_axis;
-    pass.shades = shades;
+    pass.shades = &shades;
+    pass.polynomials = 0;
+    pass.tables = 0;
+#endif
+#if SKG_HEEL + SKG_OBLIQUE
+    pass.polynomials = polynomials;
+#endif
+#if SKG_BOWTIE + SKG_GRID
+    pass.tables = tables;
 #endif
     if (pass.column >= frame.columns || pass.row >= frame.rows) return;
     skg_read_planes(&pass, copies, used, &pixels);

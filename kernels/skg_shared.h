@@ -119,7 +119,21 @@ typedef struct {
     real middle_i, middle_j; /* the pixel of `centre` */                                                     \
     real unit;               /* 1 / scale of the plane */
 
+/* How the amounts of shades follow from a ray (lib/spectral/shades.h). "Along the ray" means (a[0] + a[1] i + a[2] j) for pixel
+ * (i, j), with the ray's length |ray| as above. */
+#define SKG_SHADE_MEMBERS(real)                                                                              \
+    real heel[4];    /* z is heel[0..2] along the ray / |ray| + heel[3] */                                   \
+    real oblique[2]; /* z is oblique[0] / |ray| + oblique[1] */                                              \
+    real fan[6];   /* across and along the central ray, whose quotient is the tangent of the fan's angle */  \
+    real tilt[4];  /* of the ray against the strips: tilt[0..2]; tilt[3]: cells of the table for 1 */        \
+    real path[4];  /* mm through the grid / |ray|; obliquity / |ray|; the least of the table; cells for 1 */ \
+    SKG_INT rows;  /* of the bow-tie, whose table is the first */                                            \
+    SKG_INT table; /* where that of the grid begins */
+
 #ifdef __OPENCL_C_VERSION__
+typedef struct {
+    SKG_SHADE_MEMBERS(skg_real)
+} skg_shade_args;
 typedef struct {
     SKG_PART_MEMBERS(skg_real)
 } skg_part_entry;
@@ -130,6 +144,12 @@ typedef struct {
     SKG_RAY_MEMBERS(skg_real)
 } skg_ray_args;
 #else
+typedef struct {
+    SKG_SHADE_MEMBERS(float)
+} skg_shade_float;
+typedef struct {
+    SKG_SHADE_MEMBERS(double)
+} skg_shade_double;
 typedef struct {
     SKG_PART_MEMBERS(float)
 } skg_part_float;
@@ -153,6 +173,7 @@ _Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, do
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
+_Static_assert(sizeof(skg_shade_float) == 22 * 4 && sizeof(skg_shade_double) == 21 * 8, "layout of shades");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");

@@ -12,6 +12,7 @@ static const skg_json_key detector_keys[] = {
     {"Oversampling", NULL, SKG_KEY_READ}, {"EnergyResponse", NULL, SKG_KEY_READ},
     {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", NULL, SKG_KEY_READ},
     {"PSF", NULL, SKG_KEY_READ},          {"GreyValues", NULL, SKG_KEY_READ},
+    {"Grid", NULL, SKG_KEY_READ},
 };
 
 /* Size and Spacing may both be given if they agree; if they do not, that is a fault, and Spacing holds. */
@@ -158,6 +159,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
         SKG_TRY(place(&detector, &position, view));
     SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
     SKG_TRY(skg_setup_read_response(reader, &detector));
+    SKG_TRY(skg_setup_read_grid(reader, &detector));
     SKG_TRY(skg_setup_read_blur(reader, &detector));
     SKG_TRY(skg_setup_read_grey_values(reader, &detector));
     skg_status status = skg_view_check(view);

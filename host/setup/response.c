@@ -19,7 +19,8 @@ static const skg_json_key pulse_keys[] = {
 
 static const skg_json_key scintillator_keys[] = {
     {"Material", NULL, SKG_KEY_READ}, {"Thickness", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
-    {"Density", NULL, SKG_KEY_READ},  {"Packing", NULL, SKG_KEY_READ},
+    {"Density", NULL, SKG_KEY_READ},  {"Packing", NULL, SKG_KEY_READ},   {"Oblique", NULL, SKG_KEY_READ},
+    {"Escape", NULL, SKG_KEY_READ},
 };
 
 /* The unit of energies, and what these mean for noise. */
@@ -165,6 +166,18 @@ static skg_status make_scintillator(skg_setup_reader *reader, const skg_json_obj
     return skg_json_at(object->node, status);
 }
 
+static skg_status let_escape(skg_setup_reader *reader, const skg_json_object *object) {
+    const skg_json_node node = skg_json_member(object, "Escape");
+    skg_response *all = reader->setup->response, *escaping = NULL;
+    int32_t escape = 0;
+    if (node.value) SKG_TRY(skg_json_flag(&node, &escape));
+    if (!escape) return SKG_OK;
+    SKG_TRY(skg_json_at(&node, skg_response_create_escaping(all, &escaping)));
+    skg_response_release(&all);
+    reader->setup->response = escaping;
+    return SKG_OK;
+}
+
 static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_node *node) {
     skg_json_object object;
     skg_json_node material_node;
@@ -176,7 +189,10 @@ static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_nod
     SKG_TRY(skg_setup_read_material(reader, &material_node, &density, "scintillator", &material));
     skg_status status = make_scintillator(reader, &object, material);
     skg_material_release(&material);
-    return status;
+    SKG_TRY(status);
+    const skg_json_node oblique = skg_json_member(&object, "Oblique");
+    if (oblique.value) SKG_TRY(skg_json_flag(&oblique, &reader->setup->oblique));
+    return let_escape(reader, &object);
 }
 
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector) {

@@ -55,6 +55,11 @@ skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_
 skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node);
 skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node);
 
+/* The keys Bowtie of a source (value NULL: none) and Grid of a detector. */
+skg_status skg_setup_read_bowtie(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_grid(skg_setup_reader *reader, const skg_json_object *detector);
+void skg_setup_in_beam_free(skg_setup *setup);
+
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
 

@@ -278,6 +278,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_spectrum_release(&(*setup)->spectrum);
     skg_response_release(&(*setup)->response);
     skg_material_release(&(*setup)->world);
+    skg_setup_in_beam_free(*setup);
     skg_free(&(*setup)->blur_samples);
     skg_scan_section_free(&(*setup)->scan);
     skg_grey_section_free(&(*setup)->grey);
@@ -342,6 +343,9 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->has_band_weight) ours.band_weight = setup->band_weight;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
     if (setup->has_heel) ours.heel = &setup->heel;
+    if (setup->has_bowtie) ours.bowtie = &setup->bowtie;
+    if (setup->has_grid) ours.grid = &setup->grid;
+    if (setup->oblique) ours.oblique = 1;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;

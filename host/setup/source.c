@@ -7,6 +7,7 @@ static const skg_json_key source_keys[] = {
     {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
     {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
     {"From", NULL, SKG_KEY_READ},     {"Heel", NULL, SKG_KEY_READ},
+    {"Bowtie", NULL, SKG_KEY_READ},
 };
 
 /* Where only path lengths are wanted, any energy does for a beam that is absent. */
@@ -89,8 +90,9 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     }
     SKG_TRY(skg_json_need(&source, "Beam", "[{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]",
                           &beam));
-    skg_json_node heel = skg_json_member(&source, "Heel");
+    skg_json_node heel = skg_json_member(&source, "Heel"), bowtie = skg_json_member(&source, "Bowtie");
     SKG_TRY(read_heel(setup, &heel));
+    SKG_TRY(skg_setup_read_bowtie(reader, &bowtie));
     SKG_TRY(skg_setup_read_beam(reader, &beam));
     if (setup->has_heel && !setup->has_tube)
         return skg_json_fail(&heel, SKG_ERR_BEAM,

@@ -92,9 +92,14 @@ struct skg_setup {
     skg_setup_noise noise;
     skg_grey_section grey;
     skg_spot spot;
-    skg_heel heel;         /* kvp, anode, angle and bins are those of the tube, if the beam is one */
-    int32_t has_tube;      /* 1: the beam is a tube */
-    int32_t has_heel;      /* 1: the file has the key Heel */
+    skg_heel heel;     /* kvp, anode, angle and bins are those of the tube, if the beam is one */
+    int32_t has_tube;  /* 1: the beam is a tube */
+    int32_t has_heel;  /* 1: the file has the key Heel */
+    skg_bowtie bowtie; /* its material is the set-up's, its rows are those below */
+    double *bowtie_rows;
+    skg_grid grid; /* its materials are the set-up's */
+    int32_t has_bowtie, has_grid;
+    int32_t oblique;       /* 1: rays cross the scintillator obliquely */
     int32_t supersampling; /* rays along a side of a pixel */
     skg_view view;         /* of the first projection */
     skg_scan_section scan;

@@ -1,4 +1,5 @@
 /* The energy that a detector records of a photon. */
+#include "beam/escape.h"
 #include "beam/spectrum.h"
 #include "core/columns.h"
 #include "core/plain.h"
@@ -16,6 +17,7 @@ struct skg_response {
     double *energy_kev, *recorded_kev, *efficiency, *swank;
     skg_material *material; /* retained */
     double mm;              /* thickness at the full density of the material */
+    skg_escape *escape;     /* of the layer; NULL: no fluorescence leaves it */
 };
 
 /* A recorded energy may exceed that of the photon by this share, because published tables are rounded to three
@@ -170,6 +172,22 @@ skg_status skg_response_create_screen(const skg_material *material, double mg_cm
     return make_layer(material, mg_cm2 / 1000 / density * 10, response);
 }
 
+skg_status skg_response_create_escaping(const skg_response *scintillator, skg_response **response) {
+    SKG_PLAIN;
+    SKG_NEEDS(scintillator);
+    SKG_NEEDS(response);
+    *response = NULL;
+    if (scintillator->count > 0)
+        return skg_fail(
+            SKG_ERR_BEAM,
+            "fluorescence escapes from a scintillator of given thickness, not from a table, which "
+            "has its own recorded energies and Swank factors");
+    SKG_TRY(make_layer(scintillator->material, scintillator->mm, response));
+    const skg_status status = skg_escape_create((*response)->material, (*response)->mm, &(*response)->escape);
+    if (status != SKG_OK) skg_response_release(response);
+    return status;
+}
+
 skg_status skg_response_retain(skg_response *response) {
     SKG_NEEDS(response);
     skg_ref(&response->refs);
@@ -183,6 +201,7 @@ void skg_response_release(skg_response **response) {
         skg_free(&(*response)->recorded_kev);
         skg_free(&(*response)->efficiency);
         skg_free(&(*response)->swank);
+        skg_escape_release(&(*response)->escape);
         skg_material_release(&(*response)->material);
         skg_free(response);
     }
@@ -192,6 +211,14 @@ void skg_response_release(skg_response **response) {
 int skg_response_assumes_efficiency(const skg_response *response) {
     return response && response->count > 0 && response->meaning == SKG_RESPONSE_MEANING_SIGNAL &&
            !response->efficiency;
+}
+
+int skg_response_is_layer(const skg_response *response) {
+    return response && response->count == 0;
+}
+
+int skg_response_escapes(const skg_response *response) {
+    return response && response->escape;
 }
 
 /* What a detector makes of a photon of one energy. */
@@ -238,6 +265,12 @@ static skg_status record(const skg_response *response, double energy_kev, double
     SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
     found->efficiency = -expm1(-per_cm * response->mm / 10 * oblique);
     found->recorded = energy_kev * found->efficiency;
+    if (!response->escape) return SKG_OK;
+    double left = 0, square = 0;
+    skg_escape_moments(response->escape, energy_kev, per_cm / 10, oblique, &left, &square);
+    const double mean = energy_kev - left; /* of a photon that interacts */
+    found->recorded = mean * found->efficiency;
+    found->swank = mean * mean / (energy_kev * (energy_kev - 2 * left) + square);
     return SKG_OK;
 }
 

@@ -19,6 +19,12 @@ skg_status skg_spectrum_make(int64_t count, skg_spectrum **spectrum);
 /* Whether a response says what is recorded, but not of how many photons: all are then taken as recorded. */
 int skg_response_assumes_efficiency(const skg_response *response);
 
+/* Whether a response is that of a layer, which depends on how oblique photons cross it. */
+int skg_response_is_layer(const skg_response *response);
+
+/* Whether K fluorescence leaves the layer. */
+int skg_response_escapes(const skg_response *response);
+
 /* The transmission exp(-sum of mu times thickness) of filters at an energy. */
 skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed);
 

@@ -57,6 +57,7 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
     for (int k = 0; k < 3; k++) {
         camera->origin[k] = camera->parallel ? pixel[k] : seen_from[k];
         camera->first[k] = pixel[k] - seen_from[k];
+        camera->corner[k] = pixel[k] - view->centre[k];
     }
     if (camera->parallel) parallel_direction(view, camera->first);
     camera->determinant = invert(camera->column, camera->row, camera->first, camera->matrix);

@@ -20,7 +20,8 @@ typedef struct {
     double determinant;  /* of the inverse of the matrix; its sign is the handedness of the picture */
     double first[3];     /* from S to the centre of pixel (0, 0); with a parallel beam: d */
     double column[3], row[3];
-    double start[3]; /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
+    double corner[3]; /* from the detector's centre to the centre of pixel (0, 0) */
+    double start[3];  /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
 } skg_camera;
 
 /* Makes the camera of a view.

@@ -11,6 +11,8 @@ static const double DEVIATE = 100;    /* a random deviate with its random words 
 static const double RAY = 10;         /* the length of a ray */
 static const double REPAIRED = 30;    /* a pixel of a repair */
 static const double LISTED = 200;     /* a hit that is listed and sorted */
+static const double SEARCHED = 5;     /* a step of a search in a table */
+static const double LOOKED_UP = 10;   /* four points of a table */
 
 typedef struct {
     const skg_recipe *recipe;
@@ -88,7 +90,13 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_FALLOFF:
         return c->passes * RAY;
     case SKG_EFFECT_HEEL:
-        return c->passes * (RAY + model->shades.count * (SKG_SHADE_TERMS + nodes));
+        return c->passes * (RAY + model->shades.heel * (SKG_SHADE_TERMS + nodes));
+    case SKG_EFFECT_OBLIQUE:
+        return c->passes * (RAY + model->shades.oblique * (SKG_SHADE_TERMS + nodes));
+    case SKG_EFFECT_BOWTIE:
+        return c->passes * (2 * RAY + SEARCHED * log2((double)model->shades.rows) + nodes);
+    case SKG_EFFECT_GRID:
+        return c->passes * (2 * RAY + model->shades.grid * (LOOKED_UP + nodes));
     case SKG_EFFECT_LEAKY:
         return c->passes * (double)recipe->leaky_count * 2 * SKG_COST_OF_PLANE;
     case SKG_EFFECT_REPAIR:

@@ -4,12 +4,11 @@
 #include "geometry/priority.h"
 #include "plan/costs.h"
 #include "plan/decide.h"
+#include "plan/shade_effects.h"
 #include "spectral/quantity.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 
 /* What effects are found from, and where they go. */
 typedef struct {
@@ -22,30 +21,20 @@ typedef struct {
 /* From this many energies on it is worth a warning that all are used: most beams need 8 to 24. */
 enum { MANY_ENERGIES = 25 };
 
-static void set(const finding *f, int effect, int on, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-static void set(const finding *f, int effect, int on, const char *format, ...) {
-    skg_effect_state *state = &f->outcome->effects[effect];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(state->reason, sizeof state->reason, format, arguments);
-    va_end(arguments);
-    state->on = on;
-}
-
 static void find_noise(const finding *f) {
     const skg_plan_options *options = &f->recipe->options;
     const int assumes = skg_response_assumes_efficiency(options->response);
     if (!options->noise) {
-        set(f, SKG_EFFECT_NOISE, 0, "not asked for");
+        skg_effect_set(f->outcome, SKG_EFFECT_NOISE, 0, "not asked for");
         return;
     }
     if (skg_quantity_counts(options))
-        set(f, SKG_EFFECT_NOISE, 1, "asked for; photons are counted, so the variance is the mean%s",
-            assumes ? "; every photon is taken as recorded" : "");
+        skg_effect_set(f->outcome, SKG_EFFECT_NOISE, 1,
+                       "asked for; photons are counted, so the variance is the mean%s",
+                       assumes ? "; every photon is taken as recorded" : "");
     else
-        set(f, SKG_EFFECT_NOISE, 1,
+        skg_effect_set(
+            f->outcome, SKG_EFFECT_NOISE, 1,
             "asked for; Swank factor %g%s; photon by photon if fewer than %g are detected in a pixel%s",
             options->swank, options->response ? " times that of the response" : "", SKG_FEW_PHOTONS,
             assumes ? "; every photon is taken as recorded" : "");
@@ -61,27 +50,32 @@ static void find_detector(const finding *f) {
     const skg_plan_options *options = &f->recipe->options;
     find_noise(f);
     if (f->blur)
-        set(f, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(f->blur));
+        skg_effect_set(f->outcome, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(f->blur));
     else
-        set(f, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
+        skg_effect_set(f->outcome, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
     if (options->electronic_kev > 0)
-        set(f, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel", options->electronic_kev);
+        skg_effect_set(f->outcome, SKG_EFFECT_ELECTRONIC, 1, "standard deviation of %g keV per pixel",
+                       options->electronic_kev);
     else
-        set(f, SKG_EFFECT_ELECTRONIC, 0, "not asked for");
+        skg_effect_set(f->outcome, SKG_EFFECT_ELECTRONIC, 0, "not asked for");
     if (options->quantum_step_kev > 0)
-        set(f, SKG_EFFECT_QUANTISATION, 1, "steps of %g keV per pixel", options->quantum_step_kev);
+        skg_effect_set(f->outcome, SKG_EFFECT_QUANTISATION, 1, "steps of %g keV per pixel",
+                       options->quantum_step_kev);
     else
-        set(f, SKG_EFFECT_QUANTISATION, 0, "no step is given");
+        skg_effect_set(f->outcome, SKG_EFFECT_QUANTISATION, 0, "no step is given");
 }
 
 static void set_priority(const finding *f, int64_t competing) {
     if (!f->recipe->priority_possible)
-        set(f, SKG_EFFECT_PRIORITY, 0, "no two parts of one parent differ in priority, and none is clipped");
+        skg_effect_set(f->outcome, SKG_EFFECT_PRIORITY, 0,
+                       "no two parts of one parent differ in priority, and none is clipped");
     else if (competing == 0)
-        set(f, SKG_EFFECT_PRIORITY, 0, "parts of different priority keep apart in the plan's view");
+        skg_effect_set(f->outcome, SKG_EFFECT_PRIORITY, 0,
+                       "parts of different priority keep apart in the plan's view");
     else
-        set(f, SKG_EFFECT_PRIORITY, 1, "hits of %" PRId64 " parts are listed: they may compete%s", competing,
-            f->recipe->options.clip ? ", or leave their parents" : "");
+        skg_effect_set(f->outcome, SKG_EFFECT_PRIORITY, 1,
+                       "hits of %" PRId64 " parts are listed: they may compete%s", competing,
+                       f->recipe->options.clip ? ", or leave their parents" : "");
 }
 
 /* Effects that follow from where the parts lie. */
@@ -100,10 +94,10 @@ static skg_status find_places(const finding *f) {
         near += extents[i].near_source && extents[i].on_detector;
     }
     if (near)
-        set(f, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " %s the plane where rays start", near,
-            skg_plural(near, "part reaches", "parts reach"));
+        skg_effect_set(f->outcome, SKG_EFFECT_SOURCE_PLANE, 1, "%" PRId64 " %s the plane where rays start",
+                       near, skg_plural(near, "part reaches", "parts reach"));
     else
-        set(f, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
+        skg_effect_set(f->outcome, SKG_EFFECT_SOURCE_PLANE, 0, "no part reaches the plane where rays start");
     if (recipe->priority_possible)
         SKG_TRY_CLEANUP(skg_priority_find(scene, recipe->options.clip, &camera, extents, &priority));
     set_priority(f, priority.count);
@@ -121,22 +115,24 @@ static void find_samples(const finding *f) {
                                          "disc",  "sphere", "Gaussian spot"};
     const char *shape = shapes[samples->spot.shape];
     if (samples->spot.shape == SKG_SPOT_POINT)
-        set(f, SKG_EFFECT_SOURCE, 0, "%s",
-            f->recipe->view.projection == SKG_PROJECTION_POINT ? "the source is a point: one pass"
-                                                               : "the beam is parallel: one pass");
+        skg_effect_set(f->outcome, SKG_EFFECT_SOURCE, 0, "%s",
+                       f->recipe->view.projection == SKG_PROJECTION_POINT ? "the source is a point: one pass"
+                                                                          : "the beam is parallel: one pass");
     else if (error > 0)
-        set(f, SKG_EFFECT_SOURCE, 1,
+        skg_effect_set(
+            f->outcome, SKG_EFFECT_SOURCE, 1,
             "%s: %" PRId64
             " samples; the last doubling changed 99.9 %% of the pixels by less than %.2g of the flat "
             "field",
             shape, samples->spot_count, error);
     else
-        set(f, SKG_EFFECT_SOURCE, 1, "%s: %" PRId64 " samples, as asked for", shape, samples->spot_count);
+        skg_effect_set(f->outcome, SKG_EFFECT_SOURCE, 1, "%s: %" PRId64 " samples, as asked for", shape,
+                       samples->spot_count);
     if (samples->shifts > 1)
-        set(f, SKG_EFFECT_SUPERSAMPLING, 1, "%" PRId64 " x %" PRId64 " rays a pixel", samples->shifts,
-            samples->shifts);
+        skg_effect_set(f->outcome, SKG_EFFECT_SUPERSAMPLING, 1, "%" PRId64 " x %" PRId64 " rays a pixel",
+                       samples->shifts, samples->shifts);
     else
-        set(f, SKG_EFFECT_SUPERSAMPLING, 0, "one ray a pixel, at its centre");
+        skg_effect_set(f->outcome, SKG_EFFECT_SUPERSAMPLING, 0, "one ray a pixel, at its centre");
 }
 
 static void find_beam(const finding *f) {
@@ -144,45 +140,32 @@ static void find_beam(const finding *f) {
     skg_attenuation attenuation;
     const char *world = "";
     if (options->world && skg_material_name_get(options->world, &world) == SKG_OK)
-        set(f, SKG_EFFECT_WORLD, 1, "the parts stand in %s", world);
+        skg_effect_set(f->outcome, SKG_EFFECT_WORLD, 1, "the parts stand in %s", world);
     else
-        set(f, SKG_EFFECT_WORLD, 0, "the parts stand in vacuum");
+        skg_effect_set(f->outcome, SKG_EFFECT_WORLD, 0, "the parts stand in vacuum");
     const int counts = skg_quantity_counts(options);
     if (options->response)
-        set(f, SKG_EFFECT_RESPONSE, 1,
-            counts ? "photons are counted by the share of them that the detector records"
-                   : "photons count by what the detector records of their energy");
+        skg_effect_set(f->outcome, SKG_EFFECT_RESPONSE, 1,
+                       counts ? "photons are counted by the share of them that the detector records"
+                              : "photons count by what the detector records of their energy");
     else if (counts)
-        set(f, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: it counts all photons");
+        skg_effect_set(f->outcome, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: it counts all photons");
     else
-        set(f, SKG_EFFECT_RESPONSE, 0, "the detector is ideal: all photons, all their energy");
+        skg_effect_set(f->outcome, SKG_EFFECT_RESPONSE, 0,
+                       "the detector is ideal: all photons, all their energy");
     skg_decide_attenuation(f->recipe, &attenuation);
     if (attenuation.falloff && f->recipe->view.projection != SKG_PROJECTION_POINT)
-        set(f, SKG_EFFECT_FALLOFF, 0, "the beam is parallel: its intensity is the same everywhere");
+        skg_effect_set(f->outcome, SKG_EFFECT_FALLOFF, 0,
+                       "the beam is parallel: its intensity is the same everywhere");
     else if (attenuation.falloff)
-        set(f, SKG_EFFECT_FALLOFF, 1,
+        skg_effect_set(
+            f->outcome, SKG_EFFECT_FALLOFF, 1,
             "inverse square and obliquity, from the foot of the source's perpendicular on the detector's "
             "plane on");
     else
-        set(f, SKG_EFFECT_FALLOFF, 0,
-            options->falloff ? "ratios to the flat field do not show it" : "photons are counted per pixel");
-}
-
-static void find_heel(const finding *f) {
-    const skg_heel *heel = f->recipe->options.heel;
-    const skg_shades *shades = &f->recipe->model.shades;
-    const double degree = 57.29577951308232; /* of a radian */
-    if (!heel)
-        set(f, SKG_EFFECT_HEEL, 0, "not asked for: the spectrum is the same everywhere");
-    else if (f->recipe->view.projection != SKG_PROJECTION_POINT)
-        set(f, SKG_EFFECT_HEEL, 0, "the beam is parallel");
-    else if (shades->count == 0)
-        set(f, SKG_EFFECT_HEEL, 0, "one energy over its flat field does not show it");
-    else
-        set(f, SKG_EFFECT_HEEL, 1,
-            "photons leave the anode at %.3g to %.3g degrees; %" PRId32 " %s, to %.1g of the logarithm",
-            asin(shades->middle - shades->half) * degree, asin(shades->middle + shades->half) * degree,
-            shades->count, skg_plural(shades->count, "shade", "shades"), shades->error);
+        skg_effect_set(f->outcome, SKG_EFFECT_FALLOFF, 0,
+                       options->falloff ? "ratios to the flat field do not show it"
+                                        : "photons are counted per pixel");
 }
 
 static void find_compression(const finding *f) {
@@ -190,20 +173,22 @@ static void find_compression(const finding *f) {
     const skg_model *model = &f->recipe->model;
     const int effect = SKG_EFFECT_COMPRESSION;
     if (model->verified > 0)
-        set(f, effect, 1,
-            "%" PRId32 " of %" PRId32 " energies and %" PRId32 " %s for %" PRId32
-            " %s; error of transmissions%s at most %.2g, verified on %" PRId64 " points",
-            model->nodes, model->bins, model->planes, skg_plural(model->planes, "plane", "planes"),
-            model->materials, skg_plural(model->materials, "material", "materials"),
-            model->variances ? " and variances" : "", model->bound, model->verified);
+        skg_effect_set(f->outcome, effect, 1,
+                       "%" PRId32 " of %" PRId32 " energies and %" PRId32 " %s for %" PRId32
+                       " %s; error of transmissions%s at most %.2g, verified on %" PRId64 " points",
+                       model->nodes, model->bins, model->planes, skg_plural(model->planes, "plane", "planes"),
+                       model->materials, skg_plural(model->materials, "material", "materials"),
+                       model->variances ? " and variances" : "", model->bound, model->verified);
     else if (model->bins == 1)
-        set(f, effect, 0, "the beam has one energy");
+        skg_effect_set(f->outcome, effect, 0, "the beam has one energy");
     else if (options->precision == SKG_PRECISION_HALF)
-        set(f, effect, 0, "half precision keeps every energy and a plane per material, as the paper");
+        skg_effect_set(f->outcome, effect, 0,
+                       "half precision keeps every energy and a plane per material, as the paper");
     else if (options->tolerance > 0)
-        set(f, effect, 0, "no fewer energies meet a tolerance of %g: every one is used", options->tolerance);
+        skg_effect_set(f->outcome, effect, 0, "no fewer energies meet a tolerance of %g: every one is used",
+                       options->tolerance);
     else
-        set(f, effect, 0, "tolerance 0: every energy is used");
+        skg_effect_set(f->outcome, effect, 0, "tolerance 0: every energy is used");
     if (model->verified == 0 && options->tolerance > 0 && options->precision != SKG_PRECISION_HALF &&
         model->materials > 0 && model->bins >= MANY_ENERGIES)
         skg_log(f->context, SKG_LOG_WARNING,
@@ -215,12 +200,14 @@ static void find_compression(const finding *f) {
 static void find_energies(const finding *f) {
     const skg_model *model = &f->recipe->model;
     if (model->bins > 1)
-        set(f, SKG_EFFECT_ENERGIES, 1, "%" PRId32 " %s, %" PRId32 " %s for %" PRId32 " %s", model->nodes,
-            skg_plural(model->nodes, "energy", "energies"), model->planes,
-            skg_plural(model->planes, "plane", "planes"), model->materials,
-            skg_plural(model->materials, "material", "materials that differ"));
+        skg_effect_set(f->outcome, SKG_EFFECT_ENERGIES, 1,
+                       "%" PRId32 " %s, %" PRId32 " %s for %" PRId32 " %s", model->nodes,
+                       skg_plural(model->nodes, "energy", "energies"), model->planes,
+                       skg_plural(model->planes, "plane", "planes"), model->materials,
+                       skg_plural(model->materials, "material", "materials that differ"));
     else
-        set(f, SKG_EFFECT_ENERGIES, 0, "the beam has one energy: one exponential per pixel, one plane");
+        skg_effect_set(f->outcome, SKG_EFFECT_ENERGIES, 0,
+                       "the beam has one energy: one exponential per pixel, one plane");
 }
 
 static void find_nesting(const finding *f) {
@@ -228,10 +215,11 @@ static void find_nesting(const finding *f) {
     int64_t nested = 0;
     for (int64_t i = 0; i < scene->count; i++) nested += scene->parts[i].inside >= 0;
     if (nested)
-        set(f, SKG_EFFECT_NESTING, 1, "%" PRId64 " %s a parent: differences of mu, no pass", nested,
-            skg_plural(nested, "part displaces", "parts displace"));
+        skg_effect_set(f->outcome, SKG_EFFECT_NESTING, 1,
+                       "%" PRId64 " %s a parent: differences of mu, no pass", nested,
+                       skg_plural(nested, "part displaces", "parts displace"));
     else
-        set(f, SKG_EFFECT_NESTING, 0, "no part names a parent");
+        skg_effect_set(f->outcome, SKG_EFFECT_NESTING, 0, "no part names a parent");
 }
 
 static void find_leaky(const finding *f) {
@@ -244,23 +232,24 @@ static void find_leaky(const finding *f) {
     const int64_t count = f->recipe->leaky_count;
     const int32_t repair = f->recipe->options.repair;
     if (count == 0) {
-        set(f, SKG_EFFECT_LEAKY, 0, "every mesh is closed: signed hits cancel exactly");
-        set(f, SKG_EFFECT_REPAIR, 0, "every mesh is closed");
+        skg_effect_set(f->outcome, SKG_EFFECT_LEAKY, 0, "every mesh is closed: signed hits cancel exactly");
+        skg_effect_set(f->outcome, SKG_EFFECT_REPAIR, 0, "every mesh is closed");
         return;
     }
-    set(f, SKG_EFFECT_LEAKY, 1, "%" PRId64 " %s not closed: each has a plane and a count of its own", count,
-        skg_plural(count, "part is", "parts are"));
-    set(f, SKG_EFFECT_REPAIR, repair != SKG_REPAIR_NONE, "%s", repairs[repair]);
+    skg_effect_set(f->outcome, SKG_EFFECT_LEAKY, 1,
+                   "%" PRId64 " %s not closed: each has a plane and a count of its own", count,
+                   skg_plural(count, "part is", "parts are"));
+    skg_effect_set(f->outcome, SKG_EFFECT_REPAIR, repair != SKG_REPAIR_NONE, "%s", repairs[repair]);
 }
 
 static void find_overlaps(const finding *f) {
     const int64_t count = f->outcome->overlap_count;
     if (!f->recipe->options.overlaps)
-        set(f, SKG_EFFECT_OVERLAPS, 0, "not asked for");
+        skg_effect_set(f->outcome, SKG_EFFECT_OVERLAPS, 0, "not asked for");
     else
-        set(f, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " %s", count,
-            skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
-                       "pairs of parts overlap or leave their parent"));
+        skg_effect_set(f->outcome, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " %s", count,
+                       skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
+                                  "pairs of parts overlap or leave their parent"));
 }
 
 skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_blur *blur,
@@ -269,7 +258,7 @@ skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context
     find_energies(&f);
     find_samples(&f);
     find_beam(&f);
-    find_heel(&f);
+    skg_effects_find_shades(recipe, outcome);
     find_compression(&f);
     find_nesting(&f);
     find_leaky(&f);

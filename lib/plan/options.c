@@ -1,5 +1,6 @@
 #include "plan/options.h"
 
+#include "beam/spectrum.h"
 #include "spectral/quantity.h"
 
 #include <inttypes.h>
@@ -34,6 +35,7 @@ static skg_status check_flags(const skg_plan_options *options) {
     SKG_TRY(check_flag("profile", options->profile));
     SKG_TRY(check_flag("falloff", options->falloff));
     SKG_TRY(check_flag("noise", options->noise));
+    SKG_TRY(check_flag("oblique", options->oblique));
     return check_flag("clip", options->clip);
 }
 
@@ -41,6 +43,12 @@ static skg_status check_detector(const skg_plan_options *options) {
     const int kev = options->electronic_kev > 0 || options->quantum_step_kev > 0;
     SKG_TRY(check_kev("electronic noise", options->electronic_kev));
     SKG_TRY(check_kev("the quantisation's step", options->quantum_step_kev));
+    if (options->oblique && !skg_response_is_layer(options->response))
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "rays cross the layer of a scintillator obliquely, but the detector %s; give the response "
+            "of a scintillator, or leave oblique out",
+            options->response ? "has a table of energies" : "is ideal");
     if (!(options->swank > 0 && options->swank <= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "the Swank factor is %g; above 0, at most 1", options->swank);
     if (kev && skg_quantity_counts(options))

@@ -24,7 +24,11 @@
     X(SKG_EFFECT_ELECTRONIC, "electronic noise")                                                             \
     X(SKG_EFFECT_QUANTISATION, "quantisation")                                                               \
     X(SKG_EFFECT_PRIORITY, "priority")                                                                       \
-    X(SKG_EFFECT_HEEL, "heel effect")
+    X(SKG_EFFECT_HEEL, "heel effect")                                                                        \
+    X(SKG_EFFECT_BOWTIE, "bow-tie filter")                                                                   \
+    X(SKG_EFFECT_GRID, "anti-scatter grid")                                                                  \
+    X(SKG_EFFECT_OBLIQUE, "oblique scintillator")                                                            \
+    X(SKG_EFFECT_ESCAPE, "K escape")
 
 enum {
 #define SKG_EFFECT_ENUM(name, text) name,
@@ -62,6 +66,10 @@ typedef struct {
 /* Starts an outcome with what the recipe has decided. */
 skg_status skg_outcome_create(const skg_recipe *recipe, skg_outcome *outcome);
 void skg_outcome_release(skg_outcome *outcome);
+
+/* Says whether an effect is on, and why. */
+void skg_effect_set(skg_outcome *outcome, int effect, int on, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* Takes over what another recipe has decided differently: planes and accumulators. */
 void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome);

@@ -74,20 +74,14 @@ static skg_status keep_options(skg_recipe *recipe, const skg_plan_options *given
     options->blur = NULL;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
-    const skg_heel *heel = options->heel;
-    options->heel = NULL;
-    skg_heel_init(&recipe->heel);
-    if (heel) {
-        const skg_status status = skg_struct_read(heel, "skg_heel", &recipe->heel, sizeof recipe->heel);
-        if (status != SKG_OK) {
-            options->band_kev = NULL, options->views = NULL;
-            return status;
-        }
-        options->heel = &recipe->heel;
+    skg_status status = skg_keep(options, &recipe->kept);
+    if (status != SKG_OK) {
+        options->band_kev = NULL, options->views = NULL;
+        return status;
     }
-    const skg_status views = keep_views(recipe);
-    if (views != SKG_OK) options->band_kev = NULL;
-    return views == SKG_OK ? keep_bands(recipe) : views;
+    status = keep_views(recipe);
+    if (status != SKG_OK) options->band_kev = NULL;
+    return status == SKG_OK ? keep_bands(recipe) : status;
 }
 
 /* --- decisions */
@@ -106,11 +100,13 @@ static skg_status check_half(const skg_recipe *recipe) {
     const skg_plan_options *options = &recipe->options;
     if (options->precision != SKG_PRECISION_HALF) return SKG_OK;
     if (recipe->view.projection != SKG_PROJECTION_POINT || recipe->leaky_count > 0 || options->world ||
-        recipe->priority_possible || recipe->is_blurred || options->heel || skg_quantity_is_absolute(options))
+        recipe->priority_possible || recipe->is_blurred || options->heel || options->oblique ||
+        options->bowtie || options->grid || skg_quantity_is_absolute(options))
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
             "precision half is for comparison: a point source or samples of one, closed meshes without "
-            "priorities, vacuum around them, no noise, blur or heel effect; take single");
+            "priorities, vacuum around them, no noise, blur, heel effect, oblique scintillator, bow-tie or grid; "
+            "take single");
     return SKG_OK;
 }
 
@@ -151,9 +147,10 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(skg_plan_options_check(options, device));
     SKG_TRY(skg_plan_meshes_create(recipe->scene, &recipe->meshes));
     SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
+    SKG_TRY(skg_samples_make(parallel ? NULL : spot, options->supersampling, &recipe->samples));
+    if (spot) recipe->options.spot = &recipe->samples.spot;
     SKG_TRY(make_model(recipe));
     SKG_TRY(skg_channel_names_create(options, recipe->model.channels, &recipe->channel_names));
-    SKG_TRY(skg_samples_make(parallel ? NULL : spot, options->supersampling, &recipe->samples));
     SKG_TRY(find_leaky(recipe));
     recipe->priority_possible = skg_priority_possible(recipe->scene, options->clip);
     SKG_TRY(check_half(recipe));
@@ -206,6 +203,7 @@ static void release_own(skg_recipe *recipe) {
     skg_free(&recipe->views);
     skg_free(&recipe->channel_names);
     skg_free(&recipe->leaky);
+    skg_kept_release(&recipe->kept);
     skg_response_release(&recipe->options.response);
     skg_material_release(&recipe->options.world);
     skg_spectrum_release(&recipe->spectrum);

@@ -8,6 +8,7 @@
 #include "core/context.h"
 #include "geometry/samples.h"
 #include "plan/channel.h"
+#include "plan/keep.h"
 #include "plan/meshes.h"
 #include "spectral/mix.h"
 #include "spectral/model.h"
@@ -21,13 +22,13 @@ struct skg_recipe {
 
     skg_scene *scene;         /* retained */
     skg_spectrum *spectrum;   /* retained */
-    skg_plan_options options; /* its handles retained, its arrays copied; spot and blur are NULL: see below */
+    skg_plan_options options; /* its handles retained, its arrays copied; blur is NULL: see below */
     skg_view view;            /* of frames without a view of their own */
     int64_t structure;        /* of the scene; if it has another one the plan is stale */
     int64_t materials;        /* of the scene when the model was made */
     double *band_kev;         /* [bands + 1] or NULL; options has it, too */
     skg_view *views;          /* [view_count] or NULL; options has it, too */
-    skg_heel heel;            /* options points to it unless there is none */
+    skg_kept kept;            /* what options points to of heel, bow-tie and grid */
 
     skg_plan_meshes meshes;
     skg_model model;

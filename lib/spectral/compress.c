@@ -29,16 +29,17 @@ typedef struct {
     skg_compression found;
 } compressing;
 
-/* Errors are relative from this transmission on. A ratio to the flat field in a world that transmits little
- * shows small transmissions, so it needs a lower limit. */
+/* Errors are relative from this transmission on. A ratio to the flat field in a world that transmits little, or behind a
+ * filter, shows small transmissions, so it needs a lower limit. */
 static skg_status find_floor(compressing *c, const skg_model *model) {
     double *lengths = NULL, *exact = NULL;
     skg_status status = SKG_OK;
     c->beam.floor = SKG_RELATIVE_FROM;
-    if (!c->is_ratio || model->world_plane < 0) return SKG_OK;
+    if (!c->is_ratio || (model->world_plane < 0 && model->shades.count == 0)) return SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(c->beam.materials, sizeof *lengths, "nodes", &lengths));
     SKG_TRY_CLEANUP(skg_alloc(c->beam.sets, sizeof *exact, "nodes", &exact));
-    lengths[model->world_plane] = c->ranges.way;
+    if (model->world_plane >= 0) lengths[model->world_plane] = c->ranges.way;
+    for (int32_t k = 0; k < model->shades.count; k++) lengths[model->planes + k] = model->shades.high[k];
     skg_transmit_exact(&c->beam, lengths, exact);
     for (int32_t s = 0; s < c->beam.sets; s++)
         if (c->sums[s] > 0)
@@ -255,8 +256,8 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
 skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
                         const double *mu, skg_model *model) {
     const int is_ratio = skg_quantity_is_ratio(options);
-    /* A ratio to the transmission of the world has the errors of both. */
-    const double errors = is_ratio && model->world_plane >= 0 ? 2 : 1;
+    /* A ratio to the transmission of the world and the shades has the errors of both. */
+    const double errors = is_ratio && (model->world_plane >= 0 || model->shades.count > 0) ? 2 : 1;
     compressing c = {
         .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
     skg_status status = SKG_OK;

@@ -21,7 +21,7 @@ static const double LOG2_E = 1.4426950408889634;
 typedef struct {
     skg_kernel_options options;
     int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, energies,
-        mixed, shades;
+        mixed, shades, heel, oblique, bowtie, grid;
 } kernel_key;
 
 struct skg_attenuator {
@@ -49,10 +49,14 @@ static int32_t shades_of(const skg_attenuation *attenuation) {
 }
 
 static skg_status upload_shades(skg_context *context, int32_t is_double, skg_attenuation *attenuation) {
-    const int64_t shades = shades_of(attenuation);
-    if (shades == 0) return SKG_OK;
-    return upload(context, is_double, shades * SKG_SHADE_TERMS, attenuation->shades->amounts[0],
-                  &attenuation->shade_amounts);
+    const skg_shades *shades = attenuation->shades;
+    if (shades_of(attenuation) == 0) return SKG_OK;
+    const int64_t polynomials = shades->heel + shades->oblique;
+    if (polynomials)
+        SKG_TRY(upload(context, is_double, polynomials * SKG_SHADE_TERMS, shades->polynomials[0],
+                       &attenuation->polynomials));
+    if (shades->table_count == 0) return SKG_OK;
+    return upload(context, is_double, shades->table_count, shades->tables, &attenuation->tables);
 }
 
 skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
@@ -82,12 +86,13 @@ void skg_attenuation_release(skg_attenuation *attenuation) {
     skg_buffer_release(&attenuation->weights);
     skg_buffer_release(&attenuation->variances);
     skg_buffer_release(&attenuation->range);
-    skg_buffer_release(&attenuation->shade_amounts);
+    skg_buffer_release(&attenuation->polynomials);
+    skg_buffer_release(&attenuation->tables);
 }
 
 int64_t skg_attenuation_bytes(const skg_attenuation *attenuation) {
     return attenuation->coefficients.bytes + attenuation->weights.bytes + attenuation->variances.bytes +
-           attenuation->range.bytes + attenuation->shade_amounts.bytes;
+           attenuation->range.bytes + attenuation->polynomials.bytes + attenuation->tables.bytes;
 }
 
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator) {
@@ -103,19 +108,22 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
-    static const char *const quiet[] = {"exponential.clh", "attenuate.cl"};
-    static const char *const noisy[] = {"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"};
-    char more[352];
+    const char *files[5] = {"exponential.clh"};
+    int count = 1;
+    char more[448];
+    if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
+    if (key->shades) files[count++] = "shades.clh";
+    files[count++] = "attenuate.cl";
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
         "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d -D SKG_SUMS=%d "
-        "-D SKG_SHADES=%d%s",
+        "-D SKG_SHADES=%d -D SKG_HEEL=%d -D SKG_OBLIQUE=%d -D SKG_BOWTIE=%d -D SKG_GRID=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
         (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->add, RUNS, (int)key->ranged,
-        (int)key->mixed, (int)key->shades, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
-    return skg_kernels_get(attenuator->context, &key->options, key->noise ? 4 : 2, key->noise ? noisy : quiet,
-                           more, program);
+        (int)key->mixed, (int)key->shades, (int)key->heel, (int)key->oblique, (int)key->bowtie,
+        (int)key->grid, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+    return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
@@ -152,9 +160,12 @@ static int has_argument(const kernel_key *key, int argument) {
         return key->noise;
     case SKG_ATTENUATE_range:
         return key->ranged;
-    case SKG_ATTENUATE_shade_axis:
     case SKG_ATTENUATE_shades:
         return key->shades;
+    case SKG_ATTENUATE_polynomials:
+        return key->heel + key->oblique;
+    case SKG_ATTENUATE_tables:
+        return key->bowtie + key->grid;
     default:
         return 1;
     }
@@ -184,6 +195,8 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                          const skg_attenuation *attenuation, const skg_image_place *place, int32_t mixed) {
     /* Of the raster's options only the type of its sums changes this kernel; the others stay 0, so that rasters which differ
  * elsewhere share a kernel. */
+    static const skg_shades none = {0};
+    const skg_shades *shades = attenuation->shades ? attenuation->shades : &none;
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
                                     .half = raster->options.kernels.half},
@@ -198,7 +211,11 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                         .energies = raster->options.kernels.half && attenuation->energies,
                         .add = place->add,
                         .mixed = mixed,
-                        .shades = camera->parallel ? 0 : shades_of(attenuation),
+                        .shades = shades->count,
+                        .heel = shades->heel,
+                        .oblique = shades->oblique,
+                        .bowtie = shades->bowtie,
+                        .grid = shades->grid,
                         .ranged = attenuation->range.memory != NULL};
 }
 
@@ -211,8 +228,10 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
     skg_real_argument reals[4]; /* factor, limit, foot, photons */
-    double world[4], axis[4] = {0};
-    float world_single[4], axis_single[4];
+    double world[4];
+    float world_single[4];
+    skg_shade_double shades = {0};
+    skg_shade_float shades_single;
     cl_kernel kernel = NULL;
     skg_ray_double ray;
     skg_ray_float ray_single;
@@ -220,8 +239,8 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     skg_camera_rays(camera, sums->scale, &ray);
     skg_rays_round(&ray, &ray_single);
     find_world(camera, attenuation, world, world_single);
-    if (key.shades) skg_shades_axis(attenuation->shades, camera, axis);
-    for (int k = 0; k < 4; k++) axis_single[k] = (float)axis[k];
+    if (key.shades) skg_shades_see(attenuation->shades, camera, &shades);
+    skg_shades_round(&shades, &shades_single);
     skg_real_argument_set(&reals[0], is_double, factor);
     skg_real_argument_set(&reals[1], is_double, limit);
     skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_foot(camera) : 0);
@@ -251,9 +270,10 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, key, *noise),
         {SKG_ATTENUATE_photons, reals[3].size, reals[3].value},
         SKG_ARGUMENT(ATTENUATE, range, attenuation->range.memory),
-        {SKG_ATTENUATE_shade_axis, is_double ? sizeof axis : sizeof axis_single,
-         is_double ? (const void *)axis : (const void *)axis_single},
-        SKG_ARGUMENT(ATTENUATE, shades, attenuation->shade_amounts.memory),
+        {SKG_ATTENUATE_shades, is_double ? sizeof shades : sizeof shades_single,
+         is_double ? (const void *)&shades : (const void *)&shades_single},
+        SKG_ARGUMENT(ATTENUATE, polynomials, attenuation->polynomials.memory),
+        SKG_ARGUMENT(ATTENUATE, tables, attenuation->tables.memory),
     };
     SKG_TRY(set_arguments(kernel, &key, arguments));
     const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision) * RUNS;

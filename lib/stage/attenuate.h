@@ -22,7 +22,7 @@ typedef struct {
     double world_weight;      /* of a mm of the world's path in its plane */
     const skg_shades *shades; /* borrowed; count 0, or NULL: none */
     skg_buffer coefficients, weights, variances;
-    skg_buffer shade_amounts; /* [shades][SKG_SHADE_TERMS] */
+    skg_buffer polynomials, tables; /* of shades */
     skg_buffer
         range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
 } skg_attenuation;

@@ -27,6 +27,7 @@ typedef struct {
     int32_t priority; /* the octahedron's, which overlaps the box */
     int32_t inside;   /* the source stands in the box */
     int32_t parallel, colours, world, bands, noise, blur, spot;
+    int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
     double electronic, step, tolerance;
     int32_t picture; /* draws the 3D view instead of an image */
 } group;
@@ -40,6 +41,8 @@ static const group groups[] = {
     {.name = "parallel", .parallel = 1},
     {.name = "attenuate", .colours = 1, .world = 1, .falloff = 1, .supersampling = 2, .spot = 1},
     {.name = "logarithm", .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION, .world = 1, .spot = 1},
+    {.name = "shades", .colours = 1, .shades = 1, .noise = 1},
+    {.name = "double_shades", .precision = SKG_PRECISION_DOUBLE, .colours = 1, .shades = 1},
     {.name = "bands", .colours = 1, .bands = 2, .tolerance = 1e-3},
     {.name = "double", .precision = SKG_PRECISION_DOUBLE, .colours = 1, .world = 1},
     {.name = "double_atomics", .precision = SKG_PRECISION_DOUBLE, .strategy = SKG_STRATEGY_ATOMICS},
@@ -110,12 +113,36 @@ static skg_view make_view(const group *g) {
     return view;
 }
 
+/* What options point to while a plan is made. */
+typedef struct {
+    skg_heel heel;
+    skg_bowtie bowtie;
+    skg_grid grid;
+} shades;
+
+static void add_shades(shades *s, skg_plan_options *options) {
+    static const double angles[3] = {-20, 1, 20}, paths[3] = {10, 1, 12};
+    skg_material *csi = NULL;
+    skg_heel_init(&s->heel);
+    skg_bowtie_init(&s->bowtie);
+    skg_grid_init(&s->grid);
+    s->heel.kvp = 100, s->heel.direction[1] = 1;
+    s->bowtie.count = 3, s->bowtie.angle_deg = angles, s->bowtie.path_mm = paths;
+    s->grid.ratio = 8, s->grid.lines_per_cm = 40, s->grid.focus_mm = 1000;
+    TRY(skg_material_create_named("Al", &s->bowtie.material));
+    TRY(skg_material_create_named("CsI", &csi));
+    TRY(skg_response_create_scintillator(csi, 0.6, 0.8, &options->response));
+    skg_material_release(&csi);
+    options->heel = &s->heel, options->bowtie = &s->bowtie, options->grid = &s->grid, options->oblique = 1;
+}
+
 static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_view *view, const group *g) {
     static const double energies[3] = {40, 60, 90}, photons[3] = {50, 80, 30}, edges[3] = {10, 55, 100};
     static const double line[3] = {0.2, 1, 0.3}, point[9] = {0, 1, 0, 1, 4, 2, 0, 1, 0};
     skg_plan_options options;
     skg_detector_blur blur;
     skg_spot spot;
+    shades more = {0};
     skg_spectrum *beam = NULL;
     skg_plan *plan = NULL;
     skg_plan_options_init(&options);
@@ -132,10 +159,13 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     if (g->blur) options.blur = &blur;
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 2;
     if (g->spot) options.spot = &spot;
+    if (g->shades) add_shades(&more, &options);
     TRY(skg_spectrum_create_bins(g->colours ? 3 : 1, energies, photons, &beam));
     TRY(skg_plan_create(context, scene, view, beam, &options, &plan));
     skg_spectrum_release(&beam);
     skg_material_release(&options.world);
+    skg_material_release(&more.bowtie.material);
+    skg_response_release(&options.response);
     return plan;
 }
 

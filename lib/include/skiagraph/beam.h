@@ -281,6 +281,18 @@ SKG_API skg_status skg_response_create_scintillator(const skg_material *material
 SKG_API skg_status skg_response_create_screen(const skg_material *material, double mg_cm2,
                                               skg_response **response);
 
+/** Makes the response of a scintillator from which K fluorescence escapes.
+ *
+ *     scintillator   response of skg_response_create_scintillator or _screen; it does not change
+ *     method         Above the K edge of an element, absorption mostly leaves a vacancy that emits a photon of the
+ *                    element's K lines, of which some leave the layer. The recorded energy is less by their mean
+ *                    energy, and the Swank factor is that of the pulse heights E and E - E(line). Photons that are
+ *                    absorbed again may be followed by further ones (Te by Cd). Yields, lines and jumps are those
+ *                    of the tables of elements from Z = 20 on. Scattered photons count as absorbed, and light of
+ *                    the layer is not considered.
+ *     errors         SKG_ERR_BEAM if the response is a table; SKG_ERR_MATERIAL if the composition is unknown */
+SKG_API skg_status skg_response_create_escaping(const skg_response *scintillator, skg_response **response);
+
 /** Adds an owner to a response. */
 SKG_API skg_status skg_response_retain(skg_response *response);
 

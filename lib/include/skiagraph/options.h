@@ -160,6 +160,89 @@ static inline void skg_heel_init(skg_heel *heel) {
     skg_heel_init_sized(heel, (int32_t)sizeof *heel);
 }
 
+/** A bow-tie filter: a body at the source whose thickness changes along the fan of rays and not across it. Prepare
+ * with skg_bowtie_init; set material, count, angle_deg and path_mm.
+ *
+ * The fan's plane contains the ray to the detector's centre. The path of a ray in this plane is linear in the
+ * tangent of its angle between rows; that of a ray which leaves the plane by an angle k is longer by 1 / cos k,
+ * as the body is the same all along the direction across the fan. The filter moves with source and detector. */
+typedef struct {
+    /** Set by skg_bowtie_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Of known density; retained. */
+    skg_material *material;
+    /** Number of rows, 2 to 4096. */
+    int64_t count;
+    /** [count] angle to the ray to the detector's centre, degrees, -89 to 89, rising. No ray of the plan's views
+     * may lie outside. */
+    const double *angle_deg;
+    /** [count] path of the ray at this angle through the filter, mm, at least 0 */
+    const double *path_mm;
+    /** In which angles grow; any length. What lies along the ray to the detector's centre does not count. All 0:
+     * along the detector's rows. It turns with the detector when frames have other views. */
+    double direction[3];
+} skg_bowtie;
+
+/** Prepares a bow-tie filter of `size` bytes (export.h). */
+SKG_API void skg_bowtie_init_sized(void *bowtie, int32_t size);
+
+/** Prepares a bow-tie filter. */
+static inline void skg_bowtie_init(skg_bowtie *bowtie) {
+    skg_bowtie_init_sized(bowtie, (int32_t)sizeof *bowtie);
+}
+
+/** An anti-scatter grid on the detector: strips that stand on it, with an interspace between them. Prepare with
+ * skg_grid_init; set ratio and lines_per_cm.
+ *
+ * Its effect is the share of the primary photons that it lets pass, averaged over the place where a ray meets the
+ * pattern of strips: the pattern itself is not shown, as with a grid that moves. Strips stop rays that are not
+ * along them (cut-off), when the source is not at the focus or the beam is parallel. */
+typedef struct {
+    /** Set by skg_grid_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Height of the strips over the width of an interspace, above 0 to 100. */
+    double ratio;
+    /** Strips per cm. */
+    double lines_per_cm;
+    /** Thickness of a strip, mm, less than its share of a cm; 0.05 by default. */
+    double strip_mm;
+    /** Of the strips; retained. NULL: lead. */
+    skg_material *strip;
+    /** Between the strips; retained. NULL: vacuum. */
+    skg_material *interspace;
+    /** Distance in mm from the grid to the line in which the planes of all strips meet, above the detector's
+     * centre; 0: the strips are parallel. */
+    double focus_mm;
+    /** Across the strips; any length. What lies along the detector's normal does not count. All 0: along the
+     * detector's rows. It turns with the detector when frames have other views. */
+    double direction[3];
+} skg_grid;
+
+/** Prepares a grid of `size` bytes (export.h). */
+SKG_API void skg_grid_init_sized(void *grid, int32_t size);
+
+/** Prepares a grid. */
+static inline void skg_grid_init(skg_grid *grid) {
+    skg_grid_init_sized(grid, (int32_t)sizeof *grid);
+}
+
+/** Gets the share of the photons of an energy that pass a grid without interaction.
+ *
+ *     oblique        path of the ray between the faces of the grid divided by their distance, at least 1
+ *     tilt           distance that the ray moves across the strips divided by the height of these; 0: along the
+ *                    strips
+ *     transmission   result: above 0 to 1
+ *     method         mean over the period of exp(-mu_strip l - mu_interspace (H - l)) with the length l in strips
+ *                    of the ray's path H, in closed form. Strips are plates without curvature, whose distance is
+ *                    that on the detector.
+ *     errors         SKG_ERR_SCENE for unusable dimensions; SKG_ERR_MATERIAL if a density is unknown */
+SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy_kev, double oblique,
+                                             double tilt, double *transmission);
+
 /** Options of a plan. Prepare with skg_plan_options_init: single precision, energy per pixel, every energy of
  * the spectrum, point source, ideal detector, no noise. Arrays and structs that it points to are copied by
  * skg_plan_create, handles are retained. */
@@ -226,11 +309,17 @@ typedef struct {
     const skg_view *views;
     /** enum skg_band_weight, of transmission and attenuation of bands; SKG_BAND_WEIGHT_PHOTONS by default */
     int32_t band_weight;
-    /** 0 */
-    int32_t reserved;
+    /** 1: the path through the layer of the response grows with the angle of a ray to the detector's normal. 0
+     * (default): every photon crosses it straight. Needs a response of a scintillator, not a table. */
+    int32_t oblique;
     /** The heel effect; NULL: the spectrum is the same everywhere. Without effect in a parallel beam, and on
      * ratios to the flat field of one energy. */
     const skg_heel *heel;
+    /** A bow-tie filter at the source; NULL: none. Without effect in a parallel beam, and on ratios to the flat
+     * field of one energy. */
+    const skg_bowtie *bowtie;
+    /** An anti-scatter grid on the detector; NULL: none. Without effect on ratios to the flat field of one energy. */
+    const skg_grid *grid;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.

@@ -1,0 +1,53 @@
+/* Rays that cross a scintillator obliquely: its layer is longer for them. */
+#include "spectral/oblique_shades.h"
+
+#include "core/vector.h"
+#include "spectral/quantity.h"
+
+#include <math.h>
+
+typedef struct {
+    double low, high; /* cosines between the rays and the normal of the detector */
+} extent;
+
+static skg_status see(void *user, const skg_camera *camera, const double ray[3], double column, double row) {
+    extent *e = user;
+    const double q = skg_camera_foot(camera) / skg_length(ray);
+    (void)column, (void)row;
+    e->low = fmin(e->low, q), e->high = fmax(e->high, q);
+    return SKG_OK;
+}
+
+/* What is recorded of a photon: energy, or 1 if photons are counted. */
+static skg_status record(const skg_shading *shading, double kev, double oblique, double *recorded) {
+    const int counts = skg_quantity_counts(shading->options);
+    return skg_response_get(shading->options->response, kev, oblique, counts ? NULL : recorded,
+                            counts ? recorded : NULL);
+}
+
+skg_status skg_oblique_shades(const skg_shading *shading, skg_shades *shades) {
+    const skg_spectrum *spectrum = shading->spectrum;
+    skg_directions directions = {0};
+    extent e = {1, 0};
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_shade_rays(shading, see, &e));
+    /* No cosine is above 1, where what is recorded would not be smooth. */
+    const skg_shade_extent wide = skg_shade_extent_of(e.low, e.high);
+    const double low = wide.middle - wide.half, high = fmin(wide.middle + wide.half, 1);
+    shades->oblique_extent = (skg_shade_extent){0.5 * (low + high), 0.5 * (high - low)};
+    SKG_TRY_CLEANUP(skg_directions_create(spectrum, SKG_FIT_POINTS, &directions));
+    for (int s = 0; s < SKG_FIT_POINTS; s++) {
+        const double q = shades->oblique_extent.middle + shades->oblique_extent.half * skg_fit_point(s);
+        for (int64_t b = 0; b < spectrum->count; b++) {
+            double straight = 0, oblique = 0;
+            SKG_TRY_CLEANUP(record(shading, spectrum->energy_kev[b], 1, &straight));
+            SKG_TRY_CLEANUP(record(shading, spectrum->energy_kev[b], 1 / fmin(q, 1), &oblique));
+            directions.losses[s * directions.bins + b] = log(straight / oblique);
+        }
+    }
+    SKG_TRY_CLEANUP(skg_shades_append_fitted(&directions, shades, &shades->oblique_error));
+    shades->oblique = directions.count;
+cleanup:
+    skg_directions_release(&directions);
+    return status;
+}

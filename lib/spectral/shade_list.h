@@ -1,0 +1,88 @@
+/* The list of a plan's shades (shades.h), and what the effects that have shades share. Private. */
+#ifndef SKG_SHADE_LIST_H
+#define SKG_SHADE_LIST_H
+
+#include "beam/spectrum.h"
+#include "geometry/camera.h"
+#include "spectral/directions.h"
+
+#include <skiagraph/plan.h>
+
+enum {
+    SKG_SHADES_MOST = 3 * SKG_DIRECTIONS_MOST + 2,
+    SKG_SHADE_TERMS = SKG_FIT_TERMS,
+    /* Of the tables of a grid: cells by tilt, and points by obliquity. */
+    SKG_GRID_TILTS = 257,
+    SKG_GRID_PATHS = 5
+};
+
+/* The z of polynomials. */
+typedef struct {
+    double middle, half;
+} skg_shade_extent;
+
+typedef struct {
+    int32_t count; /* all */
+    int32_t heel, oblique, bowtie, grid, reserved;
+    double *losses;                                     /* [count][bins] */
+    double low[SKG_SHADES_MOST], high[SKG_SHADES_MOST]; /* of the amounts */
+    double polynomials[2 * SKG_DIRECTIONS_MOST]
+                      [SKG_SHADE_TERMS]; /* heel, oblique: coefficients of 1, z, z^2, ... */
+    skg_shade_extent heel_extent, oblique_extent;
+    double heel_error, oblique_error,
+        grid_error;          /* of the logarithm of what is transmitted, by least squares */
+    double heel_angle;       /* of the anode, radians */
+    double heel_toward[3];   /* of the anode, in the detector's frame: along columns, rows and across */
+    double fan_toward[3];    /* in which the bow-tie's angles grow, likewise */
+    double strips_toward[3]; /* across the strips of the grid, likewise */
+    double fan_angle[2];     /* that rays have, radians */
+    double grid_height, grid_focus; /* mm; focus 0: parallel strips */
+    double grid_lean, grid_tilt;    /* the greatest tilt of rays, and of the tables */
+    double grid_path[2];            /* least and greatest obliquity of the tables */
+    int64_t rows;                   /* of the bow-tie's table */
+    int64_t table_count;
+    double *tables; /* [rows] tangents, [rows] mm; then [SKG_GRID_TILTS][SKG_GRID_PATHS][grid - 1] */
+} skg_shades;
+
+/* What shades are made from. */
+typedef struct {
+    const skg_view *view;
+    const skg_spectrum *spectrum;
+    const skg_plan_options *options;
+} skg_shading;
+
+/* Rays between those that were looked at, and views that differ in the last digits, may lie a little beyond. */
+static const double SKG_SHADE_MARGIN = 0.02;
+
+/* The unit vectors along a camera's columns and rows, and the one across both. */
+void skg_detector_frame(const double *column, const double *row, double frame[3][3]);
+
+/* Coordinates of a direction in the frame of the view's detector. Fails with SKG_ERR_SCENE if it has no length. name: for the
+ * message; mend: what to give. */
+skg_status skg_shade_direction(const skg_view *view, const double *direction, const char *name,
+                               const char *mend, double toward[3]);
+
+/* Sets central to the unit vector from the source to the detector's centre, and across to the unit vector of what is left of a
+ * direction of the detector's frame across it. 0 if nothing is left. */
+int skg_shade_axes(const skg_camera *camera, const double toward[3], double central[3], double across[3]);
+
+/* Called for each ray of a grid over a detector; the ray is in mm. column, row: of its pixel. */
+typedef skg_status skg_shade_ray(void *user, const skg_camera *camera, const double ray[3], double column,
+                                 double row);
+
+/* Calls seen for rays over the detectors of all views, from the middle of the source and from its ends. */
+skg_status skg_shade_rays(const skg_shading *shading, skg_shade_ray *seen, void *user);
+
+/* Makes the extent of q between low and high, with a margin. */
+skg_shade_extent skg_shade_extent_of(double low, double high);
+
+/* Appends directions whose amounts, at the points of skg_fit_point, become polynomials. error: of the logarithm. */
+skg_status skg_shades_append_fitted(skg_directions *directions, skg_shades *shades, double *error);
+
+/* Appends one shade with its losses [bins]. */
+skg_status skg_shades_append(int64_t bins, const double *losses, double low, double high, skg_shades *shades);
+
+/* Appends to the tables. */
+skg_status skg_shades_append_table(int64_t count, skg_shades *shades, double **table);
+
+#endif
