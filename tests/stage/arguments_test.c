@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_FILES = 4, MOST_ARGUMENTS = 32 };
+enum { MOST_FILES = 5, MOST_ARGUMENTS = 32 };
 
 static skg_context *context;
 
@@ -47,8 +47,9 @@ static const struct {
     {{"pixel.clh", "half.cl"}, "", 1},
     {{"counts.cl"}, "", 0},
     {{"leaky.cl"}, "", 0},
-    {{"exponential.clh", "random.clh", "noise.clh", "attenuate.cl"},
-     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1 -D SKG_SHADES=1 -D SKG_PLANES=2",
+    {{"exponential.clh", "random.clh", "noise.clh", "shades.clh", "attenuate.cl"},
+     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1 -D SKG_PLANES=5 -D SKG_SHADES=4 "
+     "-D SKG_HEEL=1 -D SKG_OBLIQUE=1 -D SKG_BOWTIE=1 -D SKG_GRID=1",
      0},
     {{"blur.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1", 0},
@@ -84,7 +85,7 @@ START_TEST(arguments_have_the_names_of_their_kernels) {
     for (size_t p = 0; p < sizeof programs / sizeof *programs; p++) {
         const skg_kernel_options options = {
             .bits = 32, .source_plane = 1, .listed = 1, .half = programs[p].half};
-        char more[200];
+        char more[256];
         int32_t files = 0;
         cl_uint count = 0;
         cl_program program = NULL;
