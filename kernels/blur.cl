@@ -3,8 +3,6 @@
  * image by half the function on either side. The second works along the rows, from the workspace into the image. A pixel beyond
  * the border has the value of the nearest pixel on it. The terms of a pixel are added in the same order on all devices. */
 
-#define SKG_UNROLL _Pragma("unroll")
-
 /* Rows and vectors of a work-item of the first pass: each row that is read is used for SKG_BLUR_ROWS rows that are written. */
 #define SKG_BLUR_ROWS 4
 #define SKG_BLUR_VECTORS 2

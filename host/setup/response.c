@@ -20,7 +20,7 @@ static const skg_json_key pulse_keys[] = {
 static const skg_json_key scintillator_keys[] = {
     {"Material", NULL, SKG_KEY_READ}, {"Thickness", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
     {"Density", NULL, SKG_KEY_READ},  {"Packing", NULL, SKG_KEY_READ},   {"Oblique", NULL, SKG_KEY_READ},
-    {"Escape", NULL, SKG_KEY_READ},
+    {"Escape", NULL, SKG_KEY_READ},   {"DQE", NULL, SKG_KEY_READ},
 };
 
 /* The unit of energies, and what these mean for noise. */
@@ -178,6 +178,31 @@ static skg_status let_escape(skg_setup_reader *reader, const skg_json_object *ob
     return SKG_OK;
 }
 
+/* [[20, 0.8], [60, 0.7]]: keV and DQE at spatial frequency 0. */
+static skg_status read_dqe(skg_setup_reader *reader, const skg_json_object *object) {
+    const skg_json_node node = skg_json_member(object, "DQE");
+    skg_response *plain = reader->setup->response, *measured = NULL;
+    double *columns[2] = {NULL, NULL};
+    int64_t count = 0;
+    skg_status status = SKG_OK;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_array(&node, "[[20, 0.8], [60, 0.7]], in keV", &count));
+    for (int k = 0; k < 2; k++) SKG_TRY_CLEANUP(skg_alloc(count + 1, sizeof(double), "DQE", &columns[k]));
+    for (int64_t i = 0; i < count; i++) {
+        const skg_json_node row = skg_json_element(&node, i);
+        double numbers[2];
+        SKG_TRY_CLEANUP(skg_json_numbers(&row, "[energy, DQE]", 2, numbers));
+        columns[0][i] = numbers[0], columns[1][i] = numbers[1];
+    }
+    status = skg_response_create_dqe(plain, count, columns[0], columns[1], &measured);
+    SKG_TRY_CLEANUP(skg_json_at(&node, status));
+    skg_response_release(&plain);
+    reader->setup->response = measured;
+cleanup:
+    for (int k = 0; k < 2; k++) skg_free(&columns[k]);
+    return status;
+}
+
 static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_node *node) {
     skg_json_object object;
     skg_json_node material_node;
@@ -192,7 +217,8 @@ static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_nod
     SKG_TRY(status);
     const skg_json_node oblique = skg_json_member(&object, "Oblique");
     if (oblique.value) SKG_TRY(skg_json_flag(&oblique, &reader->setup->oblique));
-    return let_escape(reader, &object);
+    SKG_TRY(let_escape(reader, &object));
+    return read_dqe(reader, &object);
 }
 
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector) {

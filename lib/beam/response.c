@@ -18,6 +18,7 @@ struct skg_response {
     skg_material *material; /* retained */
     double mm;              /* thickness at the full density of the material */
     skg_escape *escape;     /* of the layer; NULL: no fluorescence leaves it */
+    skg_response *base;     /* retained: what records, whose DQE is `efficiency`; NULL: none */
 };
 
 /* A recorded energy may exceed that of the photon by this share, because published tables are rounded to three
@@ -177,7 +178,7 @@ skg_status skg_response_create_escaping(const skg_response *scintillator, skg_re
     SKG_NEEDS(scintillator);
     SKG_NEEDS(response);
     *response = NULL;
-    if (scintillator->count > 0)
+    if (scintillator->count > 0) /* also of one with a DQE, which knows its noise */
         return skg_fail(
             SKG_ERR_BEAM,
             "fluorescence escapes from a scintillator of given thickness, not from a table, which "
@@ -185,6 +186,36 @@ skg_status skg_response_create_escaping(const skg_response *scintillator, skg_re
     SKG_TRY(make_layer(scintillator->material, scintillator->mm, response));
     const skg_status status = skg_escape_create((*response)->material, (*response)->mm, &(*response)->escape);
     if (status != SKG_OK) skg_response_release(response);
+    return status;
+}
+
+skg_status skg_response_create_dqe(skg_response *response, int64_t count, const double *energies_kev,
+                                   const double *dqe, skg_response **measured) {
+    SKG_PLAIN;
+    skg_response *made = NULL;
+    skg_status status = SKG_OK;
+    SKG_NEEDS(response);
+    SKG_NEEDS(measured);
+    *measured = NULL;
+    if (count < 2 || !energies_kev || !dqe)
+        return skg_fail(SKG_ERR_BEAM, "a table of the DQE has at least two energies");
+    for (int64_t i = 0; i < count; i++) {
+        if (!(isfinite(energies_kev[i]) && energies_kev[i] > (i ? energies_kev[i - 1] : 0)))
+            return skg_fail(SKG_ERR_BEAM, "DQE, row %" PRId64 ": energies are above 0 and rise", i + 1);
+        if (!(dqe[i] > 0 && dqe[i] <= 1))
+            return skg_fail(SKG_ERR_BEAM, "DQE, row %" PRId64 ": %g; give more than 0, up to 1", i + 1,
+                            dqe[i]);
+    }
+    SKG_TRY(skg_alloc(1, sizeof *made, "energy response", &made));
+    skg_refs_init(&made->refs);
+    made->count = count;
+    made->base = response, skg_ref(&response->refs);
+    SKG_TRY_CLEANUP(copy(count, energies_kev, &made->energy_kev));
+    SKG_TRY_CLEANUP(copy(count, dqe, &made->efficiency));
+    *measured = made;
+    return SKG_OK;
+cleanup:
+    skg_response_release(&made);
     return status;
 }
 
@@ -202,6 +233,7 @@ void skg_response_release(skg_response **response) {
         skg_free(&(*response)->efficiency);
         skg_free(&(*response)->swank);
         skg_escape_release(&(*response)->escape);
+        skg_response_release(&(*response)->base);
         skg_material_release(&(*response)->material);
         skg_free(response);
     }
@@ -210,15 +242,15 @@ void skg_response_release(skg_response **response) {
 
 int skg_response_assumes_efficiency(const skg_response *response) {
     return response && response->count > 0 && response->meaning == SKG_RESPONSE_MEANING_SIGNAL &&
-           !response->efficiency;
+           !response->efficiency; /* a measured DQE says how noisy it is */
 }
 
 int skg_response_is_layer(const skg_response *response) {
-    return response && response->count == 0;
+    return response && (response->base ? skg_response_is_layer(response->base) : response->count == 0);
 }
 
 int skg_response_escapes(const skg_response *response) {
-    return response && response->escape;
+    return response && (response->base ? skg_response_escapes(response->base) : response->escape != NULL);
 }
 
 /* What a detector makes of a photon of one energy. */
@@ -230,12 +262,12 @@ static double between(const double *values, int64_t low, double part) {
     return (1 - part) * values[low] + part * values[low + 1];
 }
 
-static skg_status look_up(const skg_response *r, double energy_kev, recording *found) {
+/* The row of a table below an energy, and how far it is to the next one, 0 to 1. */
+static skg_status find_row(const skg_response *r, double energy_kev, int64_t *row, double *part) {
     int64_t low = 0, high = r->count - 1;
     if (!(energy_kev >= r->energy_kev[0] && energy_kev <= r->energy_kev[high]))
-        return skg_fail(SKG_ERR_BEAM,
-                        "a photon energy of %g keV lies outside the detector response's %g to %g keV",
-                        energy_kev, r->energy_kev[0], r->energy_kev[high]);
+        return skg_fail(SKG_ERR_BEAM, "a photon energy of %g keV lies outside the detector %s %g to %g keV",
+                        energy_kev, r->base ? "DQE's" : "response's", r->energy_kev[0], r->energy_kev[high]);
     while (high - low > 1) {
         int64_t middle = low + (high - low) / 2;
         if (r->energy_kev[middle] <= energy_kev)
@@ -243,13 +275,44 @@ static skg_status look_up(const skg_response *r, double energy_kev, recording *f
         else
             high = middle;
     }
-    double part = (energy_kev - r->energy_kev[low]) / (r->energy_kev[high] - r->energy_kev[low]);
+    *row = low;
+    *part = (energy_kev - r->energy_kev[low]) / (r->energy_kev[high] - r->energy_kev[low]);
+    return SKG_OK;
+}
+
+static skg_status look_up(const skg_response *r, double energy_kev, recording *found) {
+    int64_t low = 0;
+    double part = 0;
+    SKG_TRY(find_row(r, energy_kev, &low, &part));
     found->recorded = between(r->recorded_kev, low, part);
     if (r->meaning == SKG_RESPONSE_MEANING_ABSORBED)
         found->efficiency = fmin(found->recorded / energy_kev, 1);
     else if (r->efficiency)
         found->efficiency = between(r->efficiency, low, part);
     if (r->swank) found->swank = between(r->swank, low, part);
+    return SKG_OK;
+}
+
+static skg_status record(const skg_response *response, double energy_kev, double oblique, recording *found);
+
+/* What the base records, with the Swank factor of a measured DQE. */
+static skg_status record_measured(const skg_response *r, double energy_kev, double oblique,
+                                  recording *found) {
+    recording straight;
+    int64_t low = 0;
+    double part = 0;
+    SKG_TRY(record(r->base, energy_kev, 1, &straight));
+    SKG_TRY(record(r->base, energy_kev, oblique, found));
+    SKG_TRY(find_row(r, energy_kev, &low, &part));
+    const double dqe = between(r->efficiency, low, part);
+    /* Measured values and tables have some digits. */
+    if (!(dqe <= straight.efficiency * (1 + ROUNDING)))
+        return skg_fail(
+            SKG_ERR_BEAM,
+            "a DQE of %g at %g keV is more than the share of the photons that the detector records, "
+            "%g; give a lower DQE, or a thicker layer",
+            dqe, energy_kev, straight.efficiency);
+    found->swank = fmin(dqe / straight.efficiency, 1);
     return SKG_OK;
 }
 
@@ -260,6 +323,7 @@ static skg_status record(const skg_response *response, double energy_kev, double
     if (!(oblique >= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "a path of %g thicknesses; give 1 or more", oblique);
     if (!response) return SKG_OK;
+    if (response->base) return record_measured(response, energy_kev, oblique, found);
     if (response->count > 0) return look_up(response, energy_kev, found);
     double per_cm = 0;
     SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
@@ -278,6 +342,7 @@ skg_status skg_response_get(const skg_response *response, double energy_kev, dou
                             double *recorded_kev, double *efficiency) {
     SKG_PLAIN;
     recording found;
+    while (response && response->base) response = response->base; /* the DQE is of noise alone */
     SKG_TRY(record(response, energy_kev, oblique, &found));
     if (recorded_kev) *recorded_kev = found.recorded;
     if (efficiency) *efficiency = found.efficiency;

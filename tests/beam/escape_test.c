@@ -121,6 +121,38 @@ START_TEST(nothing_escapes) {
 }
 END_TEST
 
+/* A measured DQE changes the Swank factor alone, and keeps it for oblique rays. */
+START_TEST(measured_dqe) {
+    static const double kev[3] = {20, 60, 100}, dqe[3] = {0.9, 0.6, 0.2}, high[3] = {0.9, 0.9, 0.2};
+    skg_material *csi = named("CsI");
+    skg_response *layer = NULL, *measured = NULL, *wrong = NULL;
+    ck_skg(skg_response_create_scintillator(csi, 0.6, 0.8, &layer));
+    ck_skg(skg_response_create_dqe(layer, 3, kev, dqe, &measured));
+    for (double energy = 20; energy <= 100; energy += 10)
+        for (double oblique = 1; oblique < 2; oblique += 0.4) {
+            double recorded[2], efficiency[2], straight = 0, swank = 0;
+            ck_skg(skg_response_get(layer, energy, oblique, &recorded[0], &efficiency[0]));
+            ck_skg(skg_response_get(measured, energy, oblique, &recorded[1], &efficiency[1]));
+            ck_assert_double_eq(recorded[0], recorded[1]);
+            ck_assert_double_eq(efficiency[0], efficiency[1]);
+            ck_skg(skg_response_get(layer, energy, 1, NULL, &straight));
+            ck_skg(skg_response_swank_get(measured, energy, oblique, &swank));
+            const double truth =
+                energy < 60 ? 0.9 - 0.3 * (energy - 20) / 40 : 0.6 - 0.4 * (energy - 60) / 40;
+            ck_assert_double_eq_tol(swank * straight, truth, 16 * DBL_EPSILON);
+        }
+    double swank = 0;
+    ck_skg_fails(skg_response_swank_get(measured, 19, 1, &swank), SKG_ERR_BEAM, "outside the detector DQE's");
+    ck_skg(skg_response_create_dqe(layer, 3, kev, high, &wrong));
+    ck_skg_fails(skg_response_swank_get(wrong, 60, 1, &swank), SKG_ERR_BEAM,
+                 "a DQE of 0.9 at 60 keV is more than");
+    skg_response_release(&wrong);
+    skg_response_release(&measured);
+    skg_response_release(&layer);
+    skg_material_release(&csi);
+}
+END_TEST
+
 START_TEST(refused) {
     const double kev[2] = {10, 20};
     skg_response_table table;
@@ -145,6 +177,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, thick_layer);
     tcase_add_test(tests, thin_layer);
     tcase_add_test(tests, nothing_escapes);
+    tcase_add_test(tests, measured_dqe);
     tcase_add_test(tests, refused);
 }
 

@@ -86,6 +86,14 @@ START_TEST(scintillators) {
     ck_assert_int_eq(options().oblique, 0);
     ck_skg(skg_response_get(options().response, 60, 1, &left, NULL));
     ck_assert_double_eq(left, all);
+    double seen = 0;
+    ck_skg(load_with("Detector.Scintillator={" CSI
+                     ", \"Escape\": true, \"DQE\": [[20, 0.9], [60, 0.7], [100, 0.3]]}",
+                     NULL));
+    ck_skg(skg_response_get(options().response, 60, 1, &left, &seen));
+    ck_skg(skg_response_swank_get(options().response, 60, 1, &swank));
+    ck_assert_double_eq_tol(seen * swank, 0.7, 1e-12); /* rounding, some 2e-16 */
+    ck_assert_double_lt(left, 0.95 * all);
 }
 END_TEST
 
@@ -116,6 +124,10 @@ static const struct {
     {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, \"Interspace\": \"Unobtainium\"}", SKG_ERR_MATERIAL,
      "Unobtainium", "Interspace"},
     {"Detector.Scintillator={" CSI ", \"Escape\": \"yes\"}", SKG_ERR_FORMAT, "true or false", "Escape"},
+    {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5]]}", SKG_ERR_BEAM, "two energies", "DQE"},
+    {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [50, 0.5]]}", SKG_ERR_BEAM, "rise", "DQE"},
+    {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [70, 1.5]]}", SKG_ERR_BEAM, "1.5", "DQE"},
+    {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [70]]}", SKG_ERR_FORMAT, "[energy, DQE]", "DQE"},
     {"Detector.Scintillator={" CSI ", \"Oblique\": 2}", SKG_ERR_FORMAT, "give 0 to 1", "Oblique"},
     {"Detector.Scintillator={\"Material\": [\"mu\", 3], \"Thickness\": 1, \"Unit\": \"mm\", \"Escape\": true}",
      SKG_ERR_MATERIAL, "has no density", "Scintillator"},

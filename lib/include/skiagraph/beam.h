@@ -293,6 +293,17 @@ SKG_API skg_status skg_response_create_screen(const skg_material *material, doub
  *     errors         SKG_ERR_BEAM if the response is a table; SKG_ERR_MATERIAL if the composition is unknown */
 SKG_API skg_status skg_response_create_escaping(const skg_response *scintillator, skg_response **response);
 
+/** Makes a response with a measured detective quantum efficiency at spatial frequency 0. What is recorded does not
+ * change; the Swank factor becomes dqe / efficiency, both for photons that arrive straight.
+ *
+ *     response       of what is recorded; retained
+ *     count          number of energies, at least 2
+ *     energies_kev   [count] keV, rising; with noise, a beam with energies outside is refused
+ *     dqe            [count] above 0, at most the efficiency of the response; linear between energies
+ *     errors         SKG_ERR_BEAM */
+SKG_API skg_status skg_response_create_dqe(skg_response *response, int64_t count, const double *energies_kev,
+                                           const double *dqe, skg_response **measured);
+
 /** Adds an owner to a response. */
 SKG_API skg_status skg_response_retain(skg_response *response);
 
