@@ -68,7 +68,7 @@ START_TEST(oblique_parallel_beam_with_noise) {
         truth += arrive * recorded;
         truth_variance += arrive * recorded * recorded / (efficiency * swank);
     }
-    /* Four standard errors; the variance changes with the angle as the mean does, which docs/physics.md states to 0.5 %. */
+    /* Four standard errors; the variance changes with the angle as the mean does, which docs/physics.md states to 0.4 % for this layer. */
     ck_assert_double_eq_tol(mean, truth, 4 * sqrt(truth_variance / COUNT) + BAR * truth);
     ck_assert_double_eq_tol(variance, truth_variance, (4 * sqrt(2.0 / COUNT) + 5e-3) * truth_variance);
     free(pixels);
