@@ -11,7 +11,7 @@ static const skg_ellipsoid gallbladder = {{-52, -104, -130}, {11, 13, 24}, {1, 0
 static const skg_ellipsoid kidneys[2] = {{{60, -27, -166}, {31, 29, 60}, {1, 0.35, 0.18}},
                                          {{-60, -27, -184}, {31, 29, 60}, {1, -0.35, -0.18}}};
 static const skg_ellipsoid spleen = {{86, -33, -94}, {37, 48, 65}, {1, -0.5, 0.35}};
-static const skg_ellipsoid stomach = {{56, -90, -84}, {50, 46, 72}, {1, 0.1, -0.55}};
+static const skg_ellipsoid stomach = {{56, -84, -104}, {62, 46, 94}, {1, 0.1, -0.55}};
 
 /* Fat about a kidney, mm. */
 static const double perirenal = 5;
@@ -28,12 +28,13 @@ static double to_common_duct(const double p[3]) {
     return skg_length(q) - 3;
 }
 
-/* Height over the liver's underside: a rounded right lobe, the porta, and a left lobe that thins to the left; lower in
- * front than behind. */
+/* Height over the liver's underside: a rounded right lobe, the porta, and a left lobe that thins to the left and lies in
+ * front of the stomach: its underside falls to the front, steeply on the left. */
 static double over_liver_floor(const double p[3]) {
-    static const double floor[][2] = {{-130, -200}, {-105, -226}, {-80, -230}, {-55, -218}, {-30, -192},
-                                      {-5, -160},   {18, -126},   {40, -74},   {57, 10}};
-    return p[2] - skg_shape_curve(floor, (int)(sizeof floor / sizeof *floor), p[0]) - 0.1 * (p[1] + 60);
+    static const double floor[][2] = {{-130, -200}, {-105, -234}, {-80, -243}, {-55, -236}, {-30, -214},
+                                      {-5, -186},   {18, -152},   {38, -96},   {50, -40},   {60, 20}};
+    const double slope = 0.12 + 0.28 / (1 + exp((-5 - p[0]) / 12));
+    return p[2] - skg_shape_curve(floor, (int)(sizeof floor / sizeof *floor), p[0]) - slope * (p[1] + 60);
 }
 
 static double to_kidneys(const double p[3], double larger) {
@@ -54,7 +55,7 @@ static double liver_region(const void *shape, const double p[3]) {
     most = fmax(most, -skg_ellipsoid_inside(&gallbladder, p, plan->gap));
     most = fmax(most, -clear_of_kidneys(p, plan->gap));
     most = fmax(most, plan->gap + 2.6 - to_common_duct(p));
-    return fmax(most, p[0] - 56);
+    return fmax(most, p[0] - 58);
 }
 
 /* The stomach less a wall. */
@@ -111,7 +112,7 @@ static double bowel_region(const void *shape, const double p[3]) {
 /* Gas in the colon: its bend under the spleen, and two loops. */
 static const skg_ellipsoid gas[] = {{{70, -74, -200}, {17, 16, 22}, {1, 0, 0.5}},
                                     {{36, -94, -214}, {26, 12, 12}, {1, 0, 0.15}},
-                                    {{-58, -84, -248}, {17, 17, 24}, {1, 0, -0.2}}};
+                                    {{-27, -88, -254}, {22, 15, 17}, {1, 0, 0.15}}};
 enum { GASES = sizeof gas / sizeof *gas };
 
 typedef struct {
@@ -155,10 +156,10 @@ skg_status skg_thorax_belly(const skg_thorax_plan *plan, int64_t outer, skg_thor
     static const double gas_centre[3] = {68, -84, -42}, bowel_centre[3] = {10, -100, -220};
     const ellipsoid_organ bladder = {plan, &gallbladder, 0, 0};
     SKG_TRY(kidneys_in_fat(plan, outer, thorax));
-    SKG_TRY(skg_thorax_star(plan, "liver", 60, outer, liver_region, plan, liver_centre, 30, thorax));
+    SKG_TRY(skg_thorax_star(plan, "liver", 60, outer, liver_region, plan, liver_centre, 44, thorax));
     SKG_TRY(skg_thorax_ducts(plan, thorax->parts - 1, outer, thorax));
     SKG_TRY(skg_thorax_star(plan, "spleen", 45, outer, spleen_region, plan, spleen.centre, 13, thorax));
-    SKG_TRY(skg_thorax_star(plan, "stomach", 30, outer, stomach_region, plan, stomach_centre, 20, thorax));
+    SKG_TRY(skg_thorax_star(plan, "stomach", 30, outer, stomach_region, plan, stomach_centre, 24, thorax));
     SKG_TRY(skg_thorax_star(plan, "stomach gas", -1000, thorax->parts - 1, stomach_gas_region, plan,
                             gas_centre, 12, thorax));
     SKG_TRY(skg_thorax_star(plan, "gallbladder", 10, outer, ellipsoid_region, &bladder, gallbladder.centre,

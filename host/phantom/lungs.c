@@ -22,8 +22,8 @@ typedef struct {
 
 static const double apex = 160; /* mm */
 
-/* g/cm3 of the lung between its vessels, which weigh about 0.015 g for each cm3 of the whole; see builder.c. */
-static const double between_vessels = 0.225;
+/* g/cm3 of the lung between its vessels, which weigh about 0.022 g for each cm3 of the whole; see builder.c. */
+static const double between_vessels = 0.222;
 
 /* z down to which the lung fills the recess between diaphragm and wall: lowest at the back, beside the spine. At
  * end-expiration most of the recess is empty (mm, a choice). */
@@ -62,10 +62,20 @@ static double height_of(const lung *l, double level, double x, double y) {
     return base + level * (apex - base);
 }
 
+/* The level of a ring of the sides, which may lie between two: 0 is the base, 1 the apex. The full thorax has them closer
+ * towards the apex, so that it is round. */
+static double level_of(const lung *l, double ring) {
+    const double t = ring / (double)l->sides;
+    return l->plan->simple ? t : t + 0.6 * (sin(0.5 * SKG_PI * t) - t);
+}
+
 static void axis_at(const lung *l, double level, double axis[2]) {
-    /* Farther out on the left: from there the part of the lung in front of the heart is seen. */
+    if (!l->plan->simple && l->side > 0) {
+        /* Beside the heart's left border: from there the lung is seen in front of the heart and behind it. */
+        axis[0] = 42 + 64 * (1 - pow(level, 2.2)), axis[1] = -53 + 15 * level;
+        return;
+    }
     axis[0] = l->side * ((l->side > 0 ? 84 : 72) * (1 - level) + 40 * level), axis[1] = -48 + 10 * level;
-    if (!l->plan->simple && l->side > 0) axis[0] += 16 * (1 - level);
 }
 
 /* Region of the lung at one level: 0 is the base, 1 the apex. z of the points is ignored. */
@@ -118,9 +128,9 @@ static double radius_at(const lung *l, int64_t side_ring, double azimuth) {
 static void lung_place(const void *shape, int64_t ring, double azimuth, double p[3]) {
     const lung *l = shape;
     int64_t side = ring < l->base ? 0 : ring - l->base < l->sides ? ring - l->base : l->sides - 1;
-    double level = (double)side / (double)l->sides, r = radius_at(l, side, azimuth), axis[2];
+    double level = level_of(l, (double)side), r = radius_at(l, side, azimuth), axis[2];
     if (ring < l->base) r *= skg_shape_towards_rim((double)ring / (double)l->base);
-    if (ring == l->base + l->sides) r = 0, level += 0.5 / (double)l->sides;
+    if (ring == l->base + l->sides) r = 0, level = l->plan->simple ? level + 0.5 / (double)l->sides : 1;
     axis_at(l, level, axis);
     p[0] = axis[0] + r * cos(2 * SKG_PI * azimuth), p[1] = axis[1] + r * sin(2 * SKG_PI * azimuth);
     p[2] = height_of(l, level, p[0], p[1]);
@@ -130,9 +140,11 @@ static void lung_place(const void *shape, int64_t ring, double azimuth, double p
 static double outside_wall(const lung *l, const double p[3]) {
     const double base = base_height(l, p[0], p[1]), level = (p[2] - base) / (apex - base);
     if (level < 0 || level >= 1) return 30;
-    const double ring = level * (double)l->sides;
-    const int64_t low = (int64_t)ring, high = low + 1 < l->sides ? low + 1 : low;
-    double axis[2], w = ring - (double)low;
+    int64_t low = 0;
+    while (low + 1 < l->sides && level_of(l, (double)low + 1) <= level) low++;
+    const int64_t high = low + 1 < l->sides ? low + 1 : low;
+    const double at = level_of(l, (double)low);
+    double axis[2], w = (level - at) / (level_of(l, (double)low + 1) - at);
     axis_at(l, level, axis);
     const double x = p[0] - axis[0], y = p[1] - axis[1], turn = atan2(y, x) / (2 * SKG_PI);
     const double azimuth = turn - floor(turn);
@@ -172,7 +184,7 @@ static int has_room(const void *shape, const double p[3], double radius) {
 static void find_radii(const lung *l, double *radius) {
 #pragma omp parallel for schedule(dynamic, 1)
     for (int64_t s = 0; s < l->sides; s++) {
-        lung_level at = {l, (double)s / (double)l->sides};
+        lung_level at = {l, level_of(l, (double)s)};
         double from[3] = {0};
         axis_at(l, at.level, from);
         for (int64_t i = 0; i < l->around; i++) {
@@ -245,8 +257,8 @@ skg_status skg_thorax_lungs(const skg_thorax_plan *plan, int64_t skin, skg_thora
     for (double side = 1; side >= -1; side -= 2) {
         lung l = {.plan = plan, .side = side};
         l.base = skg_shape_count(plan->resolution, 15, 4);
-        l.sides = skg_shape_count(plan->resolution, 29, 8);
-        l.around = skg_shape_count(plan->resolution, 46, 12);
+        l.sides = skg_shape_count(plan->resolution, plan->simple ? 29 : 32, 8);
+        l.around = skg_shape_count(plan->resolution, plan->simple ? 46 : 60, 12);
         SKG_TRY(add_lung(side > 0 ? "lung left" : "lung right", skin, &l, thorax));
         if (!plan->simple)
             SKG_TRY(add_vessels(side > 0 ? "pulmonary vessels left" : "pulmonary vessels right", &l, thorax));

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Points of a branch's middle line, most branches of a lung, orders of branching, and candidates of one direction. */
-enum { POINTS = 6, MOST_BRANCHES = 140, ORDERS = 3 };
+enum { POINTS = 6, MOST_BRANCHES = 170, ORDERS = 3 };
 
 static const double apart = 0.3;  /* mm between the walls of branches */
 static const double shortest = 9; /* mm */
@@ -150,7 +150,7 @@ static void add_side(tree *t, const branch *parent, double at, double azimuth, d
     for (int k = 0; k < 3; k++)
         way[k] = cos(angle) * along[k] + sin(angle) * (cos(azimuth) * across[k] + sin(azimuth) * up[k]);
     const double thick = radius_at(parent, at);
-    b.first = fmin(0.85 * thick, 3.6), b.last = fmax(0.4 * b.first, 0.5);
+    b.first = fmin(0.9 * thick, 4.4), b.last = fmax(0.45 * b.first, 0.7);
     skg_add_scaled(from, (thick + b.first + 3 * apart) / sin(angle), way, b.point[0]);
     for (int i = 1; i < POINTS; i++) {
         skg_add_scaled(way, 0.12, along, way);

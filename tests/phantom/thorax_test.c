@@ -129,7 +129,7 @@ START_TEST(organs_are_those_of_a_chest) { /* volumes of adults as in the literat
         const char *label;
         double least, most; /* ml */
     } volume[] = {{"heart", 480, 800},
-                  {"liver", 1250, 1800},
+                  {"liver", 1400, 1800},
                   {"kidney left", 120, 190},
                   {"kidney right", 120, 190},
                   {"spleen", 125, 240},
@@ -148,6 +148,35 @@ START_TEST(organs_are_those_of_a_chest) { /* volumes of adults as in the literat
     ck_assert_msg(heart.bounds[0] <= -35 && heart.bounds[0] >= -50 && heart.bounds[3] >= 75 &&
                       heart.bounds[3] <= 95,
                   "heart from %g to %g", heart.bounds[0], heart.bounds[3]);
+    skg_thorax_release(&thorax);
+}
+END_TEST
+
+/* Beside the left border of the heart there is lung, in front of it and behind it: the border is a line in the image. */
+START_TEST(lung_lies_along_the_left_border_of_the_heart) {
+    solid heart, lung;
+    make(0, 42000);
+    solid_make(part[find("heart")].mesh, &heart);
+    solid_make(part[find("lung left")].mesh, &lung);
+    for (double z = 15; z <= 45; z += 5) {
+        double p[3] = {0, 0, z}, border = 0;
+        int deep = 0,
+            covered = 0; /* mm of the heart 6 mm within the border, and of the lung 10 mm outside it */
+        for (p[1] = -130; p[1] <= -20; p[1]++)
+            for (p[0] = 40; p[0] < 120; p[0]++)
+                if (p[0] > border && solid_holds(&heart, p)) border = p[0];
+        for (p[1] = -130; p[1] <= -20; p[1]++) {
+            p[0] = border - 6;
+            if (!solid_holds(&heart, p)) continue;
+            p[0] = border + 10;
+            deep++, covered += solid_holds(&lung, p);
+        }
+        if (getenv("SKG_LIST")) printf("z %g mm: border at %g mm, %d of %d mm\n", z, border, covered, deep);
+        /* Half of the depth: the wall of the chest is in front of the rest. */
+        ck_assert_msg(deep >= 20 && covered >= 0.5 * deep, "z %g mm: %d of %d mm", z, covered, deep);
+    }
+    solid_free(&heart);
+    solid_free(&lung);
     skg_thorax_release(&thorax);
 }
 END_TEST
@@ -308,6 +337,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, every_mesh_is_closed, 0, 6);
     tcase_add_loop_test(tests, parts_are_where_and_as_large_as_they_should_be, 0, 2);
     tcase_add_test(tests, organs_are_those_of_a_chest);
+    tcase_add_test(tests, lung_lies_along_the_left_border_of_the_heart);
     tcase_add_test(tests, fat_is_10_to_25_mm_thick);
     tcase_add_loop_test(tests, disjoint_or_nested, 0, 2);
     tcase_add_loop_test(tests, the_sternum_is_not_twisted, 0, 2);
