@@ -131,7 +131,7 @@ static int write_rotation(hid_t group, const skg_scan_file *file) {
         const double *vector;
     } vectors[] = {{"axis", o->axis}, {"centre_of_rotation", o->centre}};
     int done = write_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection);
-    for (int v = 0; v < 2 && done && (!file->options.scan->poses || o->step_rad != 0); v++) {
+    for (int v = 0; v < 2 && done && (!skg_scan_is_table(file->options.scan) || o->step_rad != 0); v++) {
         const hid_t attribute =
             H5Acreate2(group, vectors[v].name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
         done = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, vectors[v].vector) >= 0;

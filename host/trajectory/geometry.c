@@ -51,7 +51,7 @@ static void to_world(const rtk_world *world, const double *vector, double *resul
  * the scene. */
 static void choose_world(const skg_scan *scan, rtk_world *world) {
     *world = (rtk_world){.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    if (scan->poses) return;
+    if (skg_scan_is_table(scan)) return;
     double from[3];
     const double *axis = scan->options.axis;
     skg_add_scaled(scan->view.source, -1, scan->options.centre, from);

@@ -17,6 +17,12 @@ struct skg_scan {
     int64_t *indices;         /* [options.projections] their numbers in it */
 };
 
+/* Whether a scan, or that of which it is a subset, is a table of poses. */
+static inline int skg_scan_is_table(const skg_scan *scan) {
+    while (scan->whole) scan = scan->whole;
+    return scan->poses != NULL;
+}
+
 /* Displaces, tilts and skews the detector of a view. */
 void skg_scan_displace_detector(const skg_scan_options *options, skg_view *view);
 
