@@ -36,10 +36,10 @@ typedef struct {
     float values[9]; /* three planes: the normal in the eye's axes; of the detector u / w, v / w, 1 / w */
     float colour[4]; /* red, green, blue, opacity: 0 to 1 */
     SKG_SHOW_INT
-        box[4]; /* first column, first row, last column, last row of samples; empty if the first exceeds
+    box[4]; /* first column, first row, last column, last row of samples; empty if the first exceeds
                           * the last */
     SKG_SHOW_INT
-        sides; /* bit k: the triangle is where the normal of edge k points to, edge included; otherwise it is on
+    sides; /* bit k: the triangle is where the normal of edge k points to, edge included; otherwise it is on
                           * the other side, edge excluded */
     SKG_SHOW_INT image; /* 1: shows the detector's image */
     SKG_SHOW_INT reserved[2];

@@ -86,7 +86,7 @@ static void find_moments(const skg_readout *readout, double kev, int64_t index, 
 static void check_moments(const skg_readout *readout, double kev, double mean, double sigma) {
     double its_mean = 0, its_sigma = 0;
     find_moments(readout, kev, 3, &its_mean, &its_sigma);
-    ck_assert_double_eq_tol(its_sigma, sigma, 5 * sigma / sqrt(2 * PIXELS)); /* as said */
+    ck_assert_double_eq_tol(its_sigma, sigma, 5 * sigma / sqrt(2 * PIXELS));  /* as said */
     ck_assert_double_eq_tol(its_mean, mean, 5 * sigma / sqrt(PIXELS) + 1e-3); /* and the rounding to float */
 }
 

@@ -73,8 +73,8 @@ extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_ang
 extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles, cli_flag_thorax_simple;
 extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_flag_breathe_fps,
     cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
-extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_size, cli_flag_view_orthographic,
-    cli_flag_view_phase, cli_flag_view_at, cli_flag_view_seconds;
+extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_size,
+    cli_flag_view_orthographic, cli_flag_view_phase, cli_flag_view_at, cli_flag_view_seconds;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
     cli_flag_reconstruct_filter;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,
