@@ -6,7 +6,7 @@
 #include <skiagraph/plan.h>
 
 /* The tests of what a plan uses. */
-static uint32_t tests_of(const skg_plan *plan) {
+static uint32_t tests_of(const skg_plan *plan, const skg_view *view) {
     const skg_recipe *recipe = plan->recipe;
     const skg_effect_state *effects = plan->outcome.effects;
     static const struct {
@@ -23,6 +23,7 @@ static uint32_t tests_of(const skg_plan *plan) {
     uint32_t tests = UINT32_C(1) << of_strategies[recipe->strategy];
     if (recipe->options.precision == SKG_PRECISION_DOUBLE) tests |= UINT32_C(1) << SKG_TRIAL_DOUBLE;
     if (recipe->options.precision == SKG_PRECISION_HALF) tests |= UINT32_C(1) << SKG_TRIAL_HALF;
+    if (view->projection != SKG_PROJECTION_POINT) tests |= UINT32_C(1) << SKG_TRIAL_PARALLEL;
     for (size_t i = 0; i < sizeof of_effects / sizeof *of_effects; i++)
         if (effects[of_effects[i].effect].on) tests |= UINT32_C(1) << of_effects[i].test;
     return tests;
@@ -37,7 +38,7 @@ static skg_status create(skg_context *context, skg_scene *scene, const skg_view 
     SKG_NEEDS_OF("skg_plan_create", scene);
     SKG_NEEDS_OF("skg_plan_create", spectrum);
     SKG_TRY(skg_plan_make(context, scene, view, spectrum, options, plan));
-    const uint32_t tests = tests_of(*plan);
+    const uint32_t tests = tests_of(*plan, view);
     for (int test = 0; test < SKG_TRIALS; test++) {
         if (!(tests >> test & 1)) continue;
         const skg_status status = skg_trial_need(context, (skg_trial_number)test);

@@ -26,6 +26,7 @@ static const skg_trial trials[SKG_TRIALS] = {
     [SKG_TRIAL_PRIORITY] = {"priority", 1e-4, 1e-4},
     [SKG_TRIAL_NOISE] = {"noise", 1e-4, 1e-4},
     [SKG_TRIAL_BLUR] = {"blur", 1e-4, 1e-4},
+    [SKG_TRIAL_PARALLEL] = {"parallel beam", 0, 0},
 };
 
 const skg_trial *skg_trial_get(skg_trial_number number) {
@@ -37,7 +38,8 @@ static int has_two_parts(const skg_trial_scene *scene) {
 }
 
 /* One large box, smaller ones of all sizes on a spiral around it, and one that pierces the large one. Their places and
- * angles are arbitrary. */
+ * angles are arbitrary. The large one's triangles cross the whole detector, so that they are drawn by the loops, lists and
+ * queues that are made for large triangles. */
 static void place_boxes(skg_trial_scene *scene) {
     for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
         const double turn = 2.4 * b, far = 14 + 1.1 * b, size = 0.15 * exp(0.13 * b);
@@ -47,7 +49,7 @@ static void place_boxes(skg_trial_scene *scene) {
         scene->boxes[b] = skg_box_turned(centre, half, angles);
     }
     /* The large one, or a narrow one around the source, whose sides the outer rays cross beside the source. */
-    const double middle[3] = {1, -2, 3}, half[3] = {12, 9, 15}, angles[3] = {0.31, 0.52, 0.23};
+    const double middle[3] = {1, -2, 3}, half[3] = {30, 42, 15}, angles[3] = {0.31, 0.52, 0.23};
     const double source[3] = {0.2, -0.1, -990}, narrow[3] = {1, 0.8, 30}, upright[3] = {0.01, 0.02, 0.23};
     scene->boxes[0] = scene->number == SKG_TRIAL_SOURCE_PLANE ? skg_box_turned(source, narrow, upright)
                                                               : skg_box_turned(middle, half, angles);

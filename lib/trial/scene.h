@@ -24,10 +24,11 @@ typedef enum {
     SKG_TRIAL_PRIORITY,
     SKG_TRIAL_NOISE,
     SKG_TRIAL_BLUR,
+    SKG_TRIAL_PARALLEL, /* all strategies, with exact sums: exact.h */
     SKG_TRIALS
 } skg_trial_number;
 
-enum { SKG_TRIAL_BOXES = 25, SKG_TRIAL_PIXELS = 64, SKG_TRIAL_BLUR_SAMPLES = 5 };
+enum { SKG_TRIAL_BOXES = 25, SKG_TRIAL_PIXELS = 96, SKG_TRIAL_BLUR_SAMPLES = 5 };
 
 typedef struct {
     const char *name;    /* of the kernels: "strategy tiles" */

@@ -10,6 +10,7 @@
 #include <skiagraph/plan.h>
 
 #include <math.h>
+#include <sys/wait.h>
 
 static skg_context *open_first(const char *more) {
     char config[256];
@@ -89,7 +90,7 @@ START_TEST(a_right_device_passes) {
     for (int test = 0; test < SKG_TRIALS; test++) {
         skg_finding finding;
         if (test == SKG_TRIAL_DOUBLE && !context->device->info.has_double) continue;
-        ck_skg(skg_trial_judge(context, (skg_trial_number)test, &finding));
+        ck_skg(skg_trial_again(context, (skg_trial_number)test, &finding));
         ck_assert_msg(finding.good, "%s: %s", skg_trial_get((skg_trial_number)test)->name, finding.reason);
         ck_assert(test == SKG_TRIAL_CORE ? finding.score > 0 : finding.score == 0);
     }
@@ -143,6 +144,35 @@ static const struct {
     {"hits.cl", "hits[k + 1].depth - hits[k].depth", "hits[k].depth - hits[k + 1].depth", SKG_TRIAL_PRIORITY},
     {"noise.clh", "(uint)pixel", "(uint)0", SKG_TRIAL_NOISE},
     {"blur.cl", "weights[j * across + i]", "weights[j * across]", SKG_TRIAL_BLUR},
+    {"project.cl", "(p->anchor_x + across, p->anchor_y + down, r, t)",
+     "(p->anchor_x + across, p->anchor_y + down, r * 1.0000001f, t)", SKG_TRIAL_PARALLEL},
+    /* Strategies; the loops of draw.clh: tiny, narrow, rows, tall, spans, steep; what only large triangles take. */
+    {"raster_copies.cl", "triangle < last; triangle++", "triangle < last; triangle += 2", SKG_TRIAL_COPIES},
+    {"draw.clh", "skg_hit_v(&line, i) & (i < right) & (j < bottom)",
+     "skg_hit_v(&line, i) & (i < right - 1) & (j < bottom)", SKG_TRIAL_COPIES},
+    {"draw.clh", "SKG_DRAW_BLOCK(1, SKG_BLOCK_1)", "SKG_DRAW_BLOCK(1, SKG_BLOCK_0)", SKG_TRIAL_COPIES},
+    {"draw.clh", "skg_hit_v(&lower, i), 0)", "skg_hit_v(&upper, i), 0)", SKG_TRIAL_COPIES},
+    {"draw.clh", "place + SKG_WIDE, skg_depth_v(&f, &line, more)",
+     "place + SKG_WIDE, skg_depth_v(&f, &line, i)", SKG_TRIAL_COPIES},
+    {"draw.clh",
+     "skg_depth_v(&f, &line, i), stored.factor[row],\n                                i < line.b, 0)",
+     "skg_depth_v(&f, &line, i), stored.factor[row],\n                                i < line.b - 1, 0)",
+     SKG_TRIAL_COPIES},
+    {"draw.clh", "skg_between_v(&span, i), i)", "skg_between_v(&span, i + 1), i)", SKG_TRIAL_COPIES},
+    {"bands.cl", "if (to - from >= SKG_MOST_TILES) {", "if (to - from >= 1) {\n                    continue;",
+     SKG_TRIAL_TILES},
+    {"raster_bands.cl", "skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range)", "",
+     SKG_TRIAL_TILES},
+    {"raster_atomics.cl", "queue[2 * (first + s) + 3] = s;", "queue[2 * (first + s) + 3] = 0;",
+     SKG_TRIAL_ATOMICS},
+    {"raster_atomics.cl", "box.j1 = min(box.j1, box.j0 + rows);", "box.j1 = min(box.j1, box.j0 + rows - 1);",
+     SKG_TRIAL_ATOMICS},
+    {"pixel.clh", "skg_depth(f, &line, (skg_real)column), factor);",
+     "skg_depth(f, &line, (skg_real)column), -factor);", SKG_TRIAL_ATOMICS},
+    {"exponential.clh", "0.24022650695910156204", "0.24", SKG_TRIAL_DOUBLE},
+    {"half.cl", "* 1e-3f);", "* 1.2e-3f);", SKG_TRIAL_HALF},
+    {"counts.cl", "verdict[0] = total;", "verdict[0] = total + 100;", SKG_TRIAL_LEAKY},
+    {"random.clh", "(F)(0x1.0fc8bep+1f)", "(F)(0x1.3fc8bep+1f)", SKG_TRIAL_NOISE},
 };
 
 START_TEST(wrong_kernels_are_found) {
@@ -151,7 +181,7 @@ START_TEST(wrong_kernels_are_found) {
     copy_kernels(errors[_i].file, errors[_i].old, errors[_i].new);
     snprintf(more, sizeof more, "kernels=%s", kernels);
     skg_context *context = open_first(more);
-    ck_skg(skg_trial_judge(context, errors[_i].test, &finding));
+    ck_skg(skg_trial_again(context, errors[_i].test, &finding));
     ck_assert_int_eq(finding.good, 0);
     ck_assert_msg(strstr(finding.reason, "pixel") != NULL, "%s", finding.reason);
     skg_context_release(&context);
@@ -194,6 +224,34 @@ START_TEST(a_device_that_failed_is_refused) {
     ck_assert_int_eq(result.verdict, SKG_TEST_RIGHT);
     ck_assert_str_eq(result.name, SKG_TEST_OF_ALL);
     ck_skg(skg_context_create("device=0:0", &context));
+    skg_context_release(&context);
+}
+END_TEST
+
+/* What the command prints about devices, if the only one that it may choose is refused. */
+static void list_devices(const char *flags, char *said, size_t size) {
+    char line[512];
+    snprintf(line, sizeof line, "%s devices --device 0:0 %s 2>/dev/null", SKG_COMMAND, flags);
+    FILE *pipe = popen(line, "r");
+    ck_assert_ptr_nonnull(pipe);
+    said[fread(said, 1, size - 1, pipe)] = '\0';
+    const int status = pclose(pipe);
+    ck_assert(WIFEXITED(status));
+    ck_assert_int_eq(WEXITSTATUS(status), 4); /* as any call that lacks a device */
+}
+
+START_TEST(a_refused_device_is_listed_with_the_reason) {
+    char said[16384];
+    skg_context *context = open_first("");
+    keep_verdict(context, SKG_TEST_OF_ALL, 0, 0);
+    list_devices("", said, sizeof said);
+    ck_assert_msg(strstr(said, context->device->info.name) != NULL, "%s", said);
+    ck_assert_msg(strstr(said, "\n       refused: ") != NULL, "%s", said);
+    ck_assert_msg(strstr(said, "pixel (1, 2) is black") != NULL, "%s", said);
+    ck_assert_msg(strchr(said, '*') == NULL, "a device is chosen: %s", said);
+    list_devices("--json", said, sizeof said);
+    ck_assert_msg(strstr(said, "\"refused\": \"") != NULL, "%s", said);
+    ck_assert_msg(strstr(said, "\"chosen\": true") == NULL, "%s", said);
     skg_context_release(&context);
 }
 END_TEST
@@ -258,6 +316,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, wrong_kernels_are_found, 0, (int)(sizeof errors / sizeof *errors));
     tcase_add_test(tests, a_verdict_is_found_once_and_kept);
     tcase_add_test(tests, a_device_that_failed_is_refused);
+    tcase_add_test(tests, a_refused_device_is_listed_with_the_reason);
     tcase_add_test(tests, wrong_kernels_are_refused_when_they_are_needed);
     tcase_add_test(tests, where_nothing_is_kept_every_context_tests);
     tcase_add_test(tests, bad_numbers_are_refused);

@@ -18,8 +18,9 @@ static const char *const text[] = {
     "A device that computes wrongly is refused. --test repeats this for every device and for all kernels, and prints a "
     "table; the results are kept in SKG_CACHE_DIR. Compiling all kernels may take minutes. The exit status is 1 if a "
     "device computes wrongly or its driver fails.",
+    "If every device that may be chosen is refused, the list says why, device by device, and the exit status is 4.",
     "Then lists the environment variables that change how devices work.",
-    "--json prints {devices: [{device, name, platform, kind, chosen, ...}], environment, affinity}; with --warm, {device, "
+    "--json prints {devices: [{device, name, platform, kind, chosen, refused, ...}], environment, affinity}; with --warm, {device, "
     "warm: [{scene, seconds}]}; with --test, {devices: [{device, name, platform, driver, tests: [{name, verdict, seconds, "
     "score, reason}]}]}, where verdict is right, wrong, unsupported or failed.",
     NULL};

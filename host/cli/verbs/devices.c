@@ -16,7 +16,8 @@ static const char *kind_of(const skg_device_info *device) {
     return device->is_gpu ? "gpu" : device->is_cpu ? "cpu" : "other";
 }
 
-static json_t *device_json(const skg_device_info *device, int chosen) {
+/* refused: why this device cannot be used; "" if it can be, or was not asked for. */
+static json_t *device_json(const skg_device_info *device, int chosen, const char *refused) {
     json_t *object = json_object();
     char number[32];
     snprintf(number, sizeof number, "%d:%d", device->platform, device->device);
@@ -25,6 +26,7 @@ static json_t *device_json(const skg_device_info *device, int chosen) {
     json_object_set_new(object, "platform", cli_json_text(device->platform_name));
     json_object_set_new(object, "kind", cli_json_text(kind_of(device)));
     json_object_set_new(object, "chosen", json_boolean(chosen));
+    json_object_set_new(object, "refused", refused[0] ? cli_json_text(refused) : json_null());
     json_object_set_new(object, "compute_units", json_integer(device->compute_units));
     json_object_set_new(object, "float_width", json_integer(device->float_width));
     json_object_set_new(object, "has_double", json_boolean(device->has_double));
@@ -37,7 +39,7 @@ static json_t *device_json(const skg_device_info *device, int chosen) {
     return object;
 }
 
-static void print_device(const skg_device_info *device, int chosen) {
+static void print_device(const skg_device_info *device, int chosen, const char *refused) {
     static const double gib = 1024.0 * 1024.0 * 1024.0;
     printf("%s %d:%d  %s (%s, %s)\n", chosen ? "*" : " ", device->platform, device->device, device->name,
            kind_of(device), device->platform_name);
@@ -49,6 +51,7 @@ static void print_device(const skg_device_info *device, int chosen) {
            device->correct_division ? "yes (same bits as other such devices)"
                                     : "no (bits differ from other devices)");
     printf("       %s, driver %s\n", device->version, device->driver);
+    if (refused[0]) printf("       refused: %s\n", refused);
 }
 
 static void print_variables(void) {
@@ -71,21 +74,35 @@ static json_t *variables_json(void) {
     return object;
 }
 
+/* Why a device is refused, on one line; "" if it is not. Its tests have been made when no device is left. */
+static void ask_device(const skg_device_info *device, char *refused, size_t size) {
+    char config[64];
+    skg_context *context = NULL;
+    snprintf(config, sizeof config, "device=%d:%d", device->platform, device->device);
+    refused[0] = '\0';
+    if (skg_context_create(config, &context) != SKG_OK) snprintf(refused, size, "%s", skg_last_error());
+    refused[strcspn(refused, "\n")] = '\0'; /* of a build log */
+    skg_context_release(&context);
+}
+
+/* best: the device that is chosen; NULL if all that were asked for are refused. */
 static int list_devices(int64_t count, const skg_device_info *best, int json) {
     json_t *list = json ? json_array() : NULL;
     for (int64_t i = 0; i < count; i++) {
         skg_device_info device;
+        char refused[1024] = "";
         skg_device_info_init(&device);
         skg_status status = skg_device_get(i, &device);
         if (status != SKG_OK) {
             json_decref(list);
             return cli_fail(status);
         }
-        int chosen = device.platform == best->platform && device.device == best->device;
+        const int chosen = best && device.platform == best->platform && device.device == best->device;
+        if (!best) ask_device(&device, refused, sizeof refused);
         if (json)
-            json_array_append_new(list, device_json(&device, chosen));
+            json_array_append_new(list, device_json(&device, chosen, refused));
         else
-            print_device(&device, chosen);
+            print_device(&device, chosen, refused);
     }
     if (json) {
         json_t *object = json_object();
@@ -102,14 +119,16 @@ int cli_devices(const cli_arguments *arguments) {
     skg_context *context = NULL;
     skg_device_info best;
     int64_t count = 0;
-    if (cli_given(arguments, &cli_flag_devices_test))
-        return cli_device_tests(cli_given(arguments, &cli_flag_json));
+    const int json = cli_given(arguments, &cli_flag_json);
+    if (cli_given(arguments, &cli_flag_devices_test)) return cli_device_tests(json);
     if (cli_given(arguments, &cli_flag_devices_warm)) return cli_warm(arguments);
     int exit_status = cli_open_context(arguments, &context, &best);
-    if (exit_status != CLI_DONE) return exit_status;
+    /* There are devices, but they are refused: the sentence has been printed, the list follows. */
+    const int refused = exit_status == CLI_DEVICE && cli_first_failure()->status != SKG_ERR_NO_DEVICE;
+    if (exit_status != CLI_DONE && !refused) return exit_status;
     skg_status status = skg_device_count(&count);
-    exit_status = status == SKG_OK ? list_devices(count, &best, cli_given(arguments, &cli_flag_json))
-                                   : cli_fail(status);
+    const int listed =
+        status == SKG_OK ? list_devices(count, refused ? NULL : &best, json) : cli_fail(status);
     skg_context_release(&context);
-    return exit_status;
+    return refused ? exit_status : listed;
 }
