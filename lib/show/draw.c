@@ -89,6 +89,8 @@ static skg_status run(skg_context *context, cl_kernel kernel, size_t items, size
 static skg_status place_lists(skg_context *context, const skg_show_args *args, scratch *s, int32_t *starts) {
     const int64_t lists = (int64_t)2 * args->across * args->down;
     int64_t total = 0;
+    SKG_TRY(skg_buffer_reserve(context, &s->counts, lists * (int64_t)sizeof *starts, CL_MEM_READ_WRITE,
+                               "lists of the 3D view"));
     SKG_TRY(skg_buffer_write(context, &s->counts, lists * (int64_t)sizeof *starts, starts,
                              "lists of the 3D view"));
     const skg_argument arguments[] = {SKG_ARGUMENT(SHOW_COUNT, args, *args),

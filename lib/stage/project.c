@@ -139,7 +139,7 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
         upload_blocks(context, parts, first_triangle, "triangle blocks", &geometry->triangle_blocks));
     SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->offsets,
                                        geometry->mesh_vertices * 3 * (int64_t)real_size(geometry),
-                                       CL_MEM_READ_ONLY, "vertices"));
+                                       CL_MEM_READ_WRITE, "vertices")); /* skg_place writes there */
     SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->projected,
                                        geometry->vertices * 4 * (int64_t)real_size(geometry),
                                        CL_MEM_READ_WRITE, "projected vertices"));

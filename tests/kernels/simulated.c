@@ -1,5 +1,6 @@
 /* Scenes small enough for a simulator (Oclgrind: races, bounds), a group of kernels each: simulated GROUP. Exit
  * status 0: every call succeeded, and every pixel lies between nothing and the open beam. */
+#include "device/device.h"
 #include "support/shapes.h"
 
 #include <skiagraph/skiagraph.h>
@@ -30,6 +31,7 @@ typedef struct {
     int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
     double electronic, step, tolerance;
     int32_t picture; /* draws the 3D view instead of an image */
+    int32_t placed;  /* the positions of the ball are taken from device memory */
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -65,7 +67,9 @@ static const group groups[] = {
     {.name = "blur_point", .blur = BLUR_POINT},
     {.name = "noise", .noise = 1, .colours = 1},
     {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1},
-    {.name = "show", .picture = 1}};
+    {.name = "show", .picture = 1},
+    {.name = "place", .placed = 1},
+    {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};
 
 static const group *find(const char *name) {
     for (size_t n = 0; n < sizeof groups / sizeof *groups; n++)
@@ -178,6 +182,24 @@ static int lies_between(const float *values, int64_t count, double least, double
     return 1;
 }
 
+/* Gives the plan the positions that the second part has already, by device memory. */
+static void place_ball(skg_context *context, const skg_scene *scene, skg_plan *plan) {
+    skg_part part;
+    int64_t vertices, triangles;
+    float *offsets = NULL, lowest[3] = {-50, -50, -50}, highest[3] = {50, 50, 50};
+    const double *origin;
+    cl_int code;
+    skg_part_init(&part);
+    TRY(skg_scene_part_get(scene, 1, &part));
+    TRY(skg_mesh_count(part.mesh, &vertices, &triangles));
+    TRY(skg_mesh_offsets_get(part.mesh, &offsets, &origin));
+    cl_mem buffer = clCreateBuffer(context->device->cl, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+                                   (size_t)(3 * vertices) * sizeof *offsets, offsets, &code);
+    if (code != CL_SUCCESS) exit(EXIT_FAILURE);
+    TRY(skg_plan_positions_set_cl(plan, 1, buffer, 0, lowest, highest, 0, NULL, NULL));
+    clReleaseMemObject(buffer);
+}
+
 /* The 3D view; one part is translucent, and the detector shows an image. */
 static int draw_picture(skg_context *context, const skg_scene *scene, const skg_view *view) {
     static uint8_t rgba[4 * PIXELS], image[PIXELS];
@@ -210,6 +232,7 @@ int main(int count, char **words) {
     skg_plan *plan = make_plan(context, scene, &view, g);
     skg_output_init(&output);
     output.data = image;
+    if (g->placed) place_ball(context, scene, plan);
     TRY(skg_plan_image(plan, &output));
     /* 10,500 keV is the open beam; noise widens it, the logarithm of the range of a float is below 104. */
     const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500;
