@@ -23,12 +23,13 @@ typedef SKG_CAT(uint, SKG_SHOW_PIXELS) skg_pixels;
 /* The number of no triangle. */
 #define SKG_SHOW_NONE INT_MAX
 
-/* The plane through values at three points; x, y: of the second and third point from the first. */
-static void skg_show_plane(__global float *plane, float2 b, float2 c, float area, float at_a, float at_b, float at_c,
+/* The plane through values at three points. b, c: of the second and third point from the first, a; inverse: 1 over twice the
+ * area. */
+static void skg_show_plane(__global float *plane, float2 b, float2 c, float inverse, float at_a, float at_b, float at_c,
                            float2 a) {
     const float over_b = at_b - at_a, over_c = at_c - at_a;
-    plane[0] = (over_b * c.y - over_c * b.y) / area;
-    plane[1] = (over_c * b.x - over_b * c.x) / area;
+    plane[0] = (over_b * c.y - over_c * b.y) * inverse;
+    plane[1] = (over_c * b.x - over_b * c.x) * inverse;
     plane[2] = at_a - plane[0] * a.x - plane[1] * a.y;
 }
 
@@ -95,16 +96,17 @@ __kernel void skg_show_count(skg_show_args args, __global const float *vertices,
     face->sides = skg_show_edge(face->edges, a.xy, b.xy, c.xy) | skg_show_edge(face->edges + 4, b.xy, c.xy, a.xy) << 1 |
                   skg_show_edge(face->edges + 8, c.xy, a.xy, b.xy) << 2;
     a.xy -= convert_float2(box.xy);
-    skg_show_plane(face->depth, ab, ac, area, a.z, b.z, c.z, a.xy);
+    const float inverse = 1.0f / area;
+    skg_show_plane(face->depth, ab, ac, inverse, a.z, b.z, c.z, a.xy);
     if (face->image) { /* its corners, in the order of the host: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) */
         const float4 u = triangle == args.triangles - 2 ? (float4)(0, 1, 1, 0) : (float4)(0, 1, 0, 0);
         const float4 v = triangle == args.triangles - 2 ? (float4)(0, 0, 1, 0) : (float4)(0, 1, 1, 0);
-        skg_show_plane(face->values, ab, ac, area, u.x / clip_a.w, u.y / clip_b.w, u.z / clip_c.w, a.xy);
-        skg_show_plane(face->values + 3, ab, ac, area, v.x / clip_a.w, v.y / clip_b.w, v.z / clip_c.w, a.xy);
-        skg_show_plane(face->values + 6, ab, ac, area, 1 / clip_a.w, 1 / clip_b.w, 1 / clip_c.w, a.xy);
+        skg_show_plane(face->values, ab, ac, inverse, u.x / clip_a.w, u.y / clip_b.w, u.z / clip_c.w, a.xy);
+        skg_show_plane(face->values + 3, ab, ac, inverse, v.x / clip_a.w, v.y / clip_b.w, v.z / clip_c.w, a.xy);
+        skg_show_plane(face->values + 6, ab, ac, inverse, 1 / clip_a.w, 1 / clip_b.w, 1 / clip_c.w, a.xy);
     } else {
         for (int axis = 0; axis < 3; axis++)
-            skg_show_plane(face->values + 3 * axis, ab, ac, area, skg_show_turned(args, normals[3 * triangle], axis),
+            skg_show_plane(face->values + 3 * axis, ab, ac, inverse, skg_show_turned(args, normals[3 * triangle], axis),
                            skg_show_turned(args, normals[3 * triangle + 1], axis),
                            skg_show_turned(args, normals[3 * triangle + 2], axis), a.xy);
     }

@@ -10,7 +10,7 @@
 #endif
 
 /* A tile is a square of this many samples a side; a pixel has 2 x 2 samples. */
-#define SKG_SHOW_TILE 16
+#define SKG_SHOW_TILE 32
 
 /* How many translucent surfaces over each other are drawn; more would hardly be seen. */
 #define SKG_SHOW_LAYERS 8

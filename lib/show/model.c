@@ -50,7 +50,8 @@ void skg_show_model_triangle(skg_show_model *model, int64_t number, const int64_
     for (int k = 0; k < 3; k++) {
         model->corners[3 * number + k] = (int32_t)corners[k];
         int16_t *normal = model->normals + 12 * number + 4 * k;
-        for (int axis = 0; axis < 3; axis++) normal[axis] = (int16_t)lround(32767 * normals[k][axis]);
+        for (int axis = 0; axis < 3; axis++)
+            normal[axis] = (int16_t)(32767 * normals[k][axis] + copysign(0.5, normals[k][axis]));
         normal[3] = 0;
     }
     model->colours[number] = colour;

@@ -12,8 +12,7 @@ static const double CREASE = 0.70710678118654752;
 typedef struct {
     const skg_mesh *mesh;
     const skg_scene_part_data *part;
-    double *
-        faces; /* [triangles][3] normals, whose length is twice the area; of length 1 once they are summed up */
+    double *faces;   /* [triangles][4] normals of length 1, and the area */
     int32_t *starts; /* [vertices + 1] of the triangles around each vertex */
     int32_t *around; /* [3 * triangles] */
 } surface;
@@ -27,7 +26,7 @@ static skg_status list_faces(surface *s) {
     const int64_t vertices = s->mesh->vertices, corners = 3 * s->mesh->triangles;
     SKG_TRY(skg_alloc(vertices + 2, sizeof *s->starts, "faces of vertices", &s->starts));
     SKG_TRY(skg_alloc(corners, sizeof *s->around, "faces of vertices", &s->around));
-    SKG_TRY(skg_alloc(corners, sizeof *s->faces, "normals of faces", &s->faces));
+    SKG_TRY(skg_alloc(4 * s->mesh->triangles, sizeof *s->faces, "normals of faces", &s->faces));
     /* counted two places higher, so that after filling starts[v] is where the list of v begins */
     for (int64_t i = 0; i < corners; i++) s->starts[place_of(s, i) + 2]++;
     for (int64_t v = 0; v < vertices; v++) s->starts[v + 2] += s->starts[v + 1];
@@ -35,7 +34,8 @@ static skg_status list_faces(surface *s) {
     return SKG_OK;
 }
 
-static void find_normal(const skg_mesh *mesh, const double *pose, int64_t triangle, double normal[3]) {
+/* The normal of a triangle, of length 1 or 0, and its area. */
+static void find_normal(const skg_mesh *mesh, const double *pose, int64_t triangle, double normal[4]) {
     double at[3][3], world[3][3], ab[3], ac[3];
     for (int k = 0; k < 3; k++) {
         skg_mesh_vertex(mesh, mesh->corners[3 * triangle + k], at[k]);
@@ -44,16 +44,19 @@ static void find_normal(const skg_mesh *mesh, const double *pose, int64_t triang
     skg_add_scaled(world[1], -1, world[0], ab);
     skg_add_scaled(world[2], -1, world[0], ac);
     skg_cross(ab, ac, normal);
+    const double length = skg_length(normal);
+    if (length > 0) skg_scale_vector(1 / length, normal, normal);
+    normal[3] = 0.5 * length;
 }
 
 /* The normal at a corner: of the faces around it that make no crease with the corner's own, each with its area. */
 static void corner_normal(const surface *s, int64_t corner, double normal[3]) {
-    const double *own = s->faces + 3 * (corner / 3), own_length = skg_length(own);
+    const double *own = s->faces + 4 * (corner / 3);
     const int64_t place = place_of(s, corner);
     double sum[3] = {0, 0, 0};
     for (int32_t i = s->starts[place]; i < s->starts[place + 1]; i++) {
-        const double *face = s->faces + 3 * (int64_t)s->around[i];
-        if (skg_dot(face, own) >= CREASE * own_length * skg_length(face)) skg_add_scaled(sum, 1, face, sum);
+        const double *face = s->faces + 4 * (int64_t)s->around[i];
+        if (skg_dot(face, own) >= CREASE) skg_add_scaled(sum, face[3], face, sum);
     }
     const double length = skg_length(sum);
     if (length > 0)
@@ -73,7 +76,7 @@ static skg_status write_surface(skg_show_model *model, surface *s, int64_t first
         skg_pose_point(s->part->pose, at, world);
         skg_show_model_vertex(model, first_vertex + v, world);
     }
-    for (int64_t t = 0; t < mesh->triangles; t++) find_normal(mesh, s->part->pose, t, s->faces + 3 * t);
+    for (int64_t t = 0; t < mesh->triangles; t++) find_normal(mesh, s->part->pose, t, s->faces + 4 * t);
     for (int64_t t = 0; t < mesh->triangles; t++) {
         int64_t corners[3];
         double normals[3][3];
@@ -97,9 +100,7 @@ static skg_status write_part(skg_show_model *model, const skg_scene_part_data *p
     return status;
 }
 
-/* Makes room for the parts. first: [parts][2] result: the first vertex and triangle of each. */
-static skg_status place_parts(skg_show_model *model, const skg_scene *scene, const uint8_t *colours,
-                              int64_t *first) {
+skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const uint8_t *colours) {
     for (int64_t i = 0; i < scene->count; i++) {
         const skg_mesh *mesh = scene->parts[i].mesh;
         if (colours[4 * i + 3] == 0) continue;
@@ -108,28 +109,11 @@ static skg_status place_parts(skg_show_model *model, const skg_scene *scene, con
                             "part %s: vertex %" PRId64 " is not finite; correct it or leave the part out",
                             scene->parts[i].label, mesh->first_bad);
         SKG_TRY(skg_show_model_reserve(model, mesh->vertices, mesh->triangles));
-        first[2 * i] = model->vertices, first[2 * i + 1] = model->triangles;
+        /* by one thread: those of OpenMP would spin beside the device's on the same cores */
+        SKG_TRY(write_part(model, scene->parts + i, model->vertices, model->triangles, colours + 4 * i));
         model->vertices += mesh->vertices, model->triangles += mesh->triangles;
     }
     return SKG_OK;
-}
-
-skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const uint8_t *colours) {
-    int64_t *first = NULL;
-    int32_t failed = 0;
-    SKG_TRY(skg_alloc(2 * scene->count, sizeof *first, "parts of the 3D view", &first));
-    skg_status status = place_parts(model, scene, colours, first);
-    if (status == SKG_OK) {
-#pragma omp parallel for schedule(dynamic) reduction(| : failed)
-        for (int64_t i = 0; i < scene->count; i++)
-            if (colours[4 * i + 3] > 0)
-                failed |= write_part(model, scene->parts + i, first[2 * i], first[2 * i + 1],
-                                     colours + 4 * i) != SKG_OK;
-        /* its sentence is that of another thread */
-        if (failed) status = skg_fail(SKG_ERR_MEMORY, "out of host memory for the normals of the 3D view");
-    }
-    skg_free(&first);
-    return status;
 }
 
 void skg_show_part_bounds(const skg_scene_part_data *part, double low[3], double high[3]) {
