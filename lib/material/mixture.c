@@ -4,11 +4,15 @@
 
 #include <ctype.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 /* The tables have about 370 names of mixtures and elements. */
 enum { MOST_NAMES = 1024 };
+
+/* Fractions by mass that differ by less are one composition: they are given in tenths of a percent at best. */
+static const double SAME_FRACTION = 5e-4;
 
 /* Keeps letters and digits only, in lower case: "Bone, cortical" and "bone cortical" are one name. */
 static void plain(const char *text, size_t length, char *out) {
@@ -47,6 +51,29 @@ const skg_mixture_row *skg_find_mixture(const char *name) {
             if (strcmp(own, wanted) == 0) return &skg_mixtures[i];
         }
     return NULL;
+}
+
+/* The fraction of an element in a list; 0 if it is not there. */
+static double fraction_of(int32_t z, int64_t count, const skg_mass_fraction *parts) {
+    for (int64_t i = 0; i < count; i++)
+        if (parts[i].z == z) return parts[i].fraction;
+    return 0;
+}
+
+double skg_mixture_density(int64_t count, const skg_mass_fraction *parts) {
+    double density = 0;
+    for (int32_t i = 0; i < skg_mixture_count; i++) {
+        const skg_mixture_row *row = &skg_mixtures[i];
+        int same = row->count == count;
+        for (int32_t k = 0; k < row->count && same; k++) {
+            const skg_mass_fraction *part = &skg_mass_fractions[row->first + k];
+            same = fabs(fraction_of(part->z, count, parts) - part->fraction) <= SAME_FRACTION;
+        }
+        if (!same || row->density == density) continue;
+        if (density > 0) return 0;
+        density = row->density;
+    }
+    return density;
 }
 
 int skg_lacks_hyphens(const skg_mixture_row *row, const char *text) {

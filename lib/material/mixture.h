@@ -14,6 +14,10 @@ void skg_mixture_name(const skg_mixture_row *row, char name[SKG_LONGEST_NAME]);
 /* The mixture that has this name, without regard to case, blanks and punctuation; NULL if there is none. */
 const skg_mixture_row *skg_find_mixture(const char *name);
 
+/* The density of the mixture of these elements with these fractions by mass, g/cm3; 0 if there is none, or if there are
+ * several of different densities. */
+double skg_mixture_density(int64_t count, const skg_mass_fraction *parts);
+
 /* Whether the text is one of the mixture's names without its hyphens: "Ti6Al4V" for "Ti-6Al-4V". Such numbers are parts by mass,
  * while those of a formula count atoms. */
 int skg_lacks_hyphens(const skg_mixture_row *row, const char *text);

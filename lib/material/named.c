@@ -87,7 +87,9 @@ static skg_status from_mass(const char *text, skg_material **material) {
         return skg_fail(SKG_ERR_MATERIAL, "weight:%s: the parts by mass sum to %g; they have to sum to 100",
                         text, sum);
     const skg_mixture_row *known = skg_find_mixture(text);
-    double density = count == 1 ? skg_elements[parts[0].z].density : known ? known->density : 0;
+    const double density = count == 1 ? skg_elements[parts[0].z].density
+                           : known    ? known->density
+                                      : skg_mixture_density(count, parts);
     return skg_material_compose(text, "parts by mass", count, parts, density, material);
 }
 

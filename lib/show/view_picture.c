@@ -33,6 +33,11 @@ static skg_status read_look(const skg_look *theirs, skg_look *look) {
     for (int64_t i = 0; i < look->path_count; i++)
         if (!skg_all_finite(look->path + 3 * i, 3))
             return skg_fail(SKG_ERR_ARGUMENT, "point %" PRId64 " of the look's path is not finite", i);
+    if (!look->bounds) return SKG_OK;
+    for (int k = 0; k < 3; k++)
+        if (!skg_all_finite(look->bounds, 6) || look->bounds[k] > look->bounds[3 + k])
+            return skg_fail(SKG_ERR_ARGUMENT, "the look's bounds along %c are %g to %g mm", "xyz"[k],
+                            look -> bounds[k], look -> bounds[3 + k]);
     return SKG_OK;
 }
 
@@ -58,6 +63,7 @@ static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look
         look->colours = *colours;
     }
     SKG_TRY(find_box(scene, look->colours, low, high));
+    for (int k = 0; look->bounds && k < 3; k++) low[k] = look->bounds[k], high[k] = look->bounds[3 + k];
     return skg_show_camera_make(view, look, low, high, camera);
 }
 

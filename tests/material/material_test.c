@@ -142,6 +142,17 @@ START_TEST(formulas) {
     ck_assert_double_eq_tol(mu_rho("CsI", 60) / mu_rho("weight:I48.8451Cs51.1549", 60), 1, 1e-5);
     double ti = mu_rho("Ti", 80), al = mu_rho("Al", 80), v = mu_rho("V", 80);
     ck_assert_double_eq_tol(mu_rho("weight:Ti90Al6V4", 80), .9 * ti + .06 * al + .04 * v, 16 * DBL_EPSILON);
+    skg_material *alloy =
+        NULL; /* the composition of the tables' alloy has its density; another one has none */
+    double density;
+    ck_skg(skg_material_create_named("weight:Ti90Al6V4", &alloy));
+    ck_skg(skg_material_density_get(alloy, &density));
+    ck_assert_double_eq(density, 4.43);
+    skg_material_release(&alloy);
+    ck_skg(skg_material_create_named("weight:Ti91Al6V3", &alloy));
+    ck_skg(skg_material_density_get(alloy, &density));
+    ck_assert_double_eq(density, 0);
+    skg_material_release(&alloy);
     static const char *const bad[] = {"weight:Ti90Al6", "Ca5(PO4", "Ca5PO4)3", "H0O",
                                       "weight:",        "Qq2",     "weight:-1"};
     skg_material *none = NULL;

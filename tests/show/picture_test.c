@@ -251,6 +251,28 @@ START_TEST(the_path_of_a_source_is_drawn) {
 }
 END_TEST
 
+/* A part that moves does not move the eye while the bounds stay. */
+START_TEST(bounds_hold_the_eye) {
+    const double bounds[6] = {-30, -30, -30, 30, 30, 30}, point[3] = {100, 500, 50};
+    double before[2], after[2], pose[16] = {1, 0, 0, 250, 0, 1, 0, -40, 0, 0, 1, 9, 0, 0, 0, 1};
+    add_box("box", 30, 0, 0, 0, -1);
+    look.from[0] = 0.5, look.orthographic = 0;
+    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, before));
+    ck_skg(skg_scene_pose_set(scene, 0, pose));
+    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, after));
+    ck_assert_double_ne(before[0], after[0]);
+    look.bounds = bounds;
+    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, after));
+    ck_skg(skg_scene_pose_set(scene, 0, (const double[16]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
+    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, before));
+    ck_assert_mem_eq(before, after, sizeof before);
+    draw(picture);
+    const double turned[6] = {-30, 30, -30, 30, -30, 30};
+    look.bounds = turned;
+    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "along y");
+}
+END_TEST
+
 START_TEST(default_colours) {
     uint8_t colours[4][4];
     skg_part part;
@@ -317,6 +339,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_detector_shows_its_image);
     tcase_add_test(tests, creases_and_smooth_surfaces);
     tcase_add_test(tests, the_path_of_a_source_is_drawn);
+    tcase_add_test(tests, bounds_hold_the_eye);
     tcase_add_test(tests, default_colours);
     tcase_add_test(tests, errors_name_the_thing);
 }

@@ -9,7 +9,7 @@ char *cli_base64(const char *head, const void *bytes, size_t count) {
     const unsigned char *from = bytes;
     char *text = malloc(length + 4 * ((count + 2) / 3) + 1);
     if (!text) return NULL;
-    memcpy(text, head, length);
+    strcpy(text, head);
     char *at = text + length;
     for (size_t i = 0; i < count; i += 3) {
         unsigned group = (unsigned)from[i] << 16;

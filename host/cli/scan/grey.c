@@ -9,10 +9,7 @@
 /* The name of the scenario's file without its extension. The caller frees it. */
 static char *make_stem(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    const size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    char *stem = calloc(length + 1, 1);
-    if (stem) memcpy(stem, name, length);
-    return stem;
+    return strndup(name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
 }
 
 /* Grey values are another scan than energies: the first digits of the hash are turned over. */

@@ -104,7 +104,10 @@ int view_write_page(view_work *w, const char *path) {
 }
 
 static int write_frames(view_work *w, int64_t frames, film *opened) {
+    const double *low = w->places.low, *high = w->places.high;
+    const double bounds[6] = {low[0], low[1], low[2], high[0], high[1], high[2]};
     int exit_status = CLI_DONE;
+    w->look.bounds = bounds; /* of the first moment, so that the eye stands still */
     cli_progress_begin("drawing, frames", frames);
     for (int64_t f = 0; f < frames && exit_status == CLI_DONE; f++) {
         exit_status = view_pose_at(w, (double)f / w->fps);
@@ -113,6 +116,7 @@ static int write_frames(view_work *w, int64_t frames, film *opened) {
         if (exit_status == CLI_DONE) exit_status = film_add(opened, w->rgba);
         cli_progress_step(f + 1);
     }
+    w->look.bounds = NULL;
     cli_progress_begin("finishing the film", 0);
     return exit_status;
 }

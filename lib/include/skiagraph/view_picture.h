@@ -42,6 +42,9 @@ typedef struct {
     const double *path;
     /** Number of points of the path. */
     int64_t path_count;
+    /** [2][3] least and greatest corner of a box, mm, that the picture shows and where the axes stand, instead of the
+     * box of the parts: with the same box, frames of parts that move have the same eye. NULL: the box of the parts. */
+    const double *bounds;
 } skg_look;
 
 /** Prepares a look of `size` bytes (export.h). */
