@@ -279,7 +279,7 @@ START_TEST(bad_words_are_named) {
     ck_run_fails(2, "--filter Cu is not MATERIAL:MM", "beam --kvp 60 --filter Cu");
     ck_run_fails(2, "--filter Cu:-1", "beam --kvp 60 --filter Cu:-1");
     ck_run_fails(3, "Unobtainium", "beam --kvp 60 --filter Unobtainium:1");
-    ck_run_fails(3, "density", "beam --kvp 60 --filter weight:Ti90Al6V4:1");
+    ck_run_fails(3, "density", "beam --kvp 60 --filter weight:Ti91Al6V3:1");
     ck_run_fails(3, "the filters let no photon through", "beam --kvp 60 --filter Pb:1000");
     ck_run_fails(2, "--model tasmip is not known", "beam --kvp 60 --model tasmip");
     ck_run_fails(2, "--output 65 is not an output", "beam --kvp 60 --output 65");

@@ -240,7 +240,7 @@ START_TEST(verbose_says_what_was_loaded) {
     ck_assert_ptr_nonnull(strstr(complained, "skiagraph: device "));
     ck_assert_ptr_nonnull(
         strstr(complained, "skiagraph: part bone: mesh cuboid of 12 triangles, closed; material "));
-    ck_assert_ptr_nonnull(strstr(complained, "skiagraph: beam of 1 energies; detector of 65 x 49 pixels"));
+    ck_assert_ptr_nonnull(strstr(complained, "skiagraph: beam of 1 energy; detector of 65 x 49 pixels"));
     ck_assert_ptr_nonnull(strstr(complained, "skiagraph: planned and compiled in "));
     ck_assert_ptr_nonnull(strstr(complained, "skiagraph: on: nesting: "));
     ck_run(0, "image scene.json -o a.mha");
