@@ -5,7 +5,11 @@
 #ifndef SKG_HALF_UNIT
 #define SKG_HALF_UNIT 1.0f
 #endif
+#if SKG_DOUBLE
 #define SKG_LN2 0.693147180559945309417
+#else
+#define SKG_LN2 0.693147180559945309417f
+#endif
 
 #if SKG_OUTPUT_DOUBLE
 #if !SKG_DOUBLE
@@ -309,7 +313,8 @@ static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int
 
 /* From sums over nodes to what is shown of run r. */
 static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
-#if SKG_FALLOFF
+#if SKG_SHOW == SKG_SHOW_LOGARITHM && !SKG_NOISE /* the factor cancels */
+#elif SKG_FALLOFF
     const skg_realv near =
         pass->foot / skg_ray_lengths_v(pass->ray, pass->column + r * SKG_WIDE, pass->row);
     const skg_realv all = near * near * near * pass->factor;

@@ -228,6 +228,29 @@ static skg_status prepare(run *r) {
     return plan_it(r);
 }
 
+/* A 3D view of the scene. */
+static skg_status draw_view(const run *r) {
+    static uint8_t rgba[40 * 30 * 4];
+    skg_look look;
+    skg_look_init(&look);
+    look.columns = 40, look.rows = 30;
+    return skg_view_picture(r->context, r->scene, &r->view, &look, rgba);
+}
+
+/* Frames whose first part has positions from device memory: what happens to be in the buffer, within bounds. */
+static skg_status draw_placed(const run *r) {
+    const float lowest[3] = {-9, -9, -9}, highest[3] = {9, 9, 9};
+    skg_output output;
+    skg_frame frame;
+    skg_job *job = NULL;
+    skg_output_init(&output);
+    skg_frame_init(&frame);
+    TRY(skg_plan_positions_set_cl(r->plan, 0, r->shared.buffer, 0, lowest, highest, 0, NULL, NULL));
+    TRY(skg_plan_submit_cl(r->plan, 1, &frame, &output, r->shared.buffer, 0, 0, NULL, NULL, &job));
+    const skg_status status = skg_job_wait(&job);
+    return status == SKG_RANGE ? SKG_OK : status;
+}
+
 /* Two frames at once; breathing, of two times. */
 static skg_status draw(run *r) {
     skg_output output;
@@ -255,7 +278,8 @@ static skg_status draw(run *r) {
     int32_t done = 0;
     const skg_status asked = skg_job_test(job, &done);
     TRY(skg_job_wait(&job)); /* the job is released, whatever became of the question */
-    return asked;
+    if (asked == SKG_OK && r->with->shared) TRY(draw_view(r));
+    return asked == SKG_OK && r->with->shared ? draw_placed(r) : asked;
 }
 
 static skg_status save(const run *r) {

@@ -26,6 +26,8 @@ typedef cl_int build_call(cl_program, cl_uint, const cl_device_id *, const char 
 /* The address of the next function of this name, which C does not convert to a pointer to a function. */
 static void next_of(const char *name, void *pointer, size_t size) {
     void *found = dlsym(RTLD_NEXT, name);
+    /* Python opens the library for itself alone: what is linked with it comes after nothing that is known here. */
+    if (!found) found = dlsym(dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL), name);
     if (!found) abort();
     memcpy(pointer, &found, size);
 }

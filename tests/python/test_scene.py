@@ -68,7 +68,7 @@ def test_failures_have_their_sentences(path, tmp_path):
     with pytest.raises(sk.FileError, match="nowhere.json"):
         sk.Scene(tmp_path / "nowhere.json")
     with pytest.raises(sk.FormatError, match="line 1"):
-        (tmp_path / "bad.json").write_text("{,}")
+        (tmp_path / "bad.json").write_text("{;}")
         sk.Scene(tmp_path / "bad.json")
     with pytest.raises(sk.MaterialError, match="unobtainium"):
         sk.Material("unobtainium")
