@@ -238,17 +238,34 @@ static skg_status draw_view(const run *r) {
 }
 
 /* Frames whose first part has positions from device memory: what happens to be in the buffer, within bounds. */
-static skg_status draw_placed(const run *r) {
+static skg_status place_and_draw(const run *r) {
     const float lowest[3] = {-9, -9, -9}, highest[3] = {9, 9, 9};
     skg_output output;
     skg_frame frame;
     skg_job *job = NULL;
+    cl_event done = NULL;
     skg_output_init(&output);
     skg_frame_init(&frame);
-    TRY(skg_plan_positions_set_cl(r->plan, 0, r->shared.buffer, 0, lowest, highest, 0, NULL, NULL));
+    const skg_status placed =
+        skg_plan_positions_set_cl(r->plan, 0, r->shared.buffer, 0, lowest, highest, 0, NULL, &done);
+    if (done) clReleaseEvent(done);
+    TRY(placed);
     TRY(skg_plan_submit_cl(r->plan, 1, &frame, &output, r->shared.buffer, 0, 0, NULL, NULL, &job));
     const skg_status status = skg_job_wait(&job);
     return status == SKG_RANGE ? SKG_OK : status;
+}
+
+/* The same; the next frames have the positions of the host again. */
+static skg_status draw_placed(const run *r) {
+    const skg_status status = place_and_draw(r);
+    skg_part part;
+    float *offsets;
+    const double *origin;
+    skg_part_init(&part);
+    skg_scene_part_get(r->scene, 0, &part);
+    skg_mesh_offsets_get(part.mesh, &offsets, &origin);
+    skg_mesh_offsets_moved(part.mesh);
+    return status;
 }
 
 /* Two frames at once; breathing, of two times. */
