@@ -228,6 +228,7 @@ START_TEST(a_device_that_failed_is_refused) {
 }
 END_TEST
 
+#ifdef SKG_COMMAND
 /* What the command prints about devices, if the only one that it may choose is refused. */
 static void list_devices(const char *flags, char *said, size_t size) {
     char line[512];
@@ -255,6 +256,7 @@ START_TEST(a_refused_device_is_listed_with_the_reason) {
     skg_context_release(&context);
 }
 END_TEST
+#endif
 
 static skg_status plan_with(skg_context *context, int noise) {
     skg_trial_scene scene;
@@ -316,7 +318,9 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, wrong_kernels_are_found, 0, (int)(sizeof errors / sizeof *errors));
     tcase_add_test(tests, a_verdict_is_found_once_and_kept);
     tcase_add_test(tests, a_device_that_failed_is_refused);
+#ifdef SKG_COMMAND
     tcase_add_test(tests, a_refused_device_is_listed_with_the_reason);
+#endif
     tcase_add_test(tests, wrong_kernels_are_refused_when_they_are_needed);
     tcase_add_test(tests, where_nothing_is_kept_every_context_tests);
     tcase_add_test(tests, bad_numbers_are_refused);
