@@ -37,27 +37,21 @@ skg_status skg_show_model_reserve(skg_show_model *model, int64_t vertices, int64
     return SKG_OK;
 }
 
-void skg_show_model_vertex(skg_show_model *model, int64_t number, const double position[3]) {
-    for (int k = 0; k < 3; k++) model->positions[3 * number + k] = (float)(position[k] - model->centre[k]);
-}
-
 void skg_show_model_add_vertex(skg_show_model *model, const double position[3]) {
-    skg_show_model_vertex(model, model->vertices++, position);
-}
-
-void skg_show_model_triangle(skg_show_model *model, int64_t number, const int64_t corners[3],
-                             double normals[3][3], uint32_t colour) {
-    for (int k = 0; k < 3; k++) {
-        model->corners[3 * number + k] = (int32_t)corners[k];
-        int16_t *normal = model->normals + 12 * number + 4 * k;
-        for (int axis = 0; axis < 3; axis++)
-            normal[axis] = (int16_t)(32767 * normals[k][axis] + copysign(0.5, normals[k][axis]));
-        normal[3] = 0;
-    }
-    model->colours[number] = colour;
+    for (int k = 0; k < 3; k++)
+        model->positions[3 * model->vertices + k] = (float)(position[k] - model->centre[k]);
+    model->vertices++;
 }
 
 void skg_show_model_add_triangle(skg_show_model *model, const int64_t corners[3], double normals[3][3],
                                  uint32_t colour) {
-    skg_show_model_triangle(model, model->triangles++, corners, normals, colour);
+    for (int k = 0; k < 3; k++) {
+        model->corners[3 * model->triangles + k] = (int32_t)corners[k];
+        int16_t *normal = model->normals + 12 * model->triangles + 4 * k;
+        for (int axis = 0; axis < 3; axis++)
+            normal[axis] = (int16_t)(32767 * normals[k][axis] + copysign(0.5, normals[k][axis]));
+        normal[3] = 0;
+    }
+    model->colours[model->triangles] = colour;
+    model->triangles++;
 }

@@ -31,9 +31,4 @@ void skg_show_model_add_vertex(skg_show_model *model, const double position[3]);
 void skg_show_model_add_triangle(skg_show_model *model, const int64_t corners[3], double normals[3][3],
                                  uint32_t colour);
 
-/* Write vertex or triangle `number`, for which there is room, without counting it. */
-void skg_show_model_vertex(skg_show_model *model, int64_t number, const double position[3]);
-void skg_show_model_triangle(skg_show_model *model, int64_t number, const int64_t corners[3],
-                             double normals[3][3], uint32_t colour);
-
 #endif

@@ -65,53 +65,47 @@ static void corner_normal(const surface *s, int64_t corner, double normal[3]) {
         normal[0] = 0, normal[1] = 0, normal[2] = 1; /* a triangle without area is not drawn */
 }
 
-/* Writes the part's vertices and triangles, for which there is room, from these numbers on. */
-static skg_status write_surface(skg_show_model *model, surface *s, int64_t first_vertex,
-                                int64_t first_triangle, uint32_t colour) {
+/* Adds the part's vertices and triangles, for which there is room. */
+static skg_status add_surface(skg_show_model *model, surface *s, uint32_t colour) {
     const skg_mesh *mesh = s->mesh;
+    const int64_t first = model->vertices;
     SKG_TRY(list_faces(s));
     for (int64_t v = 0; v < mesh->vertices; v++) {
         double at[3], world[3];
         skg_mesh_vertex(mesh, v, at);
         skg_pose_point(s->part->pose, at, world);
-        skg_show_model_vertex(model, first_vertex + v, world);
+        skg_show_model_add_vertex(model, world);
     }
     for (int64_t t = 0; t < mesh->triangles; t++) find_normal(mesh, s->part->pose, t, s->faces + 4 * t);
     for (int64_t t = 0; t < mesh->triangles; t++) {
         int64_t corners[3];
         double normals[3][3];
         for (int k = 0; k < 3; k++) {
-            corners[k] = first_vertex + mesh->corners[3 * t + k];
+            corners[k] = first + mesh->corners[3 * t + k];
             corner_normal(s, 3 * t + k, normals[k]);
         }
-        skg_show_model_triangle(model, first_triangle + t, corners, normals, colour);
+        skg_show_model_add_triangle(model, corners, normals, colour);
     }
     return SKG_OK;
 }
 
-static skg_status write_part(skg_show_model *model, const skg_scene_part_data *part, int64_t first_vertex,
-                             int64_t first_triangle, const uint8_t *colour) {
-    surface s = {.mesh = part->mesh, .part = part};
-    const skg_status status = write_surface(model, &s, first_vertex, first_triangle,
-                                            SKG_SHOW_COLOUR(colour[0], colour[1], colour[2], colour[3]));
-    skg_free(&s.faces);
-    skg_free(&s.starts);
-    skg_free(&s.around);
-    return status;
-}
-
+/* One thread adds all parts: those of OpenMP would spin beside the device's on the same cores. */
 skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const uint8_t *colours) {
     for (int64_t i = 0; i < scene->count; i++) {
-        const skg_mesh *mesh = scene->parts[i].mesh;
-        if (colours[4 * i + 3] == 0) continue;
-        if (mesh->first_bad >= 0)
+        const uint8_t *colour = colours + 4 * i;
+        surface s = {.mesh = scene->parts[i].mesh, .part = scene->parts + i};
+        if (colour[3] == 0) continue;
+        if (s.mesh->first_bad >= 0)
             return skg_fail(SKG_ERR_SCENE,
                             "part %s: vertex %" PRId64 " is not finite; correct it or leave the part out",
-                            scene->parts[i].label, mesh->first_bad);
-        SKG_TRY(skg_show_model_reserve(model, mesh->vertices, mesh->triangles));
-        /* by one thread: those of OpenMP would spin beside the device's on the same cores */
-        SKG_TRY(write_part(model, scene->parts + i, model->vertices, model->triangles, colours + 4 * i));
-        model->vertices += mesh->vertices, model->triangles += mesh->triangles;
+                            s.part->label, s.mesh->first_bad);
+        SKG_TRY(skg_show_model_reserve(model, s.mesh->vertices, s.mesh->triangles));
+        const skg_status status =
+            add_surface(model, &s, SKG_SHOW_COLOUR(colour[0], colour[1], colour[2], colour[3]));
+        skg_free(&s.faces);
+        skg_free(&s.starts);
+        skg_free(&s.around);
+        SKG_TRY(status);
     }
     return SKG_OK;
 }

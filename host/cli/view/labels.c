@@ -14,7 +14,7 @@
 /* How many parts are named at most. */
 enum { MOST_NAMED = 20 };
 
-/* What is drawn: lengths are in units of the text's height. */
+/* What is drawn on. */
 typedef struct {
     cairo_t *cairo;
     double text; /* height of the text, pixels */

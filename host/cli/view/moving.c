@@ -9,11 +9,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Between its key frames a page moves every vertex straight on. */
+/* Between its key frames a page moves every vertex in a straight line. */
 static const double KEY_FRAMES_PER_SECOND = 5;
 enum { MOST_KEY_FRAMES = 100, MOST_FRAMES = 1000000 };
 
-/* A page stays below 5 MB: its geometry has at most 3 MB in base 64 4, its images 0.6 MB and 0.8. */
+/* A page stays below 5 MB: its geometry has at most 3 MB, which are 4 MB in base 64, and its images 0.6 MB, which are
+ * 0.8 MB. */
 enum { MOST_TRIANGLES = 100000, MOST_BYTES = 3000000, MOST_PIXELS = 600000, MOST_SIDE = 512 };
 
 /* A triangle has 3 corners of 2 bytes; for each triangle there is half a vertex, of 6 bytes in each frame. */
