@@ -144,10 +144,10 @@
     X(SHOW_COUNT, colours) X(SHOW_COUNT, faces) X(SHOW_COUNT, counts)
 
 #define SKG_ARGUMENTS_SHOW_FILL(X) \
-    X(SHOW_FILL, args) X(SHOW_FILL, faces) X(SHOW_FILL, cursors) X(SHOW_FILL, list)
+    X(SHOW_FILL, args) X(SHOW_FILL, faces) X(SHOW_FILL, cursors) X(SHOW_FILL, entries)
 
 #define SKG_ARGUMENTS_SHOW_DRAW(X) \
-    X(SHOW_DRAW, args) X(SHOW_DRAW, faces) X(SHOW_DRAW, starts) X(SHOW_DRAW, list) X(SHOW_DRAW, image) \
+    X(SHOW_DRAW, args) X(SHOW_DRAW, faces) X(SHOW_DRAW, starts) X(SHOW_DRAW, entries) X(SHOW_DRAW, image) \
     X(SHOW_DRAW, rgba)
 
 /* X(KERNEL, function) for each kernel. */

@@ -4,6 +4,7 @@
 
 typedef SKG_CAT(float, SKG_WIDE) skg_floatv;
 typedef SKG_CAT(uint, SKG_WIDE) skg_uintv;
+#define SKG_AS_INT_V SKG_CAT(as_int, SKG_WIDE)
 #define SKG_TO_UINT_V SKG_CAT(convert_uint, SKG_WIDE)
 #define SKG_TO_FLOAT_V SKG_CAT(convert_float, SKG_WIDE)
 
@@ -61,8 +62,8 @@ static float3 skg_show_place(skg_show_args args, float4 clip) {
 /* A component of a corner's normal in the eye's axes. */
 static float skg_show_turned(skg_show_args args, short4 normal, int axis) {
     return (args.turn[axis] * (float)normal.x + args.turn[3 + axis] * (float)normal.y +
-            args.turn[6 + axis] * (float)normal.z) /
-           32767.0f;
+            args.turn[6 + axis] * (float)normal.z) *
+           (1.0f / 32767.0f);
 }
 
 /* The tiles of a box: first column, first row, end column, end row. */
@@ -71,7 +72,27 @@ static int4 skg_show_tiles(__global const skg_show_face *face) {
                   face->box[3] / SKG_SHOW_TILE + 1);
 }
 
-/* counts: [2][tile] opaque triangles of each tile, then translucent ones */
+/* Which side of edge k the sample at x, r lies on; r: rows from `row`, where a tile begins. Rounding keeps it monotonic in x
+ * and in r. */
+static float skg_show_side(__global const float *edge, float x, float row, float r) {
+    return fma(r, edge[1], fma(x - edge[2], edge[0], edge[1] * (row - edge[3])));
+}
+
+/* Whether a triangle covers no sample of `width` columns of a tile: all are outside of one edge, since the one that lies
+ * farthest inside is. */
+static int skg_show_apart(__global const skg_show_face *face, int column, int width, int row) {
+    int apart = 0;
+    for (int k = 0; k < 3; k++) {
+        __global const float *edge = face->edges + 4 * k;
+        const int inside = face->sides >> k & 1;
+        const float x = (float)((edge[0] > 0.0f) == inside ? column + width - 1 : column);
+        const float r = (edge[1] > 0.0f) == inside ? SKG_SHOW_TILE - 1 : 0;
+        apart |= signbit(skg_show_side(edge, x, (float)row, r)) == inside;
+    }
+    return apart;
+}
+
+/* counts: [list][tile] triangles */
 __kernel void skg_show_count(skg_show_args args, __global const float *vertices, __global const int *corners,
                              __global const short4 *normals, __global const uint *colours,
                              __global skg_show_face *faces, __global int *counts) {
@@ -95,6 +116,8 @@ __kernel void skg_show_count(skg_show_args args, __global const float *vertices,
     if (box.x > box.z || box.y > box.w || !(fabs(area) > 1e-6f) || colour >> 24 == 0) return;
     face->sides = skg_show_edge(face->edges, a.xy, b.xy, c.xy) | skg_show_edge(face->edges + 4, b.xy, c.xy, a.xy) << 1 |
                   skg_show_edge(face->edges + 8, c.xy, a.xy, b.xy) << 2;
+    face->list = colour >> 24 < 255 ? SKG_SHOW_CLEAR : area < 0.0f ? SKG_SHOW_FACING : SKG_SHOW_AWAY;
+    face->nearest = fmin(a.z, fmin(b.z, c.z));
     a.xy -= convert_float2(box.xy);
     const float inverse = 1.0f / area;
     skg_show_plane(face->depth, ab, ac, inverse, a.z, b.z, c.z, a.xy);
@@ -112,22 +135,26 @@ __kernel void skg_show_count(skg_show_args args, __global const float *vertices,
     }
     face->box[0] = box.x, face->box[1] = box.y, face->box[2] = box.z, face->box[3] = box.w;
     const int4 tiles = skg_show_tiles(face);
-    const int first = colour >> 24 == 255 ? 0 : args.across * args.down;
+    const int first = face->list * args.across * args.down;
     for (int y = tiles.y; y < tiles.w; y++)
-        for (int x = tiles.x; x < tiles.z; x++) atomic_inc(&counts[first + y * args.across + x]);
+        for (int x = tiles.x; x < tiles.z; x++)
+            if (!skg_show_apart(face, x * SKG_SHOW_TILE, SKG_SHOW_TILE, y * SKG_SHOW_TILE))
+                atomic_inc(&counts[first + y * args.across + x]);
 }
 
-/* cursors: [2][tile] where the next entry of each list stands; afterwards the ends of the lists */
+/* cursors: [list][tile] where the next entry of each list stands; afterwards the ends of the lists */
 __kernel void skg_show_fill(skg_show_args args, __global const skg_show_face *faces, __global int *cursors,
-                            __global int *list) {
+                            __global int *entries) {
     const int triangle = (int)get_global_id(0);
     if (triangle >= args.triangles) return;
     __global const skg_show_face *face = faces + triangle;
     if (face->box[0] > face->box[2] || face->box[1] > face->box[3]) return;
     const int4 tiles = skg_show_tiles(face);
-    const int first = face->colour[3] == 1.0f ? 0 : args.across * args.down;
+    const int first = face->list * args.across * args.down;
     for (int y = tiles.y; y < tiles.w; y++)
-        for (int x = tiles.x; x < tiles.z; x++) list[atomic_inc(&cursors[first + y * args.across + x])] = triangle;
+        for (int x = tiles.x; x < tiles.z; x++)
+            if (!skg_show_apart(face, x * SKG_SHOW_TILE, SKG_SHOW_TILE, y * SKG_SHOW_TILE))
+                entries[atomic_inc(&cursors[first + y * args.across + x])] = triangle;
 }
 
 /* Red, green, blue and opacity as bytes of an integer. */
@@ -188,10 +215,10 @@ typedef struct {
 
 /* What is the same for all rows of a triangle in a strip. */
 typedef struct {
-    skg_floatv sides[3], depth;          /* the terms of edges and depth that depend on the column */
-    float down[3], first[3], depth_down; /* and on the row */
-    skg_intv flips[3];
-    float box_row;
+    skg_floatv sides[3], depth; /* at the strip's first row */
+    float down[3], depth_down;  /* more in each further row */
+    skg_intv flips[3];          /* negative where a sample on the edge's negative side belongs to the triangle */
+    float nearest;
     int first_row, last_row; /* in the tile */
 } skg_show_rows;
 
@@ -200,27 +227,30 @@ static skg_show_rows skg_show_rows_of(__global const skg_show_face *face, int co
     const skg_floatv x = SKG_LANES + (float)column;
     for (int k = 0; k < 3; k++) {
         __global const float *edge = face->edges + 4 * k;
-        rows.sides[k] = edge[0] * (x - edge[2]);
-        rows.down[k] = edge[1], rows.first[k] = edge[3];
-        rows.flips[k] = (face->sides >> k & 1) - 1;
+        rows.sides[k] = fma(x - edge[2], edge[0], edge[1] * ((float)row - edge[3])); /* as in skg_show_side */
+        rows.down[k] = edge[1];
+        rows.flips[k] = face->sides >> k & 1 ? 0 : INT_MIN;
     }
-    rows.depth = fma(x - (float)face->box[0], face->depth[0], face->depth[2]);
+    rows.depth = fma(x - (float)face->box[0], face->depth[0],
+                     fma((float)(row - face->box[1]), face->depth[1], face->depth[2]));
     rows.depth_down = face->depth[1];
-    rows.box_row = (float)face->box[1];
+    rows.nearest = face->nearest;
     rows.first_row = max(face->box[1] - row, 0);
     rows.last_row = min(face->box[3] - row, SKG_SHOW_TILE - 1);
     return rows;
 }
 
-/* Which samples of a row lie on the triangle's side of edge k. y: in the picture. */
-static skg_intv skg_show_beside(const skg_show_rows *rows, int k, float y) {
-    return (rows->sides[k] + rows->down[k] * (y - rows->first[k]) >= 0.0f) ^ rows->flips[k];
+/* Negative where a sample of row r lies outside of edge k: both triangles of an edge compute the same bits, of which the
+ * sign decides. */
+static skg_intv skg_show_outside(const skg_show_rows *rows, int k, skg_floatv r) {
+    return SKG_AS_INT_V(fma(r, rows->down[k], rows->sides[k])) ^ rows->flips[k];
 }
 
-/* Which samples of a row a triangle covers, and their depth. */
-static skg_intv skg_show_covered(const skg_show_rows *rows, float y, skg_floatv *depth) {
-    *depth = fma((skg_floatv)(y - rows->box_row), rows->depth_down, rows->depth);
-    return skg_show_beside(rows, 0, y) & skg_show_beside(rows, 1, y) & skg_show_beside(rows, 2, y);
+/* Which samples of row r a triangle covers (negative: covered), and their depth: on its plane, but not nearer than its
+ * corners, where the plane of a triangle seen edge-on would be anywhere. */
+static skg_intv skg_show_covered(const skg_show_rows *rows, float r, skg_floatv *depth) {
+    *depth = max(fma((skg_floatv)(r), rows->depth_down, rows->depth), rows->nearest);
+    return ~(skg_show_outside(rows, 0, r) | skg_show_outside(rows, 1, r) | skg_show_outside(rows, 2, r));
 }
 
 /* Colours of a row of samples whose triangles are known; `none` where the number is SKG_SHOW_NONE. Shading each triangle
@@ -229,6 +259,7 @@ static skg_uintv skg_show_colours(skg_show_args args, __global const skg_show_fa
                                   skg_intv numbers, int column, int row, skg_uintv none) {
     int number[SKG_WIDE];
     skg_uintv colours = none;
+    if (!skg_any(numbers != SKG_SHOW_NONE)) return none;
     SKG_STORE_V(numbers, 0, number);
     for (int k = 0; k < SKG_WIDE; k++) {
         if (number[k] == SKG_SHOW_NONE || (k > 0 && number[k] == number[k - 1])) continue;
@@ -243,33 +274,47 @@ static skg_uintv skg_show_colours(skg_show_args args, __global const skg_show_fa
     return colours;
 }
 
+/* Whether a triangle may be seen in a strip: it covers samples there, and not all samples of its box are nearer than it. Most
+ * triangles are hidden, and this costs a fraction of drawing them. */
+static int skg_show_seen(const skg_show_strip *strip, __global const skg_show_face *face, int column, int row) {
+    if (skg_show_apart(face, column, SKG_WIDE, row)) return 0;
+    const int last = min(face->box[3] - row, SKG_SHOW_TILE - 1);
+    skg_floatv farthest = -INFINITY;
+    for (int r = max(face->box[1] - row, 0); r <= last; r++) farthest = max(farthest, strip->depth[r]);
+    const skg_intv x = SKG_TO_INT_V(SKG_LANES) + column;
+    return skg_any((farthest >= face->nearest) & (x >= face->box[0]) & (x <= face->box[2]));
+}
+
 /* Keeps the nearest opaque surface. */
 static void skg_show_opaque(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row) {
     const skg_show_rows rows = skg_show_rows_of(face, column, row);
     for (int r = rows.first_row; r <= rows.last_row; r++) {
         skg_floatv depth;
         const skg_intv mask =
-            skg_show_covered(&rows, (float)(row + r), &depth) &
-            (depth < strip->depth[r] || (depth == strip->depth[r] && triangle < strip->number[r]));
+            skg_show_covered(&rows, (float)r, &depth) &
+            (depth < strip->depth[r] | (depth == strip->depth[r] & triangle < strip->number[r]));
         strip->depth[r] = select(strip->depth[r], depth, mask);
         strip->number[r] = select(strip->number[r], (skg_intv)(triangle), mask);
     }
 }
 
 /* Keeps the nearest translucent surface between the one that was drawn last and the opaque one. Returns whether this is
- * one. */
-static int skg_show_next(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row) {
+ * one; *more is set where there is yet another behind it. */
+static int skg_show_next(skg_show_strip *strip, __global const skg_show_face *face, int triangle, int column, int row,
+                         skg_intv *more) {
     const skg_show_rows rows = skg_show_rows_of(face, column, row);
     skg_intv found = 0;
     for (int r = rows.first_row; r <= rows.last_row; r++) {
         skg_floatv depth;
-        const skg_intv mask =
-            (skg_show_covered(&rows, (float)(row + r), &depth) & (depth < strip->depth[r])) &&
-            (depth > strip->passed[r] || (depth == strip->passed[r] && triangle > strip->passed_number[r])) &&
-            (depth < strip->next[r] || (depth == strip->next[r] && triangle < strip->next_number[r]));
-        strip->next[r] = select(strip->next[r], depth, mask);
-        strip->next_number[r] = select(strip->next_number[r], (skg_intv)(triangle), mask);
-        found |= mask;
+        const skg_intv behind =
+            skg_show_covered(&rows, (float)r, &depth) & (depth < strip->depth[r]) &
+            (depth > strip->passed[r] | (depth == strip->passed[r] & triangle > strip->passed_number[r]));
+        const skg_intv nearer =
+            behind & (depth < strip->next[r] | (depth == strip->next[r] & triangle < strip->next_number[r]));
+        *more |= behind & strip->next_number[r] != SKG_SHOW_NONE;
+        strip->next[r] = select(strip->next[r], depth, nearer);
+        strip->next_number[r] = select(strip->next_number[r], (skg_intv)(triangle), nearer);
+        found |= nearer;
     }
     return skg_any(found);
 }
@@ -278,6 +323,7 @@ static int skg_show_next(skg_show_strip *strip, __global const skg_show_face *fa
 static void skg_show_layer(skg_show_args args, skg_show_strip *strip, __global const skg_show_face *faces,
                            __global const uchar *image, int column, int row) {
     for (int r = 0; r < SKG_SHOW_TILE; r++) {
+        if (!skg_any(strip->next_number[r] != SKG_SHOW_NONE)) continue;
         const skg_uintv colour = skg_show_colours(args, faces, image, strip->next_number[r], column, row + r, 0);
         const skg_floatv share = strip->through[r] * skg_show_byte(colour, 24);
         strip->red[r] = fma(share, skg_show_byte(colour, 0), strip->red[r]);
@@ -321,9 +367,9 @@ static void skg_show_store(skg_show_args args, const skg_show_strip *strip, __gl
     }
 }
 
-/* starts: [2 * tiles + 1] of the lists. One work-item draws a strip. */
+/* starts: [SKG_SHOW_LISTS * tiles + 1] of the lists, in entries. One work-item draws a strip. */
 __kernel void skg_show_draw(skg_show_args args, __global const skg_show_face *faces, __global const int *starts,
-                            __global const int *list, __global const uchar *image, __global uint *rgba) {
+                            __global const int *entries, __global const uchar *image, __global uint *rgba) {
     const int strips = SKG_SHOW_TILE / SKG_WIDE, item = (int)get_global_id(0);
     const int tile = item / strips, tiles = args.across * args.down;
     if (tile >= tiles) return;
@@ -331,7 +377,10 @@ __kernel void skg_show_draw(skg_show_args args, __global const skg_show_face *fa
     const int row = tile / args.across * SKG_SHOW_TILE;
     const skg_uintv none = skg_show_pack((skg_floatv)(args.background[0]), (skg_floatv)(args.background[1]),
                                          (skg_floatv)(args.background[2]), (skg_floatv)(1.0f));
-    if (starts[tile] == starts[tile + 1] && starts[tiles + tile] == starts[tiles + tile + 1]) {
+    int count = 0;
+    for (int list = 0; list < SKG_SHOW_LISTS; list++)
+        count += starts[list * tiles + tile + 1] - starts[list * tiles + tile];
+    if (count == 0) {
         for (int r = 0; r < SKG_SHOW_TILE; r += 2) skg_show_write(args, none.even, rgba, column / 2, (row + r) / 2);
         return;
     }
@@ -342,20 +391,21 @@ __kernel void skg_show_draw(skg_show_args args, __global const skg_show_face *fa
         strip.next[r] = INFINITY, strip.next_number[r] = SKG_SHOW_NONE;
         strip.through[r] = 1.0f, strip.red[r] = 0.0f, strip.green[r] = 0.0f, strip.blue[r] = 0.0f;
     }
-    for (int k = starts[tile]; k < starts[tile + 1]; k++) {
-        __global const skg_show_face *face = faces + list[k];
-        if (face->box[0] < column + SKG_WIDE && face->box[2] >= column)
-            skg_show_opaque(&strip, face, list[k], column, row);
-    }
-    int found = starts[tiles + tile] < starts[tiles + tile + 1];
-    for (int layer = 0; layer < SKG_SHOW_LAYERS && found; layer++) {
-        found = 0;
-        for (int k = starts[tiles + tile]; k < starts[tiles + tile + 1]; k++) {
-            __global const skg_show_face *face = faces + list[k];
-            if (face->box[0] < column + SKG_WIDE && face->box[2] >= column)
-                found |= skg_show_next(&strip, face, list[k], column, row);
+    for (int list = SKG_SHOW_FACING; list <= SKG_SHOW_AWAY; list++)
+        for (int k = starts[list * tiles + tile]; k < starts[list * tiles + tile + 1]; k++)
+            if (skg_show_seen(&strip, faces + entries[k], column, row))
+                skg_show_opaque(&strip, faces + entries[k], entries[k], column, row);
+    __global const int *clear = starts + SKG_SHOW_CLEAR * tiles + tile;
+    int left = clear[0] < clear[1];
+    for (int layer = 0; layer < SKG_SHOW_LAYERS && left; layer++) {
+        skg_intv more = 0;
+        int found = 0;
+        for (int k = clear[0]; k < clear[1]; k++) {
+            if (skg_show_seen(&strip, faces + entries[k], column, row))
+                found |= skg_show_next(&strip, faces + entries[k], entries[k], column, row, &more);
         }
         if (found) skg_show_layer(args, &strip, faces, image, column, row);
+        left = skg_any(more);
     }
     skg_show_store(args, &strip, faces, image, none, rgba, column, row);
 }

@@ -12,6 +12,13 @@
 /* A tile is a square of this many samples a side; a pixel has 2 x 2 samples. */
 #define SKG_SHOW_TILE 32
 
+/* The lists of a tile, in the order in which they are drawn: opaque triangles that turn the outside of a closed mesh to the
+ * eye, the other opaque ones (mostly hidden by the former, which is found out at once), translucent ones. */
+#define SKG_SHOW_FACING 0
+#define SKG_SHOW_AWAY 1
+#define SKG_SHOW_CLEAR 2
+#define SKG_SHOW_LISTS 3
+
 /* How many translucent surfaces over each other are drawn; more would hardly be seen. */
 #define SKG_SHOW_LAYERS 8
 
@@ -42,7 +49,8 @@ typedef struct {
     sides; /* bit k: the triangle is where the normal of edge k points to, edge included; otherwise it is on
                           * the other side, edge excluded */
     SKG_SHOW_INT image; /* 1: shows the detector's image */
-    SKG_SHOW_INT reserved[2];
+    SKG_SHOW_INT list;  /* SKG_SHOW_FACING, SKG_SHOW_AWAY or SKG_SHOW_CLEAR */
+    float nearest;      /* least depth of its corners; no sample of it is nearer */
 } skg_show_face;
 
 #ifndef __OPENCL_C_VERSION__

@@ -19,13 +19,13 @@ enum { GROUP = 64 };
 
 /* What is on the device for one picture. */
 typedef struct {
-    skg_buffer positions, corners, normals, colours, faces, counts, starts, list, image, rgba;
+    skg_buffer positions, corners, normals, colours, faces, counts, starts, entries, image, rgba;
     cl_kernel count, fill, draw;
 } scratch;
 
 static void free_scratch(scratch *s) {
     skg_buffer *buffers[] = {&s->positions, &s->corners, &s->normals, &s->colours, &s->faces,
-                             &s->counts,    &s->starts,  &s->list,    &s->image,   &s->rgba};
+                             &s->counts,    &s->starts,  &s->entries, &s->image,   &s->rgba};
     cl_kernel kernels[] = {s->count, s->fill, s->draw};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
@@ -85,9 +85,9 @@ static skg_status run(skg_context *context, cl_kernel kernel, size_t items, size
     return skg_kernel_run(context, kernel, "3D view", 1, &global, &local, NULL);
 }
 
-/* Counts the triangles of each tile and places the lists one after the other. starts: [2 * tiles + 1]. */
+/* Counts the triangles of each tile and places the lists one after the other. starts: [SKG_SHOW_LISTS * tiles + 1]. */
 static skg_status place_lists(skg_context *context, const skg_show_args *args, scratch *s, int32_t *starts) {
-    const int64_t lists = (int64_t)2 * args->across * args->down;
+    const int64_t lists = (int64_t)SKG_SHOW_LISTS * args->across * args->down;
     int64_t total = 0;
     SKG_TRY(skg_buffer_reserve(context, &s->counts, lists * (int64_t)sizeof *starts, CL_MEM_READ_WRITE,
                                "lists of the 3D view"));
@@ -118,20 +118,21 @@ static skg_status place_lists(skg_context *context, const skg_show_args *args, s
                              "lists of the 3D view"));
     SKG_TRY(skg_buffer_write(context, &s->counts, lists * (int64_t)sizeof *starts, starts,
                              "lists of the 3D view"));
-    return skg_buffer_reserve(context, &s->list, total * (int64_t)sizeof *starts, CL_MEM_READ_WRITE,
+    return skg_buffer_reserve(context, &s->entries, total * (int64_t)sizeof *starts, CL_MEM_READ_WRITE,
                               "lists of the 3D view");
 }
 
 static skg_status draw_lists(skg_context *context, const skg_show_args *args, scratch *s) {
     const size_t strips = (size_t)(SKG_SHOW_TILE / skg_kernel_lanes(context, SKG_PRECISION_SINGLE));
     const size_t items = (size_t)args->across * (size_t)args->down * strips;
-    const skg_argument fill[] = {
-        SKG_ARGUMENT(SHOW_FILL, args, *args), SKG_ARGUMENT(SHOW_FILL, faces, s->faces.memory),
-        SKG_ARGUMENT(SHOW_FILL, cursors, s->counts.memory), SKG_ARGUMENT(SHOW_FILL, list, s->list.memory)};
+    const skg_argument fill[] = {SKG_ARGUMENT(SHOW_FILL, args, *args),
+                                 SKG_ARGUMENT(SHOW_FILL, faces, s->faces.memory),
+                                 SKG_ARGUMENT(SHOW_FILL, cursors, s->counts.memory),
+                                 SKG_ARGUMENT(SHOW_FILL, entries, s->entries.memory)};
     const skg_argument draw[] = {SKG_ARGUMENT(SHOW_DRAW, args, *args),
                                  SKG_ARGUMENT(SHOW_DRAW, faces, s->faces.memory),
                                  SKG_ARGUMENT(SHOW_DRAW, starts, s->starts.memory),
-                                 SKG_ARGUMENT(SHOW_DRAW, list, s->list.memory),
+                                 SKG_ARGUMENT(SHOW_DRAW, entries, s->entries.memory),
                                  SKG_ARGUMENT(SHOW_DRAW, image, s->image.memory),
                                  SKG_ARGUMENT(SHOW_DRAW, rgba, s->rgba.memory)};
     SKG_TRY(SKG_SET_ARGUMENTS(s->fill, fill));
@@ -147,8 +148,8 @@ skg_status skg_show_draw(skg_context *context, const skg_show_model *model, cons
     scratch s = {0};
     int32_t *starts = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(
-        skg_alloc((int64_t)2 * args.across * args.down + 1, sizeof *starts, "lists of the 3D view", &starts));
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)SKG_SHOW_LISTS * args.across * args.down + 1, sizeof *starts,
+                              "lists of the 3D view", &starts));
     SKG_TRY_CLEANUP(get_kernels(context, &s));
     SKG_TRY_CLEANUP(upload(context, model, &args, image, &s));
     SKG_TRY_CLEANUP(place_lists(context, &args, &s, starts));

@@ -5,14 +5,18 @@
 
 #include <inttypes.h>
 
-/* Faces at a corner that differ by more than 45 degrees meet in a crease; others are shaded as one smooth surface. */
-static const double CREASE = 0.70710678118654752;
+/* Squared cosines. Faces at a corner that differ by more than 45 degrees meet in a crease; others are shaded as one smooth
+ * surface. Faces that differ by at most half of that from one direction make no crease with each other. */
+static const double CREASE = 0.5, SMOOTH = 0.85355339059327376;
 
 /* One part while it is added. */
 typedef struct {
     const skg_mesh *mesh;
     const skg_scene_part_data *part;
-    double *faces;   /* [triangles][4] normals of length 1, and the area */
+    double *world; /* [vertices][3] mm */
+    double *faces; /* [triangles][4] normals as long as twice the area, and the square of that */
+    double *
+        smooth; /* [vertices][3] normal of length 1 that all faces around a vertex share; 0 where they do not */
     int32_t *starts; /* [vertices + 1] of the triangles around each vertex */
     int32_t *around; /* [3 * triangles] */
 } surface;
@@ -26,6 +30,8 @@ static skg_status list_faces(surface *s) {
     const int64_t vertices = s->mesh->vertices, corners = 3 * s->mesh->triangles;
     SKG_TRY(skg_alloc(vertices + 2, sizeof *s->starts, "faces of vertices", &s->starts));
     SKG_TRY(skg_alloc(corners, sizeof *s->around, "faces of vertices", &s->around));
+    SKG_TRY(skg_alloc(3 * vertices, sizeof *s->world, "places of vertices", &s->world));
+    SKG_TRY(skg_alloc(3 * vertices, sizeof *s->smooth, "normals of vertices", &s->smooth));
     SKG_TRY(skg_alloc(4 * s->mesh->triangles, sizeof *s->faces, "normals of faces", &s->faces));
     /* counted two places higher, so that after filling starts[v] is where the list of v begins */
     for (int64_t i = 0; i < corners; i++) s->starts[place_of(s, i) + 2]++;
@@ -34,34 +40,50 @@ static skg_status list_faces(surface *s) {
     return SKG_OK;
 }
 
-/* The normal of a triangle, of length 1 or 0, and its area. */
-static void find_normal(const skg_mesh *mesh, const double *pose, int64_t triangle, double normal[4]) {
-    double at[3][3], world[3][3], ab[3], ac[3];
-    for (int k = 0; k < 3; k++) {
-        skg_mesh_vertex(mesh, mesh->corners[3 * triangle + k], at[k]);
-        skg_pose_point(pose, at[k], world[k]);
-    }
-    skg_add_scaled(world[1], -1, world[0], ab);
-    skg_add_scaled(world[2], -1, world[0], ac);
+static void find_normal(const surface *s, int64_t triangle, double normal[4]) {
+    const int32_t *corner = s->mesh->corners + 3 * triangle;
+    const double *a = s->world + 3 * (int64_t)corner[0];
+    double ab[3], ac[3];
+    skg_add_scaled(s->world + 3 * (int64_t)corner[1], -1, a, ab);
+    skg_add_scaled(s->world + 3 * (int64_t)corner[2], -1, a, ac);
     skg_cross(ab, ac, normal);
-    const double length = skg_length(normal);
-    if (length > 0) skg_scale_vector(1 / length, normal, normal);
-    normal[3] = 0.5 * length;
+    normal[3] = skg_dot(normal, normal);
 }
 
-/* The normal at a corner: of the faces around it that make no crease with the corner's own, each with its area. */
-static void corner_normal(const surface *s, int64_t corner, double normal[3]) {
-    const double *own = s->faces + 4 * (corner / 3);
-    const int64_t place = place_of(s, corner);
+/* Whether the angle between a face and another normal, of that squared length, has at least that squared cosine. */
+static int is_near(const double *face, const double *normal, double length2, double cosine2) {
+    const double product = skg_dot(face, normal);
+    return product > 0 && product * product >= cosine2 * length2 * face[3];
+}
+
+/* The normal of the faces around a place, each with its area: of all, or of those that make no crease with `own`. Returns
+ * 0 if they have none. */
+static int mean_normal(const surface *s, int64_t place, const double *own, double normal[3]) {
     double sum[3] = {0, 0, 0};
     for (int32_t i = s->starts[place]; i < s->starts[place + 1]; i++) {
         const double *face = s->faces + 4 * (int64_t)s->around[i];
-        if (skg_dot(face, own) >= CREASE) skg_add_scaled(sum, face[3], face, sum);
+        if (!own || is_near(face, own, own[3], CREASE)) skg_add_scaled(sum, 1, face, sum);
     }
     const double length = skg_length(sum);
-    if (length > 0)
-        skg_scale_vector(1 / length, sum, normal);
-    else
+    if (length > 0) skg_scale_vector(1 / length, sum, normal);
+    return length > 0;
+}
+
+/* Finds a normal for all corners at a place at once, where no two of its faces make a crease. */
+static void find_smooth(surface *s, int64_t place) {
+    double *normal = s->smooth + 3 * place;
+    int smooth = mean_normal(s, place, NULL, normal);
+    for (int32_t i = s->starts[place]; smooth && i < s->starts[place + 1]; i++)
+        smooth = is_near(s->faces + 4 * (int64_t)s->around[i], normal, 1, SMOOTH);
+    if (!smooth) normal[0] = 0, normal[1] = 0, normal[2] = 0;
+}
+
+static void corner_normal(const surface *s, int64_t corner, double normal[3]) {
+    const int64_t place = place_of(s, corner);
+    const double *smooth = s->smooth + 3 * place;
+    if (smooth[0] != 0 || smooth[1] != 0 || smooth[2] != 0)
+        normal[0] = smooth[0], normal[1] = smooth[1], normal[2] = smooth[2];
+    else if (!mean_normal(s, place, s->faces + 4 * (corner / 3), normal))
         normal[0] = 0, normal[1] = 0, normal[2] = 1; /* a triangle without area is not drawn */
 }
 
@@ -71,12 +93,13 @@ static skg_status add_surface(skg_show_model *model, surface *s, uint32_t colour
     const int64_t first = model->vertices;
     SKG_TRY(list_faces(s));
     for (int64_t v = 0; v < mesh->vertices; v++) {
-        double at[3], world[3];
+        double at[3], *world = s->world + 3 * v;
         skg_mesh_vertex(mesh, v, at);
         skg_pose_point(s->part->pose, at, world);
         skg_show_model_add_vertex(model, world);
     }
-    for (int64_t t = 0; t < mesh->triangles; t++) find_normal(mesh, s->part->pose, t, s->faces + 4 * t);
+    for (int64_t t = 0; t < mesh->triangles; t++) find_normal(s, t, s->faces + 4 * t);
+    for (int64_t v = 0; v < mesh->vertices; v++) find_smooth(s, v);
     for (int64_t t = 0; t < mesh->triangles; t++) {
         int64_t corners[3];
         double normals[3][3];
@@ -87,6 +110,14 @@ static skg_status add_surface(skg_show_model *model, surface *s, uint32_t colour
         skg_show_model_add_triangle(model, corners, normals, colour);
     }
     return SKG_OK;
+}
+
+static void free_surface(surface *s) {
+    skg_free(&s->world);
+    skg_free(&s->faces);
+    skg_free(&s->smooth);
+    skg_free(&s->starts);
+    skg_free(&s->around);
 }
 
 /* One thread adds all parts: those of OpenMP would spin beside the device's on the same cores. */
@@ -102,9 +133,7 @@ skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, con
         SKG_TRY(skg_show_model_reserve(model, s.mesh->vertices, s.mesh->triangles));
         const skg_status status =
             add_surface(model, &s, SKG_SHOW_COLOUR(colour[0], colour[1], colour[2], colour[3]));
-        skg_free(&s.faces);
-        skg_free(&s.starts);
-        skg_free(&s.around);
+        free_surface(&s);
         SKG_TRY(status);
     }
     return SKG_OK;
