@@ -1,5 +1,5 @@
 /* One contender: a scene, its plan, and the frames that it is asked for. Calls only what builds of earlier dates have. */
-#include "versus.h"
+#include "contender.h"
 
 #include "common/scenes.h"
 

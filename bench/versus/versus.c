@@ -1,6 +1,6 @@
 /* Compares two builds of the library: each is loaded by processes of its own, which take turns. The processes are this
  * program with another LD_LIBRARY_PATH. */
-#include "versus.h"
+#include "contender.h"
 
 #include <errno.h>
 #include <fcntl.h>

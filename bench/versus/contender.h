@@ -1,6 +1,6 @@
-/* Two builds of the library, measured alternately by processes that load one of them each. */
-#ifndef BENCH_VERSUS_H
-#define BENCH_VERSUS_H
+/* A process that measures one build of the library, turn by turn. */
+#ifndef BENCH_CONTENDER_H
+#define BENCH_CONTENDER_H
 
 #include "common/bench.h"
 
