@@ -23,30 +23,6 @@ typedef float skg_out;
 #endif
 
 #define SKG_OUT_TO_REAL_V SKG_CAT(SKG_CAT(convert_, SKG_SCALAR), SKG_WIDE)
-#define SKG_AS_REAL_V SKG_CAT(SKG_CAT(as_, SKG_SCALAR), SKG_WIDE)
-#if SKG_DOUBLE
-#define SKG_SCALAR double
-#define SKG_AS_MASK_V SKG_CAT(as_long, SKG_WIDE)
-#define SKG_TO_MASK_V SKG_CAT(convert_long, SKG_WIDE)
-SKG_DEFINE_EXP2_DOUBLE(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
-SKG_DEFINE_LOG_DOUBLE(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
-#else
-#define SKG_SCALAR float
-#define SKG_AS_MASK_V SKG_CAT(as_int, SKG_WIDE)
-#define SKG_TO_MASK_V SKG_CAT(convert_int, SKG_WIDE)
-SKG_DEFINE_EXP2_FLOAT(skg_exp2_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V)
-SKG_DEFINE_LOG_FLOAT(skg_log_v, skg_realv, skg_maskv, SKG_AS_REAL_V, SKG_AS_MASK_V, SKG_TO_REAL_V)
-#endif
-
-/* mm of the rays to pixels column... of a row. */
-static skg_realv skg_ray_lengths_v(const skg_ray_args *ray, int column, int row) {
-    const skg_realv i = (skg_real)column + SKG_LANES - ray->middle_i;
-    const skg_real j = (skg_real)row - ray->middle_j;
-    const skg_realv x = fma((skg_realv)(ray->column[0]), i, (skg_realv)(fma(ray->row[0], j, ray->centre[0])));
-    const skg_realv y = fma((skg_realv)(ray->column[1]), i, (skg_realv)(fma(ray->row[1], j, ray->centre[1])));
-    const skg_realv z = fma((skg_realv)(ray->column[2]), i, (skg_realv)(fma(ray->row[2], j, ray->centre[2])));
-    return sqrt(fma(x, x, fma(y, y, z * z)));
-}
 
 static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
 #if SKG_HALF
@@ -70,103 +46,6 @@ static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
     skg_out rest[SKG_WIDE];
     SKG_STORE_V(SKG_TO_OUT_V(value), 0, rest);
     for (int k = 0; k < pixels; k++) place[k] = SKG_ADD ? place[k] + rest[k] : rest[k];
-}
-
-/* The arguments of the kernel, by the same names. */
-typedef struct {
-    const skg_frame_args *frame;
-    const skg_ray_args *ray;
-    int nodes, column, row; /* the work-item's first pixel */
-    __constant const skg_real *coefficients, *weights;
-    skg_real factor;
-#if SKG_SUMS
-    __constant const skg_real *lists;
-#endif
-#if SKG_WORLD
-    int world_plane;
-    skg_real4 world;
-#endif
-#if SKG_FALLOFF
-    skg_real foot;
-#endif
-#if SKG_NOISE
-    __constant const skg_real *variances;
-    const skg_noise_args *key;
-    skg_real photons;
-#endif
-#if SKG_SHADES
-    const skg_shade_args *shades;
-    __constant const skg_real *polynomials;
-    __global const skg_real *tables;
-#endif
-} skg_pass;
-
-/* What a work-item knows of its pixels, a vector a run. */
-typedef struct {
-    skg_realv x[SKG_PLANES][SKG_RUNS];       /* mm of the planes, world included */
-    skg_realv highest[SKG_RUNS];             /* the greatest power of two (logarithm), or that of the first node */
-    skg_realv shown[SKG_CHANNELS][SKG_RUNS]; /* sums over nodes, then what is shown */
-#if SKG_WORLD
-    skg_realv world[SKG_RUNS]; /* mm that the world adds to its plane */
-#endif
-#if SKG_NOISE
-    skg_realv spread[SKG_CHANNELS][SKG_RUNS]; /* variances */
-#endif
-} skg_pixels;
-
-#define SKG_EACH_RUN SKG_UNROLL for (int r = 0; r < SKG_RUNS; r++)
-#define SKG_EACH_CHANNEL SKG_UNROLL for (int c = 0; c < SKG_CHANNELS; c++)
-#define SKG_EACH_PLANE(first) SKG_UNROLL for (int p = first; p < SKG_PLANES; p++)
-/* The planes that are accumulated; the others are shades. */
-#define SKG_SUMMED (SKG_PLANES - SKG_SHADES)
-#define SKG_EACH_SUMMED SKG_UNROLL for (int p = 0; p < SKG_SUMMED; p++)
-
-/* Reads the planes of run r in mm from the sums. scaled: mm of a unit of the sums. */
-static void skg_read_run(const skg_pass *pass, __global const skg_sum *copies, __global const int *used, int at,
-                         skg_realv scaled, skg_pixels *pixels, int r) {
-#if SKG_SUMS
-    SKG_EACH_SUMMED pixels->x[p][r] = (skg_realv)(0);
-    SKG_UNROLL for (int s = 0; s < SKG_SUMS; s++) {
-        const skg_realv sum = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, s, pass->row, at)) * scaled;
-        SKG_EACH_SUMMED
-        pixels->x[p][r] = fma((skg_realv)(pass->lists[s * SKG_SUMMED + p]), sum, pixels->x[p][r]);
-    }
-#else
-    SKG_EACH_SUMMED
-    pixels->x[p][r] = skg_real_sums_v(skg_sums_v(pass->frame, copies, used, p, pass->row, at)) * scaled;
-#endif
-}
-
-#if SKG_SHADES
-/* The power of two that the shades of run r add to node n. */
-static skg_realv skg_shade_power(const skg_pass *pass, const skg_pixels *pixels, int n, int r) {
-    skg_realv power = (skg_realv)(0);
-    SKG_EACH_PLANE(SKG_SUMMED)
-    power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + p]), pixels->x[p][r], power);
-    return power;
-}
-#endif
-
-/* Path lengths. Runs past the end of a row stay in it. */
-static void skg_read_planes(const skg_pass *pass, __global const skg_sum *copies, __global const int *used,
-                            skg_pixels *pixels) {
-    SKG_EACH_RUN {
-        const int at = min(pass->column + r * SKG_WIDE, pass->frame->columns - 1);
-        const skg_realv length = skg_ray_lengths_v(pass->ray, at, pass->row);
-        const skg_realv scaled = SKG_HALF ? (skg_realv)(0x1p-24f * 1000) : length * pass->ray->unit;
-        skg_read_run(pass, copies, used, at, scaled, pixels, r);
-#if SKG_WORLD
-        const skg_realv path = fma((skg_realv)(pass->world.z), (skg_real)at + SKG_LANES,
-                                   (skg_realv)(fma(pass->world.w, (skg_real)pass->row, pass->world.y)));
-        pixels->world[r] = pass->world.x * length * path;
-        SKG_EACH_PLANE(0) if (p == pass->world_plane) pixels->x[p][r] += pixels->world[r];
-#endif
-#if SKG_SHADES
-        skg_realv amounts[SKG_SHADES];
-        skg_shades_v(pass->shades, pass->polynomials, pass->tables, at, pass->row, length, amounts);
-        SKG_EACH_PLANE(SKG_SUMMED) pixels->x[p][r] = amounts[p - SKG_SUMMED];
-#endif
-    }
 }
 
 /* The exponent of one node for each run: the sum over planes of coefficient times mm. */
@@ -271,43 +150,6 @@ static skg_realv skg_flat_field(const skg_pass *pass, const skg_pixels *pixels, 
         flat = fma((skg_realv)(pass->weights[n * SKG_CHANNELS + channel]),
                    skg_exp2_v(skg_open_power(pass, pixels, n, r, base)), flat);
     return flat;
-}
-#endif
-
-#if SKG_NOISE
-/* Draws the photons of each node separately, for the pixels of run r in which there are few. */
-static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, int r, skg_realv all, skg_intv few,
-                               int pixel, int channel) {
-    skg_realv value = (skg_realv)(0);
-    skg_uintv draw[4];
-    for (int n = 0; n < pass->nodes; n++) {
-        const skg_real weight = pass->weights[n * SKG_CHANNELS + channel];
-        const skg_real variance = pass->variances[n * SKG_CHANNELS + channel];
-        if ((n & 3) == 0) skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2), draw);
-        if (!(weight > 0)) continue;
-        skg_realv power = pass->coefficients[n * SKG_PLANES] * pixels->x[0][r];
-        SKG_EACH_PLANE(1)
-        power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + p]), pixels->x[p][r], power);
-        const skg_floatv expected = SKG_TO_FLOAT_V(weight * weight / variance * all * skg_exp2_v(power));
-        const skg_intv many = expected > (skg_floatv)(SKG_FEW);
-        const skg_floatv counted = skg_poisson_v(few & ~many ? expected : (skg_floatv)(0.0f), draw[n & 3]);
-        const skg_floatv spread = fma(skg_root_v(expected), skg_normal_v(draw[n & 3]), expected);
-        value = fma((skg_realv)(variance / weight), SKG_TO_REAL_V(many ? spread : counted), value);
-    }
-    return value;
-}
-
-/* Adds quantum noise to one channel of run r: a normal deviate in pixels with many photons, else photon by photon. */
-static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int r, int channel, skg_realv all) {
-    const skg_realv mean = pixels->shown[channel][r], variance = pixels->spread[channel][r] * all;
-    const int pixel = pass->row * pass->frame->columns + pass->column + r * SKG_WIDE;
-    const skg_intv few = SKG_TO_INT_V(mean * mean < pass->photons * variance);
-    skg_uintv draw[4];
-    skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_QUANTUM, channel, 0), draw);
-    const skg_floatv deviate = skg_root_v(SKG_TO_FLOAT_V(variance)) * skg_normal_v(draw[0]);
-    const skg_realv normal = mean + SKG_TO_REAL_V(deviate);
-    if (!skg_any(few)) return normal;
-    return SKG_TO_MASK_V(few) ? skg_photons_v(pass, pixels, r, all, few, pixel, channel) : normal;
 }
 #endif
 

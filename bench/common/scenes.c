@@ -95,13 +95,22 @@ void scene_generate(skg_context *context, const scene_changes *changes, long siz
     skg_mesh_release(&bead);
 }
 
-static void one_sphere(skg_context *context, long triangles, long size, bench_scene *out) {
+/* change: what else is done to the shape; NULL: nothing. */
+static void one_sphere(skg_context *context, long triangles, void (*change)(bench_shape *), long size,
+                       bench_scene *out) {
     const box all = {{-160, -160, -160}, {160, 160, 160}};
+    bench_shape shape;
+    skg_mesh *mesh = NULL;
     begin(context, out);
     view_box(&all, size, &out->view);
-    skg_mesh *mesh = make_mesh(context, SHAPE_SPHERE, 160, triangles, 0);
+    shape_make(SHAPE_SPHERE, 160, triangles, &shape);
+    if (change) change(&shape);
+    bench_try(skg_mesh_create_float(context, "sphere", shape.vertices, shape.positions, 0, shape.triangles,
+                                    shape.corners, 0, 1, &mesh),
+              "mesh");
     add_part(out, mesh, soft, NO_PARENT, nowhere, unscaled);
     skg_mesh_release(&mesh);
+    shape_free(&shape);
 }
 
 static int is_mesh(const char *name) {
@@ -131,6 +140,12 @@ static int list_meshes(const char *folder, char **paths) {
     return count;
 }
 
+static int one_path(const char *path, char **paths) {
+    paths[0] = bench_alloc(strlen(path) + 1, 1);
+    strcpy(paths[0], path);
+    return 1;
+}
+
 static double organ_mu(const char *path) {
     static const char *const bones[] = {"rib",     "vertebra", "sternum", "clavicle",
                                         "scapula", "humerus",  "bone"};
@@ -147,7 +162,7 @@ static void from_folder(skg_context *context, const char *folder, long size, ben
     box all = nothing;
     double edges[3], middle[3];
     begin(context, out);
-    const int count = list_meshes(folder, paths);
+    const int count = is_mesh(folder) ? one_path(folder, paths) : list_meshes(folder, paths);
     for (int i = 0; i < count; i++) {
         skg_mesh_health health;
         skg_mesh_health_init(&health);
@@ -173,11 +188,12 @@ static void from_folder(skg_context *context, const char *folder, long size, ben
     view_box(&all, size, &out->view);
 }
 
-static void from_file(skg_context *context, const char *path, bench_scene *out) {
+static void from_file(skg_context *context, const char *path, int count, const char *const *settings,
+                      bench_scene *out) {
     memset(out, 0, sizeof *out);
     skg_plan_options_init(&out->options);
     skg_view_init(&out->view);
-    bench_try(skg_setup_load(context, path, 0, NULL, &out->setup), path);
+    bench_try(skg_setup_load(context, path, count, settings, &out->setup), path);
     bench_try(skg_setup_scene_get(out->setup, &out->scene), path);
     bench_try(skg_setup_spectrum_get(out->setup, &out->beam), path);
     bench_try(skg_setup_view_get(out->setup, &out->view), path);
@@ -186,20 +202,36 @@ static void from_file(skg_context *context, const char *path, bench_scene *out) 
     bench_try(skg_spectrum_retain(out->beam), path);
 }
 
-void scene_open(skg_context *context, const char *what, long size, bench_scene *out) {
-    static const char sphere[] = "sphere:";
-    const size_t length = what ? strlen(what) : 0;
-    long triangles = 0;
-    if (!what) {
-        scene_generate(context, &(scene_changes){0}, size, out);
-    } else if (!strncmp(what, sphere, sizeof sphere - 1)) {
-        bench_numbers(what + sizeof sphere - 1, 8, 50000000, 1, &triangles);
-        one_sphere(context, triangles, size, out);
-    } else if (length > 5 && !strcmp(what + length - 5, ".json")) {
-        from_file(context, what, out);
-    } else {
-        from_folder(context, what, size, out);
+/* Opens a scene of one sphere; returns 0 if `what` names none. */
+static int open_sphere(skg_context *context, const char *what, long size, bench_scene *out) {
+    static const struct {
+        const char *name;
+        void (*change)(bench_shape *);
+    } kinds[] = {{"sphere:", NULL}, {"soup:", shape_part}, {"shuffled:", shape_shuffle}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        const size_t length = strlen(kinds[k].name);
+        long triangles = 0;
+        if (strncmp(what, kinds[k].name, length) != 0) continue;
+        bench_numbers(what + length, 8, 50000000, 1, &triangles);
+        one_sphere(context, triangles, kinds[k].change, size, out);
+        return 1;
     }
+    return 0;
+}
+
+void scene_open_set(skg_context *context, const char *what, long size, int count, const char *const *settings,
+                    bench_scene *out) {
+    const size_t length = what ? strlen(what) : 0;
+    if (!what)
+        scene_generate(context, &(scene_changes){0}, size, out);
+    else if (length > 5 && !strcmp(what + length - 5, ".json"))
+        from_file(context, what, count, settings, out);
+    else if (!open_sphere(context, what, size, out))
+        from_folder(context, what, size, out);
+}
+
+void scene_open(skg_context *context, const char *what, long size, bench_scene *out) {
+    scene_open_set(context, what, size, 0, NULL, out);
 }
 
 void scene_close(bench_scene *scene) {

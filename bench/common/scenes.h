@@ -19,11 +19,14 @@ typedef struct {
     int round_source; /* 1: a small part encloses the source */
 } scene_changes;
 
-/* what: a scene file (*.json); or a folder of closed meshes in mm, which are put into one cuboid of adipose;
- * or "sphere:N", one sphere of about N triangles; or NULL for 60 bumpy organs in an envelope, 42,000
- * triangles in total. A file has a view of its own. For the others the detector has size x size pixels and
- * just covers the scene, seen along y. */
+/* what: a scene file (*.json); or a closed mesh (*.stl, *.ply, *.obj), or a folder of them, in mm, in one cuboid of
+ * adipose; or one sphere of about N triangles: "sphere:N"; "soup:N", whose triangles share no vertices, as those of an
+ * STL file; "shuffled:N", in random order; or NULL for 60 bumpy organs in an envelope, 42,000 triangles in total. A file
+ * has a view of its own. For the others the detector has size x size pixels and just covers the scene, seen along y. */
 void scene_open(skg_context *context, const char *what, long size, bench_scene *out);
+/* The same with `count` settings KEY=VALUE for the scene file. */
+void scene_open_set(skg_context *context, const char *what, long size, int count, const char *const *settings,
+                    bench_scene *out);
 void scene_generate(skg_context *context, const scene_changes *changes, long size, bench_scene *out);
 void scene_close(bench_scene *scene);
 

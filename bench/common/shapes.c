@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *shape_name(int kind) {
     return kind == SHAPE_BLOB ? "blob" : "sphere";
@@ -83,6 +84,47 @@ void shape_make(int kind, double radius, int64_t triangles, bench_shape *shape) 
 
 void shape_cut(bench_shape *shape) {
     shape->triangles -= 4; /* at the last pole */
+}
+
+void shape_part(bench_shape *shape) {
+    const int64_t vertices = 3 * shape->triangles;
+    float *positions = bench_alloc((size_t)vertices * 3, sizeof *positions);
+    for (int64_t v = 0; v < vertices; v++) {
+        memcpy(positions + 3 * v, shape->positions + 3 * (int64_t)shape->corners[v], 3 * sizeof *positions);
+        shape->corners[v] = (int32_t)v;
+    }
+    free(shape->positions);
+    shape->positions = positions;
+    shape->vertices = vertices;
+}
+
+/* The numbers below `count` in random order (Fisher and Yates; the generator is that of Knuth's MMIX). */
+static int32_t *random_order(int64_t count, uint64_t state) {
+    int32_t *order = bench_alloc((size_t)count, sizeof *order);
+    for (int64_t i = 0; i < count; i++) order[i] = (int32_t)i;
+    for (int64_t i = count - 1; i > 0; i--) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        const int64_t other = (int64_t)((state >> 32) % (uint64_t)(i + 1));
+        const int32_t swap = order[i];
+        order[i] = order[other];
+        order[other] = swap;
+    }
+    return order;
+}
+
+void shape_shuffle(bench_shape *shape) {
+    int32_t *vertex = random_order(shape->vertices, 1), *triangle = random_order(shape->triangles, 4);
+    float *positions = bench_alloc((size_t)shape->vertices * 3, sizeof *positions);
+    int32_t *corners = bench_alloc((size_t)shape->triangles * 3, sizeof *corners);
+    for (int64_t v = 0; v < shape->vertices; v++)
+        memcpy(positions + 3 * (int64_t)vertex[v], shape->positions + 3 * v, 3 * sizeof *positions);
+    for (int64_t t = 0; t < shape->triangles; t++)
+        for (int k = 0; k < 3; k++) corners[3 * (int64_t)triangle[t] + k] = vertex[shape->corners[3 * t + k]];
+    free(shape->positions);
+    free(shape->corners);
+    shape->positions = positions, shape->corners = corners;
+    free(vertex);
+    free(triangle);
 }
 
 void shape_free(bench_shape *shape) {

@@ -20,6 +20,10 @@ const char *shape_name(int kind);
 void shape_make(int kind, double radius, int64_t triangles, bench_shape *shape);
 /* Removes the four triangles at one pole, which makes the mesh leaky. */
 void shape_cut(bench_shape *shape);
+/* Gives every triangle three vertices of its own, as a file of STL does. */
+void shape_part(bench_shape *shape);
+/* Puts vertices and triangles in random order, the same one in every run. */
+void shape_shuffle(bench_shape *shape);
 void shape_free(bench_shape *shape);
 
 #endif

@@ -108,11 +108,13 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
-    const char *files[5] = {"exponential.clh"};
+    const char *files[7] = {"exponential.clh"};
     int count = 1;
     char more[448];
     if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
     if (key->shades) files[count++] = "shades.clh";
+    files[count++] = "planes.clh";
+    if (key->noise) files[count++] = "quantum.clh";
     files[count++] = "attenuate.cl";
     snprintf(
         more, sizeof more,

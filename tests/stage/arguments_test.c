@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_FILES = 5, MOST_ARGUMENTS = 32 };
+enum { MOST_FILES = 7, MOST_ARGUMENTS = 32 };
 
 static skg_context *context;
 
@@ -47,7 +47,8 @@ static const struct {
     {{"pixel.clh", "half.cl"}, "", 1},
     {{"counts.cl"}, "", 0},
     {{"leaky.cl"}, "", 0},
-    {{"exponential.clh", "random.clh", "noise.clh", "shades.clh", "attenuate.cl"},
+    {{"exponential.clh", "random.clh", "noise.clh", "shades.clh", "planes.clh", "quantum.clh",
+      "attenuate.cl"},
      "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1 -D SKG_PLANES=5 -D SKG_SHADES=4 "
      "-D SKG_HEEL=1 -D SKG_OBLIQUE=1 -D SKG_BOWTIE=1 -D SKG_GRID=1",
      0},
