@@ -60,9 +60,9 @@
     X(SOURCE_PLANE, blocks) X(SOURCE_PLANE, vertices) X(SOURCE_PLANE, contributions) X(SOURCE_PLANE, sums)
 
 #define SKG_ARGUMENTS_HITS_LIST(X) \
-    X(HITS_LIST, frame) X(HITS_LIST, corners) X(HITS_LIST, projected) X(HITS_LIST, parts) X(HITS_LIST, blocks) \
-    X(HITS_LIST, slots) X(HITS_LIST, shifts) X(HITS_LIST, counts) X(HITS_LIST, starts) X(HITS_LIST, hits) \
-    X(HITS_LIST, window) X(HITS_LIST, doing)
+    X(HITS_LIST, frame) X(HITS_LIST, corners) X(HITS_LIST, projected) X(HITS_LIST, parts) X(HITS_LIST, runs) \
+    X(HITS_LIST, chosen) X(HITS_LIST, spans) X(HITS_LIST, slots) X(HITS_LIST, shifts) X(HITS_LIST, counts) \
+    X(HITS_LIST, starts) X(HITS_LIST, hits) X(HITS_LIST, window) X(HITS_LIST, doing)
 
 #define SKG_ARGUMENTS_HITS_SOURCE_PLANE(X) \
     X(HITS_SOURCE_PLANE, frame) X(HITS_SOURCE_PLANE, corners) X(HITS_SOURCE_PLANE, projected) \
@@ -72,11 +72,12 @@
     X(HITS_SOURCE_PLANE, doing)
 
 #define SKG_ARGUMENTS_HITS_PLACE(X) \
-    X(HITS_PLACE, pixels) X(HITS_PLACE, counts) X(HITS_PLACE, starts) X(HITS_PLACE, total)
+    X(HITS_PLACE, columns) X(HITS_PLACE, window) X(HITS_PLACE, counts) X(HITS_PLACE, starts) X(HITS_PLACE, total)
 
 #define SKG_ARGUMENTS_HITS_SETTLE(X) \
     X(HITS_SETTLE, frame) X(HITS_SETTLE, parts) X(HITS_SETTLE, contributions) X(HITS_SETTLE, counts) \
-    X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums)
+    X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums) \
+    X(HITS_SETTLE, window)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
     X(COUNT_BAD_ROWS, frame) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \

@@ -30,13 +30,17 @@ static int skg_slot_of(const skg_lists *lists, int part) {
     return slot < 0 || other != (lists->doing / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
 }
 
+/* Whether hits at a pixel are listed: those of others only where a winner is. Where none is, starts are 0 while hits are
+ * counted, and SKG_MOST_HITS once they have their places. */
+static int skg_is_listed(const skg_lists *lists, int pixel) {
+    const uint none = (lists->doing & SKG_HITS_LIST) == 0 ? 0 : SKG_MOST_HITS;
+    return !(lists->doing & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
+}
+
 /* Counts or lists one hit. q: its depth as skg_depth returns it. */
 static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, skg_real reference, int enters) {
-    const int is_counting = (lists->doing & SKG_HITS_LIST) == 0;
-    /* Where no winner is, starts are 0 while hits are counted, and SKG_MOST_HITS once they have their places. */
-    if (lists->doing & SKG_HITS_OF_OTHERS && lists->starts[pixel] == (is_counting ? 0 : SKG_MOST_HITS)) return;
     const int place = atomic_inc(&lists->counts[pixel]);
-    if (is_counting) return;
+    if (!(lists->doing & SKG_HITS_LIST)) return;
 #if SKG_PARALLEL
     const skg_real depth = q + lists->shifts[slot];
 #else
@@ -49,31 +53,63 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
     __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
         __global skg_listed *hits, int4 window, int doing
 
-/* Each work-item takes every get_global_size(1)-th row of one triangle. window: columns from, rows from, columns to, rows
- * to; nothing is listed outside. */
+/* The columns of a row between its two crossings, which alone can be hit. */
+static int2 skg_columns_of(const skg_line *line, const skg_box *box) {
+    const skg_real left = (skg_real)box->i0, right = (skg_real)box->i1;
+    skg_real low = line->a < line->b ? line->a : line->b, high = line->a < line->b ? line->b : line->a;
+    low = low > left ? low : left; /* written so that NaN gives a bound */
+    low = low < right ? low : right;
+    high = high < right ? high : right;
+    return (int2)((int)low, high > left ? (int)ceil(high) : box->i0);
+}
+
+/* Restricts a box to the columns of a row where hits are listed: of others, those between the winners' outermost hits. */
+static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int doing) {
+    skg_box seen = *box;
+    if (doing & SKG_HITS_OF_OTHERS) {
+        seen.i0 = max(seen.i0, span[0] - pixel_i);
+        seen.i1 = min(seen.i1, span[1] - pixel_i);
+    }
+    return seen;
+}
+
+/* Each work-item takes every get_global_size(1)-th row of one triangle. runs: of the competitors' triangles, each the number of
+ * its first work-item, its part and its slot; those from chosen.x to chosen.y - 1 are listed. spans: of each row the columns,
+ * from and to, where winners may be; they grow while winners are counted. window: columns from, rows from, columns to, rows to;
+ * nothing is listed outside. */
 __kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                            __global const skg_part_entry *parts, __global const int *blocks, SKG_LIST_ARGUMENTS) {
+                            __global const skg_part_entry *parts, __global const int *runs, int2 chosen,
+                            __global int *spans, SKG_LIST_ARGUMENTS) {
     const skg_lists lists = {slots, shifts, counts, starts, hits, doing};
-    const int triangle = (int)get_global_id(0);
-    if (triangle >= frame.triangles) return;
+    const int item = (int)get_global_id(0);
+    int run = chosen.x;
+    while (run + 1 < chosen.y && item >= runs[3 * (run + 1)]) run++;
+    const int number = runs[3 * run + 1], slot = runs[3 * run + 2];
+    if (item - runs[3 * run] >= parts[number].triangles) return;
     skg_range range;
-    skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
-    const int slot = skg_slot_of(&lists, range.number);
-    if (slot < 0) return;
-    const skg_real reference = parts[range.number].reference;
+    skg_range_of(parts, number, &range);
+    const skg_real reference = parts[number].reference;
     skg_real4 a, b, c;
     skg_box box;
-    skg_corners(corners, projected, &range, triangle, &a, &b, &c);
+    skg_corners(corners, projected, &range, range.first + item - runs[3 * run], &a, &b, &c);
     if (!skg_bounds(a, b, c, skg_window(&range, window.x, window.y, window.z, window.w), &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {
+        __global int *span = spans + 2 * (range.pixel_j + row);
+        const skg_box seen = skg_between_winners(&box, span, range.pixel_i, doing);
+        if (seen.i0 >= seen.i1) continue;
         skg_line line;
         skg_row(&f, (skg_real)row, &line);
         const int enters = skg_negative(&f, &line) != 0;
         const int first = (range.pixel_j + row) * frame.columns + range.pixel_i;
-        for (int column = box.i0; column < box.i1; column++)
-            if (skg_hit(&line, (skg_real)column))
+        const int2 columns = skg_columns_of(&line, &seen);
+        if (doing == SKG_HITS_COUNT && columns.x < columns.y) {
+            atomic_min(span, range.pixel_i + columns.x);
+            atomic_max(span + 1, range.pixel_i + columns.y);
+        }
+        for (int column = columns.x; column < columns.y; column++)
+            if (skg_is_listed(&lists, first + column) && skg_hit(&line, (skg_real)column))
                 skg_list(&lists, slot, first + column, skg_depth(&f, &line, (skg_real)column), reference, enters);
     }
 }
@@ -86,12 +122,13 @@ static uint skg_add_hits(__global skg_hit_count *total, uint count) {
     return low;
 }
 
-/* Gives each pixel a stretch of the list for its hits, in any order, and counts all hits in *total. Counts become 0 and
- * then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_MOST_HITS. */
-__kernel void skg_hits_place(int pixels, __global int *counts, __global uint *starts,
+/* Gives each pixel of the window a stretch of the list for its hits, in any order, and counts all hits in *total. Counts become
+ * 0 and then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_MOST_HITS. */
+__kernel void skg_hits_place(int columns, int4 window, __global int *counts, __global uint *starts,
                              __global skg_hit_count *total) {
-    const int pixel = (int)get_global_id(0);
-    if (pixel >= pixels) return;
+    const int column = window.x + (int)get_global_id(0), row = window.y + (int)get_global_id(1);
+    if (column >= window.z || row >= window.w) return;
+    const int pixel = row * columns + column;
     const int count = counts[pixel];
     starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_MOST_HITS;
     counts[pixel] = 0;
@@ -131,14 +168,14 @@ static void skg_take_off(__global const skg_part_entry *part, __global const skg
         sums[contributions[w].plane * plane] -= (skg_sum)skg_round(length * contributions[w].weight);
 }
 
-/* Decides every interval of a pixel; one work-item per pixel. table: [slots][SKG_ENTRY], parents before their children. sums:
+/* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their children. sums:
  * the first copy. */
 __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entry *parts,
                               __global const skg_contribution *contributions, __global const int *counts,
                               __global const uint *starts, __global skg_listed *hits, __global const int *table,
-                              __global skg_sum *sums) {
-    const int column = (int)get_global_id(0), row = (int)get_global_id(1);
-    if (column >= frame.columns || row >= frame.rows) return;
+                              __global skg_sum *sums, int4 window) {
+    const int column = window.x + (int)get_global_id(0), row = window.y + (int)get_global_id(1);
+    if (column >= window.z || row >= window.w) return;
     const int count = counts[row * frame.columns + column];
     if (count == 0) return;
     hits += starts[row * frame.columns + column];
@@ -177,5 +214,6 @@ __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entr
     const int slot = skg_slot_of(&lists, range.number);                                                               \
     if (slot < 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                        \
-    if ((row) >= window.y && (row) < window.w && (column) >= window.x && (column) < window.z)                         \
+    if ((row) >= window.y && (row) < window.w && (column) >= window.x && (column) < window.z &&                       \
+        skg_is_listed(&lists, (row) * frame.columns + (column)))                                                      \
     skg_list(&lists, slot, (row) * frame.columns + (column), q, p->reference, (factor) < 0)

@@ -1,6 +1,6 @@
 /* Strategy `copies`: each work-group (one work-item, wide vectors) has a private copy of the whole detector and claims runs
- * of triangles until none are left. used[copy]: 1 if the copy has been zeroed and counts; used[copies]: the triangle that the
- * next claim begins with; then the extents (skg_shared.h). */
+ * of triangles until none are left. used[copy]: 1 if the copy has been zeroed and counts, SKG_TO_ZERO if it counts even without
+ * a triangle; used[copies]: the triangle that the next claim begins with; then the extents (skg_shared.h). */
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_copies(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
@@ -20,6 +20,10 @@ skg_raster_copies(skg_frame_args frame, __global const int *corners, __global co
     target.contributions = contributions;
     skg_batch batch;
     skg_begin(&batch);
+    if (used[copy] == SKG_TO_ZERO) {
+        skg_zero(&target, used + SKG_EXTENT(frame.copies, 0), frame.planes, 0, frame.rows);
+        used[copy] = 1;
+    }
     for (;;) {
         int triangle = atomic_add(&used[frame.copies], frame.claim);
         if (triangle >= frame.triangles) break;

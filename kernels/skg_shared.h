@@ -37,6 +37,9 @@
 #define SKG_EXTENT(copies, plane) ((copies) + 1 + 4 * (plane))
 #define SKG_EXTENT_COLUMNS 32
 
+/* In `used`, of a copy that counts and has not been zeroed. */
+#define SKG_TO_ZERO 2
+
 /* How many bad pixels of a leaky mesh are listed. */
 #define SKG_FIRST_BAD 8
 

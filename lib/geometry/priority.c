@@ -176,3 +176,18 @@ void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priorit
     for (int64_t s = 0; s < priority->count; s++)
         if (is_other(scene, clip, priority->parts[s])) slots[priority->parts[s]] += SKG_HITS_OTHER;
 }
+
+void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *runs,
+                       int64_t triangles[2]) {
+    for (int others = 0; others < 2; others++) {
+        triangles[others] = 0;
+        for (int64_t s = 0; s < priority->count; s++) {
+            const int64_t part = priority->parts[s];
+            if (is_other(scene, clip, part) != others) continue;
+            *runs++ = (int32_t)triangles[others];
+            *runs++ = (int32_t)part;
+            *runs++ = (int32_t)s;
+            triangles[others] += scene->parts[part].mesh->triangles;
+        }
+    }
+}

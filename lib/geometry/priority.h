@@ -42,6 +42,11 @@ int64_t skg_priority_entry(const skg_priority *priority);
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
                          int32_t *table);
 
+/* Fills `runs` [competitors][3]: the triangles of the competitors, first of those that win over others or are clipped, then of
+ * the others: number of the first triangle (each of the two begins with 0), part, slot. triangles: of both. */
+void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *runs,
+                       int64_t triangles[2]);
+
 /* Whether priority or clipping decides what is seen of an overlapping pair, so that no warning is due. */
 int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair);
 

@@ -1,4 +1,6 @@
 #include "stage/hits.h"
+
+#include "core/maths.h"
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>
@@ -9,14 +11,16 @@
 enum { GROUP = 64, ROWS_AT_ONCE = 32 };
 
 void skg_hits_memory_release(skg_hits_memory *memory) {
-    skg_buffer *const buffers[] = {&memory->slots,  &memory->table, &memory->shifts, &memory->counts,
+    skg_buffer *const buffers[] = {&memory->slots,  &memory->runs,  &memory->table,
+                                   &memory->shifts, &memory->spans, &memory->counts,
                                    &memory->starts, &memory->total, &memory->hits};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_hits_memory_bytes(const skg_hits_memory *memory) {
-    return memory->slots.bytes + memory->table.bytes + memory->shifts.bytes + memory->counts.bytes +
-           memory->starts.bytes + memory->total.bytes + memory->hits.bytes;
+    return memory->slots.bytes + memory->runs.bytes + memory->table.bytes + memory->shifts.bytes +
+           memory->spans.bytes + memory->counts.bytes + memory->starts.bytes + memory->total.bytes +
+           memory->hits.bytes;
 }
 
 skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t *bytes) {
@@ -42,6 +46,7 @@ typedef struct {
     skg_staging *staging;
     skg_context *context;
     cl_program program;
+    int64_t triangles[2]; /* of parts that win over others, of the others */
     int32_t is_double;
     int32_t reserved;
 } hits_run;
@@ -82,23 +87,26 @@ static skg_status upload_shifts(const hits_run *run) {
     return upload(run, &run->memory->shifts, priority->count * size, shifts);
 }
 
-static skg_status upload_tables(const hits_run *run) {
+static skg_status upload_tables(hits_run *run) {
     const skg_pass *pass = run->pass;
     const int64_t entries = pass->priority.count * skg_priority_entry(&pass->priority);
-    int32_t *slots = NULL, *table = NULL;
+    int32_t *slots = NULL, *runs = NULL, *table = NULL;
     SKG_TRY(skg_staging_take(run->staging, pass->scene->count, sizeof *slots, "priorities", &slots));
+    SKG_TRY(skg_staging_take(run->staging, 3 * pass->priority.count, sizeof *runs, "priorities", &runs));
     SKG_TRY(skg_staging_take(run->staging, entries, sizeof *table, "priorities", &table));
     skg_priority_tables(pass->scene, pass->clip, &pass->priority, slots, table);
+    skg_priority_runs(pass->scene, pass->clip, &pass->priority, runs, run->triangles);
+    SKG_TRY(upload(run, &run->memory->runs, 3 * pass->priority.count * (int64_t)sizeof *runs, runs));
     SKG_TRY(upload(run, &run->memory->slots, pass->scene->count * (int64_t)sizeof *slots, slots));
     SKG_TRY(upload(run, &run->memory->table, entries * (int64_t)sizeof *table, table));
     return upload_shifts(run);
 }
 
-/* Runs one of the kernels that list hits, over all triangles and `rows` work-items along the rows. */
+/* Runs one of the kernels that list hits, over so many triangles and `rows` work-items along the rows. */
 static skg_status list_with(const hits_run *run, const char *name, int32_t count,
-                            const skg_argument *arguments, size_t rows) {
+                            const skg_argument *arguments, int64_t triangles, size_t rows) {
     const size_t local[2] = {GROUP, 1};
-    const size_t global[2] = {((size_t)run->raster->frame.triangles + GROUP - 1) / GROUP * GROUP, rows};
+    const size_t global[2] = {(size_t)skg_round_up(triangles, GROUP), rows};
     cl_kernel kernel = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(skg_kernel_create(run->program, name, &kernel));
@@ -126,12 +134,23 @@ static cl_int4 window_of(const hits_run *run) {
 
 /* Lists the hits of triangles in front of the source. doing: SKG_HITS_... */
 static skg_status list_hits(const hits_run *run, cl_int doing) {
+    const skg_priority *priority = &run->pass->priority;
+    const cl_int winners = (cl_int)(priority->count - priority->others), all = (cl_int)priority->count;
+    const int others = (doing & SKG_HITS_OF_OTHERS) != 0;
+    const cl_int2 chosen = {.s = {others ? winners : 0, others ? all : winners}};
     const cl_int4 window = window_of(run);
     const skg_argument arguments[SKG_HITS_LIST_ARGUMENTS] = {
-        SKG_TRIANGLE_ARGUMENTS(HITS_LIST, run->raster->frame, run->geometry),
+        SKG_ARGUMENT(HITS_LIST, frame, run->raster->frame),
+        SKG_ARGUMENT(HITS_LIST, corners, run->geometry->corners.memory),
+        SKG_ARGUMENT(HITS_LIST, projected, run->geometry->projected.memory),
+        SKG_ARGUMENT(HITS_LIST, parts, run->geometry->part_table.memory),
+        SKG_ARGUMENT(HITS_LIST, runs, run->memory->runs.memory),
+        SKG_ARGUMENT(HITS_LIST, chosen, chosen),
+        SKG_ARGUMENT(HITS_LIST, spans, run->memory->spans.memory),
         LIST_ARGUMENTS(HITS_LIST, run->memory, window, doing),
     };
-    return list_with(run, "skg_hits_list", SKG_HITS_LIST_ARGUMENTS, arguments,
+    if (run->triangles[others] == 0) return SKG_OK;
+    return list_with(run, "skg_hits_list", SKG_HITS_LIST_ARGUMENTS, arguments, run->triangles[others],
                      run->context->device->info.is_gpu ? ROWS_AT_ONCE : 1);
 }
 
@@ -145,7 +164,7 @@ static skg_status list_hits_at_source(const hits_run *run, cl_int doing) {
     };
     const size_t rows = (size_t)run->raster->frame.rows;
     return list_with(run, "skg_hits_source_plane", SKG_HITS_SOURCE_PLANE_ARGUMENTS, arguments,
-                     (rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS);
+                     run->raster->frame.triangles, (rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS);
 }
 
 static skg_status list_all(const hits_run *run, cl_int doing) {
@@ -156,11 +175,14 @@ static skg_status list_all(const hits_run *run, cl_int doing) {
 
 /* Gives each pixel its stretch of the list, and counts all hits. */
 static skg_status place_hits(const hits_run *run) {
-    const cl_int pixels = run->raster->frame.rows * run->raster->frame.columns, none = 0;
-    const size_t local = GROUP, global = ((size_t)pixels + GROUP - 1) / GROUP * GROUP;
+    const cl_int none = 0;
+    const cl_int4 window = window_of(run);
+    const size_t local[2] = {GROUP, 1}, global[2] = {(size_t)skg_round_up(window.s[2] - window.s[0], GROUP),
+                                                     (size_t)(window.s[3] - window.s[1])};
     const skg_hits_memory *m = run->memory;
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(HITS_PLACE, pixels, pixels),
+        SKG_ARGUMENT(HITS_PLACE, columns, run->raster->frame.columns),
+        SKG_ARGUMENT(HITS_PLACE, window, window),
         SKG_ARGUMENT(HITS_PLACE, counts, m->counts.memory),
         SKG_ARGUMENT(HITS_PLACE, starts, m->starts.memory),
         SKG_ARGUMENT(HITS_PLACE, total, m->total.memory),
@@ -171,7 +193,7 @@ static skg_status place_hits(const hits_run *run) {
                                    sizeof(skg_hit_count), 0, NULL, NULL));
     SKG_TRY(skg_kernel_create(run->program, "skg_hits_place", &kernel));
     SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(run->context, kernel, "priority", 1, &global, &local, &run->staging->log));
+    SKG_TRY_CLEANUP(skg_kernel_run(run->context, kernel, "priority", 2, global, local, &run->staging->log));
 cleanup:
     clReleaseKernel(kernel);
     return status;
@@ -189,6 +211,7 @@ static skg_status reserve_hits(const hits_run *run) {
 
 static skg_status settle(const hits_run *run) {
     const skg_frame_args *frame = &run->raster->frame;
+    const cl_int4 window = window_of(run);
     const skg_hits_memory *m = run->memory;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_SETTLE, frame, *frame),
@@ -199,9 +222,11 @@ static skg_status settle(const hits_run *run) {
         SKG_ARGUMENT(HITS_SETTLE, hits, m->hits.memory),
         SKG_ARGUMENT(HITS_SETTLE, table, m->table.memory),
         SKG_ARGUMENT(HITS_SETTLE, sums, run->raster->sums.memory),
+        SKG_ARGUMENT(HITS_SETTLE, window, window),
     };
     const size_t local[2] = {16, 16};
-    const size_t global[2] = {((size_t)frame->columns + 15) / 16 * 16, ((size_t)frame->rows + 15) / 16 * 16};
+    const size_t global[2] = {(size_t)skg_round_up(window.s[2] - window.s[0], 16),
+                              (size_t)skg_round_up(window.s[3] - window.s[1], 16)};
     cl_kernel kernel = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(skg_kernel_create(run->program, "skg_hits_settle", &kernel));
@@ -210,6 +235,41 @@ static skg_status settle(const hits_run *run) {
 cleanup:
     clReleaseKernel(kernel);
     return status;
+}
+
+/* Reserves and clears what the window's rows need. No other row is read. */
+static skg_status clear(const hits_run *run) {
+    const skg_frame_args *frame = &run->raster->frame;
+    cl_command_queue queue = run->context->device->queue;
+    skg_hits_memory *m = run->memory;
+    const int64_t pixels = (int64_t)frame->rows * frame->columns * (int64_t)sizeof(cl_int);
+    const cl_int4 window = window_of(run);
+    const size_t row = (size_t)frame->columns * sizeof(cl_int), rows = (size_t)(window.s[3] - window.s[1]);
+    /* Winners that reach the source's plane are listed by a kernel that leaves the spans alone. */
+    const cl_int2 anywhere = {.s = {0, frame->columns}}, nowhere = {.s = {frame->columns, 0}};
+    const cl_int2 *span = run->raster->options.kernels.source_plane ? &anywhere : &nowhere;
+    const cl_int none = 0;
+    SKG_TRY(reserve(run, &m->spans, (int64_t)frame->rows * (int64_t)sizeof *span, "hits of the rows"));
+    SKG_TRY(reserve(run, &m->counts, pixels, "hits of the pixels"));
+    SKG_TRY(reserve(run, &m->starts, pixels, "hits of the pixels"));
+    SKG_TRY(reserve(run, &m->total, sizeof(skg_hit_count), "hits of the pixels"));
+    SKG_TRY(reserve(run, &m->hits, 16, "hits of parts with priorities"));
+    SKG_CL_TRY(clEnqueueFillBuffer(queue, m->spans.memory, span, sizeof *span,
+                                   (size_t)window.s[1] * sizeof *span, rows * sizeof *span, 0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueFillBuffer(queue, m->counts.memory, &none, sizeof none, (size_t)window.s[1] * row,
+                                   rows * row, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+/* Others are counted where the counts of winners, kept as starts, are not 0. */
+static skg_status count_others(const hits_run *run) {
+    const skg_hits_memory *m = run->memory;
+    const cl_int4 window = window_of(run);
+    const size_t row = (size_t)run->raster->frame.columns * sizeof(cl_int), first = (size_t)window.s[1] * row;
+    if (run->pass->priority.others == 0) return SKG_OK;
+    SKG_CL_TRY(clEnqueueCopyBuffer(run->context->device->queue, m->counts.memory, m->starts.memory, first,
+                                   first, (size_t)(window.s[3] - window.s[1]) * row, 0, NULL, NULL));
+    return list_all(run, SKG_HITS_COUNT + SKG_HITS_OF_OTHERS);
 }
 
 skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
@@ -222,22 +282,13 @@ skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_
                     .staging = staging,
                     .context = raster->context,
                     .is_double = geometry->precision == SKG_PRECISION_DOUBLE};
-    const int64_t pixels = (int64_t)raster->frame.rows * raster->frame.columns * (int64_t)sizeof(cl_int);
-    const cl_int none = 0;
+    const cl_int4 window = window_of(&run);
+    if (window.s[0] >= window.s[2] || window.s[1] >= window.s[3]) return SKG_OK;
     SKG_TRY(compile(&run));
     SKG_TRY(upload_tables(&run));
-    SKG_TRY(reserve(&run, &memory->counts, pixels, "hits of the pixels"));
-    SKG_TRY(reserve(&run, &memory->starts, pixels, "hits of the pixels"));
-    SKG_TRY(reserve(&run, &memory->total, sizeof(skg_hit_count), "hits of the pixels"));
-    SKG_TRY(reserve(&run, &memory->hits, 16, "hits of parts with priorities"));
-    SKG_CL_TRY(clEnqueueFillBuffer(run.context->device->queue, memory->counts.memory, &none, sizeof none, 0,
-                                   (size_t)pixels, 0, NULL, NULL));
+    SKG_TRY(clear(&run));
     SKG_TRY(list_all(&run, SKG_HITS_COUNT));
-    if (pass->priority.others > 0) {
-        SKG_CL_TRY(clEnqueueCopyBuffer(run.context->device->queue, memory->counts.memory,
-                                       memory->starts.memory, 0, 0, (size_t)pixels, 0, NULL, NULL));
-        SKG_TRY(list_all(&run, SKG_HITS_COUNT + SKG_HITS_OF_OTHERS));
-    }
+    SKG_TRY(count_others(&run));
     SKG_TRY(place_hits(&run));
     SKG_TRY(reserve_hits(&run));
     SKG_TRY(list_all(&run, SKG_HITS_LIST));

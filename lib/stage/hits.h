@@ -8,7 +8,7 @@
 
 /* Buffers of the lists, kept from frame to frame. */
 typedef struct {
-    skg_buffer slots, table, shifts, counts, starts, total, hits;
+    skg_buffer slots, runs, table, shifts, spans, counts, starts, total, hits;
 } skg_hits_memory;
 
 void skg_hits_memory_release(skg_hits_memory *memory);

@@ -54,10 +54,8 @@ static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stag
         SKG_ARGUMENT(RASTER_COPIES, used, raster->used.memory),
     };
     SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
-    if (raster->kernels[SKG_RASTER_SOURCE] || raster->options.more_sums) { /* the first copy is added to */
-        SKG_TRY(skg_raster_fill(raster, &raster->sums, 0, 0, plane_bytes(raster)));
-        SKG_TRY(skg_raster_fill(raster, &raster->used, 1, 0, of_int));
-    }
+    if (raster->kernels[SKG_RASTER_SOURCE] || raster->options.more_sums) /* the first copy is added to */
+        SKG_TRY(skg_raster_fill(raster, &raster->used, SKG_TO_ZERO, 0, of_int));
     SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
     return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
 }
