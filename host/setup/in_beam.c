@@ -79,13 +79,13 @@ skg_status skg_setup_read_bowtie(skg_setup_reader *reader, const skg_json_node *
 }
 
 static skg_status read_grid_numbers(const skg_json_object *object, skg_grid *grid) {
-    skg_json_node ratio, lines;
+    skg_json_node ratio, lines, strip;
     SKG_TRY(skg_json_need(object, "Ratio", "12", &ratio));
     SKG_TRY(skg_json_need(object, "LinesPerCm", "40", &lines));
+    SKG_TRY(skg_json_need(object, "StripThickness", "[0.05, \"mm\"]", &strip));
     SKG_TRY(skg_json_number(&ratio, &grid->ratio));
     SKG_TRY(skg_json_number(&lines, &grid->lines_per_cm));
     const skg_json_node focus = skg_json_member(object, "FocusDistance");
-    const skg_json_node strip = skg_json_member(object, "StripThickness");
     const skg_json_node direction = skg_json_member(object, "Direction");
     if (focus.value) SKG_TRY(skg_json_lengths(&focus, "[1000, \"mm\"]", 1, &grid->focus_mm));
     if (focus.value && !(grid->focus_mm > 0))
@@ -93,7 +93,7 @@ static skg_status read_grid_numbers(const skg_json_object *object, skg_grid *gri
                              "is %g mm; give the distance from the grid to its focus, or leave FocusDistance "
                              "out for parallel strips",
                              grid->focus_mm);
-    if (strip.value) SKG_TRY(skg_json_lengths(&strip, "[0.05, \"mm\"]", 1, &grid->strip_mm));
+    SKG_TRY(skg_json_lengths(&strip, "[0.05, \"mm\"]", 1, &grid->strip_mm));
     return direction.value ? skg_json_direction(&direction, grid->direction) : SKG_OK;
 }
 

@@ -4,7 +4,7 @@
 #include <math.h>
 
 void skg_grid_init_sized(void *grid, int32_t size) {
-    const skg_grid defaults = {.strip_mm = 0.05};
+    const skg_grid defaults = {0};
     skg_struct_init(grid, size, &defaults, sizeof defaults);
 }
 

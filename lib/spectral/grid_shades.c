@@ -1,5 +1,5 @@
 /* An anti-scatter grid. What the interspace would leave of the beam if it were everywhere is one shade, exact for any path; what
- * strips leave of this is tabulated by tilt and obliquity, and spanned by a few directions. */
+ * strips leave of this is spanned by a few directions, whose amounts are tabulated by tilt, with polynomials of the obliquity. */
 #include "spectral/grid_shades.h"
 
 #include "beam/grid.h"
@@ -76,10 +76,10 @@ static skg_status find_losses(const skg_shading *shading, const skg_shades *shad
         double strip = 0;
         SKG_TRY(skg_grid_attenuation(grid, shading->spectrum->energy_kev[b], &strip, &interspace[b]));
         for (int64_t s = 0; s < d->states; s++) {
-            const double tilt = shades->grid_tilt * (double)(s / SKG_GRID_PATHS) / (SKG_GRID_TILTS - 1);
+            const double tilt = shades->grid_tilt * (double)(s / SKG_GRID_TERMS) / (SKG_GRID_TILTS - 1);
             const double oblique = shades->grid_path[0] + (shades->grid_path[1] - shades->grid_path[0]) *
-                                                              (double)(s % SKG_GRID_PATHS) /
-                                                              (SKG_GRID_PATHS - 1);
+                                                              (double)(s % SKG_GRID_TERMS) /
+                                                              (SKG_GRID_TERMS - 1);
             const double passed = skg_grid_pass(grid, strip, interspace[b], oblique, tilt);
             /* Strips that stop everything: the logarithm stays finite. */
             d->losses[s * d->bins + b] =
@@ -96,14 +96,24 @@ static skg_status find_losses(const skg_shading *shading, const skg_shades *shad
     return SKG_OK;
 }
 
+/* The polynomial of z through the values at z = 0, 1/2 and 1. */
+static void fit_path(const double values[SKG_GRID_TERMS], double terms[SKG_GRID_TERMS]) {
+    terms[0] = values[0];
+    terms[1] = -3 * values[0] + 4 * values[1] - values[2];
+    terms[2] = 2 * (values[0] - 2 * values[1] + values[2]);
+}
+
 static skg_status keep_tables(const skg_directions *d, skg_shades *shades) {
     double *table = NULL;
     SKG_TRY(skg_shades_append_table(d->states * d->count, shades, &table));
+    for (int64_t tilt = 0; tilt < SKG_GRID_TILTS; tilt++)
+        for (int32_t k = 0; k < d->count; k++)
+            fit_path(d->amounts + k * d->states + tilt * SKG_GRID_TERMS,
+                     table + (tilt * d->count + k) * SKG_GRID_TERMS);
     for (int32_t k = 0; k < d->count; k++) {
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (int64_t s = 0; s < d->states; s++) {
             const double amount = d->amounts[k * d->states + s];
-            table[s * d->count + k] = amount;
             low = fmin(low, amount), high = fmax(high, amount);
         }
         SKG_TRY(skg_shades_append(d->bins, d->unit + k * d->bins, low, high, shades));
@@ -117,7 +127,7 @@ skg_status skg_grid_shades(const skg_shading *shading, skg_shades *shades) {
     double *interspace = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(find_extent(shading, shades));
-    SKG_TRY_CLEANUP(skg_directions_create(shading->spectrum, SKG_GRID_TILTS * SKG_GRID_PATHS, &directions));
+    SKG_TRY_CLEANUP(skg_directions_create(shading->spectrum, SKG_GRID_TILTS * SKG_GRID_TERMS, &directions));
     SKG_TRY_CLEANUP(skg_alloc(directions.bins, sizeof *interspace, "grid", &interspace));
     SKG_TRY_CLEANUP(find_losses(shading, shades, interspace, &directions));
     skg_directions_find(&directions);

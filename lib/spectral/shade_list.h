@@ -11,9 +11,9 @@
 enum {
     SKG_SHADES_MOST = 3 * SKG_DIRECTIONS_MOST + 2,
     SKG_SHADE_TERMS = SKG_FIT_TERMS,
-    /* Of the tables of a grid: cells by tilt, and points by obliquity. */
+    /* Of the table of a grid: rows by tilt, and terms of polynomials of the obliquity. */
     SKG_GRID_TILTS = 257,
-    SKG_GRID_PATHS = 5
+    SKG_GRID_TERMS = 3
 };
 
 /* The z of polynomials. */
@@ -41,7 +41,7 @@ typedef struct {
     double grid_path[2];            /* least and greatest obliquity of the tables */
     int64_t rows;                   /* of the bow-tie's table */
     int64_t table_count;
-    double *tables; /* [rows] tangents, [rows] mm; then [SKG_GRID_TILTS][SKG_GRID_PATHS][grid - 1] */
+    double *tables; /* [rows] tangents, [rows] mm; then [SKG_GRID_TILTS][grid - 1][SKG_GRID_TERMS] */
 } skg_shades;
 
 /* What shades are made from. */

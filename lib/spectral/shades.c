@@ -64,7 +64,7 @@ void skg_shades_see(const skg_shades *shades, const skg_camera *camera, skg_shad
         args->path[0] = shades->grid_height / foot;
         args->path[1] = 1 / foot;
         args->path[2] = shades->grid_path[0];
-        args->path[3] = (SKG_GRID_PATHS - 1) / (shades->grid_path[1] - shades->grid_path[0]);
+        args->path[3] = 1 / (shades->grid_path[1] - shades->grid_path[0]);
         args->tilt[3] = (SKG_GRID_TILTS - 1) / shades->grid_tilt;
         args->table = (SKG_INT)(2 * shades->rows);
     }

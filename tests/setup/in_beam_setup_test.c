@@ -49,7 +49,8 @@ START_TEST(bowties) {
 END_TEST
 
 START_TEST(grids) {
-    ck_skg(load_with("Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40}", NULL));
+    ck_skg(load_with("Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, \"StripThickness\": [0.05, \"mm\"]}",
+                     NULL));
     const skg_grid *grid = options().grid;
     ck_assert_double_eq(grid->focus_mm, 0);
     ck_assert_double_eq(grid->strip_mm, 0.05);
@@ -97,6 +98,8 @@ START_TEST(scintillators) {
 }
 END_TEST
 
+#define STRIP "\"StripThickness\": [0.05, \"mm\"]"
+
 static const struct {
     const char *setting;
     skg_status status;
@@ -115,14 +118,15 @@ static const struct {
     {"Source.Bowtie={\"Material\": \"Al\", \"Profle\": 1}", SKG_ERR_FORMAT, "Profile", "Bowtie"},
     {"Detector.Grid={\"LinesPerCm\": 40}", SKG_ERR_FORMAT, "Ratio", "Grid"},
     {"Detector.Grid={\"Ratio\": 12}", SKG_ERR_FORMAT, "LinesPerCm", "Grid"},
-    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, \"FocusDistance\": 1000}", SKG_ERR_FORMAT, "\"mm\"",
-     "FocusDistance"},
-    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, \"FocusDistance\": [0, \"mm\"]}", SKG_ERR_SCENE,
-     "leave FocusDistance out", "FocusDistance"},
+    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, " STRIP ", \"FocusDistance\": 1000}", SKG_ERR_FORMAT,
+     "\"mm\"", "FocusDistance"},
+    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40}", SKG_ERR_FORMAT, "StripThickness", "Grid"},
+    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, " STRIP ", \"FocusDistance\": [0, \"mm\"]}",
+     SKG_ERR_SCENE, "leave FocusDistance out", "FocusDistance"},
     {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, \"StripThickness\": [0.3, \"mm\"]}", SKG_ERR_SCENE,
      "one follows another every 0.25 mm", "Grid"},
-    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, \"Interspace\": \"Unobtainium\"}", SKG_ERR_MATERIAL,
-     "Unobtainium", "Interspace"},
+    {"Detector.Grid={\"Ratio\": 12, \"LinesPerCm\": 40, " STRIP ", \"Interspace\": \"Unobtainium\"}",
+     SKG_ERR_MATERIAL, "Unobtainium", "Interspace"},
     {"Detector.Scintillator={" CSI ", \"Escape\": \"yes\"}", SKG_ERR_FORMAT, "true or false", "Escape"},
     {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5]]}", SKG_ERR_BEAM, "two energies", "DQE"},
     {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [50, 0.5]]}", SKG_ERR_BEAM, "rise", "DQE"},

@@ -194,7 +194,7 @@ static inline void skg_bowtie_init(skg_bowtie *bowtie) {
 }
 
 /** An anti-scatter grid on the detector: strips that stand on it, with an interspace between them. Prepare with
- * skg_grid_init; set ratio and lines_per_cm.
+ * skg_grid_init; set ratio, lines_per_cm and strip_mm.
  *
  * Its effect is the share of the primary photons that it lets pass, averaged over the place where a ray meets the
  * pattern of strips: the pattern itself is not shown, as with a grid that moves. Strips stop rays that are not
@@ -208,7 +208,7 @@ typedef struct {
     double ratio;
     /** Strips per cm. */
     double lines_per_cm;
-    /** Thickness of a strip, mm, less than its share of a cm; 0.05 by default. */
+    /** Thickness of a strip, mm, above 0 and less than its share of a cm. */
     double strip_mm;
     /** Of the strips; retained. NULL: lead. */
     skg_material *strip;
