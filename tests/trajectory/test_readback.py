@@ -1,13 +1,16 @@
-"""What `scan --geometry` writes, read by RTK (itk-rtk) and ASTRA (astra-toolbox). Skipped without both.
+"""What `scan --geometry` writes, read by RTK (itk-rtk) and ASTRA (astra-toolbox), and run for TIGRE and CIL. Skipped without
+both of the former.
 
 Usage: test_readback.py SKIAGRAPH
 """
 
 import json
 import math
+import runpy
 import subprocess
 import sys
 import tempfile
+import types
 from pathlib import Path
 
 try:
@@ -115,12 +118,61 @@ def read_by_astra(poses):
     print(f"ASTRA: {len(poses)} projections")
 
 
+class Recorder:
+    """Stands for an object of TIGRE or CIL: keeps what it is given."""
+
+    def __init__(self, **given):
+        self.__dict__.update(given)
+
+    def __getattr__(self, name):
+        return lambda *words, **named: setattr(self, name + "_given", (words, named))
+
+
+def stand_in(name, **members):
+    if name not in sys.modules:
+        module = types.ModuleType(name)
+        module.__dict__.update(members)
+        sys.modules[name] = module
+
+
+def run_for_tigre(folder, poses):
+    """The file runs, and the shapes are those that TIGRE's check_geo asks for."""
+    try:
+        import tigre  # noqa: F401
+    except ImportError:
+        stand_in("tigre", geometry=Recorder)
+    made = runpy.run_path(str(folder / "scan.tigre.py"))
+    geo, count = made["geo"], len(poses)
+    assert made["angles"].shape == geo.DSD.shape == geo.DSO.shape == (count,)
+    assert geo.offOrigin.shape == geo.rotDetector.shape == (count, 3) and geo.offDetector.shape == (count, 2)
+    assert np.allclose(geo.nVoxel * geo.dVoxel, geo.sVoxel) and list(geo.nDetector) == [70, 90]
+    # The source's distance from the axis, which is z through (2, 1): hand-derived, to the rounding of 17 digits.
+    assert np.abs(geo.DSO - math.hypot(3 - 2, -400 - 1)).max() < 1e-9
+    print(f"TIGRE's file: {count} projections")
+
+
+def run_for_cil(folder, poses):
+    try:
+        import cil.framework  # noqa: F401
+    except ImportError:
+        kinds = {"create_Cone3D": Recorder, "create_Cone3D_SOUV": Recorder, "create_Parallel3D": Recorder}
+        stand_in("cil")
+        stand_in("cil.framework", AcquisitionGeometry=types.SimpleNamespace(**kinds))
+    geometry = runpy.run_path(str(folder / "scan.cil.py"))["geometry"]
+    if isinstance(geometry, Recorder):
+        (angles,), unit = geometry.set_angles_given
+        assert angles.shape == (len(poses),) and unit == {"angle_unit": "degree"}
+        assert geometry.set_panel_given[0] == ([90, 70],)
+    print(f"CIL's file: {len(poses)} projections")
+
+
 def main(program):
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "scene.json").write_text(json.dumps(SCENE))
         subprocess.run([program, "scan", "scene.json", "-o", "scan.mha", "--quantity", "attenuation", "--geometry",
-                        "scan.csv", "--geometry", "scan.xml", "--quiet"], cwd=folder, check=True)
+                        "scan.csv", "--geometry", "scan.xml", "--geometry", "scan.tigre.py", "--geometry", "scan.cil.py",
+                        "--quiet"], cwd=folder, check=True)
         poses = [[float(x) for x in line.split(",")] for line in (folder / "scan.csv").read_text().splitlines()
                  if not line.startswith("#")]
         assert len(poses) == 12 and math.isclose(np.linalg.norm(poses[0][6:9]), 1.1)
@@ -128,6 +180,8 @@ def main(program):
             read_by_rtk(folder, poses)
         if astra is not None:
             read_by_astra(poses)
+        run_for_tigre(folder, poses)
+        run_for_cil(folder, poses)
 
 
 if __name__ == "__main__":

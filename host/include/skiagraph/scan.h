@@ -177,8 +177,15 @@ SKG_API skg_status skg_scan_short_range_get(const skg_view *view, const skg_scan
  *              turns about y: the volume that it reconstructs has the centre of rotation as its origin, y
  *              along the axis, z towards the source at angle 0, and x = y x z. Of a table of poses it has the
  *              axes of the scene
- *     errors   SKG_ERR_ARGUMENT (extension), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for .xml if a view has a
- *              parallel beam, or a detector that is skewed or seen from behind, which RTK cannot express */
+ *              .tigre.py: a Python file that makes `geo` and `angles` for TIGRE. z of the volume runs along the axis, from
+ *              the detector's first row to its last one, and x to the source at angle 0. All kinds of scans of point sources
+ *              are written; each projection has its own distances, offsets and rotation of the detector
+ *              .cil.py: a Python file that makes `geometry` for CIL (AcquisitionGeometry). z as for TIGRE, y from the source
+ *              to the axis. Scans that only turn are Cone3D or Parallel3D; others have positions and directions for each
+ *              projection (Cone3D_SOUV)
+ *     errors   SKG_ERR_ARGUMENT (extension), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for a view that a tool cannot express: a
+ *              parallel beam (RTK, TIGRE, and CIL if the scan does more than turn), a detector that is skewed (all but .csv)
+ *              or seen from behind (RTK), pixels of different sizes (TIGRE, CIL) */
 SKG_API skg_status skg_scan_geometry_write(const skg_scan *scan, const char *path);
 
 #ifdef __cplusplus
