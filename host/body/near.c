@@ -1,35 +1,7 @@
 #include "body/near.h"
 
 #include "core/vector.h"
-
-/* Weights of the point of triangle abc that is nearest to p. The signs of areas say which corner, edge or face it
- * lies on (Ericson, Real-Time Collision Detection (2005) 5.1.5). */
-static void nearest_weights(const double *a, const double *b, const double *c, const double *p, double w[3]) {
-    double ab[3], ac[3], ap[3], bp[3], cp[3];
-    skg_add_scaled(b, -1, a, ab);
-    skg_add_scaled(c, -1, a, ac);
-    skg_add_scaled(p, -1, a, ap);
-    skg_add_scaled(p, -1, b, bp);
-    skg_add_scaled(p, -1, c, cp);
-    double d1 = skg_dot(ab, ap), d2 = skg_dot(ac, ap), d3 = skg_dot(ab, bp), d4 = skg_dot(ac, bp);
-    double d5 = skg_dot(ab, cp), d6 = skg_dot(ac, cp);
-    double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    w[0] = w[1] = w[2] = 0;
-    if (d1 <= 0 && d2 <= 0)
-        w[0] = 1;
-    else if (d3 >= 0 && d4 <= d3)
-        w[1] = 1;
-    else if (d6 >= 0 && d5 <= d6)
-        w[2] = 1;
-    else if (vc <= 0 && d1 >= 0 && d3 <= 0)
-        w[1] = d1 / (d1 - d3), w[0] = 1 - w[1];
-    else if (vb <= 0 && d2 >= 0 && d6 <= 0)
-        w[2] = d2 / (d2 - d6), w[0] = 1 - w[2];
-    else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        w[2] = (d4 - d3) / ((d4 - d3) + (d5 - d6)), w[1] = 1 - w[2];
-    else
-        w[1] = vb / (va + vb + vc), w[2] = vc / (va + vb + vc), w[0] = 1 - w[1] - w[2];
-}
+#include "distance/triangle.h"
 
 skg_status skg_near_prepare(skg_body_organ *o) {
     int64_t blocks = (o->triangles + BLOCK - 1) / BLOCK;
@@ -60,7 +32,7 @@ static void nearest_of_block(const skg_body_organ *o, int64_t block, const doubl
         const int32_t *corner = o->corner + 3 * t;
         const double *a = o->rest + 3 * corner[0], *b = o->rest + 3 * corner[1], *c = o->rest + 3 * corner[2];
         double w[3], d[3];
-        nearest_weights(a, b, c, p, w);
+        skg_triangle_nearest(a, b, c, p, w);
         for (int k = 0; k < 3; k++) d[k] = w[0] * a[k] + w[1] * b[k] + w[2] * c[k] - p[k];
         double square = skg_dot(d, d);
         if (square > *least || (*found && square == *least)) continue;

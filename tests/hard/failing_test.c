@@ -95,7 +95,7 @@ static void set_up(void) {
 /* Removes results (or all files); returns how many files there were beside the inputs and whole results. */
 static int clear(int all) {
     static const char *const inputs[] = {"scene.json", "body.json", "response.txt", "bone.obj", "sheet.stl"};
-    static const char *const results[] = {"image.mha", "image.tif", "image.png", "bone.ply"};
+    static const char *const results[] = {"image.mha", "image.tif", "image.png", "bone.ply", "map.ply"};
     int strange = 0;
     DIR *files = opendir(folder);
     for (struct dirent *one; (one = readdir(files));) {
@@ -103,7 +103,7 @@ static int clear(int all) {
         int input = 0, result = 0;
         if (one->d_name[0] == '.' && (!one->d_name[1] || one->d_name[1] == '.')) continue;
         for (int n = 0; n < 5; n++) input |= strcmp(one->d_name, inputs[n]) == 0;
-        for (int n = 0; n < 4; n++) result |= strcmp(one->d_name, results[n]) == 0;
+        for (int n = 0; n < 5; n++) result |= strcmp(one->d_name, results[n]) == 0;
         strange += !input && !result;
         snprintf(path, sizeof path, "%s/%s", folder, one->d_name);
         if (!input || all) unlink(path);
@@ -299,6 +299,26 @@ static skg_status draw(run *r) {
     return asked == SKG_OK && r->with->shared ? draw_placed(r) : asked;
 }
 
+/* A part's distance from itself, and a map of it. */
+static skg_status save_map(const skg_mesh *mesh) {
+    char path[128];
+    int64_t vertices = 0, triangles = 0;
+    static double positions[3 * 4096], distances[4096];
+    skg_distance distance;
+    skg_distance_options options;
+    skg_distance_init(&distance);
+    skg_distance_options_init(&options);
+    TRY(skg_distance_measure(mesh, mesh, NULL, &distance));
+    options.sampling = SKG_DISTANCE_VERTICES;
+    TRY(skg_distance_measure(mesh, mesh, &options, &distance));
+    TRY(skg_mesh_count(mesh, &vertices, &triangles));
+    ck_assert_int_le(vertices, 4096);
+    TRY(skg_mesh_positions_get(mesh, positions, 0));
+    TRY(skg_distance_of_points(mesh, vertices, positions, distances));
+    snprintf(path, sizeof path, "%s/map.ply", folder);
+    return skg_distance_map_write(mesh, distances, 1, path);
+}
+
 static skg_status save(const run *r) {
     static const char *const names[] = {"image.mha", "image.tif", "image.png"};
     char path[128];
@@ -318,7 +338,8 @@ static skg_status save(const run *r) {
     snprintf(path, sizeof path, "%s/bone.ply", folder);
     skg_part_init(&part);
     TRY(skg_scene_part_get(r->scene, 1, &part));
-    return skg_mesh_save(part.mesh, path);
+    TRY(skg_mesh_save(part.mesh, path));
+    return save_map(part.mesh);
 }
 
 static void check_sentence(skg_status status, const char *what) {

@@ -1,6 +1,6 @@
 #include "manual/manual.h"
 
-/* In the order of the lengths in verbs/mesh.c. */
+/* In the order of the lengths in common/unit.c. */
 static const cli_item units[] = {{"um", "micrometre"}, {"mm", "millimetre (the default)"},
                                  {"cm", "centimetre"}, {"dm", "decimetre"},
                                  {"m", "metre"},       {NULL, NULL}};

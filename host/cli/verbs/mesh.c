@@ -3,12 +3,11 @@
 #include "common/file.h"
 #include "common/json.h"
 #include "common/say.h"
+#include "common/unit.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-static const double units_mm[] = {1e-3, 1, 10, 100, 1000}; /* by the values of --unit */
 
 static json_t *health_json(const char *path, const skg_mesh_health *health, const skg_mesh_nesting *nesting) {
     json_t *object = json_object();
@@ -97,9 +96,9 @@ static int read_fix(const cli_arguments *arguments, const char **fixed) {
 
 /* Examines every file. Returns the exit status of the first that cannot be read. */
 int cli_mesh(const cli_arguments *arguments) {
-    int32_t chosen = 1;
+    double unit_mm = 1;
     const char *fixed = NULL;
-    int exit_status = cli_choice(arguments, &cli_flag_mesh_unit, &chosen);
+    int exit_status = cli_mesh_unit(arguments, &unit_mm);
     if (exit_status == CLI_DONE) exit_status = read_fix(arguments, &fixed);
     if (exit_status != CLI_DONE) return exit_status;
     json_t *list = cli_given(arguments, &cli_flag_json) ? json_array() : NULL;
@@ -108,7 +107,7 @@ int cli_mesh(const cli_arguments *arguments) {
         const char *path = arguments->operands[i];
         skg_mesh_health health;
         skg_mesh_nesting nesting;
-        skg_status status = examine(path, units_mm[chosen], fixed, &health, &nesting);
+        skg_status status = examine(path, unit_mm, fixed, &health, &nesting);
         if (status != SKG_OK) {
             int its = cli_fail(status);
             if (failure == CLI_DONE) failure = its;

@@ -17,6 +17,7 @@
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
 #include <skiagraph/context.h>
+#include <skiagraph/distance.h>
 #include <skiagraph/error.h>
 #include <skiagraph/image.h>
 #include <skiagraph/material.h>

@@ -1,0 +1,11 @@
+#include "common/unit.h"
+
+#include "common/say.h"
+
+int cli_mesh_unit(const cli_arguments *arguments, double *unit_mm) {
+    static const double units_mm[] = {1e-3, 1, 10, 100, 1000}; /* by the values of --unit */
+    int32_t chosen = 1;
+    const int exit_status = cli_choice(arguments, &cli_flag_mesh_unit, &chosen);
+    *unit_mm = units_mm[chosen];
+    return exit_status;
+}
