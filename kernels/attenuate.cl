@@ -50,8 +50,14 @@ static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
 
 /* The exponent of one node for each run: the sum over planes of coefficient times mm. */
 static void skg_exponents(__constant const skg_real *coefficient, const skg_pixels *pixels, skg_realv *exponent) {
+#if SKG_SPARSE
+    SKG_EACH_RUN exponent[r] = (skg_realv)(0);
+    for (int k = 0; k < pixels->filled; k++)
+        SKG_EACH_RUN exponent[r] = fma((skg_realv)(coefficient[pixels->plane[k]]), pixels->mm[k][r], exponent[r]);
+#else
     SKG_EACH_RUN exponent[r] = coefficient[0] * pixels->x[0][r];
     SKG_EACH_PLANE(1) SKG_EACH_RUN exponent[r] = fma((skg_realv)(coefficient[p]), pixels->x[p][r], exponent[r]);
+#endif
 }
 
 /* How many of these pixels' lanes exceed the limit. */
@@ -291,6 +297,9 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     skg_read_planes(&pass, copies, used, &pixels);
 #if SKG_RANGED
     skg_count_outside(&pass, &pixels, range, negative + 1);
+#endif
+#if SKG_SPARSE
+    skg_list_planes(&pixels);
 #endif
     skg_exponents(coefficients, &pixels, pixels.highest);
 #if SKG_SHOW == SKG_SHOW_EXPONENT
