@@ -132,7 +132,7 @@ static void add_shades(shades *s, skg_plan_options *options) {
     skg_grid_init(&s->grid);
     s->heel.kvp = 100, s->heel.direction[1] = 1;
     s->bowtie.count = 3, s->bowtie.angle_deg = angles, s->bowtie.path_mm = paths;
-    s->grid.ratio = 8, s->grid.lines_per_cm = 40, s->grid.focus_mm = 1000;
+    s->grid.ratio = 8, s->grid.lines_per_cm = 40, s->grid.strip_mm = 0.05, s->grid.focus_mm = 1000;
     TRY(skg_material_create_named("Al", &s->bowtie.material));
     TRY(skg_material_create_named("CsI", &csi));
     TRY(skg_response_create_scintillator(csi, 0.6, 0.8, &options->response));
