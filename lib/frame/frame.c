@@ -84,8 +84,10 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
     place.add = sample > 0;
     noise.sample = sample > 0 ? (cl_int)sample : 0;
     if (recipe->linear) attenuation.noise = 0;
-    SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
-                                   sizeof none, 0, sizeof none, 0, NULL, NULL));
+    if (sample < 0 ||
+        sample + 1 == skg_samples_count(&recipe->samples)) /* the last sample's count is reported */
+        SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
+                                       sizeof none, 0, sizeof none, 0, NULL, NULL));
     if (pass->mix.sums)
         SKG_TRY(skg_mix_lists_send(&machine->mix_lists, pass->mix.lists,
                                    (int64_t)recipe->mixed * recipe->model.planes,
