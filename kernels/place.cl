@@ -14,5 +14,5 @@ __kernel void skg_place(skg_place_args args, __global const float *given, long f
         moved |= finite && at != x;
         to[k] = finite ? at : x;
     }
-    if (moved) atomic_min(outside + args.mesh, v);
+    if (moved) atomic_min(outside + args.mesh, taken[v]);
 }

@@ -29,9 +29,10 @@ __kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *p
     int number = SKG_RUN * (int)get_global_id(0);
     const int end = min(number + SKG_RUN, frame.vertices);
     if (number >= end) return;
-    int part = skg_part_of_vertex(parts, blocks, number);
-    while (number < end) {
+    int part = skg_part_of_vertex(parts, frame.parts, blocks, number);
+    while (number < end && part < frame.parts) {
         const skg_part_entry p = parts[part++];
+        number = max(number, p.first_vertex);
         const int last = min(end, p.first_vertex + p.vertices);
         __global const skg_real *restrict v = vertices + 3 * (p.mesh_vertex + number - p.first_vertex);
         __global skg_real4 *restrict out = projected + number;

@@ -31,16 +31,18 @@ static void add_block(uint32_t state[8], const uint8_t *block) {
                    (turned(b, 17) ^ turned(b, 19) ^ b >> 10);
     }
     memcpy(s, state, sizeof s);
-    for (int i = 0; i < ROUNDS; i++) {
-        const uint32_t chosen = (s[4] & s[5]) ^ (~s[4] & s[6]);
-        const uint32_t majority = (s[0] & s[1]) ^ (s[0] & s[2]) ^ (s[1] & s[2]);
-        const uint32_t first =
-            s[7] + (turned(s[4], 6) ^ turned(s[4], 11) ^ turned(s[4], 25)) + chosen + constants[i] + words[i];
-        const uint32_t second = (turned(s[0], 2) ^ turned(s[0], 13) ^ turned(s[0], 22)) + majority;
-        memmove(s + 1, s, 7 * sizeof *s);
-        s[4] += first;
-        s[0] = first + second;
-    }
+    /* Instead of moving the eight words up in each round, round i takes word k from place (k - i) mod 8. Eight rounds
+     * together, so that places are known when this is compiled. */
+    for (int i = 0; i < ROUNDS; i += 8)
+        for (int r = 0; r < 8; r++) {
+            const uint32_t a = s[(8 - r) % 8], b = s[(9 - r) % 8], c = s[(10 - r) % 8];
+            const uint32_t e = s[(12 - r) % 8], f = s[(13 - r) % 8], g = s[(14 - r) % 8];
+            const uint32_t chosen = (e & f) ^ (~e & g), majority = (a & b) ^ (a & c) ^ (b & c);
+            const uint32_t first = s[(15 - r) % 8] + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) + chosen +
+                                   constants[i + r] + words[i + r];
+            s[(11 - r) % 8] += first;
+            s[(15 - r) % 8] = first + (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) + majority;
+        }
     for (int i = 0; i < 8; i++) state[i] += s[i];
 }
 

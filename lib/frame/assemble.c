@@ -3,24 +3,16 @@
 
 static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) {
     const skg_plan_meshes *meshes = &recipe->meshes;
-    skg_geometry_mesh *list = NULL;
-    int32_t **sorted = NULL; /* [meshes] corners in an order for the device */
+    skg_mesh_layout *layouts = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(meshes->count, sizeof *list, "meshes", &list));
-    SKG_TRY_CLEANUP(skg_alloc(meshes->count, sizeof *sorted, "meshes", &sorted));
-    for (int64_t i = 0; i < meshes->count; i++) {
-        const skg_mesh *mesh = meshes->meshes[i];
-        int32_t reordered = 0;
-        SKG_TRY_CLEANUP(skg_alloc(3 * mesh->triangles, sizeof **sorted, "corners", &sorted[i]));
-        SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, sorted[i], &reordered));
-        list[i] = (skg_geometry_mesh){mesh->vertices, mesh->triangles, sorted[i]};
-    }
-    status = skg_geometry_create(machine->context, skg_recipe_kernel_precision(recipe), meshes->count, list,
-                                 recipe->scene->count, meshes->of_part, &machine->geometry);
-cleanup:
-    for (int64_t i = 0; sorted && i < meshes->count; i++) skg_free(&sorted[i]);
-    skg_free(&sorted);
-    skg_free(&list);
+    SKG_TRY(skg_alloc(meshes->count, sizeof *layouts, "meshes", &layouts));
+    for (int64_t i = 0; i < meshes->count && status == SKG_OK; i++)
+        status = skg_mesh_layout_create(meshes->meshes[i], &layouts[i]);
+    if (status == SKG_OK)
+        status = skg_geometry_create(machine->context, skg_recipe_kernel_precision(recipe), meshes->count,
+                                     layouts, recipe->scene->count, meshes->of_part, &machine->geometry);
+    for (int64_t i = 0; i < meshes->count; i++) skg_mesh_layout_release(&layouts[i]);
+    skg_free(&layouts);
     return status;
 }
 

@@ -24,17 +24,79 @@ static double crossing(const double *a, const double *b, double y) {
     return a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
 }
 
+/* The hits in the order in which they are found. */
+typedef struct {
+    skg_column_hit hit;
+    int64_t cell;
+} found_hit;
+
+typedef struct {
+    const skg_columns *grid;
+    double first[2], last[2], inverse[2]; /* where the outer columns are; 1 / step */
+    int64_t count, capacity;
+    found_hit *found;
+} search;
+
+static skg_status add_hit(search *s, int64_t cell, skg_column_hit hit) {
+    if (s->count == s->capacity) {
+        const int64_t more = s->capacity < 1024 ? 4096 : 2 * s->capacity;
+        SKG_TRY(skg_realloc(more, sizeof *s->found, "overlap hits", &s->found));
+        s->capacity = more;
+    }
+    s->found[s->count++] = (found_hit){hit, cell};
+    return SKG_OK;
+}
+
+/* An index at or before the first column at or behind a place. */
+static int64_t index_before(const search *s, int axis, double place) {
+    const double index = (place - s->grid->low[axis]) * s->inverse[axis];
+    return index > 1 ? (int64_t)index - 1 : 0;
+}
+
+/* Adds the hits of a row, which crosses the triangle at x[0] and x[1]. */
+static skg_status add_row(search *s, int32_t part, const double *a, const double normal[3], int64_t row,
+                          double y, const double x[2], const int downward[2]) {
+    const skg_columns *grid = s->grid;
+    const int first = x[0] <= x[1] ? 0 : 1;
+    if (!(x[first] <= s->last[0])) return SKG_OK;
+    for (int64_t column = index_before(s, 0, x[first]); column < grid->side; column++) {
+        const double at = skg_column_place(grid, 0, column);
+        if (at < x[first]) continue;
+        if (at >= x[1 - first]) break;
+        const double depth =
+            normal[2] != 0 ? a[2] - ((at - a[0]) * normal[0] + (y - a[1]) * normal[1]) / normal[2] : a[2];
+        /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and the ray
+         * enters. */
+        SKG_TRY(
+            add_hit(s, row * grid->side + column, (skg_column_hit){depth, part, downward[first] ? -1 : 1}));
+    }
+    return SKG_OK;
+}
+
+static double least(double a, double b, double c) {
+    const double ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+/* Whether a triangle lies beside all columns. Crossings are rounded, which is far below the step that is allowed for. */
+static int misses(const search *s, const double *a, const double *b, const double *c, double lo, double hi) {
+    if (!(lo <= s->last[1] && hi > s->first[1])) return 1;
+    const double left = least(a[0], b[0], c[0]), right = -least(-a[0], -b[0], -c[0]);
+    return left > s->last[0] + s->grid->step[0] || right < s->first[0] - s->grid->step[0];
+}
+
 /* Adds the hits of one triangle by the scan-crossing rule of the kernels, in double. */
-static void add_triangle(skg_columns *grid, int32_t part, const double *a, const double *b, const double *c) {
+static skg_status add_triangle(search *s, int32_t part, const double *a, const double *b, const double *c) {
     const double *p[3] = {a, b, c};
-    double lo = fmin(a[1], fmin(b[1], c[1])), hi = fmax(a[1], fmax(b[1], c[1]));
+    const double lo = least(a[1], b[1], c[1]), hi = -least(-a[1], -b[1], -c[1]);
     double ab[3], ac[3], normal[3];
+    if (misses(s, a, b, c, lo, hi)) return SKG_OK;
     skg_add_scaled(b, -1, a, ab);
     skg_add_scaled(c, -1, a, ac);
     skg_cross(ab, ac, normal);
-    int64_t row = (int64_t)fmax(0, floor((lo - grid->low[1]) / grid->step[1]) - 1);
-    for (; row < grid->side; row++) {
-        double y = skg_column_place(grid, 1, row), x[2];
+    for (int64_t row = index_before(s, 1, lo); row < s->grid->side; row++) {
+        const double y = skg_column_place(s->grid, 1, row);
+        double x[2];
         int found = 0, downward[2];
         if (y < lo) continue;
         if (y >= hi) break;
@@ -44,62 +106,54 @@ static void add_triangle(skg_columns *grid, int32_t part, const double *a, const
             downward[found] = from[1] > to[1];
             x[found++] = crossing(from, to, y);
         }
-        if (found < 2) continue;
-        int first = x[0] <= x[1] ? 0 : 1;
-        int64_t column = (int64_t)fmax(0, floor((x[first] - grid->low[0]) / grid->step[0]) - 1);
-        for (; column < grid->side; column++) {
-            double at = skg_column_place(grid, 0, column);
-            if (at < x[first]) continue;
-            if (at >= x[1 - first]) break;
-            int64_t cell = row * grid->side + column;
-            if (grid->hits) {
-                double depth = normal[2] != 0
-                                   ? a[2] - ((at - a[0]) * normal[0] + (y - a[1]) * normal[1]) / normal[2]
-                                   : a[2];
-                /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and
-                 * the ray enters. */
-                grid->hits[grid->first[cell]] = (skg_column_hit){depth, part, downward[first] ? -1 : 1};
-            }
-            grid->first[cell]++;
-        }
+        if (found == 2) SKG_TRY(add_row(s, part, a, normal, row, y, x, downward));
     }
+    return SKG_OK;
 }
 
-static void add_all(skg_columns *grid, int64_t count, const skg_solid *solids) {
+static skg_status add_all(search *s, int64_t count, const skg_solid *solids) {
     for (int64_t i = 0; i < count; i++)
         for (int64_t t = 0; t < solids[i].triangles; t++) {
             const int32_t *corner = solids[i].corners + 3 * t;
             const double *at = solids[i].positions;
-            add_triangle(grid, (int32_t)i, at + 3 * (int64_t)corner[0], at + 3 * (int64_t)corner[1],
-                         at + 3 * (int64_t)corner[2]);
+            SKG_TRY(add_triangle(s, (int32_t)i, at + 3 * (int64_t)corner[0], at + 3 * (int64_t)corner[1],
+                                 at + 3 * (int64_t)corner[2]));
         }
+    return SKG_OK;
 }
 
-/* Counts the hits of each column, sums the counts, and fills: the hits of column c are those from grid->first[c] to
- * grid->first[c + 1] - 1. */
-skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids) {
+/* Sorts the hits by cell: those of column c are from grid->first[c] to grid->first[c + 1] - 1. */
+static skg_status sort_by_cell(const search *s, skg_columns *grid) {
     const int64_t cells = grid->side * grid->side;
-    SKG_TRY(skg_alloc(cells + 1, sizeof *grid->first, "overlap columns", &grid->first));
-    add_all(grid, count, solids);
-    int64_t sum = 0;
-    for (int64_t c = 0; c <= cells; c++) {
-        int64_t here = grid->first[c];
-        grid->first[c] = sum;
-        sum += here;
-    }
-    SKG_TRY(skg_alloc(sum, sizeof *grid->hits, "overlap hits", &grid->hits));
-    add_all(grid, count, solids);
-    memmove(grid->first + 1, grid->first, (size_t)cells * sizeof *grid->first);
-    grid->first[0] = 0;
+    SKG_TRY(skg_alloc(cells + 2, sizeof *grid->first, "overlap columns", &grid->first));
+    SKG_TRY(skg_alloc(s->count, sizeof *grid->hits, "overlap hits", &grid->hits));
+    /* Counts are stored two places on, so that first[c + 1] is where cell c begins when the cells are filled. */
+    for (int64_t i = 0; i < s->count; i++) grid->first[s->found[i].cell + 2]++;
+    for (int64_t c = 0; c < cells; c++) grid->first[c + 2] += grid->first[c + 1];
+    for (int64_t i = 0; i < s->count; i++) grid->hits[grid->first[s->found[i].cell + 1]++] = s->found[i].hit;
     return SKG_OK;
+}
+
+skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids) {
+    search s = {.grid = grid};
+    for (int k = 0; k < 2; k++) {
+        s.first[k] = skg_column_place(grid, k, 0);
+        s.last[k] = skg_column_place(grid, k, grid->side - 1);
+        s.inverse[k] = 1 / grid->step[k];
+    }
+    skg_status status = add_all(&s, count, solids);
+    if (status == SKG_OK) status = sort_by_cell(&s, grid);
+    skg_free(&s.found);
+    return status;
 }
 
 void skg_columns_bound(skg_columns *grid, int64_t count, const skg_solid *solids) {
     for (int k = 0; k < 3; k++) grid->low[k] = HUGE_VAL, grid->high[k] = -HUGE_VAL;
     for (int64_t i = 0; i < count; i++)
         for (int64_t v = 0; solids[i].triangles > 0 && v < 3 * solids[i].vertices; v++) {
-            grid->low[v % 3] = fmin(grid->low[v % 3], solids[i].positions[v]);
-            grid->high[v % 3] = fmax(grid->high[v % 3], solids[i].positions[v]);
+            const double x = solids[i].positions[v];
+            if (x < grid->low[v % 3]) grid->low[v % 3] = x;
+            if (x > grid->high[v % 3]) grid->high[v % 3] = x;
         }
     for (int k = 0; k < 2; k++) grid->step[k] = (grid->high[k] - grid->low[k]) / (double)grid->side;
 }
@@ -112,9 +166,21 @@ static int by_depth(const void *a, const void *b) {
     return left->part < right->part ? -1 : left->part > right->part;
 }
 
+/* Most columns have a few hits, for which an insertion sort takes less than a call of qsort. */
 void skg_columns_sort(skg_columns *grid, int64_t cell) {
-    const int64_t first = grid->first[cell], count = grid->first[cell + 1] - first;
-    qsort(grid->hits + first, (size_t)count, sizeof *grid->hits, by_depth);
+    enum { FEW = 48 };
+    skg_column_hit *hit = grid->hits + grid->first[cell];
+    const int64_t count = grid->first[cell + 1] - grid->first[cell];
+    if (count > FEW) {
+        qsort(hit, (size_t)count, sizeof *hit, by_depth);
+        return;
+    }
+    for (int64_t i = 1; i < count; i++) {
+        const skg_column_hit moving = hit[i];
+        int64_t k = i;
+        for (; k > 0 && by_depth(&hit[k - 1], &moving) > 0; k--) hit[k] = hit[k - 1];
+        hit[k] = moving;
+    }
 }
 
 void skg_columns_free(skg_columns *grid) {

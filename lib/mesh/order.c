@@ -4,9 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A mesh of fewer triangles stays in the cache of a processor in any order (4096 corners and vertices: 100 KiB).
- * 10 bits for each axis make a code of 30 bits, which three passes over digits of 10 bits sort. */
-enum { SMALL = 4096, AXIS_BITS = 10, DIGIT_BITS = 10 };
+/* 10 bits for each axis make a code of 30 bits, which three passes over digits of 10 bits sort. */
+enum { AXIS_BITS = 10, DIGIT_BITS = 10 };
 
 static void centroid(const skg_mesh *mesh, int64_t triangle, float centre[3]) {
     const int32_t *corner = mesh->corners + 3 * triangle;
@@ -76,7 +75,7 @@ skg_status skg_mesh_sorted_corners(const skg_mesh *mesh, int32_t *corners, int32
     skg_status status = SKG_OK;
     *sorted = 0;
     memcpy(corners, mesh->corners, 3 * (size_t)mesh->triangles * sizeof *corners);
-    if (mesh->triangles < SMALL || mesh->first_bad >= 0) return SKG_OK;
+    if (mesh->triangles < SKG_MESH_SMALL || mesh->first_bad >= 0) return SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(mesh->triangles, sizeof *item, mesh->name, &item));
     SKG_TRY_CLEANUP(skg_alloc(mesh->triangles, sizeof *other, mesh->name, &other));
     fill_codes(mesh, item);

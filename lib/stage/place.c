@@ -3,14 +3,17 @@
 #include <skiagraph/plan.h>
 
 /* Vertices of a closed mesh that the host has at one place stay together, so that the mesh stays closed. */
-static skg_status list_taken(skg_context *context, const skg_mesh *mesh, skg_buffer *buffer) {
+static skg_status list_taken(skg_context *context, const skg_mesh *mesh, const skg_mesh_layout *layout,
+                             skg_buffer *buffer) {
     int32_t *taken = NULL;
     if (buffer->memory) return SKG_OK;
-    SKG_TRY(skg_alloc(mesh->vertices, sizeof *taken, "vertices", &taken));
-    for (int64_t v = 0; v < mesh->vertices; v++)
-        taken[v] = mesh->closed && mesh->weld ? mesh->weld[v] : (int32_t)v;
+    SKG_TRY(skg_alloc(layout->vertices, sizeof *taken, "vertices", &taken));
+    for (int64_t i = 0; i < layout->vertices; i++) {
+        const int32_t v = layout->source ? layout->source[i] : (int32_t)i;
+        taken[i] = mesh->closed && mesh->weld ? mesh->weld[v] : v;
+    }
     const skg_status status =
-        skg_buffer_create(context, mesh->vertices * (int64_t)sizeof *taken, taken, "vertices", buffer);
+        skg_buffer_create(context, layout->vertices * (int64_t)sizeof *taken, taken, "vertices", buffer);
     skg_free(&taken);
     return status;
 }
@@ -38,7 +41,7 @@ static skg_status run(skg_placement *placement, skg_context *context, const skg_
                       int64_t index, const skg_place_source *source) {
     const cl_int none = INT32_MAX;
     const cl_long first = source->first;
-    const int64_t vertices = geometry->mesh_vertex[index + 1] - geometry->mesh_vertex[index];
+    const int64_t vertices = geometry->layouts[index].vertices;
     skg_place_args args = {.vertices = (SKG_INT)vertices,
                            .mesh = (SKG_INT)index,
                            .mesh_vertex = (SKG_INT)geometry->mesh_vertex[index]};
@@ -63,7 +66,9 @@ skg_status skg_placement_place(skg_placement *placement, skg_context *context, s
                                const skg_mesh *mesh, int64_t index, const skg_place_source *source) {
     SKG_TRY(prepare(placement, context, geometry));
     skg_placed_mesh *placed = &placement->meshes[index];
-    SKG_TRY(list_taken(context, mesh, &placed->taken));
+    /* Of a leaky mesh, the host cannot see whether merged vertices are at one place in the caller's memory. */
+    SKG_TRY(skg_geometry_part_vertices(context, geometry, mesh, index));
+    SKG_TRY(list_taken(context, mesh, &geometry->layouts[index], &placed->taken));
     /* If the copy fails half way, the next frame uploads the positions of the host. */
     geometry->versions[index] = placed->version = 0;
     if (mesh->vertices > 0) SKG_TRY(run(placement, context, geometry, index, source));

@@ -10,7 +10,7 @@ typedef struct {
         version; /* of the mesh on the host at that time; 0: never. A later version of the host holds again */
     float lowest[3]; /* bounds, mm from the mesh's origin */
     float highest[3];
-    skg_buffer taken; /* int [vertices]: the vertex whose position each takes */
+    skg_buffer taken; /* int [vertices of the layout]: the caller's vertex whose position each takes */
 } skg_placed_mesh;
 
 typedef struct {

@@ -51,31 +51,31 @@ static skg_status upload_blocks(skg_context *context, int64_t parts, const int64
     return status;
 }
 
-static skg_status upload_corners(skg_context *context, skg_geometry *geometry, const skg_geometry_mesh *mesh,
-                                 const int64_t *mesh_triangle) {
-    const int64_t total = mesh_triangle[geometry->meshes];
+static skg_status upload_corners(skg_context *context, skg_geometry *geometry) {
+    const int64_t total = geometry->mesh_triangle[geometry->meshes];
     SKG_TRY(skg_buffer_reserve(context, &geometry->corners, total * 3 * (int64_t)sizeof(int32_t),
                                CL_MEM_READ_ONLY, "corners of the triangles"));
     for (int64_t m = 0; m < geometry->meshes; m++) {
-        const size_t size = (size_t)mesh[m].triangles * 3 * sizeof(int32_t);
-        if (size == 0) continue;
-        SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->corners.memory, CL_TRUE,
-                                        (size_t)mesh_triangle[m] * 3 * sizeof(int32_t), size, mesh[m].corners,
-                                        0, NULL, NULL));
+        const size_t size = (size_t)geometry->layouts[m].triangles * 3 * sizeof(int32_t);
+        if (size > 0)
+            SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->corners.memory, CL_TRUE,
+                                            (size_t)geometry->mesh_triangle[m] * 3 * sizeof(int32_t), size,
+                                            geometry->layouts[m].corners, 0, NULL, NULL));
+        skg_free(&geometry->layouts[m].corners);
     }
     return SKG_OK;
 }
 
 /* Numbers vertices and triangles through all meshes and through all parts. Fails where 32 bits do not number them all. */
-static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, const int64_t *mesh_of_part,
-                         int64_t *mesh_triangle, int64_t *first_triangle) {
+static skg_status number(skg_geometry *geometry, int64_t *first_triangle) {
     for (int64_t m = 0; m < geometry->meshes; m++) {
-        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + mesh[m].vertices;
-        mesh_triangle[m + 1] = mesh_triangle[m] + mesh[m].triangles;
+        const skg_mesh_layout *layout = &geometry->layouts[m];
+        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + layout->vertices + layout->copies;
+        geometry->mesh_triangle[m + 1] = geometry->mesh_triangle[m] + layout->triangles;
     }
     for (int64_t p = 0; p < geometry->parts; p++) {
-        const skg_geometry_mesh *of = &mesh[mesh_of_part[p]];
-        geometry->first_vertex[p + 1] = geometry->first_vertex[p] + of->vertices;
+        const skg_mesh_layout *of = &geometry->layouts[geometry->mesh_of_part[p]];
+        geometry->first_vertex[p + 1] = geometry->first_vertex[p] + of->vertices + of->copies;
         first_triangle[p + 1] = first_triangle[p] + of->triangles;
     }
     geometry->mesh_vertices = geometry->mesh_vertex[geometry->meshes];
@@ -91,48 +91,60 @@ static skg_status number(skg_geometry *geometry, const skg_geometry_mesh *mesh, 
 }
 
 /* Writes into a part's entry where its vertices and triangles stand in the other tables. */
-#define SKG_PLACE(entry, p)                                                                                  \
+#define SKG_PLACE(entry, p, m)                                                                               \
     do {                                                                                                     \
-        (entry).mesh_vertex = (SKG_INT)geometry->mesh_vertex[mesh_of_part[p]];                               \
+        (entry).mesh_vertex = (SKG_INT)geometry->mesh_vertex[m];                                             \
         (entry).first_vertex = (SKG_INT)geometry->first_vertex[p];                                           \
-        (entry).vertices = (SKG_INT)(geometry->first_vertex[(p) + 1] - geometry->first_vertex[p]);           \
-        (entry).mesh_triangle = (SKG_INT)mesh_triangle[mesh_of_part[p]];                                     \
+        (entry).mesh_triangle = (SKG_INT)geometry->mesh_triangle[m];                                         \
         (entry).first_triangle = (SKG_INT)first_triangle[p];                                                 \
         (entry).triangles = (SKG_INT)(first_triangle[(p) + 1] - first_triangle[p]);                          \
     } while (0)
 
-static void place_parts(const skg_geometry *geometry, const int64_t *mesh_of_part,
-                        const int64_t *mesh_triangle, const int64_t *first_triangle, void *entries) {
+static void place_parts(const skg_geometry *geometry, const int64_t *first_triangle, void *entries) {
     for (int64_t p = 0; p < geometry->parts; p++) {
+        const int64_t m = geometry->mesh_of_part[p];
         if (is_double(geometry))
-            SKG_PLACE(((skg_part_double *)entries)[p], p);
+            SKG_PLACE(((skg_part_double *)entries)[p], p, m);
         else
-            SKG_PLACE(((skg_part_float *)entries)[p], p);
+            SKG_PLACE(((skg_part_float *)entries)[p], p, m);
     }
 }
 
+/* Takes the layouts over, and allocates the tables of meshes and parts. */
+static skg_status take_over(skg_geometry *geometry, skg_mesh_layout *layouts, const int64_t *mesh_of_part) {
+    const int64_t meshes = geometry->meshes, parts = geometry->parts;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *geometry->layouts, "mesh table", &geometry->layouts));
+    memcpy(geometry->layouts, layouts, (size_t)meshes * sizeof *layouts);
+    memset(layouts, 0, (size_t)meshes * sizeof *layouts);
+    SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_triangle));
+    SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_vertex));
+    SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof(int64_t), "part table", &geometry->first_vertex));
+    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof(int64_t), "mesh table", &geometry->versions));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof(int64_t), "part table", &geometry->mesh_of_part));
+    memcpy(geometry->mesh_of_part, mesh_of_part, (size_t)parts * sizeof *mesh_of_part);
+cleanup:
+    for (int64_t m = 0; m < meshes; m++) skg_mesh_layout_release(&layouts[m]);
+    return status;
+}
+
 skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t meshes,
-                               const skg_geometry_mesh *mesh, int64_t parts, const int64_t *mesh_of_part,
+                               skg_mesh_layout *layouts, int64_t parts, const int64_t *mesh_of_part,
                                skg_geometry *geometry) {
-    int64_t *mesh_triangle = NULL, *first_triangle = NULL;
+    int64_t *first_triangle = NULL;
     skg_status status = SKG_OK;
     *geometry = (skg_geometry){.meshes = meshes, .parts = parts, .precision = precision};
-    SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof *mesh_triangle, "mesh table", &mesh_triangle));
+    SKG_TRY_CLEANUP(take_over(geometry, layouts, mesh_of_part));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first_triangle, "part table", &first_triangle));
-    SKG_TRY_CLEANUP(
-        skg_alloc(meshes + 1, sizeof *geometry->mesh_vertex, "mesh table", &geometry->mesh_vertex));
-    SKG_TRY_CLEANUP(
-        skg_alloc(parts + 1, sizeof *geometry->first_vertex, "part table", &geometry->first_vertex));
-    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *geometry->versions, "mesh table", &geometry->versions));
-    SKG_TRY_CLEANUP(number(geometry, mesh, mesh_of_part, mesh_triangle, first_triangle));
+    SKG_TRY_CLEANUP(number(geometry, first_triangle));
     for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
         skg_table_slot *slot = &geometry->slots[i];
         SKG_TRY_CLEANUP(skg_alloc(parts, entry_size(geometry), "part table", &slot->entries));
-        place_parts(geometry, mesh_of_part, mesh_triangle, first_triangle, slot->entries);
+        place_parts(geometry, first_triangle, slot->entries);
     }
     SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->part_table, parts * (int64_t)entry_size(geometry),
                                        CL_MEM_READ_ONLY, "part table"));
-    SKG_TRY_CLEANUP(upload_corners(context, geometry, mesh, mesh_triangle));
+    SKG_TRY_CLEANUP(upload_corners(context, geometry));
     SKG_TRY_CLEANUP(
         upload_blocks(context, parts, geometry->first_vertex, "vertex blocks", &geometry->vertex_blocks));
     SKG_TRY_CLEANUP(
@@ -147,7 +159,6 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
         skg_buffer_reserve(context, &geometry->bad, sizeof(cl_int), CL_MEM_READ_WRITE, "vertex check"));
     SKG_TRY_CLEANUP(skg_geometry_reset_bad(context, geometry));
 cleanup:
-    skg_free(&mesh_triangle);
     skg_free(&first_triangle);
     if (status != SKG_OK) skg_geometry_release(geometry);
     return status;
@@ -168,6 +179,11 @@ void skg_geometry_release(skg_geometry *geometry) {
                                    &geometry->vertex_blocks, &geometry->triangle_blocks,
                                    &geometry->projected,     &geometry->bad};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
+    for (int64_t m = 0; geometry->layouts && m < geometry->meshes; m++)
+        skg_mesh_layout_release(&geometry->layouts[m]);
+    skg_free(&geometry->layouts);
+    skg_free(&geometry->mesh_of_part);
+    skg_free(&geometry->mesh_triangle);
     skg_free(&geometry->mesh_vertex);
     skg_free(&geometry->versions);
     skg_free(&geometry->first_vertex);
@@ -179,41 +195,6 @@ void skg_geometry_release(skg_geometry *geometry) {
     }
     if (geometry->kernel) clReleaseKernel(geometry->kernel);
     geometry->kernel = NULL;
-}
-
-skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
-                               const void *offsets, skg_stage_log *log) {
-    const int64_t row = 3 * (int64_t)real_size(geometry);
-    const int64_t first = geometry->mesh_vertex[mesh], count = geometry->mesh_vertex[mesh + 1] - first;
-    if (count == 0) return SKG_OK;
-    return skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets,
-                           log);
-}
-
-/* Writes the vertices of a mesh in the device's precision, as offsets from the mesh's origin: [vertices][3]. */
-static void read_offsets(const skg_geometry *geometry, const skg_mesh *mesh, void *offsets) {
-    if (!is_double(geometry)) {
-        memcpy(offsets, mesh->offsets, (size_t)mesh->vertices * 3 * sizeof *mesh->offsets);
-        return;
-    }
-    double *to = offsets;
-    for (int64_t v = 0; v < mesh->vertices; v++) {
-        skg_mesh_vertex(mesh, v, to + 3 * v);
-        for (int k = 0; k < 3; k++) to[3 * v + k] -= mesh->origin[k];
-    }
-}
-
-skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging) {
-    for (int64_t m = 0; m < geometry->meshes; m++) {
-        void *offsets = NULL;
-        if (geometry->versions[m] == meshes[m]->version) continue;
-        SKG_TRY(
-            skg_staging_take(staging, 3 * meshes[m]->vertices, real_size(geometry), "vertices", &offsets));
-        read_offsets(geometry, meshes[m], offsets);
-        SKG_TRY(skg_geometry_upload(staging->context, geometry, m, offsets, &staging->log));
-        geometry->versions[m] = meshes[m]->version;
-    }
-    return SKG_OK;
 }
 
 /* Single precision takes what changes from frame to frame from the double values, rounded once. */
@@ -234,6 +215,7 @@ static void round_entry(const skg_part_double *from, skg_part_float *to) {
     to->steepest = (float)fmin(from->steepest, (double)FLT_MAX);
     to->pixel_i = from->pixel_i;
     to->pixel_j = from->pixel_j;
+    to->vertices = from->vertices;
     to->turned = from->turned;
     to->first_contribution = from->first_contribution;
     to->contributions = from->contributions;
@@ -275,6 +257,7 @@ static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *ca
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
         skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
+        entry->vertices = (SKG_INT)geometry->layouts[geometry->mesh_of_part[p]].vertices;
         entry->steepest = steepest(geometry, camera, &part[p]);
         entry->first_contribution = (SKG_INT)slot->contribution_count;
         entry->contributions = (SKG_INT)part[p].contributions;
@@ -371,6 +354,8 @@ void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *pa
         else
             high = middle;
     }
+    const int32_t *source = geometry->layouts[geometry->mesh_of_part[low]].source;
+    const int64_t local = vertex - geometry->first_vertex[low];
     *part = low;
-    *mesh_vertex = vertex - geometry->first_vertex[low];
+    *mesh_vertex = source ? source[local] : local;
 }

@@ -12,11 +12,6 @@
 #include "stage/kernels.h"
 #include "stage/staging.h"
 
-typedef struct {
-    int64_t vertices, triangles;
-    const int32_t *corners; /* [triangles][3] vertex numbers of this mesh; read during the call */
-} skg_geometry_mesh;
-
 /* A part in one frame. */
 typedef struct {
     const double *pose;   /* 4x4, row by row */
@@ -42,15 +37,18 @@ typedef struct {
 
 typedef struct {
     int64_t meshes, parts;
-    int64_t vertices, triangles; /* over all parts */
-    int64_t mesh_vertices;       /* over all meshes */
+    int64_t vertices, triangles; /* over all parts, with the copies of merged vertices */
+    int64_t mesh_vertices;       /* over all meshes, with them */
     int32_t precision;           /* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE: of offsets and tables */
     int32_t reserved;
-    int64_t *mesh_vertex;  /* [meshes + 1] first vertex of each mesh in the vertex buffer */
-    int64_t *versions;     /* [meshes] of the vertices as the device has them; 0: it has none */
-    int64_t *first_vertex; /* [parts + 1] in the numbering over all parts */
-    int32_t slot;          /* that holds the tables as the device has them */
-    int32_t uploaded;      /* 1: the device has tables */
+    int64_t *mesh_vertex;     /* [meshes + 1] first vertex of each mesh in the vertex buffer */
+    int64_t *mesh_of_part;    /* [parts] */
+    int64_t *mesh_triangle;   /* [meshes + 1] first triangle of each mesh in the buffer of corners */
+    skg_mesh_layout *layouts; /* [meshes]; corners: NULL once they are on the device */
+    int64_t *versions;        /* [meshes] of the vertices as the device has them; 0: it has none */
+    int64_t *first_vertex;    /* [parts + 1] in the numbering over all parts */
+    int32_t slot;             /* that holds the tables as the device has them */
+    int32_t uploaded;         /* 1: the device has tables */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     cl_kernel kernel;
     skg_kernel_options kernel_options;
@@ -67,18 +65,28 @@ typedef struct {
         SKG_ARGUMENT(kernel, parts, (geometry)->part_table.memory),                                          \
         SKG_ARGUMENT(kernel, blocks, (geometry)->triangle_blocks.memory)
 
-/* Allocates everything and uploads what does not move. mesh_of_part: [parts]. */
+/* Allocates everything and uploads what does not move.
+ *
+ * layouts        [meshes] taken over and emptied, whether it succeeds or not
+ * mesh_of_part   [parts] */
 skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t meshes,
-                               const skg_geometry_mesh *mesh, int64_t parts, const int64_t *mesh_of_part,
+                               skg_mesh_layout *layouts, int64_t parts, const int64_t *mesh_of_part,
                                skg_geometry *geometry);
 void skg_geometry_release(skg_geometry *geometry);
 
-/* Enqueues the upload of a mesh's vertices: offsets from its origin, [vertices][3], float or double by the precision.
+/* Enqueues the upload of a mesh's vertices: offsets from its origin in the order of its layout, float or double by the
+ * precision.
  * The offsets must stay until the device has read them. */
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
                                const void *offsets, skg_stage_log *log);
 
-/* Enqueues the upload of all meshes whose vertices have changed since they were last uploaded. meshes: [meshes]. */
+/* Uploads the corners of a mesh whose merged vertices may have parted, if there are any: from now on, each is a vertex of
+ * its own. Waits for what is enqueued, once in the life of a geometry. */
+skg_status skg_geometry_part_vertices(skg_context *context, skg_geometry *geometry, const skg_mesh *mesh,
+                                      int64_t index);
+
+/* Enqueues the upload of all meshes whose vertices have changed since they were last uploaded. meshes: [meshes]. A note
+ * says where merged vertices of a leaky mesh have parted. */
 skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging);
 
 /* Enqueues that no vertex was bad: frames are independent, so each begins with it. */
@@ -96,7 +104,7 @@ skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, cons
 /* Bytes on the device. */
 int64_t skg_geometry_bytes(const skg_geometry *geometry);
 
-/* Which part, and which vertex of its mesh, a number in `bad` means. */
+/* Which part, and which vertex of its mesh in the caller's numbering, a number in `bad` means. */
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex);
 
 #endif

@@ -149,16 +149,19 @@ void picture_free(picture *p) {
 
 static skg_status make_geometry(skg_context *context, int32_t precision, int bodies, const body *of,
                                 skg_geometry *geometry) {
-    skg_geometry_mesh *meshes = calloc((size_t)bodies, sizeof *meshes);
+    skg_mesh_layout *meshes = calloc((size_t)bodies, sizeof *meshes);
     int64_t *mesh_of = calloc((size_t)bodies, sizeof *mesh_of);
     int64_t count = 0;
     for (int b = 0; b < bodies; b++) {
         int same = 0;
         while (same < b && of[same].shape != of[b].shape) same++;
         mesh_of[b] = same < b ? mesh_of[same] : count;
-        if (same == b)
-            meshes[count++] =
-                (skg_geometry_mesh){of[b].shape->vertices, of[b].shape->triangles, of[b].shape->corners};
+        if (same < b) continue;
+        const shape *s = of[b].shape;
+        skg_mesh_layout *layout = &meshes[count++];
+        *layout = (skg_mesh_layout){.vertices = s->vertices, .triangles = s->triangles};
+        if (skg_alloc(3 * s->triangles, sizeof *layout->corners, "corners", &layout->corners) == SKG_OK)
+            memcpy(layout->corners, s->corners, (size_t)s->triangles * 3 * sizeof *layout->corners);
     }
     skg_status status = skg_geometry_create(context, precision, count, meshes, bodies, mesh_of, geometry);
     for (int b = 0; b < bodies && status == SKG_OK; b++) {

@@ -57,8 +57,121 @@ START_TEST(shuffled_triangles_are_put_in_order) {
 }
 END_TEST
 
+/* Every triangle of a layout has the corners of a triangle of the mesh, at the same places. */
+static void check_places(const skg_mesh *mesh, const skg_mesh_layout *layout) {
+    for (int64_t c = 0; c < 3 * mesh->triangles; c++) {
+        const int32_t v = layout->source ? layout->source[layout->corners[c]] : layout->corners[c];
+        ck_assert_mem_eq(mesh->positions + 3 * (int64_t)v, mesh->positions + 3 * (int64_t)mesh->corners[c],
+                         3 * sizeof(double));
+    }
+    for (int64_t i = 0; layout->source && i < layout->vertices + layout->copies; i++)
+        ck_assert(layout->source[i] >= 0 && layout->source[i] < mesh->vertices);
+}
+
+/* A sphere whose triangles share no vertices; `less` of them are missing. */
+static skg_mesh *make_soup(int64_t segments, int64_t less) {
+    skg_mesh *sphere, *soup;
+    ck_skg(skg_mesh_create_sphere(100, segments, &sphere));
+    const int64_t triangles = sphere->triangles - less;
+    double *positions;
+    int32_t *corners;
+    ck_skg(skg_alloc(9 * triangles, sizeof *positions, "test", &positions));
+    ck_skg(skg_alloc(3 * triangles, sizeof *corners, "test", &corners));
+    for (int64_t c = 0; c < 3 * triangles; c++) {
+        memcpy(positions + 3 * c, sphere->positions + 3 * (int64_t)sphere->corners[c], 3 * sizeof *positions);
+        corners[c] = (int32_t)c;
+    }
+    ck_skg(skg_mesh_create(NULL, "soup", 3 * triangles, positions, 0, triangles, corners, 0, 1, &soup));
+    skg_free(&positions);
+    skg_free(&corners);
+    skg_mesh_release(&sphere);
+    return soup;
+}
+
+START_TEST(vertices_at_one_place_are_one_on_the_device) {
+    skg_mesh *soup = make_soup(16, 0);
+    skg_mesh_layout layout;
+    ck_skg(skg_mesh_layout_create(soup, &layout));
+    ck_assert_int_eq(layout.vertices, soup->health.welded_vertices);
+    ck_assert_int_eq(layout.copies, 0);
+    check_places(soup, &layout);
+    for (int64_t i = 0; i < layout.vertices; i++) /* the first vertex of the caller at each place */
+        ck_assert_int_eq(soup->weld[layout.source[i]], layout.source[i]);
+    skg_mesh_layout_release(&layout);
+    skg_mesh_release(&soup);
+}
+END_TEST
+
+START_TEST(those_of_a_leaky_mesh_may_part) {
+    skg_mesh *soup = make_soup(16, 2);
+    skg_mesh_layout layout;
+    ck_skg(skg_mesh_layout_create(soup, &layout));
+    ck_assert_int_eq(layout.vertices, soup->health.welded_vertices);
+    ck_assert_int_eq(layout.vertices + layout.copies, soup->vertices);
+    check_places(soup, &layout);
+    skg_free(&layout.corners);
+    ck_skg(skg_mesh_layout_part(soup, &layout));
+    ck_assert_int_eq(layout.vertices, soup->vertices);
+    ck_assert_int_eq(layout.copies, 0);
+    for (int64_t c = 0; c < 3 * soup->triangles; c++) /* each is the caller's own */
+        ck_assert_int_eq(layout.source[layout.corners[c]], soup->corners[c]);
+    ck_assert_int_eq(skg_mesh_parted(soup), -1);
+    soup->positions[3 * 7] += 1;
+    ck_assert_int_ne(skg_mesh_parted(soup), -1);
+    skg_mesh_layout_release(&layout);
+    skg_mesh_release(&soup);
+}
+END_TEST
+
+/* A tidy mesh is copied as it is. The same mesh with its vertices in any order is not: they follow the triangles. */
+START_TEST(vertices_follow_the_triangles) {
+    skg_mesh *sphere, *mixed;
+    skg_mesh_layout layout;
+    ck_skg(skg_mesh_create_sphere(100, 128, &sphere));
+    ck_skg(skg_mesh_layout_create(sphere, &layout));
+    ck_assert_ptr_null(layout.source);
+    ck_assert_int_eq(layout.vertices, sphere->vertices);
+    check_places(sphere, &layout);
+    skg_mesh_layout_release(&layout);
+    const int64_t vertices = sphere->vertices;
+    int32_t *to, *corners;
+    double *positions;
+    ck_skg(skg_alloc(vertices, sizeof *to, "test", &to));
+    ck_skg(skg_alloc(3 * vertices, sizeof *positions, "test", &positions));
+    ck_skg(skg_alloc(3 * sphere->triangles, sizeof *corners, "test", &corners));
+    for (int32_t v = 0; v < vertices; v++) to[v] = v;
+    for (int64_t v = vertices - 1; v > 0; v--) {
+        const int64_t other = draw(v + 1);
+        const int32_t swap = to[v];
+        to[v] = to[other], to[other] = swap;
+    }
+    for (int64_t v = 0; v < vertices; v++)
+        memcpy(positions + 3 * (int64_t)to[v], sphere->positions + 3 * v, 3 * sizeof *positions);
+    for (int64_t c = 0; c < 3 * sphere->triangles; c++) corners[c] = to[sphere->corners[c]];
+    ck_skg(skg_mesh_create(NULL, "mixed", vertices, positions, 0, sphere->triangles, corners, 0, 1, &mixed));
+    ck_skg(skg_mesh_layout_create(mixed, &layout));
+    ck_assert_ptr_nonnull(layout.source);
+    ck_assert_int_eq(layout.vertices, vertices);
+    check_places(mixed, &layout);
+    for (int64_t c = 0, seen = 0; c < 3 * mixed->triangles;
+         c++) { /* a number is at most one above those before */
+        ck_assert_int_le(layout.corners[c], seen);
+        seen += layout.corners[c] == seen;
+    }
+    skg_mesh_layout_release(&layout);
+    skg_free(&to);
+    skg_free(&positions);
+    skg_free(&corners);
+    skg_mesh_release(&mixed);
+    skg_mesh_release(&sphere);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, shuffled_triangles_are_put_in_order);
+    tcase_add_test(tests, vertices_at_one_place_are_one_on_the_device);
+    tcase_add_test(tests, those_of_a_leaky_mesh_may_part);
+    tcase_add_test(tests, vertices_follow_the_triangles);
 }
 
 SKG_SUITE_MAIN("mesh order", add_tests)
