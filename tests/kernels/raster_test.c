@@ -339,11 +339,19 @@ START_TEST(vertex_that_is_not_finite) {
     ck_skg(picture_take(context, &options, &view, 2, bodies, 0x1p28, &result));
     ck_assert_int_eq(result.bad, sphere.vertices + 17);
     picture_free(&result);
-    skg_geometry geometry = {.parts = 3, .first_vertex = (int64_t[]){0, 10, 10, 40}};
+    int32_t merged[30] = {0, 1, 3};
+    skg_mesh_layout layouts[2] = {{.vertices = 10}, {.vertices = 30, .source = merged}};
+    skg_geometry geometry = {.parts = 3,
+                             .first_vertex = (int64_t[]){0, 10, 10, 40},
+                             .mesh_of_part = (int64_t[]){0, 0, 1},
+                             .layouts = layouts};
     int64_t part = 0, vertex = 0;
-    skg_geometry_find(&geometry, 12, &part, &vertex);
+    skg_geometry_find(&geometry, 12, &part, &vertex); /* vertex 2 of the device is the mesh's 3 */
     ck_assert_int_eq(part, 2);
-    ck_assert_int_eq(vertex, 2);
+    ck_assert_int_eq(vertex, 3);
+    skg_geometry_find(&geometry, 7, &part, &vertex);
+    ck_assert_int_eq(part, 0);
+    ck_assert_int_eq(vertex, 7);
     shape_free(&sphere);
     shape_free(&bad);
 }
