@@ -282,7 +282,7 @@ static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, i
     skg_uintv draw[4];
     for (int n = 0; n < pass->nodes; n++) {
         const skg_real weight = pass->weights[n * SKG_CHANNELS + channel];
-        const skg_real variance = pass->variances[n * SKG_CHANNELS + channel];
+        const skg_real variance = pass->variances[n * SKG_CHANNELS + channel] * (skg_real)pass->key->parts;
         if ((n & 3) == 0) skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2), draw);
         if (!(weight > 0)) continue;
         skg_realv power = pass->coefficients[n * SKG_PLANES] * pixels->x[0][r];
@@ -299,7 +299,8 @@ static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, i
 
 /* Adds quantum noise to one channel of run r: a normal deviate in pixels with many photons, else photon by photon. */
 static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int r, int channel, skg_realv all) {
-    const skg_realv mean = pixels->shown[channel][r], variance = pixels->spread[channel][r] * all;
+    const skg_real parts = (skg_real)pass->key->parts;
+    const skg_realv mean = pixels->shown[channel][r], variance = pixels->spread[channel][r] * all * parts;
     const int pixel = pass->row * pass->frame->columns + pass->column + r * SKG_WIDE;
     const skg_intv few = SKG_TO_INT_V(mean * mean < pass->photons * variance);
     skg_uintv draw[4];
