@@ -93,11 +93,12 @@ typedef struct {
     SKG_INT reserved;
 } skg_place_args;
 
-/* The key of a frame's noise (random.clh). sample: of the source; each sample has draws of its own. */
+/* The key of a frame's noise (random.clh). sample: of the source; each sample has draws of its own. parts: the frame is one
+ * of this number whose mean is an exposure; each has its share of the photons. */
 typedef struct {
     SKG_INT seed[2], frame[2]; /* low word first */
     SKG_INT sample;
-    SKG_INT reserved;
+    SKG_INT parts;
 } skg_noise_args;
 
 /* How many hits a frame lists: low + 2^32 high. A struct, so that no 32-bit integer can take its place: on the host

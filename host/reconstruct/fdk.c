@@ -19,8 +19,8 @@ struct skg_fdk {
     skg_fdk_options options;
     skg_orbit orbit;
     skg_row_filter filter;
-    int64_t columns, rows, projections;
-    float *image;  /* [rows][columns], weighted and filtered */
+    int64_t columns, rows, projections, fine;
+    float *image;  /* [rows][fine], weighted and filtered */
     float *volume; /* [z][y][x], 1/cm */
 };
 
@@ -57,7 +57,8 @@ static skg_status prepare(skg_fdk *fdk) {
     fdk->rows = view.rows;
     const int64_t *n = fdk->options.voxels;
     SKG_TRY(skg_row_filter_create(view.columns, fdk->options.filter == SKG_FDK_FILTER_HANN, &fdk->filter));
-    SKG_TRY(skg_alloc(view.columns * view.rows, sizeof(float), "projection", &fdk->image));
+    fdk->fine = skg_row_fine(&fdk->filter, view.columns);
+    SKG_TRY(skg_alloc(fdk->fine * view.rows, sizeof(float), "projection", &fdk->image));
     return skg_alloc(n[0] * n[1] * n[2], sizeof(float), "volume", &fdk->volume);
 }
 
@@ -95,15 +96,15 @@ void skg_fdk_release(skg_fdk **fdk) {
 /* Weights each ray by its share and by the cosine of its angle with the plane across the axis, then filters the row. */
 static void filter_row(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image, int64_t row,
                        double *work) {
-    float *to = fdk->image + row * fdk->columns;
+    double *weighted = work + 2 * (fdk->filter.fine + fdk->filter.length);
     for (int64_t c = 0; c < fdk->columns; c++) {
         double ray[3];
         skg_orbit_ray(pose, row, c, ray);
         const double cosine = skg_dot(ray, pose->forward) / skg_length(ray);
-        to[c] = (float)((double)image[row * fdk->columns + c] * cosine *
-                        skg_orbit_weight(&fdk->orbit, pose, ray));
+        weighted[c] =
+            (double)image[row * fdk->columns + c] * cosine * skg_orbit_weight(&fdk->orbit, pose, ray);
     }
-    skg_row_filter_apply(&fdk->filter, fdk->columns, to, work);
+    skg_row_filter_apply(&fdk->filter, fdk->columns, weighted, work, fdk->image + row * fdk->fine);
 }
 
 static skg_status filter_image(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image) {
@@ -111,7 +112,8 @@ static skg_status filter_image(skg_fdk *fdk, const skg_orbit_pose *pose, const f
 #pragma omp parallel reduction(| : failed)
     {
         double *work = NULL;
-        failed = skg_alloc(2 * fdk->filter.length, sizeof *work, "filter", &work) != SKG_OK;
+        failed = skg_alloc(2 * (fdk->filter.fine + fdk->filter.length) + fdk->columns, sizeof *work, "filter",
+                           &work) != SKG_OK;
 #pragma omp for schedule(static)
         for (int64_t row = 0; row < fdk->rows; row++)
             if (!failed) filter_row(fdk, pose, image, row, work);
@@ -164,14 +166,14 @@ static void find_map(const skg_orbit_pose *pose, pixel_map *map) {
     }
 }
 
-/* The image between pixels; 0 beyond its edge. */
+/* The filtered image between pixels; 0 beyond its edge. */
 static double image_at(const skg_fdk *fdk, double column, double row) {
-    const double c = floor(column), r = floor(row);
-    if (!(c >= 0 && r >= 0 && c < (double)(fdk->columns - 1) && r < (double)(fdk->rows - 1))) return 0;
-    const float *at = fdk->image + (int64_t)r * fdk->columns + (int64_t)c;
-    const double u = column - c, v = row - r;
+    const double fine = (double)fdk->filter.finer * column, c = floor(fine), r = floor(row);
+    if (!(c >= 0 && r >= 0 && c < (double)(fdk->fine - 1) && r < (double)(fdk->rows - 1))) return 0;
+    const float *at = fdk->image + (int64_t)r * fdk->fine + (int64_t)c;
+    const double u = fine - c, v = row - r;
     return (1 - v) * ((1 - u) * (double)at[0] + u * (double)at[1]) +
-           v * ((1 - u) * (double)at[fdk->columns] + u * (double)at[fdk->columns + 1]);
+           v * ((1 - u) * (double)at[fdk->fine] + u * (double)at[fdk->fine + 1]);
 }
 
 /* Coordinate of a voxel. */

@@ -7,9 +7,11 @@
 /* The ramp of Kak and Slaney (Principles of Computerized Tomographic Imaging, 1988, eq. 3.61) between samples one
  * spacing apart, as factors of the discrete Fourier transform. */
 typedef struct {
-    int64_t length; /* a power of two, at least twice the number of samples */
-    double *factors;
-    double *cosines; /* [length / 2] of the transform, and its sines */
+    int64_t length;  /* a power of two, at least twice the number of samples */
+    int64_t finer;   /* samples of a filtered row for each of the row */
+    int64_t fine;    /* finer * length */
+    double *factors; /* [length / 2 + 1] */
+    double *cosines; /* [fine / 2] of the transforms, and their sines */
     double *sines;
 } skg_row_filter;
 
@@ -17,7 +19,13 @@ typedef struct {
 skg_status skg_row_filter_create(int64_t samples, int is_hann, skg_row_filter *filter);
 void skg_row_filter_free(skg_row_filter *filter);
 
-/* Filters samples in place. work: [2 length] doubles. */
-void skg_row_filter_apply(const skg_row_filter *filter, int64_t samples, float *row, double *work);
+/* Number of samples of a filtered row. */
+static inline int64_t skg_row_fine(const skg_row_filter *filter, int64_t samples) {
+    return filter->finer * (samples - 1) + 1;
+}
+
+/* Filters samples. work: [2 (fine + length)]; result: [skg_row_fine] */
+void skg_row_filter_apply(const skg_row_filter *filter, int64_t samples, const double *row, double *work,
+                          float *result);
 
 #endif

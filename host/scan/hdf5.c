@@ -221,6 +221,11 @@ static skg_status locate(skg_scan_file *file) {
         H5Fclose(root);
     }
     skg_hdf5_be_as_before(&before);
+    if (status == SKG_OK && !file->data_at && file->done_at)
+        return skg_fail(
+            SKG_ERR_OUTPUT,
+            "%s: is a packed copy of this scan, which is finished; name another output to scan again",
+            file->path);
     if (status == SKG_OK && (!file->data_at || !file->done_at))
         return skg_fail(SKG_ERR_OUTPUT,
                         "%s: has no place for projections; something else has changed it: remove it",

@@ -9,6 +9,18 @@ static skg_status refuse(void) {
     return skg_fail(SKG_ERR_UNSUPPORTED, "this build of skiagraph has no HDF5; build it with libhdf5-dev");
 }
 
+void skg_scan_pack_options_init_sized(void *options, int32_t size) {
+    const skg_scan_pack_options defaults = {.level = 4};
+    skg_struct_init(options, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_scan_file_pack(const char *from, const char *to, const skg_scan_pack_options *options) {
+    (void)options;
+    SKG_NEEDS(from);
+    SKG_NEEDS(to);
+    return refuse();
+}
+
 skg_status skg_scan_reader_open(const char *path, skg_scan_reader **reader) {
     SKG_NEEDS(reader);
     *reader = NULL;

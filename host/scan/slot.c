@@ -79,6 +79,12 @@ static skg_status submit_job(const skg_scan_work *work, skg_scan_slot *slot, int
     return SKG_OK;
 }
 
+/* Sub-frames have random numbers of their own, the first one those of a projection without sub-frames. */
+static int64_t seed_of(const skg_scan_work *work, int64_t subframe) {
+    static const uint64_t apart = 0x9E3779B97F4A7C15u; /* odd: no two are equal */
+    return (int64_t)((uint64_t)work->options.noise_seed + (uint64_t)subframe * apart);
+}
+
 /* Describes frame f of a batch; with motion it poses the scene for it. */
 static skg_status prepare_frame(const skg_scan_work *work, skg_scan_slot *slot, int64_t f) {
     const int64_t subframes = work->options.subframes, p = f / subframes;
@@ -88,7 +94,8 @@ static skg_status prepare_frame(const skg_scan_work *work, skg_scan_slot *slot, 
     SKG_TRY(skg_scan_view_at(work->scan, position, &slot->views[f]));
     skg_frame_init(&slot->frames[f]);
     slot->frames[f].view = &slot->views[f];
-    slot->frames[f].noise_seed = work->options.noise_seed;
+    slot->frames[f].subframes = (int32_t)subframes;
+    slot->frames[f].noise_seed = seed_of(work, f % subframes);
     slot->frames[f].index = slot->indices[p];
     slot->frames[f].pose_count = work->options.moving_count;
     slot->frames[f].pose_parts = work->options.moving_parts;

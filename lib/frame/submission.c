@@ -80,12 +80,15 @@ static skg_status read_frame(const skg_submission *s, int64_t index, skg_frame *
     const skg_recipe *recipe = s->recipe;
     skg_frame_init(frame);
     *view = recipe->view;
-    *noise = skg_noise_key(recipe->options.noise_seed, index);
+    *noise = skg_noise_key(recipe->options.noise_seed, index, 1);
     memset(poses, 0, (size_t)recipe->scene->count * sizeof *poses);
     if (!s->frames) return SKG_OK;
     SKG_TRY(skg_struct_read_at(s->frames, index, "skg_frame", frame, sizeof *frame));
     *noise = skg_noise_key((int64_t)((uint64_t)recipe->options.noise_seed + (uint64_t)frame->noise_seed),
-                           frame->index);
+                           frame->index, frame->subframes);
+    if (frame->subframes < 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "frame %" PRId64 ": it is one of %" PRId32 " sub-frames", index,
+                        frame->subframes);
     if (frame->view) {
         SKG_TRY(skg_view_check(frame->view));
         skg_view_init(view);

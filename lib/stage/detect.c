@@ -1,5 +1,6 @@
 #include "stage/detect.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* What one type of image needs. */
@@ -44,9 +45,9 @@ int skg_detector_wants_flat_field(const skg_detector *detector) {
     return detector->detection.over_flat_field;
 }
 
-skg_noise_args skg_noise_key(int64_t seed, int64_t index) {
+skg_noise_args skg_noise_key(int64_t seed, int64_t index, int32_t parts) {
     const uint64_t words[2] = {(uint64_t)seed, (uint64_t)index};
-    skg_noise_args key = {.sample = 0};
+    skg_noise_args key = {.parts = parts > 1 ? parts : 1};
     for (int k = 0; k < 2; k++) {
         key.seed[k] = (cl_int)(uint32_t)(words[0] >> 32 * k);
         key.frame[k] = (cl_int)(uint32_t)(words[1] >> 32 * k);
@@ -83,7 +84,8 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
     detector_type *type = NULL;
     skg_real_argument electronic, spacing, scale;
     SKG_TRY(get_type(detector, is_double, &type));
-    skg_real_argument_set(&electronic, is_double, detection->electronic);
+    /* Each part has its own; their mean has that of one exposure. */
+    skg_real_argument_set(&electronic, is_double, detection->electronic * sqrt((double)key->parts));
     skg_real_argument_set(&spacing, is_double, detection->step);
     skg_real_argument_set(&scale, is_double, factor);
     const skg_argument arguments[SKG_DETECT_ARGUMENTS] = {

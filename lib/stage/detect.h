@@ -36,6 +36,6 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
 int64_t skg_detector_bytes(const skg_detector *detector);
 
 /* The key of a frame's noise. */
-skg_noise_args skg_noise_key(int64_t seed, int64_t index);
+skg_noise_args skg_noise_key(int64_t seed, int64_t index, int32_t parts);
 
 #endif

@@ -205,6 +205,14 @@ START_TEST(a_volume_has_the_coefficients) {
                 ck_assert_double_eq_tol((double)value, 0.2, 0.002); /* 1 %, the bar */
         }
     ck_run_fails(2, "-o FILE.mha", "reconstruct scan.h5 -o volume.png");
+    ck_run(0, "scan body.json -o scan.h5 --packed packed.h5 --packed-grey16 --quiet");
+    ck_run(0, "reconstruct packed.h5 -o grey.mha --size 48 --voxel 1.2 --filter hann --json");
+    object = said_json();
+    ck_assert_int_eq(json_integer_value(member(object, "projections")), 360);
+    json_decref(object);
+    ck_run_fails(5, "packed copy", "scan body.json -o packed.h5");
+    ck_run_fails(2, "to another .h5", "scan body.json -o scan.mha --packed packed.h5");
+    ck_run_fails(2, "add it", "scan body.json -o scan.h5 --packed-grey16");
     ck_run_fails(3, "cannot be read", "reconstruct body.json -o volume.mha");
     ck_run(0, "scan body.json --set Scan.FinalAngle=90 -o part.h5 --quiet");
     ck_run_fails(3, "180 degrees plus the fan", "reconstruct part.h5 -o volume.mha");

@@ -116,6 +116,13 @@ CASES = {
         placement(*DETECTOR, [rotation("z", 0, vector("xyz", STAGE[0], "mm"), drifts=drift([0, 300], "deg"))]),
         placement(*SOURCE, [rotation("z", 0, vector("xyz", STAGE[0], "mm"), drifts=drift([0, 300], "deg"))]),
         placement(*STAGE), [sample("a", ON_STAGE)], stop_angle=parameter(0, "deg")),
+    # Axis and pivot as bare numbers, as in the format's examples 10 and 11.
+    "gantry on a cone": scenario(
+        placement(*DETECTOR, [rotation({"x": 1, "y": 0, "z": 1}, 0, {"x": 275, "y": 1, "z": 2},
+                                       drifts=drift([0, 360], "deg"))]),
+        placement(*SOURCE, [rotation({"x": 1, "y": 0, "z": 1}, 0, {"x": 275, "y": 1, "z": 2},
+                                     drifts=drift([0, 360], "deg"))]),
+        placement(*STAGE), [sample("a", ON_STAGE)], stop_angle=parameter(0, "deg")),
     "samples deviate": scenario(
         placement(*DETECTOR), placement(*SOURCE), placement(*STAGE, [rotation("u", 2)]),
         [sample("a", placement((3, 20, parameter(-4, "mm", drift([0, 5]))), (1, 0, 0), (0, 0.2, 1), [

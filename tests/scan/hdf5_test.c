@@ -3,8 +3,11 @@
 #include "support/run.h"
 
 #include <hdf5.h>
+#include <skiagraph/scan_reader.h>
+
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE, COUNT = 5, FLATS = 2 };
 
@@ -139,9 +142,123 @@ START_TEST(what_hdf5_reads) {
 }
 END_TEST
 
+/* A file of this scan with some flat fields that differ, and all projections or all but one. */
+static void make_file(int64_t projections) {
+    static float white[FLATS][PIXELS], dark[PIXELS];
+    skg_scan_file *file = NULL;
+    skg_scan_file_options options;
+    skg_scan_run_options run;
+    skg_scan_file_options_init(&options);
+    skg_scan_run_options_init(&run);
+    options.scan = scan;
+    options.hash = hash;
+    options.name = "energy";
+    options.unit = "keV per pixel";
+    options.samples = 1;
+    options.flats = FLATS;
+    for (int i = 0; i < PIXELS; i++) white[0][i] = 100 + 100 * (float)i / PIXELS, white[1][i] = 100;
+    ck_skg(skg_scan_file_open(path, &options, &file));
+    ck_skg(skg_scan_file_fields_write(file, FLATS, white, 1, dark));
+    run.to = projections;
+    run.batch = 1;
+    ck_skg(skg_scan_run_each(plan, scan, &run, keep, file));
+    ck_skg(skg_scan_file_finish(file));
+    skg_scan_file_release(&file);
+}
+
+static void read_all(const char *name, float *images) {
+    const hid_t root = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert(root >= 0);
+    read_set(root, "exchange/data", H5T_NATIVE_FLOAT, (hsize_t)COUNT * PIXELS, images);
+    H5Fclose(root);
+}
+
+/* A packed copy has the bits of the scan in chunks, is read in its place, and is not continued. */
+START_TEST(a_packed_copy_is_the_same_scan) {
+    static float images[COUNT][PIXELS], copies[COUNT][PIXELS], lines[2][PIXELS];
+    char packed[140];
+    double numbers[2][COUNT];
+    skg_scan_reader *readers[2] = {NULL};
+    snprintf(packed, sizeof packed, "%s/packed.h5", folder);
+    make_file(COUNT - 1);
+    ck_skg_fails(skg_scan_file_pack(path, packed, NULL), SKG_ERR_FORMAT, "finish the scan first");
+    ck_assert_int_ne(access(packed, F_OK), 0);
+    make_file(0);
+    ck_skg(skg_scan_file_pack(path, packed, NULL));
+    read_all(path, images[0]);
+    read_all(packed, copies[0]);
+    ck_assert_mem_eq(images, copies, sizeof images);
+    const char *const names[] = {path, packed};
+    for (int r = 0; r < 2; r++) {
+        const hid_t root = H5Fopen(names[r], H5F_ACC_RDONLY, H5P_DEFAULT);
+        const hid_t set = H5Dopen2(root, "exchange/data", H5P_DEFAULT), how = H5Dget_create_plist(set);
+        ck_assert_int_eq(H5Pget_layout(how), r ? H5D_CHUNKED : H5D_CONTIGUOUS);
+        ck_assert_int_eq(H5Pget_nfilters(how), r ? 2 : 0);
+        read_set(root, "geometry/phase", H5T_NATIVE_DOUBLE, COUNT, numbers[r]);
+        H5Pclose(how);
+        H5Dclose(set);
+        H5Fclose(root);
+        ck_skg(skg_scan_reader_open(names[r], &readers[r]));
+        ck_skg(skg_scan_reader_attenuation_get(readers[r], 3, lines[r]));
+        skg_scan_reader_release(&readers[r]);
+    }
+    ck_assert_mem_eq(numbers[0], numbers[1], sizeof numbers[0]);
+    ck_assert_mem_eq(lines[0], lines[1], sizeof lines[0]);
+    skg_scan_file *file = NULL;
+    skg_scan_file_options options;
+    skg_scan_file_options_init(&options);
+    options.scan = scan;
+    options.hash = hash;
+    options.samples = 1;
+    options.flats = FLATS;
+    ck_skg_fails(skg_scan_file_open(packed, &options, &file), SKG_ERR_OUTPUT, "packed copy");
+    unlink(packed);
+}
+END_TEST
+
+/* 60000 where the mean of both flat fields is strongest, which is 100 + 100 (PIXELS - 1) / (2 PIXELS). */
+START_TEST(a_packed_copy_in_grey_values) {
+    static float images[COUNT][PIXELS], copies[COUNT][PIXELS];
+    char packed[140], quantity[32] = "";
+    const double top = 100 + 100 * (double)(PIXELS - 1) / (2 * PIXELS);
+    skg_scan_pack_options options;
+    skg_scan_pack_options_init(&options);
+    snprintf(packed, sizeof packed, "%s/packed.h5", folder);
+    make_file(0);
+    options.is_grey16 = 1;
+    ck_skg(skg_scan_file_pack(path, packed, &options));
+    read_all(path, images[0]);
+    read_all(packed, copies[0]);
+    for (int k = 0; k < COUNT; k++)
+        for (int i = 0; i < PIXELS; i++) {
+            const double grey = fmin(fmax(60000 * (double)images[k][i] / top, 0), 65535);
+            ck_assert_double_eq_tol((double)copies[k][i], grey,
+                                    0.501); /* half a grey value, and roundings of top */
+        }
+    const hid_t root = H5Fopen(packed, H5F_ACC_RDONLY, H5P_DEFAULT), type = H5Tcopy(H5T_C_S1);
+    const hid_t attribute = H5Aopen_by_name(root, "exchange", "quantity", H5P_DEFAULT, H5P_DEFAULT);
+    H5Tset_size(type, sizeof quantity);
+    ck_assert_int_ge(H5Aread(attribute, type, quantity), 0);
+    ck_assert_str_eq(quantity, "grey value");
+    H5Aclose(attribute);
+    H5Tclose(type);
+    H5Fclose(root);
+    unlink(packed);
+    options.level = 10;
+    ck_skg_fails(skg_scan_file_pack(path, packed, &options), SKG_ERR_ARGUMENT, "give 0 to 9");
+    options.level = 0;
+    ck_skg_fails(skg_scan_file_pack(path, path, &options), SKG_ERR_ARGUMENT, "the scan itself");
+    ck_skg_fails(skg_scan_file_pack(packed, path, &options), SKG_ERR_FILE, "cannot be read");
+    snprintf(packed, sizeof packed, "%s/nowhere/packed.h5", folder);
+    ck_skg_fails(skg_scan_file_pack(path, packed, &options), SKG_ERR_OUTPUT, "nowhere");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_test(tests, what_hdf5_reads);
+    tcase_add_test(tests, a_packed_copy_is_the_same_scan);
+    tcase_add_test(tests, a_packed_copy_in_grey_values);
 }
 
 SKG_SUITE_MAIN("hdf5", add_tests)

@@ -52,6 +52,15 @@ const cli_flag cli_flag_scan_grey16 = {
     "without radiation. Scenes with GreyValues, such as CTSimU scenarios, are written as grey values unless --quantity is "
     "given.",
     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_packed = {
+    "--packed", "FILE",
+    "When the scan is finished: also writes the .h5 again to this .h5, compressed in chunks, without loss. May be given later, "
+    "with the same command.",
+    NULL, CLI_NAMES_FILE};
+const cli_flag cli_flag_scan_packed_grey16 = {
+    "--packed-grey16", NULL,
+    "With --packed: the copy has grey values of 16 bits, 60000 where the mean flat field is strongest.", NULL,
+    CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
@@ -89,6 +98,8 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_scan_join,
                                         &cli_flag_scan_mixed,
                                         &cli_flag_scan_grey16,
+                                        &cli_flag_scan_packed,
+                                        &cli_flag_scan_packed_grey16,
                                         &cli_flag_device,
                                         &cli_flag_precision,
                                         &cli_flag_tolerance,

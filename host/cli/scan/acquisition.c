@@ -5,6 +5,7 @@
 #include "scan/batches.h"
 #include "scan/grey.h"
 #include "scan/metadata.h"
+#include "scan/packed.h"
 #include "scan/phases.h"
 #include "scan/shards.h"
 #include "scan/shared.h"
@@ -62,6 +63,7 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     a->options.to = to + 1;
     if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
     if (exit_status == CLI_DONE) exit_status = phases_read_flag(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = packed_read_flags(arguments, a);
     return exit_status;
 }
 
@@ -216,6 +218,8 @@ int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status != CLI_DONE || a->ranks.rank > 0) return exit_status;
     const skg_status status = skg_scan_file_finish(a->file);
     if (status != SKG_OK) return cli_fail(status);
+    const int packed = packed_write(arguments, a);
+    if (packed != CLI_DONE) return packed;
     if (a->phases > 0) return phases_write(a);
     return a->stem && is_folder(a->place) ? metadata_write(a) : CLI_DONE;
 }

@@ -136,6 +136,36 @@ SKG_API skg_status skg_scan_file_copy(skg_scan_file *file, const skg_scan_file *
  * projections are missing. */
 SKG_API skg_status skg_scan_file_finish(skg_scan_file *file);
 
+/** How a finished .h5 is packed. Prepare with skg_scan_pack_options_init: all bits of the values, compression of level 4. */
+typedef struct {
+    /** Set by skg_scan_pack_options_init. */
+    int32_t size;
+    /** Of zlib: 0 (none) to 9 */
+    int32_t level;
+    /** 1: values become grey values of 16 bits, 60000 where the mean flat field is strongest; larger ones end at 65535. */
+    int32_t is_grey16;
+    /** 0 */
+    int32_t reserved;
+} skg_scan_pack_options;
+
+/** Prepares the options of packing, of `size` bytes (export.h). */
+SKG_API void skg_scan_pack_options_init_sized(void *options, int32_t size);
+
+/** Prepares the options of packing. */
+static inline void skg_scan_pack_options_init(skg_scan_pack_options *options) {
+    skg_scan_pack_options_init_sized(options, (int32_t)sizeof *options);
+}
+
+/** Writes a finished .h5 again, in chunks that are compressed: the last pass over a scan. The new file holds all that the old one
+ * does, and is read by the same programs; it cannot be continued.
+ *
+ *     from      an .h5 that has all of its projections
+ *     to        appears whole or not at all; a file that is there is replaced
+ *     options   NULL: the defaults
+ *     errors    SKG_ERR_FILE, SKG_ERR_FORMAT (no scan, projections are missing, grey values of attenuations), SKG_ERR_OUTPUT,
+ *               SKG_ERR_ARGUMENT (level; `to` is `from`); SKG_ERR_UNSUPPORTED in builds without HDF5 */
+SKG_API skg_status skg_scan_file_pack(const char *from, const char *to, const skg_scan_pack_options *options);
+
 #ifdef __cplusplus
 }
 #endif

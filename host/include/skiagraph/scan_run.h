@@ -62,8 +62,8 @@ static inline void skg_scan_run_options_init(skg_scan_run_options *options) {
 
 /** Starts a run. Three batches are in memory at a time: the caller's, and two that are being computed.
  *
- *     plan      retained. With sub-frames the mean is taken of the intensity, whatever the quantity. Sub-frames share
- *               the random numbers of their projection: the mean has the noise of one exposure where nothing moves
+ *     plan      retained. With sub-frames the mean is taken of the intensity, whatever the quantity; it has the noise
+ *               of one exposure
  *     scan      retained
  *     options   NULL: the defaults
  *     run       result; the caller releases it

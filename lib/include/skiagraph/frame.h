@@ -23,8 +23,10 @@ extern "C" {
 typedef struct {
     /** Set by skg_frame_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 0 or 1: the frame is a whole exposure. n: it is one of n frames whose mean is an exposure. Each has the intensity of the
+     * whole, and the noise of its share of the photons; if they have different seeds, their mean has the noise of one
+     * exposure. */
+    int32_t subframes;
     /** NULL: the plan's. It needs the plan's numbers of rows and columns. */
     const skg_view *view;
     /** Number of parts that have another pose in this frame. */
