@@ -11,10 +11,14 @@ static const char *find_elsewhere(const skg_setup_source *source, const char *na
     return NULL;
 }
 
-static skg_status add_file(skg_setup_reader *reader, const char *name, skg_setup_file *file) {
+skg_status skg_setup_where(const skg_setup_reader *reader, const char *name, char **path) {
     const char *elsewhere = find_elsewhere(&reader->source, name);
+    return elsewhere ? skg_copy_text(elsewhere, path) : skg_setup_resolve(reader, name, path);
+}
+
+static skg_status add_file(const skg_setup_reader *reader, const char *name, skg_setup_file *file) {
     SKG_TRY(skg_copy_text(name, &file->name));
-    return elsewhere ? skg_copy_text(elsewhere, &file->path) : skg_setup_resolve(reader, name, &file->path);
+    return skg_setup_where(reader, name, &file->path);
 }
 
 skg_status skg_setup_find_file(skg_setup_reader *reader, const char *name, const char **path) {

@@ -20,6 +20,9 @@ typedef struct {
 /* A path relative to the scene file's folder; the caller frees it. */
 skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, char **resolved);
 
+/* The path of a file that the scene names; the caller frees it. */
+skg_status skg_setup_where(const skg_setup_reader *reader, const char *name, char **path);
+
 /* The path of a file that the scene names, and that is read now: where the source of the set-up says, otherwise as
  * above. It is kept in the list of files, and belongs to it. */
 skg_status skg_setup_find_file(skg_setup_reader *reader, const char *name, const char **path);

@@ -225,6 +225,19 @@ static skg_status move_all_to_centre(skg_scene *scene) {
     return SKG_OK;
 }
 
+/* Loads the meshes of the samples beforehand, up to the first sample that is at fault: none behind it is read. */
+static skg_status fetch_meshes(const skg_setup_reader *reader, const skg_json_node *node, int64_t count,
+                               skg_mesh_cache *cache) {
+    for (int64_t i = 0; i < count; i++) {
+        skg_json_object sample;
+        const skg_json_node element = skg_json_element(node, i);
+        if (json_is_string(element.value)) continue;
+        if (read_sample_object(&element, &sample) != SKG_OK) break;
+        SKG_TRY(skg_mesh_cache_want(reader, &sample, cache));
+    }
+    return skg_mesh_cache_fetch(cache);
+}
+
 skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node *node,
                                   const skg_json_node *graph) {
     int64_t count = 0;
@@ -239,6 +252,7 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
         SKG_TRY_CLEANUP(read_sample_object(graph, &sample));
         SKG_TRY_CLEANUP(read_element(reader, graph, &cache, &list));
     }
+    SKG_TRY_CLEANUP(fetch_meshes(reader, node, count, &cache));
     for (int64_t i = 0; i < count; i++) {
         skg_json_node element = skg_json_element(node, i);
         SKG_TRY_CLEANUP(read_element(reader, &element, &cache, &list));

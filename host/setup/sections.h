@@ -12,6 +12,7 @@
 #ifndef SKG_SECTIONS_H
 #define SKG_SECTIONS_H
 
+#include "mesh/mesh.h"
 #include "setup/reader.h"
 
 /* Each reads one section into reader->setup. Source comes before Detector, which needs to know where the beam comes
@@ -97,9 +98,27 @@ typedef struct {
         skg_mesh *mesh;
     } * loaded;
     int64_t count;
+    struct skg_fetched_mesh { /* loaded beforehand, by several threads */
+        char *path;
+        double unit_mm;
+        skg_loaded
+            loaded; /* its mesh is NULL if that failed; the failure is found again where the sample is read */
+    } * fetched;
+    int64_t fetched_count;
 } skg_mesh_cache;
 
 void skg_mesh_cache_clear(skg_mesh_cache *cache);
+
+/* Adds the file of a sample to those that are loaded beforehand, if it has one that threads may share. */
+skg_status skg_mesh_cache_want(const skg_setup_reader *reader, const skg_json_object *sample,
+                               skg_mesh_cache *cache);
+
+/* Loads them. */
+skg_status skg_mesh_cache_fetch(skg_mesh_cache *cache);
+
+/* Takes a mesh that was loaded beforehand, or loads it. */
+skg_status skg_mesh_cache_load(skg_mesh_cache *cache, skg_context *context, const char *path, double unit_mm,
+                               skg_mesh **mesh);
 
 /* The mesh of a sample: from its Path, or generated. flip: turn a leaky mesh inside out (the normals of a closed one
  * point outward anyway). The caller releases the mesh. own: pose of the generated mesh in the axes of the schema. */

@@ -19,14 +19,6 @@ static const struct {
 
 enum { MOST_SECTORS = 100000 };
 
-void skg_mesh_cache_clear(skg_mesh_cache *cache) {
-    for (int64_t i = 0; i < cache->count; i++) {
-        skg_mesh_release(&cache->loaded[i].mesh);
-    }
-    skg_free(&cache->loaded);
-    cache->count = 0;
-}
-
 /* The mesh gets one more owner; the path belongs to the set-up. */
 static skg_status remember(skg_mesh_cache *cache, const char *path, double unit_mm, int32_t flip,
                            skg_mesh *mesh) {
@@ -109,7 +101,7 @@ static skg_status load(skg_setup_reader *reader, const skg_json_object *sample, 
         *mesh = known->mesh;
         return SKG_OK;
     }
-    SKG_TRY(skg_json_at(node, skg_mesh_load(reader->context, path, unit_mm, mesh)));
+    SKG_TRY(skg_json_at(node, skg_mesh_cache_load(cache, reader->context, path, unit_mm, mesh)));
     if (flip) SKG_TRY(turn_inside_out(reader, node, mesh));
     if (reader->setup->orient) SKG_TRY(orient(reader, node, mesh));
     return remember(cache, path, unit_mm, flip, *mesh);

@@ -113,6 +113,12 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
     return skg_mesh_examine(mesh);
 }
 
+void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh) {
+    if (mesh->orientation < 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: inverted as a whole (its triangles face inward); turned outward", mesh->name);
+}
+
 skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_arrays *arrays, skg_mesh **mesh) {
     skg_mesh *made = NULL;
     if (!name || !*name) name = "mesh";
@@ -126,9 +132,7 @@ skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_array
         skg_mesh_release(&made);
         return status;
     }
-    if (made->orientation < 0)
-        skg_log(context, SKG_LOG_WARNING,
-                "%s: inverted as a whole (its triangles face inward); turned outward", name);
+    skg_mesh_warn_turned(context, made);
     *mesh = made;
     return SKG_OK;
 }

@@ -100,23 +100,56 @@ static skg_status read_by_assimp(const char *path, skg_mesh_arrays *arrays) {
     return status;
 }
 
+static reader find_reader(const char *path) {
+    const char *dot = strrchr(path, '.');
+    if (dot && skg_same_name(dot, ".stl")) return skg_mesh_read_stl;
+    if (dot && skg_same_name(dot, ".obj")) return skg_mesh_read_obj;
+    if (dot && skg_same_name(dot, ".ply")) return skg_mesh_read_ply;
+    return NULL;
+}
+
 static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     FILE *stream;
     int64_t size = 0;
     SKG_TRY(open_file(path, &stream, &size));
-    const char *dot = strrchr(path, '.');
-    reader read = NULL;
-    if (dot && skg_same_name(dot, ".stl")) read = skg_mesh_read_stl;
-    if (dot && skg_same_name(dot, ".obj")) read = skg_mesh_read_obj;
-    if (dot && skg_same_name(dot, ".ply")) read = skg_mesh_read_ply;
+    const reader read = find_reader(path);
     skg_status status = read ? read_here(stream, path, size, read, arrays) : read_by_assimp(path, arrays);
     fclose(stream);
     return status;
 }
 
+static const char *name_of(const char *path) {
+    const char *name = strrchr(path, '/');
+    return name ? name + 1 : path;
+}
+
+int skg_mesh_is_shareable(const char *path) {
+    return find_reader(path) != NULL;
+}
+
+skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded) {
+    skg_mesh_arrays arrays = {0};
+    *loaded = (skg_loaded){0};
+    const skg_status status = read_file(path, &arrays);
+    if (status != SKG_OK) {
+        skg_mesh_arrays_free(&arrays);
+        return status;
+    }
+    loaded->left_out = arrays.left_out;
+    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
+    return skg_mesh_adopt(NULL, name_of(path), &arrays, &loaded->mesh);
+}
+
+void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded) {
+    if (loaded->left_out > 0)
+        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name_of(path),
+                loaded->left_out);
+    if (loaded->mesh) skg_mesh_warn_turned(context, loaded->mesh);
+}
+
 static skg_status load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
     SKG_PLAIN;
-    skg_mesh_arrays arrays = {0};
+    skg_loaded loaded;
     SKG_NEEDS_OF("skg_mesh_load", mesh);
     *mesh = NULL;
     SKG_NEEDS_OF("skg_mesh_load", path);
@@ -124,17 +157,10 @@ static skg_status load(skg_context *context, const char *path, double unit_mm, s
     if (!isfinite(unit_mm) || unit_mm <= 0)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
                         path, unit_mm);
-    skg_status status = read_file(path, &arrays);
-    if (status != SKG_OK) {
-        skg_mesh_arrays_free(&arrays);
-        return status;
-    }
-    const char *name = strrchr(path, '/');
-    name = name ? name + 1 : path;
-    if (arrays.left_out > 0)
-        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name, arrays.left_out);
-    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
-    return skg_mesh_adopt(context, name, &arrays, mesh);
+    const skg_status status = skg_mesh_load_silently(path, unit_mm, &loaded);
+    skg_mesh_load_warn(context, path, &loaded);
+    *mesh = loaded.mesh;
+    return status;
 }
 
 skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {

@@ -30,6 +30,21 @@ struct skg_mesh {
  * skg_mesh_create promises except the strides and the unit. */
 skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_arrays *arrays, skg_mesh **mesh);
 
+/* Warns if the mesh was turned outward as a whole. */
+void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh);
+
+/* A mesh from a file, and what is to be warned of. */
+typedef struct {
+    skg_mesh *mesh;   /* NULL: it could not be loaded */
+    int64_t left_out; /* points and lines of the file */
+} skg_loaded;
+
+/* What skg_mesh_load does, in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ:
+ * Assimp's errors belong to no thread), and the second one logs. The calling thread has the C locale (plain.h). */
+int skg_mesh_is_shareable(const char *path);
+skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded);
+void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded);
+
 /* Fills health and orientation of a new mesh, and its weld map. */
 skg_status skg_mesh_examine(skg_mesh *mesh);
 

@@ -1,7 +1,6 @@
 #include "plan/meshes.h"
 
 #include "core/context.h"
-#include "geometry/nesting.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -66,18 +65,16 @@ skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene 
     return SKG_OK;
 }
 
-skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_scene *scene,
-                                const skg_context *context) {
+skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
+                                const skg_scene *scene, const skg_context *context) {
     for (int64_t i = 0; i < meshes->count; i++) {
-        skg_mesh_nesting nesting;
         char text[1024];
-        SKG_TRY(skg_nesting_find(meshes->meshes[i], &nesting, NULL));
-        SKG_TRY(skg_mesh_nesting_describe(&nesting, sizeof text, text));
+        SKG_TRY(skg_mesh_nesting_describe(&nestings[i], sizeof text, text));
         if (!*text) continue;
         int64_t part = 0;
         while (meshes->of_part[part] != i) part++;
         skg_log(context, SKG_LOG_WARNING, "part %s: %s%s", scene->parts[part].label, text,
-                nesting.inverted > 0
+                nestings[i].inverted > 0
                     ? ". \"Repair\": \"orientation\" in a scene file turns inverted components"
                     : "");
     }

@@ -17,8 +17,8 @@ void skg_plan_meshes_release(skg_plan_meshes *meshes);
 /* SKG_ERR_MESH, naming part and vertex, if a mesh has a vertex that is not finite. */
 skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene *scene);
 
-/* Warns of meshes whose components contradict their nesting. */
-skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_scene *scene,
-                                const skg_context *context);
+/* Warns of meshes whose components contradict their nesting. nestings: [count] of skg_nesting_find. */
+skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
+                                const skg_scene *scene, const skg_context *context);
 
 #endif

@@ -1,5 +1,8 @@
 #include "plan/overlaps.h"
+#include "core/context.h"
 #include "core/names.h"
+#include "core/parallel.h"
+#include "geometry/nesting.h"
 #include "geometry/priority.h"
 
 #include <inttypes.h>
@@ -47,23 +50,45 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
         worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
 }
 
+/* What threads share: item 0 is the overlaps between parts, and the others are the meshes. */
+typedef struct {
+    const skg_recipe *recipe;
+    skg_outcome *outcome;
+    skg_mesh_nesting *nestings; /* [meshes] */
+    skg_solid *solids;          /* [parts] */
+    double **positions;         /* [parts] */
+} checking;
+
+static skg_status check_overlaps(checking *c) {
+    const skg_scene *scene = c->recipe->scene;
+    if (scene->count < 2) return SKG_OK;
+    for (int64_t i = 0; i < scene->count; i++)
+        SKG_TRY(place_solid(&scene->parts[i], &c->solids[i], &c->positions[i]));
+    return skg_overlaps_find(scene->count, c->solids, &c->outcome->overlap_count, &c->outcome->overlaps);
+}
+
+static skg_status check_item(void *user, int64_t item) {
+    checking *c = user;
+    if (item == 0) return check_overlaps(c);
+    return skg_nesting_find(c->recipe->meshes.meshes[item - 1], &c->nestings[item - 1], NULL);
+}
+
 skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_context *context, skg_outcome *outcome) {
     const skg_scene *scene = recipe->scene;
-    skg_solid *solids = NULL;
-    double **positions = NULL;
+    const int64_t meshes = recipe->meshes.count;
+    checking c = {.recipe = recipe, .outcome = outcome};
     skg_status status = SKG_OK;
     if (!recipe->options.overlaps) return SKG_OK;
-    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, scene, context));
-    if (scene->count < 2) return SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *solids, "overlap check", &solids));
-    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *positions, "overlap check", &positions));
-    for (int64_t i = 0; i < scene->count; i++)
-        SKG_TRY_CLEANUP(place_solid(&scene->parts[i], &solids[i], &positions[i]));
-    SKG_TRY_CLEANUP(skg_overlaps_find(scene->count, solids, &outcome->overlap_count, &outcome->overlaps));
+    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *c.nestings, "overlap check", &c.nestings));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.solids, "overlap check", &c.solids));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.positions, "overlap check", &c.positions));
+    SKG_TRY_CLEANUP(skg_parallel(meshes + 1, check_item, &c));
+    SKG_TRY_CLEANUP(skg_plan_meshes_warn(&recipe->meshes, c.nestings, scene, context));
     warn(recipe, context, outcome);
 cleanup:
-    for (int64_t i = 0; positions && i < scene->count; i++) skg_free(&positions[i]);
-    skg_free(&positions);
-    skg_free(&solids);
+    for (int64_t i = 0; c.positions && i < scene->count; i++) skg_free(&c.positions[i]);
+    skg_free(&c.positions);
+    skg_free(&c.solids);
+    skg_free(&c.nestings);
     return status;
 }

@@ -1,5 +1,6 @@
 #include "spectral/verify.h"
 
+#include "core/parallel.h"
 #include "core/random.h"
 
 #include <math.h>
@@ -129,6 +130,7 @@ typedef struct {
     const double *mu;
     const skg_nodes *nodes;
     double *lengths, *trial, *exact; /* of one point */
+    double error;                    /* at `lengths` */
     int64_t looks;
 } climb;
 
@@ -173,32 +175,71 @@ static void rank_point(int64_t index, double error, int64_t *worst, double *erro
     worst[at] = index, errors[at] = error;
 }
 
-skg_status skg_nodes_verify(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
-                            const skg_lengths *points, double *error, int64_t *checked, skg_lengths *worst) {
+/* What threads share: the points in pieces, then the climbs. */
+enum { PIECE = 64 };
+typedef struct {
+    const skg_lengths *points;
+    double *errors; /* [points] */
+    climb climbs[STARTS];
+} verifying;
+
+static skg_status find_errors(void *user, int64_t piece) {
+    verifying *v = user;
+    const climb *c = v->climbs;
+    const skg_lengths *points = v->points;
+    for (int64_t p = piece * PIECE; p < (piece + 1) * PIECE && p < points->count; p++)
+        v->errors[p] = skg_nodes_error(c->beam, c->mu, c->nodes, points->lengths + p * c->beam->materials,
+                                       points->exact + p * c->beam->sets);
+    return SKG_OK;
+}
+
+static skg_status climb_one(void *user, int64_t item) {
+    climb *c = &((verifying *)user)->climbs[item];
+    c->error = ascend(c, c->error);
+    return SKG_OK;
+}
+
+/* Makes the climbs from the worst points. Returns their number by *starts. */
+static skg_status prepare_climbs(verifying *v, int32_t *starts) {
     int64_t start[STARTS];
     double errors[STARTS];
+    *starts = 0;
+    for (int64_t p = 0; p < v->points->count; p++) rank_point(p, v->errors[p], start, errors, starts);
+    for (int32_t s = 0; s < *starts; s++) {
+        climb *c = &v->climbs[s];
+        const int32_t materials = c->beam->materials;
+        SKG_TRY(skg_alloc(materials, sizeof *c->lengths, "lengths", &c->lengths));
+        SKG_TRY(skg_alloc(materials, sizeof *c->trial, "lengths", &c->trial));
+        SKG_TRY(skg_alloc(c->beam->sets, sizeof *c->exact, "lengths", &c->exact));
+        memcpy(c->lengths, v->points->lengths + start[s] * materials, (size_t)materials * sizeof *c->lengths);
+        c->error = errors[s];
+    }
+    return SKG_OK;
+}
+
+skg_status skg_nodes_verify(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
+                            const skg_lengths *points, double *error, int64_t *checked, skg_lengths *worst) {
+    verifying v = {.points = points};
     int32_t starts = 0;
     skg_status status = SKG_OK;
-    climb c = {.beam = beam, .mu = mu, .nodes = nodes};
-    SKG_TRY_CLEANUP(skg_alloc(beam->materials, sizeof *c.lengths, "lengths", &c.lengths));
-    SKG_TRY_CLEANUP(skg_alloc(beam->materials, sizeof *c.trial, "lengths", &c.trial));
-    SKG_TRY_CLEANUP(skg_alloc(beam->sets, sizeof *c.exact, "lengths", &c.exact));
-    for (int64_t p = 0; p < points->count; p++)
-        rank_point(p,
-                   skg_nodes_error(beam, mu, nodes, points->lengths + p * beam->materials,
-                                   points->exact + p * beam->sets),
-                   start, errors, &starts);
-    *error = starts ? errors[0] : 0;
+    for (int32_t s = 0; s < STARTS; s++) v.climbs[s] = (climb){.beam = beam, .mu = mu, .nodes = nodes};
+    SKG_TRY_CLEANUP(skg_alloc(points->count, sizeof *v.errors, "lengths", &v.errors));
+    SKG_TRY_CLEANUP(skg_parallel((points->count + PIECE - 1) / PIECE, find_errors, &v));
+    SKG_TRY_CLEANUP(prepare_climbs(&v, &starts));
+    *error = starts ? v.climbs[0].error : 0;
+    SKG_TRY_CLEANUP(skg_parallel(starts, climb_one, &v));
+    *checked = points->count;
     for (int32_t s = 0; s < starts; s++) {
-        memcpy(c.lengths, points->lengths + start[s] * beam->materials,
-               (size_t)beam->materials * sizeof *c.lengths);
-        *error = fmax(*error, ascend(&c, errors[s]));
-        if (worst) SKG_TRY_CLEANUP(skg_lengths_add(beam, c.lengths, worst));
+        *error = fmax(*error, v.climbs[s].error);
+        *checked += v.climbs[s].looks;
+        if (worst) SKG_TRY_CLEANUP(skg_lengths_add(beam, v.climbs[s].lengths, worst));
     }
-    *checked = points->count + c.looks;
 cleanup:
-    skg_free(&c.lengths);
-    skg_free(&c.trial);
-    skg_free(&c.exact);
+    for (int32_t s = 0; s < STARTS; s++) {
+        skg_free(&v.climbs[s].lengths);
+        skg_free(&v.climbs[s].trial);
+        skg_free(&v.climbs[s].exact);
+    }
+    skg_free(&v.errors);
     return status;
 }

@@ -1,0 +1,76 @@
+#define _GNU_SOURCE /* sched_getaffinity, CPU_COUNT */
+#include "core/parallel.h"
+#include "core/plain.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+
+enum { MOST_THREADS = 16 };
+
+typedef struct {
+    int64_t count;
+    skg_item_work work;
+    void *user;
+    atomic_llong next;
+    pthread_mutex_t lock; /* of what follows */
+    int64_t failed;       /* the first item that failed; count: none */
+    skg_status status;
+    char message[1024];
+} crew;
+
+static void note_failure(crew *c, int64_t item, skg_status status) {
+    atomic_store(&c->next, c->count); /* those before it were begun, and will end */
+    pthread_mutex_lock(&c->lock);
+    if (item < c->failed) {
+        c->failed = item;
+        c->status = status;
+        snprintf(c->message, sizeof c->message, "%s", skg_last_error());
+    }
+    pthread_mutex_unlock(&c->lock);
+}
+
+static void do_items(crew *c) {
+    for (;;) {
+        const int64_t item = atomic_fetch_add(&c->next, 1);
+        if (item >= c->count) return;
+        const skg_status status = c->work(c->user, item);
+        if (status != SKG_OK) note_failure(c, item, status);
+    }
+}
+
+static void *do_thread(void *given) {
+    SKG_PLAIN;
+    do_items(given);
+    return NULL;
+}
+
+static int64_t count_threads(int64_t items) {
+    cpu_set_t cpus;
+    const int64_t most = items < MOST_THREADS ? items : MOST_THREADS;
+    const int64_t known = sched_getaffinity(0, sizeof cpus, &cpus) == 0 ? CPU_COUNT(&cpus) : 1;
+    return known < most ? known : most;
+}
+
+/* Starts helpers. A signal that the program has asked for goes to the program's own threads. */
+static int start(crew *c, int64_t wanted, pthread_t *threads) {
+    sigset_t all, before;
+    int started = 0;
+    sigfillset(&all);
+    if (wanted < 1 || pthread_sigmask(SIG_SETMASK, &all, &before) != 0) return 0;
+    while (started < wanted && pthread_create(&threads[started], NULL, do_thread, c) == 0) started++;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return started;
+}
+
+skg_status skg_parallel(int64_t count, skg_item_work work, void *user) {
+    SKG_PLAIN;
+    pthread_t threads[MOST_THREADS];
+    crew c = {.count = count, .work = work, .user = user, .lock = PTHREAD_MUTEX_INITIALIZER, .failed = count};
+    const int started = start(&c, count_threads(count) - 1, threads);
+    do_items(&c);
+    for (int t = 0; t < started; t++) pthread_join(threads[t], NULL);
+    pthread_mutex_destroy(&c.lock);
+    return c.failed < count ? skg_fail(c.status, "%s", c.message) : SKG_OK;
+}
