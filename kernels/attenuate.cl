@@ -159,47 +159,6 @@ static skg_realv skg_flat_field(const skg_pass *pass, const skg_pixels *pixels, 
 }
 #endif
 
-<<<<<<< HEAD
-=======
-#if SKG_NOISE
-/* Draws the photons of each node separately, for the pixels of run r in which there are few. */
-static skg_realv skg_photons_v(const skg_pass *pass, const skg_pixels *pixels, int r, skg_realv all, skg_intv few,
-                               int pixel, int channel) {
-    skg_realv value = (skg_realv)(0);
-    skg_uintv draw[4];
-    for (int n = 0; n < pass->nodes; n++) {
-        const skg_real weight = pass->weights[n * SKG_CHANNELS + channel];
-        const skg_real variance = pass->variances[n * SKG_CHANNELS + channel] * (skg_real)pass->key->parts;
-        if ((n & 3) == 0) skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_PHOTONS, channel, n >> 2), draw);
-        if (!(weight > 0)) continue;
-        skg_realv power = pass->coefficients[n * SKG_PLANES] * pixels->x[0][r];
-        SKG_EACH_PLANE(1)
-        power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + p]), pixels->x[p][r], power);
-        const skg_floatv expected = SKG_TO_FLOAT_V(weight * weight / variance * all * skg_exp2_v(power));
-        const skg_intv many = expected > (skg_floatv)(SKG_FEW);
-        const skg_floatv counted = skg_poisson_v(few & ~many ? expected : (skg_floatv)(0.0f), draw[n & 3]);
-        const skg_floatv spread = fma(skg_root_v(expected), skg_normal_v(draw[n & 3]), expected);
-        value = fma((skg_realv)(variance / weight), SKG_TO_REAL_V(many ? spread : counted), value);
-    }
-    return value;
-}
-
-/* Adds quantum noise to one channel of run r: a normal deviate in pixels with many photons, else photon by photon. */
-static skg_realv skg_noisy_v(const skg_pass *pass, const skg_pixels *pixels, int r, int channel, skg_realv all) {
-    const skg_real parts = (skg_real)pass->key->parts;
-    const skg_realv mean = pixels->shown[channel][r], variance = pixels->spread[channel][r] * all * parts;
-    const int pixel = pass->row * pass->frame->columns + pass->column + r * SKG_WIDE;
-    const skg_intv few = SKG_TO_INT_V(mean * mean < pass->photons * variance);
-    skg_uintv draw[4];
-    skg_draw_v(pass->key, pixel, SKG_DRAW_WORD(SKG_DRAW_QUANTUM, channel, 0), draw);
-    const skg_floatv deviate = skg_root_v(SKG_TO_FLOAT_V(variance)) * skg_normal_v(draw[0]);
-    const skg_realv normal = mean + SKG_TO_REAL_V(deviate);
-    if (!skg_any(few)) return normal;
-    return SKG_TO_MASK_V(few) ? skg_photons_v(pass, pixels, r, all, few, pixel, channel) : normal;
-}
-#endif
-
->>>>>>> scan
 /* From sums over nodes to what is shown of run r. */
 static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
 #if SKG_SHOW == SKG_SHOW_LOGARITHM && !SKG_NOISE /* the factor cancels */
