@@ -133,7 +133,8 @@
 #define SKG_ARGUMENTS_BLUR_ACROSS(X) \
     X(BLUR_ACROSS, workspace) X(BLUR_ACROSS, stride) X(BLUR_ACROSS, high) X(BLUR_ACROSS, down) \
     X(BLUR_ACROSS, across) X(BLUR_ACROSS, weights) X(BLUR_ACROSS, image) X(BLUR_ACROSS, offset) \
-    X(BLUR_ACROSS, row_stride) X(BLUR_ACROSS, channel_stride) X(BLUR_ACROSS, columns) X(BLUR_ACROSS, rows)
+    X(BLUR_ACROSS, row_stride) X(BLUR_ACROSS, channel_stride) X(BLUR_ACROSS, columns) X(BLUR_ACROSS, rows) \
+    X(BLUR_ACROSS, add)
 
 #define SKG_ARGUMENTS_DETECT(X) \
     X(DETECT, image) X(DETECT, offset) X(DETECT, row_stride) X(DETECT, channel_stride) X(DETECT, columns) \

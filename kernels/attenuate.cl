@@ -185,7 +185,9 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
         value *= all;
 #endif
         pixels->shown[c][r] = value;
-#if SKG_NOISE
+#if SKG_NOISE_APART
+        pixels->spread[c][r] = skg_noisy_v(pass, pixels, r, c, all) - value;
+#elif SKG_NOISE
         pixels->shown[c][r] = skg_noisy_v(pass, pixels, r, c, all);
 #endif
     }
@@ -207,7 +209,7 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
  * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `limit` (the exponent is
  *                below -limit): more was subtracted for children than their parent has there
  *                negative[2] counts the values that are not finite
- * output         strides and offset in elements
+ * output         strides and offset in elements; with SKG_NOISE_APART, deviations follow behind the means of all channels
  * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p
  * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
  * foot           distance from the source to the foot of its perpendicular on the plane of the detector: intensities are
@@ -318,6 +320,10 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
         SKG_EACH_CHANNEL {
             skg_count_infinite(pixels.shown[c][r], left, negative + 2);
             skg_show(pixels.shown[c][r], place + c * channel_stride, left);
+#if SKG_NOISE_APART
+            skg_count_infinite(pixels.spread[c][r], left, negative + 2);
+            skg_show(pixels.spread[c][r], place + (SKG_CHANNELS + c) * channel_stride, left);
+#endif
         }
         skg_count(pixels.highest[r], limit, left, negative);
     }

@@ -46,10 +46,10 @@ __kernel void skg_blur_down(__global const skg_real *image, long offset, long ro
 }
 
 /* Second pass. weights: [down][across]. Pixel (row, column) of the image is the sum over the weights times the workspace from
- * its pixel (row, column) on. */
+ * its pixel (row, column) on; if `add` is 1, this is added to what is there. */
 __kernel void skg_blur_across(__global const skg_real *workspace, int stride, int high, int down, int across,
                               __global const skg_real *weights, __global skg_real *image, long offset,
-                              long row_stride, long channel_stride, int columns, int rows) {
+                              long row_stride, long channel_stride, int columns, int rows, int add) {
     const int column = SKG_BLUR_RUN * SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
     const int channel = (int)get_global_id(2);
     if (column >= columns || row >= rows) return;
@@ -65,11 +65,12 @@ __kernel void skg_blur_across(__global const skg_real *workspace, int stride, in
     SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++) {
         const int pixels = columns - column - v * SKG_WIDE;
         if (pixels >= SKG_WIDE)
-            SKG_STORE_V(sum[v], v, image);
+            SKG_STORE_V(add ? SKG_LOAD_V(v, image) + sum[v] : sum[v], v, image);
         else {
             skg_real rest[SKG_WIDE];
             SKG_STORE_V(sum[v], 0, rest);
-            for (int k = 0; k < pixels; k++) image[v * SKG_WIDE + k] = rest[k];
+            for (int k = 0; k < pixels; k++)
+                image[v * SKG_WIDE + k] = add ? image[v * SKG_WIDE + k] + rest[k] : rest[k];
         }
     }
 }

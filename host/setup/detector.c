@@ -12,7 +12,8 @@ static const skg_json_key detector_keys[] = {
     {"Oversampling", NULL, SKG_KEY_READ}, {"EnergyResponse", NULL, SKG_KEY_READ},
     {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", NULL, SKG_KEY_READ},
     {"PSF", NULL, SKG_KEY_READ},          {"GreyValues", NULL, SKG_KEY_READ},
-    {"Grid", NULL, SKG_KEY_READ},
+    {"Grid", NULL, SKG_KEY_READ},         {"MTF", NULL, SKG_KEY_READ},
+    {"DQE", NULL, SKG_KEY_READ},
 };
 
 /* Size and Spacing may both be given if they agree; if they do not, that is a fault, and Spacing holds. */

@@ -20,7 +20,7 @@ static const skg_json_key pulse_keys[] = {
 static const skg_json_key scintillator_keys[] = {
     {"Material", NULL, SKG_KEY_READ}, {"Thickness", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
     {"Density", NULL, SKG_KEY_READ},  {"Packing", NULL, SKG_KEY_READ},   {"Oblique", NULL, SKG_KEY_READ},
-    {"Escape", NULL, SKG_KEY_READ},   {"DQE", NULL, SKG_KEY_READ},
+    {"Escape", NULL, SKG_KEY_READ},   {"DQE", NULL, SKG_KEY_READ},       {"Depths", NULL, SKG_KEY_READ},
 };
 
 /* The unit of energies, and what these mean for noise. */
@@ -218,7 +218,9 @@ static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_nod
     const skg_json_node oblique = skg_json_member(&object, "Oblique");
     if (oblique.value) SKG_TRY(skg_json_flag(&oblique, &reader->setup->oblique));
     SKG_TRY(let_escape(reader, &object));
-    return read_dqe(reader, &object);
+    SKG_TRY(read_dqe(reader, &object));
+    const skg_json_node depths = skg_json_member(&object, "Depths");
+    return skg_setup_read_depths(reader, &depths);
 }
 
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector) {

@@ -80,8 +80,12 @@ skg_status skg_setup_read_rows(const skg_json_node *node, int64_t width, const c
 skg_status skg_setup_read_poses(skg_setup_reader *reader, const skg_json_node *node, const double *own,
                                 int64_t part);
 
-/* LSF or PSF of a detector, and the key Noise of the file (value NULL: none). */
+/* LSF, PSF or MTF, and DQE, of a detector that has its place; the Depths of its scintillator (value NULL: none). */
 skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *detector);
+skg_status skg_setup_read_depths(skg_setup_reader *reader, const skg_json_node *node);
+void skg_setup_blur_free(skg_setup *setup);
+
+/* The key Noise of the file (value NULL: none). */
 skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);
 
 /* A material: its name, or an array that begins with its kind. density: in g/cm3; value NULL: not given. label: the

@@ -279,7 +279,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_response_release(&(*setup)->response);
     skg_material_release(&(*setup)->world);
     skg_setup_in_beam_free(*setup);
-    skg_free(&(*setup)->blur_samples);
+    skg_setup_blur_free(*setup);
     skg_scan_section_free(&(*setup)->scan);
     skg_grey_section_free(&(*setup)->grey);
     skg_breathing_section_free(&(*setup)->breathing);
@@ -350,7 +350,9 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->response) ours.response = setup->response;
     if (setup->world) ours.world = setup->world;
     if (setup->scan.view_count) ours.view_count = setup->scan.view_count, ours.views = setup->scan.views;
-    if (setup->blur.columns > 0) ours.blur = &setup->blur;
+    if (setup->blur.shape.columns > 0) ours.blur = &setup->blur.shape;
+    if (setup->depths.count > 0) ours.depth_blur = &setup->depths;
+    if (setup->dqe.count > 0) ours.dqe = &setup->dqe;
     if (setup->noise.quantum || setup->noise.electronic_kev > 0 || setup->noise.step_kev > 0) {
         ours.noise = setup->noise.quantum;
         ours.swank = setup->noise.swank;

@@ -72,6 +72,12 @@ typedef struct {
     int64_t seed;
 } skg_setup_noise;
 
+/* LSF, PSF or MTF. */
+typedef struct {
+    skg_detector_blur shape;
+    double *samples; /* to which shape points */
+} skg_setup_blur;
+
 /* A file that the scene names. */
 typedef struct {
     char *name; /* as the scene has it */
@@ -87,8 +93,13 @@ struct skg_setup {
     int32_t falloff;        /* 1: the beam falls off with distance */
     skg_response *response; /* NULL: ideal */
     skg_material *world;    /* around the parts; NULL: vacuum */
-    skg_detector_blur blur; /* columns 0: none */
-    double *blur_samples;   /* to which blur points */
+    skg_setup_blur blur;    /* columns 0: none */
+    skg_depth_blur depths;  /* of the scintillator; count 0: none */
+    double depth_to[SKG_DEPTHS_MAX];
+    skg_setup_blur depth_blurs[SKG_DEPTHS_MAX];
+    skg_detector_blur depth_shapes[SKG_DEPTHS_MAX]; /* of these */
+    skg_dqe dqe;                                    /* by frequency; count 0: none */
+    double *dqe_columns;
     skg_setup_noise noise;
     skg_grey_section grey;
     skg_spot spot;

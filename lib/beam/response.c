@@ -249,6 +249,16 @@ int skg_response_is_layer(const skg_response *response) {
     return response && (response->base ? skg_response_is_layer(response->base) : response->count == 0);
 }
 
+skg_status skg_response_depth_share(const skg_response *response, double energy_kev, double from, double to,
+                                    double *share) {
+    double per_cm = 0;
+    if (response->base) return skg_response_depth_share(response->base, energy_kev, from, to, share);
+    SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
+    const double depth = per_cm * response->mm / 10;
+    *share = exp(-depth * from) * expm1(-depth * (to - from)) / expm1(-depth);
+    return SKG_OK;
+}
+
 int skg_response_escapes(const skg_response *response) {
     return response && (response->base ? skg_response_escapes(response->base) : response->escape != NULL);
 }

@@ -1,4 +1,5 @@
 #include "frame/assemble.h"
+#include "core/vector.h"
 #include "plan/decide.h"
 
 static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) {
@@ -16,12 +17,16 @@ static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) 
     return status;
 }
 
-static skg_status make_detector(const skg_recipe *recipe, const skg_detector_blur *blur,
+static skg_status make_detector(const skg_recipe *recipe, const skg_plan_options *options,
                                 skg_machine *machine) {
+    const double pixel_mm[2] = {skg_length(recipe->view.column_step), skg_length(recipe->view.row_step)};
+    skg_layers *layers = &machine->layers;
     skg_detection detection;
     double factors[SKG_CHANNELS_MAX];
     int32_t wanted = 0;
-    if (blur) SKG_TRY(skg_blur_create(machine->context, blur, &machine->blur));
+    SKG_TRY(skg_layers_create(machine->context, options->blur, options->depth_blur, layers));
+    if (recipe->options.dqe && recipe->options.noise)
+        SKG_TRY(skg_layers_add_noise(machine->context, options->blur, recipe->options.dqe, pixel_mm, layers));
     SKG_TRY(skg_decide_detection(recipe, &detection, factors, &wanted));
     return wanted ? skg_detector_create(machine->context, &detection, factors, &machine->detector) : SKG_OK;
 }
@@ -39,16 +44,16 @@ static skg_status make_lengths(const skg_recipe *recipe, skg_machine *machine) {
     const double one = 1;
     const skg_attenuation_tables tables = {.coefficients = &one, .weights = &one};
     const skg_attenuation length = {
-        .planes = 1, .nodes = 1, .channels = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
+        .planes = 1, .nodes = 1, .channels = 1, .layers = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
     return skg_attenuation_create(machine->context, recipe->options.precision, &length, &tables,
                                   &machine->lengths);
 }
 
-skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe, const skg_detector_blur *blur,
-                                skg_machine *machine) {
+skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
+                                const skg_plan_options *options, skg_machine *machine) {
     machine->context = machine->rasters.context = context;
     SKG_TRY(make_geometry(recipe, machine));
-    SKG_TRY(make_detector(recipe, blur, machine));
+    SKG_TRY(make_detector(recipe, options, machine));
     SKG_TRY(make_attenuation(recipe, context, &machine->images));
     SKG_TRY(make_lengths(recipe, machine));
     SKG_TRY(skg_attenuator_create(context, &machine->attenuator));

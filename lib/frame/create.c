@@ -15,14 +15,14 @@ static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, s
     skg_plan_options_init(&options);
     if (given) SKG_TRY(skg_struct_read(given, "skg_plan_options", &options, sizeof options));
     SKG_TRY(skg_recipe_create(plan->context, scene, view, spectrum, &options, &plan->recipe));
-    SKG_TRY(skg_machine_assemble(plan->context, plan->recipe, options.blur, machine));
+    SKG_TRY(skg_machine_assemble(plan->context, plan->recipe, &options, machine));
     SKG_TRY(skg_outcome_create(plan->recipe, outcome));
     SKG_TRY(skg_plan_overlaps_find(plan->recipe, plan->context, outcome));
     SKG_TRY(skg_frame_prepare(plan->recipe, machine, outcome));
     SKG_TRY(skg_samples_adapt(plan->recipe, machine, outcome, &adapted));
     skg_recipe_release(&plan->recipe);
     plan->recipe = adapted;
-    return skg_effects_find(plan->recipe, plan->context, machine->blur, outcome);
+    return skg_effects_find(plan->recipe, plan->context, &machine->layers, outcome);
 }
 
 skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,

@@ -125,21 +125,28 @@ static skg_status find_flat_field(const skg_frame_means *means, const skg_frame_
                                       .sums = &sums,
                                       .attenuator = machine->attenuator,
                                       .attenuation = &machine->images,
-                                      .blur = machine->blur,
+                                      .layers = &machine->layers,
                                       .negative = machine->negative.memory};
     return skg_flat_field_find(&machine->flat_field, &flat, work->view, work->place.output_double,
                                means->staging);
 }
 
-/* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps. */
-static skg_status detect(const skg_frame_means *means, const skg_frame_work *work) {
+/* How many layers an image has; mean intensities alone have none of noise. */
+static int32_t layers_of(const skg_frame_means *means) {
+    const int32_t count = means->machine->layers.count, least = means->recipe->model.layers;
+    return means->recipe->linear && least < count ? least : count;
+}
+
+/* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps. layers: where these are. */
+static skg_status detect(const skg_frame_means *means, const skg_frame_work *work,
+                         const skg_image_place *layers) {
     const skg_recipe *recipe = means->recipe;
     skg_machine *machine = means->machine;
     const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
     skg_stage_log *log = &means->staging->log;
     skg_camera camera;
-    if (machine->blur)
-        SKG_TRY(skg_blur_run(machine->blur, &work->place, columns, rows, recipe->model.channels, log));
+    SKG_TRY(skg_layers_blur(&machine->layers, layers_of(means), layers, &work->place, columns, rows,
+                            recipe->model.channels, log));
     if (!machine->detector || recipe->linear) return SKG_OK;
     SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
     const double factor =
@@ -154,8 +161,12 @@ skg_status skg_frame_enqueue(const skg_frame_means *means, const skg_frame_work 
     if (work->lengths_of >= 0) return enqueue_pass(means, work, -1);
     const int64_t first = skg_recipe_averages(recipe) ? 0 : -1;
     const int64_t end = first < 0 ? 0 : skg_samples_count(&recipe->samples);
-    for (int64_t s = first; s < end; s++) SKG_TRY(enqueue_pass(means, work, s));
-    SKG_TRY(detect(means, work));
+    skg_frame_work layered = *work;
+    SKG_TRY(skg_layers_place(means->machine->context, &means->machine->layers, layers_of(means), &work->place,
+                             recipe->view.columns, recipe->view.rows, recipe->model.channels,
+                             &layered.place));
+    for (int64_t s = first; s < end; s++) SKG_TRY(enqueue_pass(means, &layered, s));
+    SKG_TRY(detect(means, work, &layered.place));
     if (!skg_decide_late_logarithm(recipe)) return SKG_OK;
     return skg_attenuate_logarithm(means->machine->attenuator, means->main->raster, &means->machine->images,
                                    &work->place, &means->staging->log);

@@ -75,8 +75,11 @@ skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy
     SKG_TRY(check_index(__func__, "node", index, model->nodes));
     if (energy_kev) *energy_kev = model->node_kev[index];
     if (photons) *photons = model->node_photons[index];
-    if (weights)
-        memcpy(weights, model->weights + index * model->channels, (size_t)model->channels * sizeof *weights);
+    for (int32_t c = 0; weights && c < model->channels; c++) {
+        weights[c] = 0;
+        for (int32_t l = 0; l < model->layers; l++)
+            weights[c] += model->weights[(index * model->layers + l) * model->channels + c];
+    }
     return SKG_OK;
 }
 

@@ -11,12 +11,11 @@ static const double DEVIATE = 100;    /* a random deviate with its random words 
 static const double RAY = 10;         /* the length of a ray */
 static const double REPAIRED = 30;    /* a pixel of a repair */
 static const double LISTED = 200;     /* a hit that is listed and sorted */
-static const double SEARCHED = 5;     /* a step of a search in a table */
-static const double LOOKED_UP = 10;   /* four points of a table */
+static const double LOOKED_UP = 10;   /* two rows of a table */
 
 typedef struct {
     const skg_recipe *recipe;
-    const skg_blur *blur; /* NULL: none */
+    const skg_layers *layers;
     double pixels;
     double hits;   /* of a pass, per pixel */
     double listed; /* of these, hits that are listed for priorities */
@@ -42,10 +41,10 @@ static double listed_of(const counts *c, const skg_extent *extent, const int32_t
     return 2 * fmax(width, 0) * fmax(height, 0) / c->pixels;
 }
 
-static counts count(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
+static counts count(const skg_recipe *recipe, const skg_layers *layers, const skg_extent *extents,
                     const skg_priority *priority) {
     counts c = {.recipe = recipe,
-                .blur = blur,
+                .layers = layers,
                 .pixels = (double)recipe->view.columns * (double)recipe->view.rows,
                 .passes = (double)skg_samples_count(&recipe->samples)};
     for (int64_t p = 0; p < recipe->scene->count; p++)
@@ -66,6 +65,14 @@ static double contributions_per_part(const skg_model *model, int64_t parts) {
     for (int64_t p = 0; p < parts; p++)
         adding += model->first_contribution[p + 1] > model->first_contribution[p];
     return adding ? (double)model->first_contribution[parts] / (double)adding : 1;
+}
+
+/* Samples of the blurs of all layers, or of the last one alone. */
+static double blur_samples(const counts *c, int last) {
+    double samples = 0;
+    for (int32_t l = last ? c->layers->count - 1 : 0; l < c->layers->count; l++)
+        samples += (double)skg_blur_samples(c->layers->blurs[l]);
+    return samples;
 }
 
 /* Multiply-adds per pixel of a frame that an effect costs. plain: those of a pass without effects; pass: of a pass. */
@@ -94,7 +101,7 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_OBLIQUE:
         return c->passes * (RAY + model->shades.oblique * (SKG_SHADE_TERMS + nodes));
     case SKG_EFFECT_BOWTIE:
-        return c->passes * (2 * RAY + SEARCHED * log2((double)model->shades.rows) + nodes);
+        return c->passes * (2 * RAY + LOOKED_UP + nodes);
     case SKG_EFFECT_GRID:
         return c->passes * (2 * RAY + model->shades.grid * (LOOKED_UP + nodes));
     case SKG_EFFECT_LEAKY:
@@ -106,7 +113,10 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_NOISE:
         return c->passes * channels * (nodes + DEVIATE);
     case SKG_EFFECT_BLUR:
-        return channels * (double)skg_blur_samples(c->blur);
+        return channels * (double)skg_blur_samples(c->layers->blurs[0]);
+    case SKG_EFFECT_DEPTHS:
+    case SKG_EFFECT_DQE:
+        return channels * blur_samples(c, effect == SKG_EFFECT_DQE) + c->passes * nodes * (model->layers - 1);
     case SKG_EFFECT_ELECTRONIC:
         return channels * DEVIATE;
     case SKG_EFFECT_QUANTISATION:
@@ -116,10 +126,10 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     }
 }
 
-void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
+void skg_costs_estimate(const skg_recipe *recipe, const skg_layers *layers, const skg_extent *extents,
                         const skg_priority *priority, skg_outcome *outcome) {
     const skg_model *model = &recipe->model;
-    const counts c = count(recipe, blur, extents, priority);
+    const counts c = count(recipe, layers, extents, priority);
     const double set_up = TRIANGLE * (double)outcome->report.triangles / c.pixels;
     const double plain = set_up + c.hits * SKG_COST_OF_CONTRIBUTION + attenuation(model, 1, 1);
     const double pass =

@@ -5,10 +5,10 @@
 #include "geometry/extent.h"
 #include "geometry/priority.h"
 #include "plan/outcome.h"
-#include "stage/blur.h"
+#include "stage/layers.h"
 
-/* Fills the costs of the outcome's effects. blur: NULL for none; extents: [parts] at the recipe's view. */
-void skg_costs_estimate(const skg_recipe *recipe, const skg_blur *blur, const skg_extent *extents,
+/* Fills the costs of the outcome's effects. layers: and their blurs; extents: [parts] at the recipe's view. */
+void skg_costs_estimate(const skg_recipe *recipe, const skg_layers *layers, const skg_extent *extents,
                         const skg_priority *priority, skg_outcome *outcome);
 
 #endif

@@ -29,7 +29,8 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
     *shape = (skg_attenuation){.planes = skg_model_width(model),
                                .nodes = model->nodes,
-                               .channels = model->channels,
+                               .channels = skg_model_sums(model),
+                               .layers = model->layers,
                                .shown = shown,
                                .world_plane = has_world ? (int32_t)model->world_plane : -1,
                                .world_weight = model->world_weight,
@@ -37,6 +38,7 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
                                .ratio = (has_world || model->shades.count > 0) && is_ratio,
                                .falloff = options->falloff && !is_ratio,
                                .noise = options->noise,
+                               .apart = options->noise && options->dqe,
                                .energies = options->quantity == SKG_QUANTITY_ENERGY};
 }
 

@@ -14,7 +14,7 @@
 typedef struct {
     const skg_recipe *recipe;
     const skg_context *context;
-    const skg_blur *blur; /* NULL: none */
+    const skg_layers *layers;
     skg_outcome *outcome;
 } finding;
 
@@ -46,11 +46,34 @@ static void find_noise(const finding *f) {
             "\"absorbed\" if photons leave either all of their energy or nothing");
 }
 
+static void find_layers(const finding *f) {
+    const skg_plan_options *options = &f->recipe->options;
+    const skg_dqe *dqe = options->dqe;
+    if (options->depth_blur)
+        skg_effect_set(f->outcome, SKG_EFFECT_DEPTHS, 1,
+                       "%d depths of the scintillator, each with a blur of its own; the deepest has %s",
+                       (int)options->depth_blur->count,
+                       skg_blur_kind(f->layers->blurs[f->layers->count - 1]));
+    else
+        skg_effect_set(f->outcome, SKG_EFFECT_DEPTHS, 0,
+                       "not asked for: the blur is the same for all energies");
+    if (dqe && options->noise)
+        skg_effect_set(f->outcome, SKG_EFFECT_DQE, 1,
+                       "noise power by a DQE of %g at 0 to %g at %g per mm; noise is blurred by %s",
+                       dqe->dqe[0], dqe->dqe[dqe->count - 1], dqe->per_mm[dqe->count - 1],
+                       skg_blur_kind(f->layers->blurs[f->layers->count - 1]));
+    else
+        skg_effect_set(f->outcome, SKG_EFFECT_DQE, 0, "%s",
+                       dqe ? "there is no noise" : "not asked for: noise is blurred as the signal is");
+}
+
 static void find_detector(const finding *f) {
     const skg_plan_options *options = &f->recipe->options;
     find_noise(f);
-    if (f->blur)
-        skg_effect_set(f->outcome, SKG_EFFECT_BLUR, 1, "%s of the detector is given", skg_blur_kind(f->blur));
+    find_layers(f);
+    if (f->recipe->is_blurred && !options->depth_blur)
+        skg_effect_set(f->outcome, SKG_EFFECT_BLUR, 1, "%s of the detector is given",
+                       skg_blur_kind(f->layers->blurs[0]));
     else
         skg_effect_set(f->outcome, SKG_EFFECT_BLUR, 0, "no line or point spread function is given");
     if (options->electronic_kev > 0)
@@ -101,7 +124,7 @@ static skg_status find_places(const finding *f) {
     if (recipe->priority_possible)
         SKG_TRY_CLEANUP(skg_priority_find(scene, recipe->options.clip, &camera, extents, &priority));
     set_priority(f, priority.count);
-    skg_costs_estimate(recipe, f->blur, extents, &priority, f->outcome);
+    skg_costs_estimate(recipe, f->layers, extents, &priority, f->outcome);
 cleanup:
     skg_priority_release(&priority);
     skg_free(&extents);
@@ -252,9 +275,9 @@ static void find_overlaps(const finding *f) {
                                   "pairs of parts overlap or leave their parent"));
 }
 
-skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_blur *blur,
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,
                             skg_outcome *outcome) {
-    const finding f = {recipe, context, blur, outcome};
+    const finding f = {recipe, context, layers, outcome};
     find_energies(&f);
     find_samples(&f);
     find_beam(&f);

@@ -3,10 +3,10 @@
 #define SKG_EFFECTS_H
 
 #include "plan/outcome.h"
-#include "stage/blur.h"
+#include "stage/layers.h"
 
-/* Fills the effects of an outcome whose overlaps and samples are known. blur: NULL for none. */
-skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_blur *blur,
+/* Fills the effects of an outcome whose overlaps and samples are known. layers: and their blurs. */
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,
                             skg_outcome *outcome);
 
 #endif

@@ -20,6 +20,16 @@ void skg_heel_init_sized(void *heel, int32_t size) {
     skg_struct_init(heel, size, &defaults, sizeof defaults);
 }
 
+void skg_depth_blur_init_sized(void *blur, int32_t size) {
+    const skg_depth_blur defaults = {0};
+    skg_struct_init(blur, size, &defaults, sizeof defaults);
+}
+
+void skg_dqe_init_sized(void *dqe, int32_t size) {
+    const skg_dqe defaults = {0};
+    skg_struct_init(dqe, size, &defaults, sizeof defaults);
+}
+
 static skg_status check_kev(const char *what, double kev) {
     if (kev >= 0 && isfinite(kev)) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT, "%s is %g keV; 0 or more", what, kev);
@@ -39,6 +49,28 @@ static skg_status check_flags(const skg_plan_options *options) {
     return check_flag("clip", options->clip);
 }
 
+/* Blur by depths, and noise power by frequency. */
+static skg_status check_layers(const skg_plan_options *options) {
+    const skg_depth_blur *depths = options->depth_blur;
+    const int64_t channels = options->bands > 0 ? options->bands : 1;
+    if (depths && !skg_response_is_layer(options->response))
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "a blur by depths needs to know where photons interact, but the detector %s; give the response "
+            "of a scintillator, or one blur for all",
+            options->response ? "has a table of energies" : "is ideal");
+    if (depths && depths->count * channels > SKG_CHANNELS_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " depths of %" PRId64 " bands; at most %d together",
+                        depths->count, channels, (int)SKG_CHANNELS_MAX);
+    if (options->dqe && depths)
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "the power of the noise follows from a DQE and from a blur by depths; give one of them");
+    if (options->dqe && options->bands > 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "a DQE by spatial frequency is that of an image without bands");
+    return SKG_OK;
+}
+
 static skg_status check_detector(const skg_plan_options *options) {
     const int kev = options->electronic_kev > 0 || options->quantum_step_kev > 0;
     SKG_TRY(check_kev("electronic noise", options->electronic_kev));
@@ -49,6 +81,7 @@ static skg_status check_detector(const skg_plan_options *options) {
             "rays cross the layer of a scintillator obliquely, but the detector %s; give the response "
             "of a scintillator, or leave oblique out",
             options->response ? "has a table of energies" : "is ideal");
+    SKG_TRY(check_layers(options));
     if (!(options->swank > 0 && options->swank <= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "the Swank factor is %g; above 0, at most 1", options->swank);
     if (kev && skg_quantity_counts(options))

@@ -28,7 +28,9 @@
     X(SKG_EFFECT_BOWTIE, "bow-tie filter")                                                                   \
     X(SKG_EFFECT_GRID, "anti-scatter grid")                                                                  \
     X(SKG_EFFECT_OBLIQUE, "oblique scintillator")                                                            \
-    X(SKG_EFFECT_ESCAPE, "K escape")
+    X(SKG_EFFECT_ESCAPE, "K escape")                                                                         \
+    X(SKG_EFFECT_DEPTHS, "blur by depths")                                                                   \
+    X(SKG_EFFECT_DQE, "noise power")
 
 enum {
 #define SKG_EFFECT_ENUM(name, text) name,

@@ -69,12 +69,12 @@ static skg_status keep_options(skg_recipe *recipe, const skg_plan_options *given
     skg_plan_options *options = &recipe->options;
     SKG_TRY(skg_struct_read(given, "skg_plan_options", options, sizeof *options));
     *spot = options->spot;
-    recipe->is_blurred = options->blur != NULL;
+    recipe->is_blurred = options->blur != NULL || options->depth_blur != NULL;
     options->spot = NULL;
-    options->blur = NULL;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
     skg_status status = skg_keep(options, &recipe->kept);
+    options->blur = NULL;
     if (status != SKG_OK) {
         options->band_kev = NULL, options->views = NULL;
         return status;

@@ -24,7 +24,7 @@ typedef struct {
     int is_ratio;
     skg_polychromatic beam;
     skg_ranges ranges;
-    double *shares, *sums; /* [nodes][channels], [channels] */
+    double *shares, *sums; /* [nodes][sets], [sets] */
     skg_basis basis;
     skg_compression found;
 } compressing;
@@ -50,19 +50,20 @@ cleanup:
     return status;
 }
 
-/* The sets of weights: the means of the channels and, with noise, their variances. */
+/* The sets of weights: the means of layers and channels and, with noise, their variances. */
 static int32_t sets_of(const skg_model *model) {
-    return model->variances ? 2 * model->channels : model->channels;
+    return model->variances ? 2 * skg_model_sums(model) : skg_model_sums(model);
 }
 
 /* The table that holds the weights of set s. */
 static double *table_of(const skg_model *model, int32_t s) {
-    return s < model->channels ? model->weights : model->variances;
+    return s < skg_model_sums(model) ? model->weights : model->variances;
 }
 
 /* The weight of node n in set s. */
 static double *weight_at(const skg_model *model, int32_t n, int32_t s) {
-    return &table_of(model, s)[n * model->channels + s % model->channels];
+    const int32_t sums = skg_model_sums(model);
+    return &table_of(model, s)[n * sums + s % sums];
 }
 
 static skg_status describe(compressing *c, const skg_model *model) {
@@ -239,7 +240,7 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
         for (int32_t s = 0; s < sets; s++) {
             const double weight = nodes->shares[n * sets + s] * c->sums[s];
             *weight_at(model, n, s) = weight;
-            if (s >= model->channels) continue;
+            if (s >= skg_model_sums(model)) continue;
             before += c->shares[bin * sets + s] * c->sums[s];
             after += weight;
         }

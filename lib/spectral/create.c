@@ -174,6 +174,35 @@ static skg_status check_bands(const making *m) {
     return SKG_OK;
 }
 
+/* The share of what a photon of an energy adds that each layer has. */
+static skg_status share_out(const making *m, double energy, int32_t layers, double *shares) {
+    const skg_depth_blur *depths = m->options->depth_blur;
+    shares[0] = 1;
+    for (int32_t l = 0; depths && l < layers; l++)
+        SKG_TRY(skg_response_depth_share(m->options->response, energy, l ? depths->to[l - 1] : 0,
+                                         depths->to[l], &shares[l]));
+    return SKG_OK;
+}
+
+/* Scales the variances so that the flat field has the DQE at frequency 0 that was measured: mean^2 / (photons variance). */
+static skg_status scale_noise(const making *m, skg_model *model) {
+    const skg_dqe *dqe = m->options->dqe;
+    double photons = 0, variance = 0;
+    if (!dqe || !m->options->noise) return SKG_OK;
+    for (int32_t n = 0; n < model->nodes; n++)
+        photons += model->node_photons[n], variance += model->variances[n];
+    const double most = variance > 0 ? model->flat_field[0] * model->flat_field[0] / (photons * variance) : 0;
+    /* Measured values and tables have some digits. */
+    if (!(dqe->dqe[0] <= most * 1.01))
+        return skg_fail(
+            SKG_ERR_BEAM,
+            "a DQE of %g at frequency 0 is more than the detector's response allows for this beam, %.3g; "
+            "give a lower DQE, or a response that records more",
+            dqe->dqe[0], most);
+    for (int32_t n = 0; n < model->nodes; n++) model->variances[n] *= most / dqe->dqe[0];
+    return SKG_OK;
+}
+
 static int shows_ratio(const making *m) {
     return skg_quantity_is_ratio(m->options) && !skg_quantity_is_absolute(m->options);
 }
@@ -183,31 +212,37 @@ static skg_status weigh(const making *m, skg_model *model) {
     const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
     model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
-    const int32_t channels = model->channels;
-    SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->weights, "nodes", &model->weights));
+    model->layers = m->options->depth_blur ? (int32_t)m->options->depth_blur->count : 1;
+    const int32_t channels = model->channels, sums = skg_model_sums(model);
+    SKG_TRY(skg_alloc((int64_t)model->nodes * sums, sizeof *model->weights, "nodes", &model->weights));
     SKG_TRY(skg_alloc(channels, sizeof *model->flat_field, "nodes", &model->flat_field));
     if (noise)
-        SKG_TRY(skg_alloc((int64_t)model->nodes * channels, sizeof *model->variances, "nodes",
-                          &model->variances));
+        SKG_TRY(
+            skg_alloc((int64_t)model->nodes * sums, sizeof *model->variances, "nodes", &model->variances));
     for (int32_t n = 0; n < model->nodes; n++) {
         const int64_t bin = m->bins[n];
         const double energy = m->spectrum->energy_kev[bin];
-        double worth = 0, variance = 0;
+        double worth = 0, variance = 0, shares[SKG_DEPTHS_MAX];
         SKG_TRY(worth_of(m, energy, &worth));
+        SKG_TRY(share_out(m, energy, model->layers, shares));
         if (noise) SKG_TRY(variance_of(m, energy, worth, &variance));
         for (int32_t c = 0; c < channels; c++)
-            if (in_band(m, c, energy)) {
-                model->weights[n * channels + c] = m->spectrum->photons[bin] * worth;
-                model->flat_field[c] += m->spectrum->photons[bin] * worth;
-                if (noise) model->variances[n * channels + c] = m->spectrum->photons[bin] * variance;
+            for (int32_t l = 0; in_band(m, c, energy) && l < model->layers; l++) {
+                const int32_t at = n * sums + l * channels + c;
+                const double photons = m->spectrum->photons[bin] * shares[l];
+                model->weights[at] = photons * worth;
+                model->flat_field[c] += photons * worth;
+                if (noise) model->variances[at] = photons * variance;
             }
     }
+    SKG_TRY(scale_noise(m, model));
     for (int32_t c = 0; c < channels && is_ratio; c++) {
         if (!(model->flat_field[c] > 0))
             return skg_fail(
                 SKG_ERR_BEAM,
                 "channel %" PRId32 " records nothing of the flat field, so there is no ratio to it", c);
-        for (int32_t n = 0; n < model->nodes; n++) model->weights[n * channels + c] /= model->flat_field[c];
+        for (int32_t k = 0; k < model->nodes * model->layers; k++)
+            model->weights[k * channels + c] /= model->flat_field[c];
     }
     return SKG_OK;
 }

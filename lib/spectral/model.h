@@ -14,14 +14,16 @@
 #include <skiagraph/plan.h>
 
 typedef struct {
-    int32_t planes, nodes, channels, reserved;
+    int32_t planes, nodes;
+    int32_t channels;            /* of the image */
+    int32_t layers;              /* images that add up to that of a channel, each blurred by itself; 1: one */
     int64_t *first_contribution; /* [parts + 1] into contributions */
     /* What a mm of a part's path adds. A part without any is not seen. */
     skg_contribution *contributions;
     /* [nodes][planes + shades.count] 1/mm per mm of a plane, then the loss for a unit of a shade */
     double *coefficients;
-    double *weights; /* [nodes][channels] of the quantity: per mm2 for fluence, of I/I0 for ratios */
-    /* [nodes][channels] with noise: the sum of squares of what single photons add; otherwise NULL. */
+    double *weights; /* [nodes][layers][channels] of the quantity: per mm2 for fluence, of I/I0 for ratios */
+    /* [nodes][layers][channels] with noise: the sum of squares of what single photons add; otherwise NULL. */
     double *variances;
     double *flat_field;  /* [channels] the sum of the weights before they were made those of a ratio */
     int64_t world_plane; /* the plane to which a mm of the world's path adds world_weight; -1: vacuum */
@@ -50,5 +52,10 @@ static inline int32_t skg_model_width(const skg_model *model) {
 skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                             const skg_plan_options *options, skg_model *model);
 void skg_model_release(skg_model *model);
+
+/* Weights of a node: layers times channels. */
+static inline int32_t skg_model_sums(const skg_model *model) {
+    return model->layers * model->channels;
+}
 
 #endif

@@ -29,10 +29,10 @@ typedef struct {
 static double error_of(const rounding *r, const double *exponents, const double *errors) {
     const skg_model *model = r->model;
     double worst = 0;
-    for (int32_t c = 0; c < model->channels; c++) {
+    for (int32_t c = 0; c < skg_model_sums(model); c++) {
         double flat = 0, passed = 0, wrong = 0;
         for (int32_t n = 0; n < model->nodes; n++) {
-            const double weight = model->weights[(int64_t)n * model->channels + c];
+            const double weight = model->weights[(int64_t)n * skg_model_sums(model) + c];
             const double intensity = weight * exp(-exponents[n]);
             flat += weight;
             passed += intensity;

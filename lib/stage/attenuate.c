@@ -20,8 +20,8 @@ static const double LOG2_E = 1.4426950408889634;
 
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, noise, output_double, add, ranged, energies,
-        mixed, shades, heel, oblique, bowtie, grid;
+    int32_t planes, channels, shown, world, ratio, falloff, noise, apart, output_double, add, ranged,
+        energies, mixed, shades, heel, oblique, bowtie, grid;
 } kernel_key;
 
 struct skg_attenuator {
@@ -110,7 +110,7 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     const char *files[7] = {"exponential.clh"};
     int count = 1;
-    char more[448];
+    char more[480];
     if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
     if (key->shades) files[count++] = "shades.clh";
     files[count++] = "planes.clh";
@@ -119,12 +119,12 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d -D SKG_SUMS=%d "
+        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d -D SKG_SUMS=%d "
         "-D SKG_SHADES=%d -D SKG_HEEL=%d -D SKG_OBLIQUE=%d -D SKG_BOWTIE=%d -D SKG_GRID=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->noise, (int)key->output_double, (int)key->add, RUNS, (int)key->ranged,
-        (int)key->mixed, (int)key->shades, (int)key->heel, (int)key->oblique, (int)key->bowtie,
-        (int)key->grid, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+        (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add, RUNS,
+        (int)key->ranged, (int)key->mixed, (int)key->shades, (int)key->heel, (int)key->oblique,
+        (int)key->bowtie, (int)key->grid, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
     return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
 }
 
@@ -209,6 +209,7 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                         .ratio = attenuation->ratio,
                         .falloff = attenuation->falloff && !camera->parallel,
                         .noise = attenuation->noise,
+                        .apart = attenuation->noise && attenuation->apart,
                         .output_double = place->output_double,
                         .energies = raster->options.kernels.half && attenuation->energies,
                         .add = place->add,
@@ -302,10 +303,11 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
+    const cl_int channels = attenuation->channels / attenuation->layers;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(LOGARITHM, columns, raster->frame.columns),
         SKG_ARGUMENT(LOGARITHM, rows, raster->frame.rows),
-        SKG_ARGUMENT(LOGARITHM, channels, attenuation->channels),
+        SKG_ARGUMENT(LOGARITHM, channels, channels),
         SKG_ARGUMENT(LOGARITHM, output, place->memory),
         SKG_ARGUMENT(LOGARITHM, offset, place->offset),
         SKG_ARGUMENT(LOGARITHM, row_stride, place->row_stride),

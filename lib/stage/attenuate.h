@@ -11,15 +11,17 @@ enum { SKG_SHOWN_INTENSITY = 0, SKG_SHOWN_LOGARITHM = 1, SKG_SHOWN_EXPONENT = 2 
 /* How planes become what is shown. The exponent of node n is the sum over planes of coefficient[n][p] times the mm of
  * plane p; a channel shows the sum over nodes of weight[n][c] exp(-exponent). The tables are on the device. */
 typedef struct {
-    int32_t planes, nodes, channels; /* planes: the shades are the last, and are not accumulated */
-    int32_t shown;                   /* SKG_SHOWN_... */
-    int32_t world_plane;             /* that the world's path adds to; -1: vacuum */
-    int32_t ratio;                   /* 1: divided by what the world alone transmits */
-    int32_t falloff;                 /* 1: intensities fall with the distance */
-    int32_t energies;                /* 1: shows keV, which half precision stores in MeV */
-    int32_t noise;                   /* 1: quantum noise is drawn; then intensities are no ratio */
-    int32_t reserved;
-    double world_weight;      /* of a mm of the world's path in its plane */
+    int32_t planes, nodes; /* planes: the shades are the last, and are not accumulated */
+    int32_t channels;      /* layers of a channel of the image included */
+    int32_t layers;        /* that add up to a channel of the image */
+    int32_t shown;         /* SKG_SHOWN_... */
+    int32_t world_plane;   /* that the world's path adds to; -1: vacuum */
+    int32_t ratio;         /* 1: divided by what the world alone transmits */
+    int32_t falloff;       /* 1: intensities fall with the distance */
+    int32_t energies;      /* 1: shows keV, which half precision stores in MeV */
+    int32_t noise;         /* 1: quantum noise is drawn; then intensities are no ratio */
+    int32_t apart;       /* 1, with noise: deviations are written behind the channels, apart from the means */
+    double world_weight; /* of a mm of the world's path in its plane */
     const skg_shades *shades; /* borrowed; count 0, or NULL: none */
     skg_buffer coefficients, weights, variances;
     skg_buffer polynomials, tables; /* of shades */

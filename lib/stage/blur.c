@@ -242,14 +242,15 @@ static skg_status run_across(const skg_blur *blur, const blur_type *type, const 
         IMAGE_ARGUMENTS(BLUR_ACROSS, image),
         SKG_ARGUMENT(BLUR_ACROSS, columns, at->columns),
         SKG_ARGUMENT(BLUR_ACROSS, rows, at->rows),
+        SKG_ARGUMENT(BLUR_ACROSS, add, image->add),
     };
     SKG_TRY(SKG_SET_ARGUMENTS(type->across_kernel, arguments));
     return run(blur, type->across_kernel, (at->columns + BLUR_RUN * at->lanes - 1) / (BLUR_RUN * at->lanes),
                at->rows, channels, log);
 }
 
-skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
-                        int64_t channels, skg_stage_log *log) {
+skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
+                        int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log) {
     const int is_double = image->output_double != 0;
     const blur_layout layout = lay_out(blur, is_double, columns, rows);
     blur_type *type = NULL;
@@ -258,6 +259,6 @@ skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t co
                                (int64_t)layout.stride * layout.high * channels *
                                    (int64_t)(is_double ? sizeof(cl_double) : sizeof(cl_float)),
                                CL_MEM_READ_WRITE, "blur"));
-    SKG_TRY(run_down(blur, type, &layout, image, channels, log));
+    SKG_TRY(run_down(blur, type, &layout, from, channels, log));
     return run_across(blur, type, &layout, image, channels, log);
 }

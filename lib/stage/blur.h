@@ -14,9 +14,10 @@ typedef struct skg_blur skg_blur;
 skg_status skg_blur_create(skg_context *context, const skg_detector_blur *shape, skg_blur **blur);
 void skg_blur_release(skg_blur **blur);
 
-/* Enqueues the blur of `channels` images of columns x rows, in place. The workspace is allocated at the first call. */
-skg_status skg_blur_run(skg_blur *blur, const skg_image_place *image, int64_t columns, int64_t rows,
-                        int64_t channels, skg_stage_log *log);
+/* Enqueues the blur of `channels` images of columns x rows, from one place to another or in place; image->add: the result is
+ * added to what is there. The workspace is allocated at the first call. */
+skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
+                        int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
 
 /* From how many samples a pixel is summed. */
 int64_t skg_blur_samples(const skg_blur *blur);

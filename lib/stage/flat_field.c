@@ -2,20 +2,28 @@
 
 #include <string.h>
 
-static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view, skg_image_place *place,
-                          skg_stage_log *log) {
+static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view, const skg_image_place *image,
+                          skg_staging *staging) {
+    const skg_attenuation *attenuation = work->attenuation;
+    const int64_t channels = attenuation->channels / attenuation->layers;
+    /* There is no layer of noise. */
+    const int32_t used =
+        work->layers->count < attenuation->layers ? work->layers->count : attenuation->layers;
     const int64_t passes = work->samples ? skg_samples_count(work->samples) : 1;
+    skg_image_place place;
+    SKG_TRY(skg_layers_place(staging->context, work->layers, used, image, view->columns, view->rows, channels,
+                             &place));
     for (int64_t s = 0; s < passes; s++) {
         skg_camera camera;
         double source[3], shift[2] = {0, 0};
         if (work->samples) skg_samples_at(work->samples, view, s, source, shift);
         SKG_TRY(skg_camera_make(view, work->samples ? source : NULL, shift[0], shift[1], &camera));
-        place->add = s > 0;
-        SKG_TRY(skg_attenuate_flat_field(work->attenuator, work->sums, &camera, work->attenuation,
-                                         1 / (double)passes, work->negative, place, log));
+        place.add = s > 0;
+        SKG_TRY(skg_attenuate_flat_field(work->attenuator, work->sums, &camera, attenuation,
+                                         1 / (double)passes, work->negative, &place, &staging->log));
     }
-    if (!work->blur) return SKG_OK;
-    return skg_blur_run(work->blur, place, view->columns, view->rows, work->attenuation->channels, log);
+    return skg_layers_blur(work->layers, used, &place, image, view->columns, view->rows, channels,
+                           &staging->log);
 }
 
 skg_status skg_flat_field_find(skg_flat_field *field, const skg_flat_field_work *work, const skg_view *view,
@@ -25,14 +33,14 @@ skg_status skg_flat_field_find(skg_flat_field *field, const skg_flat_field_work 
         return SKG_OK;
     field->known = 0;
     SKG_TRY(skg_buffer_reserve(staging->context, &field->image,
-                               work->attenuation->channels * size *
+                               work->attenuation->channels / work->attenuation->layers * size *
                                    (int64_t)(is_double ? sizeof(double) : sizeof(float)),
                                CL_MEM_READ_WRITE, "flat field"));
     skg_image_place place = {.memory = field->image.memory,
                              .output_double = is_double,
                              .row_stride = view->columns,
                              .channel_stride = size};
-    SKG_TRY(enqueue(work, view, &place, &staging->log));
+    SKG_TRY(enqueue(work, view, &place, staging));
     field->known = 1;
     field->is_double = is_double;
     field->view = *view;

@@ -4,7 +4,7 @@
 #define SKG_FLAT_FIELD_H
 
 #include "geometry/samples.h"
-#include "stage/blur.h"
+#include "stage/layers.h"
 
 typedef struct {
     int32_t known; /* 1: for this view and type */
@@ -20,7 +20,7 @@ typedef struct {
     const skg_sums *sums; /* of a frame of the same shape; not read */
     skg_attenuator *attenuator;
     const skg_attenuation *attenuation;
-    skg_blur *blur;  /* NULL: none */
+    skg_layers *layers; /* and their blurs */
     cl_mem negative; /* counters, which it leaves as they are */
 } skg_flat_field_work;
 

@@ -7,7 +7,7 @@ void skg_machine_release(skg_machine *machine) {
     skg_attenuation_release(&machine->images);
     skg_attenuation_release(&machine->lengths);
     skg_attenuator_release(&machine->attenuator);
-    skg_blur_release(&machine->blur);
+    skg_layers_release(&machine->layers);
     skg_detector_release(&machine->detector);
     skg_buffer_release(&machine->flat_field.image);
     skg_mix_lists_release(&machine->mix_lists);
@@ -23,8 +23,7 @@ int64_t skg_machine_bytes(const skg_machine *machine) {
                     skg_leaky_memory_bytes(&machine->leaky) + machine->flat_field.image.bytes +
                     skg_hits_memory_bytes(&machine->hits) + skg_placement_bytes(&machine->placement) +
                     skg_attenuation_bytes(&machine->images) + skg_attenuation_bytes(&machine->lengths) +
-                    skg_raster_cache_bytes(&machine->rasters);
-    if (machine->blur) bytes += skg_blur_bytes(machine->blur);
+                    skg_raster_cache_bytes(&machine->rasters) + skg_layers_bytes(&machine->layers);
     if (machine->detector) bytes += skg_detector_bytes(machine->detector);
     return bytes;
 }

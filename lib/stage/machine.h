@@ -5,10 +5,10 @@
 #define SKG_MACHINE_H
 
 #include "stage/attenuate.h"
-#include "stage/blur.h"
 #include "stage/detect.h"
 #include "stage/flat_field.h"
 #include "stage/hits.h"
+#include "stage/layers.h"
 #include "stage/leaky.h"
 #include "stage/mix_lists.h"
 #include "stage/place.h"
@@ -20,7 +20,7 @@ typedef struct {
     skg_attenuation images;  /* planes to images */
     skg_attenuation lengths; /* one plane to path lengths: the plane itself */
     skg_attenuator *attenuator;
-    skg_blur *blur;         /* NULL: none */
+    skg_layers layers;      /* and their blurs */
     skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
     skg_flat_field flat_field;
     skg_mix_lists mix_lists;

@@ -63,7 +63,7 @@ static picture blurred(const picture *of, const skg_detector_blur *shape, int is
                                    .offset = of->offset,
                                    .row_stride = of->row_stride,
                                    .channel_stride = of->channel_stride};
-    ck_skg(skg_blur_run(blur, &place, of->columns, of->rows, CHANNELS, NULL));
+    ck_skg(skg_blur_run(blur, &place, &place, of->columns, of->rows, CHANNELS, NULL));
     ck_assert_int_eq(clEnqueueReadBuffer(queue, buffer.memory, CL_TRUE, 0, bytes,
                                          is_double ? (void *)result.values : singles, 0, NULL, NULL),
                      CL_SUCCESS);

@@ -27,7 +27,7 @@ typedef struct {
     int32_t leaky;    /* the box lacks a triangle */
     int32_t priority; /* the octahedron's, which overlaps the box */
     int32_t inside;   /* the source stands in the box */
-    int32_t parallel, colours, world, bands, noise, blur, spot;
+    int32_t parallel, colours, world, bands, noise, dqe, blur, spot;
     int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
     double electronic, step, tolerance;
     int32_t picture; /* draws the 3D view instead of an image */
@@ -64,6 +64,7 @@ static const group groups[] = {
     {.name = "source_plane", .inside = 1},
     {.name = "double_source_plane", .precision = SKG_PRECISION_DOUBLE, .inside = 1},
     {.name = "blur", .blur = BLUR_LINES},
+    {.name = "noise_apart", .noise = 1, .dqe = 1, .colours = 1, .blur = BLUR_LINES},
     {.name = "blur_point", .blur = BLUR_POINT},
     {.name = "noise", .noise = 1, .colours = 1},
     {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1},
@@ -144,7 +145,9 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     static const double energies[3] = {40, 60, 90}, photons[3] = {50, 80, 30}, edges[3] = {10, 55, 100};
     static const double line[3] = {0.2, 1, 0.3}, point[9] = {0, 1, 0, 1, 4, 2, 0, 1, 0};
     skg_plan_options options;
+    static const double frequencies[2] = {0, 1}, efficiencies[2] = {0.6, 0.5};
     skg_detector_blur blur;
+    skg_dqe dqe;
     skg_spot spot;
     shades more = {0};
     skg_spectrum *beam = NULL;
@@ -161,6 +164,9 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     blur.columns = blur.rows = 3, blur.along_row = blur.along_column = line;
     if (g->blur == BLUR_POINT) blur.along_row = blur.along_column = NULL, blur.point = point;
     if (g->blur) options.blur = &blur;
+    skg_dqe_init(&dqe);
+    dqe.count = 2, dqe.per_mm = frequencies, dqe.dqe = efficiencies;
+    if (g->dqe) options.dqe = &dqe;
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 2;
     if (g->spot) options.spot = &spot;
     if (g->shades) add_shades(&more, &options);

@@ -171,7 +171,7 @@ SKG_API skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_
  *
  *     options   in and out: prepared with skg_plan_options_init; fields of which the file says nothing stay
  *
- * Response, world, spot, heel, bow-tie, grid, blur and views are valid as long as the set-up. Falloff is on if the file gives mAs
+ * Response, world, spot, heel, bow-tie, grid, blurs, DQE and views are valid as long as the set-up. Falloff is on if the file gives mAs
  * or has the key Falloff. The views are a sample of those of the scan. */
 SKG_API skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options);
 

@@ -25,7 +25,11 @@ enum skg_strategy {
 /** Limits of the interface. */
 enum skg_limit {
     /** Most channels of an image. */
-    SKG_CHANNELS_MAX = 16
+    SKG_CHANNELS_MAX = 16,
+    /** Most depths of a scintillator that have a blur of their own. */
+    SKG_DEPTHS_MAX = 8,
+    /** Most samples of a line spread function that is made from a table of frequencies. */
+    SKG_LINE_SAMPLES_MAX = 255
 };
 
 /** What happens at the bad pixels of a leaky mesh, where a ray does not leave the mesh as often as it enters
@@ -76,6 +80,81 @@ SKG_API void skg_detector_blur_init_sized(void *blur, int32_t size);
 /** Prepares a blur. */
 static inline void skg_detector_blur_init(skg_detector_blur *blur) {
     skg_detector_blur_init_sized(blur, (int32_t)sizeof *blur);
+}
+
+/** Gets the line spread function of a modulation transfer function, for skg_detector_blur: the fewest samples whose
+ * transfer function is within 0.005 of the table at all frequencies that the pixels show. Rows are joined by curves of
+ * third degree that rise or fall as the rows do.
+ *
+ *     count      number of frequencies, at least 2
+ *     per_mm     [count] line pairs per mm, rising from 0 to at least 1 / (2 pixel_mm)
+ *     mtf        [count] 1 at frequency 0, values from -2 to 2
+ *     pixel_mm   distance of the pixels along the line
+ *     line       result: [SKG_LINE_SAMPLES_MAX], of which the first `samples` are set
+ *     samples    result: odd
+ *     errors     SKG_ERR_ARGUMENT, with the row of the table
+ *
+ * A presampling MTF (IEC 62220-1) holds the aperture of the pixels. With supersampling, the image has this aperture
+ * already: divide by it then. */
+SKG_API skg_status skg_line_spread_get(int64_t count, const double *per_mm, const double *mtf,
+                                       double pixel_mm, double *line, int64_t *samples);
+
+/** Blur that depends on the depth at which photons interact in a scintillator: light from far off the sensor spreads
+ * most. Photons that interact in a depth make an image of their own, with their own noise, and this is blurred as the
+ * depth says; the images are added. So the blur depends on the energy, and noise power falls less with the frequency
+ * than the square of the MTF (G. Lubberts, Random noise produced by x-ray fluorescent screens, Journal of the Optical
+ * Society of America 58 (1968) 1475-1483). Prepare with skg_depth_blur_init.
+ *
+ * method   exp(-mu z) along the straight path, for the first interaction; neither obliquity nor fluorescence
+ *          changes the shares of the depths */
+typedef struct {
+    /** Set by skg_depth_blur_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of depths, 1 to SKG_DEPTHS_MAX. Depths times channels are at most SKG_CHANNELS_MAX. */
+    int64_t count;
+    /** [count] where each depth ends, from the side on which photons enter: shares of the thickness, rising, the
+     * last is 1 */
+    const double *to;
+    /** [count] the blur of each depth */
+    const skg_detector_blur *blur;
+} skg_depth_blur;
+
+/** Prepares a blur by depths of `size` bytes (export.h). */
+SKG_API void skg_depth_blur_init_sized(void *blur, int32_t size);
+
+/** Prepares a blur by depths. */
+static inline void skg_depth_blur_init(skg_depth_blur *blur) {
+    skg_depth_blur_init_sized(blur, (int32_t)sizeof *blur);
+}
+
+/** A measured detective quantum efficiency by spatial frequency, for the power of the noise. Prepare with
+ * skg_dqe_init.
+ *
+ * The noise of a flat field of the plan's beam has, along rows and columns, the power
+ * NPS(f) = mean^2 MTF(f)^2 / (q DQE(f)) with q photons per mm2 and the MTF of the plan's blur; off the axes DQE(f) /
+ * DQE(0) is the product of both directions. DQE(0) determines the variance, so it replaces the Swank factors; behind
+ * a part, the variance of each energy changes as its intensity does. */
+typedef struct {
+    /** Set by skg_dqe_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of frequencies, at least 2. */
+    int64_t count;
+    /** [count] line pairs per mm, rising from 0 to at least 1 / (2 pixel size) */
+    const double *per_mm;
+    /** [count] above 0 to 1; that at 0 is at most what the response allows for the beam */
+    const double *dqe;
+} skg_dqe;
+
+/** Prepares a DQE of `size` bytes (export.h). */
+SKG_API void skg_dqe_init_sized(void *dqe, int32_t size);
+
+/** Prepares a DQE. */
+static inline void skg_dqe_init(skg_dqe *dqe) {
+    skg_dqe_init_sized(dqe, (int32_t)sizeof *dqe);
 }
 
 /** Shapes of the focal spot. A flat one lies across the line from the source to the detector's centre, with
@@ -320,6 +399,12 @@ typedef struct {
     const skg_bowtie *bowtie;
     /** An anti-scatter grid on the detector; NULL: none. Without effect on ratios to the flat field of one energy. */
     const skg_grid *grid;
+    /** Instead of `blur`, one that depends on the depth of interaction; NULL: none. Needs a response of a
+     * scintillator, not a table. */
+    const skg_depth_blur *depth_blur;
+    /** Noise power by spatial frequency; NULL: quantum noise is blurred as the signal is. Needs noise, and neither bands
+     * nor depth_blur. */
+    const skg_dqe *dqe;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.
