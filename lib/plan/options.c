@@ -20,11 +20,6 @@ void skg_heel_init_sized(void *heel, int32_t size) {
     skg_struct_init(heel, size, &defaults, sizeof defaults);
 }
 
-void skg_depth_blur_init_sized(void *blur, int32_t size) {
-    const skg_depth_blur defaults = {0};
-    skg_struct_init(blur, size, &defaults, sizeof defaults);
-}
-
 void skg_dqe_init_sized(void *dqe, int32_t size) {
     const skg_dqe defaults = {0};
     skg_struct_init(dqe, size, &defaults, sizeof defaults);

@@ -4,6 +4,11 @@
 
 #include <math.h>
 
+void skg_depth_blur_init_sized(void *blur, int32_t size) {
+    const skg_depth_blur defaults = {0};
+    skg_struct_init(blur, size, &defaults, sizeof defaults);
+}
+
 static skg_status add(skg_context *context, const skg_detector_blur *blur, skg_layers *layers) {
     SKG_TRY(skg_blur_create(context, blur, &layers->blurs[layers->count]));
     layers->count++;

@@ -119,10 +119,10 @@ END_TEST
 START_TEST(a_line_spread_function_from_a_file) {
     write_file("motion.csv", "# measured\n0.1, 0.2;\n0.4\t0.2\n\n0.1 % end\n");
     load_edited("\"UpVector\"", "\"LSF\": \"motion.csv\", \"UpVector\"");
-    ck_assert_int_eq(setup->blur.columns, 5);
-    ck_assert_int_eq(setup->blur.rows, 5);
-    ck_assert_double_eq(setup->blur.along_row[2], 0.4);
-    ck_assert_double_eq(setup->blur.along_column[4], 0.1);
+    ck_assert_int_eq(setup->blur.shape.columns, 5);
+    ck_assert_int_eq(setup->blur.shape.rows, 5);
+    ck_assert_double_eq(setup->blur.shape.along_row[2], 0.4);
+    ck_assert_double_eq(setup->blur.shape.along_column[4], 0.1);
     skg_setup_release(&setup);
     static const char *const bad[][2] = {{"1 2 x 4 5", "line 1: \"x 4 5\" is no number"},
                                          {"1 2", "2 samples; give an odd number"},
