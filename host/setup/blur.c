@@ -118,7 +118,7 @@ static skg_status read_any(skg_setup_reader *reader, const skg_json_object *obje
     skg_detector_blur_init(&blur->shape);
     if ((lines.value != NULL) + (points.value != NULL) + (transfer.value != NULL) > 1)
         return skg_json_fail(points.value ? &points : &transfer, SKG_ERR_FORMAT,
-                             "give one of LSF, PSF and MTF");
+                             "give one of LSF, PSF and MTF, not both");
     if (json_is_string(lines.value)) return read_lines_file(reader, &lines, blur);
     if (lines.value) return read_lines(&lines, blur);
     if (points.value) return read_points(&points, blur);

@@ -98,6 +98,36 @@ START_TEST(scintillators) {
 }
 END_TEST
 
+#define DEPTHS "Detector.Scintillator={" CSI ", \"Depths\": "
+#define MTF "\"MTF\": [[0, 1], [0.5, 0.7], [50, 0.5]]"
+
+static double sum_of(const skg_detector_blur *blur) {
+    double sum = 0;
+    for (int64_t n = 0; n < blur->columns; n++) sum += blur->along_row[n];
+    return sum;
+}
+
+START_TEST(blurs) {
+    ck_skg(load_with("Tolerance=0", NULL));
+    ck_assert_ptr_null(options().depth_blur);
+    ck_assert_ptr_null(options().dqe);
+    ck_skg(load_with("Detector.MTF=[[0, 1], [0.5, 0.7], [50, 0.5]]", "Detector.DQE=[[0, 0.7], [50, 0.2]]"));
+    ck_assert_int_eq(options().blur->columns % 2, 1);
+    ck_assert_ptr_null(options().blur->point);
+    ck_assert_double_eq_tol(sum_of(options().blur), 1, 1e-12); /* rounding of some hundred terms */
+    ck_assert_int_eq(options().dqe->count, 2);
+    ck_assert_double_eq(options().dqe->per_mm[1], 50);
+    ck_assert_double_eq(options().dqe->dqe[1], 0.2);
+    ck_skg(load_with(DEPTHS "[{\"To\": 0.25, \"LSF\": [0.2, 0.6, 0.2]}, {\"To\": 1, " MTF "}]}", NULL));
+    const skg_depth_blur *depths = options().depth_blur;
+    ck_assert_int_eq(depths->count, 2);
+    ck_assert_double_eq(depths->to[0], 0.25);
+    ck_assert_int_eq(depths->blur[0].rows, 3);
+    ck_assert_double_eq_tol(sum_of(&depths->blur[1]), 1, 1e-12); /* the same */
+    ck_assert_ptr_null(options().blur);
+}
+END_TEST
+
 #define STRIP "\"StripThickness\": [0.05, \"mm\"]"
 
 static const struct {
@@ -133,6 +163,14 @@ static const struct {
     {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [70, 1.5]]}", SKG_ERR_BEAM, "1.5", "DQE"},
     {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [70]]}", SKG_ERR_FORMAT, "[energy, DQE]", "DQE"},
     {"Detector.Scintillator={" CSI ", \"Oblique\": 2}", SKG_ERR_FORMAT, "give 0 to 1", "Oblique"},
+    {"Detector.MTF=[[0, 1], [0.001, 0.5]]", SKG_ERR_ARGUMENT, "add rows up to there", "MTF"},
+    {"Detector.MTF=[[0, 1], [1]]", SKG_ERR_FORMAT, "line pairs per mm", "MTF"},
+    {"Detector.DQE=[[0, 1], [1]]", SKG_ERR_FORMAT, "line pairs per mm", "DQE"},
+    {DEPTHS "{}}", SKG_ERR_FORMAT, "\"To\": 0.5", "Depths"},
+    {DEPTHS "[]}", SKG_ERR_FORMAT, "has 0 depths; give 1 to 8", "Depths"},
+    {DEPTHS "[{\"LSF\": [1]}]}", SKG_ERR_FORMAT, "To", "Depths[0]"},
+    {DEPTHS "[{\"To\": 1}]}", SKG_ERR_FORMAT, "give LSF, PSF or MTF", "Depths[0]"},
+    {DEPTHS "[{\"To\": 1, \"LSF\": [1], " MTF "}]}", SKG_ERR_FORMAT, "one of LSF, PSF and MTF", "Depths[0]"},
     {"Detector.Scintillator={\"Material\": [\"mu\", 3], \"Thickness\": 1, \"Unit\": \"mm\", \"Escape\": true}",
      SKG_ERR_MATERIAL, "has no density", "Scintillator"},
 };
@@ -149,6 +187,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, bowties);
     tcase_add_test(tests, grids);
     tcase_add_test(tests, scintillators);
+    tcase_add_test(tests, blurs);
     tcase_add_loop_test(tests, refused, 0, sizeof bad / sizeof *bad);
 }
 
