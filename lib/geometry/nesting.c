@@ -118,8 +118,10 @@ static void sweep(skg_columns *grid, const int32_t *sign, int inward, verdict *f
     }
 }
 
+/* Of a closed component above or below another one, a column has entered and left as often where it is inside the other:
+ * only components whose boxes meet are compared. */
 static int meet(const component *a, const component *b) {
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 3; k++)
         if (a->low[k] > b->high[k] || b->low[k] > a->high[k]) return 0;
     return 1;
 }

@@ -28,15 +28,36 @@ static double exponent_at(const skg_polychromatic *beam, const double *mu, const
     return sum;
 }
 
+/* The exponents of several bins at a time, whose sums have the order of exponent_at and so its bits. */
+enum { SOME = 64 };
+static int32_t find_exponents(const skg_polychromatic *beam, const double *mu, const double *lengths,
+                              int32_t first, double *sums) {
+    const int32_t count = beam->bins - first < SOME ? beam->bins - first : SOME;
+    for (int32_t b = 0; b < count; b++) sums[b] = 0;
+    for (int32_t m = 0; m < beam->materials; m++) {
+        const double length = lengths[m], *row = mu + (int64_t)m * beam->bins + first;
+        for (int32_t b = 0; b < count; b++) sums[b] += length * row[b];
+    }
+    return count;
+}
+
 void skg_transmit(const skg_polychromatic *beam, const double *mu, const double *lengths, double *passed) {
-    for (int32_t b = 0; b < beam->bins; b++) passed[b] = exp(-exponent_at(beam, mu, lengths, b));
+    double sums[SOME];
+    for (int32_t first = 0; first < beam->bins; first += SOME) {
+        const int32_t count = find_exponents(beam, mu, lengths, first, sums);
+        for (int32_t b = 0; b < count; b++) passed[first + b] = exp(-sums[b]);
+    }
 }
 
 void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact) {
+    double sums[SOME];
     memset(exact, 0, (size_t)beam->sets * sizeof *exact);
-    for (int32_t b = 0; b < beam->bins; b++) {
-        const double passed = exp(-exponent_at(beam, beam->mu, lengths, b));
-        for (int32_t s = 0; s < beam->sets; s++) exact[s] += passed * beam->shares[b * beam->sets + s];
+    for (int32_t first = 0; first < beam->bins; first += SOME) {
+        const int32_t count = find_exponents(beam, beam->mu, lengths, first, sums);
+        for (int32_t b = 0; b < count; b++) {
+            const double passed = exp(-sums[b]), *shares = beam->shares + (int64_t)(first + b) * beam->sets;
+            for (int32_t s = 0; s < beam->sets; s++) exact[s] += passed * shares[s];
+        }
     }
 }
 
@@ -44,8 +65,11 @@ void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, do
 
 /* Scales lengths down until the energy that passes best has at most the largest exponent. */
 static void cap(const skg_polychromatic *beam, double *lengths) {
-    double least = HUGE_VAL;
-    for (int32_t b = 0; b < beam->bins; b++) least = fmin(least, exponent_at(beam, beam->mu, lengths, b));
+    double sums[SOME], least = HUGE_VAL;
+    for (int32_t first = 0; first < beam->bins; first += SOME) {
+        const int32_t count = find_exponents(beam, beam->mu, lengths, first, sums);
+        for (int32_t b = 0; b < count; b++) least = sums[b] < least ? sums[b] : least;
+    }
     if (least <= SKG_MOST_EXPONENT) return;
     for (int32_t m = 0; m < beam->materials; m++) lengths[m] *= SKG_MOST_EXPONENT / least;
 }

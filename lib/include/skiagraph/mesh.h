@@ -108,7 +108,8 @@ SKG_API skg_status skg_mesh_positions_get(const skg_mesh *mesh, double *position
 /** Copies the corners out. triangle_stride as in skg_mesh_create. */
 SKG_API skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners, int64_t triangle_stride);
 
-/** Gives every vertex a new position. The next frame uploads them.
+/** Gives every vertex a new position. The next frame uploads them. On a device, vertices with equal positions are one
+ * vertex; if those of a leaky mesh part, a plan uploads all of its vertices from then on, and a note says so.
  *
  *     positions   one row per vertex, mm; position_stride as in skg_mesh_create
  *     errors      SKG_ERR_MESH, and the mesh stays as it was, if a position is not finite, or if vertices of

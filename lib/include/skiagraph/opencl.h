@@ -44,7 +44,8 @@ SKG_API skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kin
                                        cl_event *done, skg_job **job);
 
 /** Takes the positions of a part's mesh from device memory, for the frames that are submitted to this plan afterwards.
- * A device copy is enqueued; nothing is waited for, and nothing passes through host memory. Poses stay on the host.
+ * A device copy is enqueued; nothing is waited for, and nothing passes through host memory. Poses stay on the host. The
+ * first call for a leaky mesh that has vertices with equal positions on the host waits for the frames before it.
  *
  *     part        number in the scene. All parts with the same mesh move
  *     buffer      float: rows of x, y, z in mm from the mesh's origin (skg_mesh_offsets_get), a row for each vertex.
