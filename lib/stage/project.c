@@ -128,6 +128,13 @@ cleanup:
     return status;
 }
 
+/* The copies together have 4 MiB, but there are at least four of them. */
+static int32_t count_slots(const skg_geometry *geometry) {
+    enum { BYTES = 1 << 22, LEAST = 4 };
+    const int64_t count = BYTES / (geometry->parts * (int64_t)entry_size(geometry) + 1);
+    return (int32_t)(count < LEAST ? LEAST : count < SKG_TABLE_SLOTS ? count : SKG_TABLE_SLOTS);
+}
+
 skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t meshes,
                                skg_mesh_layout *layouts, int64_t parts, const int64_t *mesh_of_part,
                                skg_geometry *geometry) {
@@ -137,7 +144,8 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
     SKG_TRY_CLEANUP(take_over(geometry, layouts, mesh_of_part));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first_triangle, "part table", &first_triangle));
     SKG_TRY_CLEANUP(number(geometry, first_triangle));
-    for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
+    geometry->slot_count = count_slots(geometry);
+    for (int i = 0; i < geometry->slot_count; i++) {
         skg_table_slot *slot = &geometry->slots[i];
         SKG_TRY_CLEANUP(skg_alloc(parts, entry_size(geometry), "part table", &slot->entries));
         place_parts(geometry, first_triangle, slot->entries);
@@ -282,7 +290,7 @@ static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, co
 /* Brings the frame's tables to the device where they differ from those it has. */
 skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
                               const skg_geometry_part *part, double scale) {
-    const int32_t next = (geometry->slot + 1) % SKG_TABLE_SLOTS;
+    const int32_t next = (geometry->slot + 1) % geometry->slot_count;
     skg_table_slot *slot = &geometry->slots[next];
     cl_command_queue queue = context->device->queue;
     SKG_TRY(wait_for(slot));

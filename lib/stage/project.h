@@ -26,8 +26,8 @@ typedef struct {
 } skg_geometry_part;
 
 /* Host copies of the part and contribution tables. Each stays until the device has read it, so that writing a frame's
- * tables does not wait for the frames before it. */
-enum { SKG_TABLE_SLOTS = 4 };
+ * tables does not wait for the frames before it: as many frames can be enqueued ahead as there are copies. */
+enum { SKG_TABLE_SLOTS = 64 };
 typedef struct {
     void *entries;       /* skg_part_float or skg_part_double [parts] */
     void *contributions; /* skg_contribution_float or skg_contribution_double [contribution_count] */
@@ -40,15 +40,15 @@ typedef struct {
     int64_t vertices, triangles; /* over all parts, with the copies of merged vertices */
     int64_t mesh_vertices;       /* over all meshes, with them */
     int32_t precision;           /* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE: of offsets and tables */
-    int32_t reserved;
-    int64_t *mesh_vertex;     /* [meshes + 1] first vertex of each mesh in the vertex buffer */
-    int64_t *mesh_of_part;    /* [parts] */
-    int64_t *mesh_triangle;   /* [meshes + 1] first triangle of each mesh in the buffer of corners */
-    skg_mesh_layout *layouts; /* [meshes]; corners: NULL once they are on the device */
-    int64_t *versions;        /* [meshes] of the vertices as the device has them; 0: it has none */
-    int64_t *first_vertex;    /* [parts + 1] in the numbering over all parts */
-    int32_t slot;             /* that holds the tables as the device has them */
-    int32_t uploaded;         /* 1: the device has tables */
+    int32_t slot_count;          /* of `slots`: fewer if there are many parts */
+    int64_t *mesh_vertex;        /* [meshes + 1] first vertex of each mesh in the vertex buffer */
+    int64_t *mesh_of_part;       /* [parts] */
+    int64_t *mesh_triangle;      /* [meshes + 1] first triangle of each mesh in the buffer of corners */
+    skg_mesh_layout *layouts;    /* [meshes]; corners: NULL once they are on the device */
+    int64_t *versions;           /* [meshes] of the vertices as the device has them; 0: it has none */
+    int64_t *first_vertex;       /* [parts + 1] in the numbering over all parts */
+    int32_t slot;                /* that holds the tables as the device has them */
+    int32_t uploaded;            /* 1: the device has tables */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     cl_kernel kernel;
     skg_kernel_options kernel_options;
