@@ -115,7 +115,7 @@ static solid raw_body(int kind, const skg_view *view, uint64_t *seed) {
         return fine_shells(view, seed);
     default: {
         s = solid_sphere(extent, around, down);
-        const double flat = pow(10, draw(seed, -2, -0.5)), m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, flat, 0};
+        const double flat = pow(10, draw(seed, -6, -0.5)), m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, flat, 0};
         solid_move(&s, m);
         return s;
     }

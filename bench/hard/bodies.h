@@ -13,7 +13,7 @@ enum {
     HARD_SLABS,
     HARD_SLIVER,
     HARD_FINE, /* shells of triangles smaller than a pixel, corners on the rays: they fold up and vanish */
-    HARD_FLAT, /* flat ellipsoids, corners on the rays */
+    HARD_FLAT, /* ellipsoids, flattened by up to a million, corners on the rays */
     HARD_KINDS
 };
 

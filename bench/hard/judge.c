@@ -7,7 +7,16 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double bar = 3e-5;
+/* 3e-5 of the longest path, but at least 2e-6 of the body's extent along the rays: up to 1e-6 of it, a face counts as not
+ * steep, and a ray through a plate meets two. */
+static double bar_of(const solid *s, double longest) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int64_t v = 0; v < s->vertices; v++) {
+        low = fmin(low, s->positions[3 * v + 2]);
+        high = fmax(high, s->positions[3 * v + 2]);
+    }
+    return fmax(3e-5 * longest, 2e-6 * (high - low));
+}
 
 /* Half of the larger side of the pixels that are met: the largest coordinate relative to the part, but for one pixel. */
 static double radius_of(const skg_view *view, const double *lengths) {
@@ -28,8 +37,8 @@ typedef enum { GOOD, THIN, FOLDED, OUT } opinion;
  * length of the interval, give or take its width: a plate thinner than the last bits, seen edge-on. If more faces lie so
  * near, which are those of a plate folded upon itself, roundings of single corners decide which of them come first, and
  * any of their depths may be counted. */
-static opinion judge(const hard_interval *exact, double got, double longest) {
-    const double off = hard_distance(exact, got) - bar * longest;
+static opinion judge(const hard_interval *exact, double got, double bar) {
+    const double off = hard_distance(exact, got) - bar;
     if (isnan(got) || isnan(exact->low)) return OUT;
     if (off <= 0) return GOOD;
     if (exact->steep_faces >= 2 && off <= exact->high - exact->low) return THIN;
@@ -38,13 +47,13 @@ static opinion judge(const hard_interval *exact, double got, double longest) {
 
 /* A pixel that the two precisions disagree about. */
 static void judge_pixel(const hard_sight *sight, int64_t column, int64_t row, double shift, double longest,
-                        double got, const char *name, hard_verdict *v) {
+                        double bar, double got, const char *name, hard_verdict *v) {
     static const double works[] = {1e5, 3e6, 1e8}; /* more and more thoroughly, until it is good */
     hard_interval exact;
     opinion found = OUT;
     for (int k = 0; k < 3 && found != GOOD && (k < 2 || found != THIN); k++) {
-        exact = hard_interval_of(sight, column, row, shift, longest, got, 0.1 * bar * longest, works[k]);
-        found = judge(&exact, got, longest);
+        exact = hard_interval_of(sight, column, row, shift, longest, got, 0.1 * bar, works[k]);
+        found = judge(&exact, got, bar);
     }
     v->judged++;
     v->worst = fmax(v->worst, hard_distance(&exact, got) / longest);
@@ -63,15 +72,16 @@ void hard_judge(const solid *s, const skg_view *view, const float *single, const
     double longest = 0;
     hard_sight sight = {0};
     for (int64_t n = 0; n < pixels; n++) longest = fmax(longest, twice[n]);
+    const double bar = bar_of(s, longest);
     v->pixels += pixels;
     for (int64_t n = 0; n < pixels; n++) {
         const double got = (double)single[n];
         v->met += twice[n] != 0 || single[n] != 0;
         v->lowest = fmin(v->lowest, got / longest);
         /* 1 % is a thousand times what the error in double precision adds. */
-        if (fabs(got - twice[n]) <= 0.99 * bar * longest) continue;
+        if (fabs(got - twice[n]) <= 0.99 * bar) continue;
         if (!sight.places) sight = hard_see(s, view);
-        judge_pixel(&sight, n % view->columns, n / view->columns, shift, longest, got, name, v);
+        judge_pixel(&sight, n % view->columns, n / view->columns, shift, longest, bar, got, name, v);
     }
     hard_sight_free(&sight);
 }

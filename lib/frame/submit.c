@@ -73,20 +73,14 @@ static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t 
     return SKG_OK;
 }
 
-static skg_status submit_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                 const skg_frame *frames, const skg_output *output, skg_job **job) {
+skg_status skg_plan_lengths_enqueue(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                    const skg_frame *frames, const skg_output *output, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths", plan, job));
     SKG_TRY(check_lengths("skg_plan_lengths", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind};
     SKG_TRY(prepare(plan, &s, output));
     return submit(plan, &s, job);
-}
-
-skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                            const skg_frame *frames, const skg_output *output, skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, submit_lengths(plan, part, kind, count, frames, output, job));
 }
 
 /* --- into the caller's device memory */
@@ -143,23 +137,12 @@ skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *fr
         handler, submit_images_cl(plan, count, frames, output, buffer, offset, waits, wait_list, done, job));
 }
 
-static skg_status submit_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                    const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                                    int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
-                                    skg_job **job) {
+skg_status skg_plan_lengths_enqueue_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                       const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                                       int64_t offset, const skg_caller_events *events, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths_cl", plan, job));
     SKG_TRY(check_lengths("skg_plan_lengths_cl", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind, .buffer = buffer};
-    const skg_caller_events given = {waits, wait_list, done};
-    return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, &given, job);
-}
-
-skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                               const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                               int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
-                               skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, submit_lengths_cl(plan, part, kind, count, frames, output, buffer, offset,
-                                                   waits, wait_list, done, job));
+    return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, events, job);
 }

@@ -15,8 +15,7 @@ skg_box skg_box_turned(const double *centre, const double *half, const double *a
     return box;
 }
 
-/* Corner `number` has the signs of its bits: bit 0 for the first axis, 1 for the second, 2 for the third. */
-static void corner_of(const skg_box *box, int number, double *position) {
+void skg_box_corner(const skg_box *box, int number, double *position) {
     for (int k = 0; k < 3; k++) {
         position[k] = box->centre[k];
         for (int axis = 0; axis < 3; axis++)
@@ -37,7 +36,7 @@ skg_status skg_boxes_mesh(skg_context *context, const skg_box *boxes, int64_t co
     SKG_TRY_CLEANUP(skg_alloc(3 * (vertices + 1), sizeof *positions, "boxes", &positions));
     SKG_TRY_CLEANUP(skg_alloc(3 * (triangles + 1), sizeof *corners, "boxes", &corners));
     for (int64_t b = 0; b < count; b++) {
-        for (int n = 0; n < CORNERS; n++) corner_of(&boxes[b], n, positions + 3 * (CORNERS * b + n));
+        for (int n = 0; n < CORNERS; n++) skg_box_corner(&boxes[b], n, positions + 3 * (CORNERS * b + n));
         for (int f = 0; f < FACES; f++)
             for (int k = 0; k < 3; k++)
                 corners[3 * (FACES * b + f) + k] = (int32_t)(CORNERS * b) + faces[f][k];

@@ -14,6 +14,9 @@ typedef struct {
 /* A box whose axes are turned by three angles, so that no face lies along a ray. */
 skg_box skg_box_turned(const double *centre, const double *half, const double *angles);
 
+/* Corner `number` of 8 has the signs of its bits: bit 0 for the first axis, 1 for the second, 2 for the third. */
+void skg_box_corner(const skg_box *box, int number, double *position);
+
 /* Closed surfaces of boxes, in one mesh. split: the first box's first edge has a corner in its middle that only one of
  * its two faces knows. The shape is the same, but the mesh counts as leaky. */
 skg_status skg_boxes_mesh(skg_context *context, const skg_box *boxes, int64_t count, int32_t split,

@@ -27,6 +27,11 @@ static const skg_trial trials[SKG_TRIALS] = {
     [SKG_TRIAL_NOISE] = {"noise", 1e-4, 1e-4},
     [SKG_TRIAL_BLUR] = {"blur", 1e-4, 1e-4},
     [SKG_TRIAL_PARALLEL] = {"parallel beam", 0, 0},
+    [SKG_TRIAL_LENGTHS] = {"path lengths", 1e-4, 1e-4},
+    [SKG_TRIAL_DETECTOR] = {"detector", 1e-4, 1e-4},
+    [SKG_TRIAL_SHADES] = {"shades", 1e-4, 1e-3}, /* the tables of a grid are linear between points */
+    [SKG_TRIAL_PLACE] = {"positions on the device", 1e-4, 1e-4},
+    [SKG_TRIAL_PICTURE] = {"3D view", 0, 0},
 };
 
 const skg_trial *skg_trial_get(skg_trial_number number) {
@@ -57,10 +62,23 @@ static void place_boxes(skg_trial_scene *scene) {
     scene->boxes[SKG_TRIAL_BOXES] = skg_box_turned(beside, other, others);
 }
 
+/* Boxes elsewhere, of which the mesh of SKG_TRIAL_PLACE is made. */
+static void misplace(const skg_trial_scene *scene, skg_box *boxes) {
+    for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
+        boxes[b] = scene->boxes[b];
+        boxes[b].centre[0] += 5, boxes[b].centre[1] -= 3, boxes[b].centre[2] += 2;
+    }
+}
+
 static skg_status add_part(skg_context *context, skg_trial_scene *scene, int part) {
     const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_TRIAL_BOXES;
+    skg_box elsewhere[SKG_TRIAL_BOXES];
     skg_part given;
     skg_part_init(&given);
+    if (scene->number == SKG_TRIAL_PLACE) {
+        misplace(scene, elsewhere);
+        first = elsewhere;
+    }
     given.label = part == 0 ? "boxes" : "box";
     given.priority = scene->number == SKG_TRIAL_PRIORITY ? part : 0;
     skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_TRIAL_BOXES : 1,
@@ -141,6 +159,9 @@ skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number,
 void skg_trial_scene_release(skg_trial_scene *scene) {
     skg_scene_release(&scene->scene);
     skg_spectrum_release(&scene->beam);
+    skg_response_release(&scene->response);
+    skg_material_release(&scene->crystal);
+    skg_material_release(&scene->filter);
 }
 
 void skg_trial_lengths(const skg_trial_scene *scene, int64_t row, int64_t column, double *surface,

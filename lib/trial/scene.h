@@ -25,10 +25,15 @@ typedef enum {
     SKG_TRIAL_NOISE,
     SKG_TRIAL_BLUR,
     SKG_TRIAL_PARALLEL, /* all strategies, with exact sums: exact.h */
+    SKG_TRIAL_LENGTHS,
+    SKG_TRIAL_DETECTOR, /* electronic noise, steps, flat field: exposure.h */
+    SKG_TRIAL_SHADES,   /* bow-tie filter, grid, oblique scintillator: exposure.h */
+    SKG_TRIAL_PLACE,    /* positions in memory of the device: place.h */
+    SKG_TRIAL_PICTURE,  /* the 3D view: picture.h */
     SKG_TRIALS
 } skg_trial_number;
 
-enum { SKG_TRIAL_BOXES = 25, SKG_TRIAL_PIXELS = 96, SKG_TRIAL_BLUR_SAMPLES = 5 };
+enum { SKG_TRIAL_BOXES = 25, SKG_TRIAL_PIXELS = 96, SKG_TRIAL_BLUR_SAMPLES = 5, SKG_TRIAL_BOWTIE_ROWS = 4 };
 
 typedef struct {
     const char *name;    /* of the kernels: "strategy tiles" */
@@ -45,6 +50,12 @@ typedef struct {
     double along_row[SKG_TRIAL_BLUR_SAMPLES];
     double along_column[SKG_TRIAL_BLUR_SAMPLES];
     skg_detector_blur blur;
+    skg_bowtie bowtie;
+    double angles[SKG_TRIAL_BOWTIE_ROWS]; /* of the bow-tie, degrees */
+    skg_grid grid;
+    skg_material *filter;   /* of the bow-tie */
+    skg_material *crystal;  /* of the scintillator */
+    skg_response *response; /* of the same */
     skg_plan_options options;
     skg_view view;
     skg_scene *scene;

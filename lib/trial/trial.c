@@ -2,6 +2,7 @@
 #include "device/device.h"
 #include "device/verdict.h"
 #include "trial/exact.h"
+#include "trial/picture.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -22,10 +23,20 @@ static skg_status refuse(const skg_device *device, skg_trial_number number, cons
         reason);
 }
 
+skg_status skg_trial_run(skg_context *context, skg_trial_number number, skg_finding *finding) {
+    switch (number) {
+    case SKG_TRIAL_PARALLEL:
+        return skg_exact_judge(context, finding);
+    case SKG_TRIAL_PICTURE:
+        return skg_picture_judge(context, finding);
+    default:
+        return skg_trial_judge(context, number, finding);
+    }
+}
+
 skg_status skg_trial_again(skg_context *context, skg_trial_number number, skg_finding *finding) {
     skg_device *device = context->device;
-    SKG_TRY(number == SKG_TRIAL_PARALLEL ? skg_exact_judge(context, finding)
-                                         : skg_trial_judge(context, number, finding));
+    SKG_TRY(skg_trial_run(context, number, finding));
     const skg_verdict verdict = verdict_of(finding);
     skg_verdict_keep(device->store, &device->identity, skg_trial_get(number)->name, &verdict);
     if (finding->good) device->passed |= UINT32_C(1) << number;

@@ -170,11 +170,31 @@ START_TEST(slivers) {
 }
 END_TEST
 
+/* Bodies of a few pixels whose corners lie on the rays: blades that are thinner than the last bit of a coordinate lean over
+ * many of them. Depth has to be that of the ray by which coverage was decided, to a small part of that bit; these two
+ * were 0.0049 L and 0.14 L outside. */
+START_TEST(octahedra_on_rays) {
+    static const uint64_t seeds[] = {3, 13};
+    for (int k = 0; k < 2; k++) {
+        const skg_view view = run_view(512, 0.2);
+        solid s = solid_octahedra(2000, &view, k == 0 ? 2 : 0, 1, seeds[k]);
+        solid_round(&s);
+        double *got = run_solid(&s, NULL, &view, (run_choice){0});
+        const figures f = judge(&s, &view, got, 256, 120);
+        /* Five rays stand for all within the shift; blades between them have lengths that they do not meet. */
+        ck_assert_msg(f.outside <= 1e-3, "seed %d: %.3g of L outside", (int)seeds[k], f.outside);
+        free(got);
+        solid_free(&s);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, corners_on_rays);
     tcase_add_test(tests, slabs_nearly_edge_on);
     tcase_add_test(tests, slivers);
+    tcase_add_test(tests, octahedra_on_rays);
 }
 
 SKG_SUITE_MAIN("steep", add_tests)

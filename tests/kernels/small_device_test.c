@@ -2,8 +2,7 @@
  * looked at is what the library asks of it. Calls are wrapped by the linker. */
 #include "device/device.h"
 #include "suite.h"
-#include "trial/exact.h"
-#include "trial/judge.h"
+#include "trial/trial.h"
 
 #include <string.h>
 
@@ -84,8 +83,7 @@ START_TEST(a_small_gpu_gets_what_it_can_do) {
                          "double");
             continue;
         }
-        ck_skg(test == SKG_TRIAL_PARALLEL ? skg_exact_judge(context, &finding)
-                                          : skg_trial_judge(context, (skg_trial_number)test, &finding));
+        ck_skg(skg_trial_run(context, (skg_trial_number)test, &finding));
         ck_assert_msg(finding.good, "%s: %s", skg_trial_get((skg_trial_number)test)->name, finding.reason);
     }
     ck_assert_int_gt(launched, 0);

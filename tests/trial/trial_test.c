@@ -6,8 +6,11 @@
 #include "suite.h"
 #include "trial/trial.h"
 
+#include <skiagraph/frame.h>
 #include <skiagraph/material.h>
+#include <skiagraph/opencl.h>
 #include <skiagraph/plan.h>
+#include <skiagraph/view_picture.h>
 
 #include <math.h>
 #include <sys/wait.h>
@@ -93,6 +96,11 @@ START_TEST(a_right_device_passes) {
         ck_skg(skg_trial_again(context, (skg_trial_number)test, &finding));
         ck_assert_msg(finding.good, "%s: %s", skg_trial_get((skg_trial_number)test)->name, finding.reason);
         ck_assert(test == SKG_TRIAL_CORE ? finding.score > 0 : finding.score == 0);
+        if (test != SKG_TRIAL_TILES) continue;
+        context->device->info.is_gpu = 1;
+        ck_skg(skg_trial_again(context, SKG_TRIAL_TILES, &finding));
+        ck_assert_msg(finding.good, "squares: %s", finding.reason);
+        context->device->info.is_gpu = 0;
     }
     skg_context_release(&context);
 }
@@ -173,6 +181,34 @@ static const struct {
     {"half.cl", "* 1e-3f);", "* 1.2e-3f);", SKG_TRIAL_HALF},
     {"counts.cl", "verdict[0] = total;", "verdict[0] = total + 100;", SKG_TRIAL_LEAKY},
     {"random.clh", "(F)(0x1.0fc8bep+1f)", "(F)(0x1.3fc8bep+1f)", SKG_TRIAL_NOISE},
+    {"attenuate.cl", "pixels.shown[0][r] = pixels.highest[r]",
+     "pixels.shown[0][r] = 1.001f * pixels.highest[r]", SKG_TRIAL_LENGTHS},
+    {"raster_squares.cl", "k < own + all; k += 64", "k < own; k += 64", SKG_TRIAL_TILES},
+    {"raster_squares.cl", "own = starts[tile + 1] - starts[tile]",
+     "own = starts[tile + 1] - starts[tile] - 1", SKG_TRIAL_TILES},
+    {"raster_squares.cl", "k / columns * frame.tile_columns + k % columns]",
+     "k / columns * frame.tile_columns]", SKG_TRIAL_TILES},
+    {"tiles.cl", "tiles->z = (box.i1 - 1 + range.pixel_i) / frame->tile_columns + 1",
+     "tiles->z = tiles->x + 1", SKG_TRIAL_TILES},
+    {"detect.cl", "rint(value / spacing) * spacing", "value", SKG_TRIAL_DETECTOR},
+    {"detect.cl", "SKG_TO_REAL_V(skg_normal_v(draw[0]))", "2 * SKG_TO_REAL_V(skg_normal_v(draw[0]))",
+     SKG_TRIAL_DETECTOR},
+    {"detect.cl", "row * columns + column, SKG_DRAW", "column, SKG_DRAW", SKG_TRIAL_DETECTOR},
+    {"detect.cl", "((long)channel * rows + row) * columns + column", "column", SKG_TRIAL_DETECTOR},
+    {"shades.clh", "fma(inside, tangents[rows + high] - first, first)", "first", SKG_TRIAL_SHADES},
+    {"shades.clh", "* (length / sqrt(fma(x, x, y * y)))", "", SKG_TRIAL_SHADES},
+    {"shades.clh", "value = fma(value, z, (skg_realv)(terms[t]))",
+     "value = fma(value, z, (skg_realv)(terms[0]))", SKG_TRIAL_SHADES},
+    {"shades.clh", "SKG_TILTS - 1 ? tilts[k]", "SKG_TILTS - 1 ? 0.5f * tilts[k]", SKG_TRIAL_SHADES},
+    {"place.cl", "(long)taken[v]", "(long)taken[0]", SKG_TRIAL_PLACE},
+    {"place.cl", "to[k] = finite ? at : x;", "to[k] = x;", SKG_TRIAL_PLACE},
+    {"show.cl", "(depth < strip->depth[r] || (depth", "(depth > strip->depth[r] || (depth",
+     SKG_TRIAL_PICTURE},
+    {"show.cl", "face->box[2] / SKG_SHOW_TILE + 1", "face->box[2] / SKG_SHOW_TILE", SKG_TRIAL_PICTURE},
+    {"show.cl", "skg_show_beside(rows, 1, y) & skg_show_beside(rows, 2, y)", "skg_show_beside(rows, 1, y)",
+     SKG_TRIAL_PICTURE},
+    {"show.cl", "strip->through[r] -= share;", "", SKG_TRIAL_PICTURE},
+    {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_TRIAL_PICTURE},
 };
 
 START_TEST(wrong_kernels_are_found) {
@@ -181,6 +217,8 @@ START_TEST(wrong_kernels_are_found) {
     copy_kernels(errors[_i].file, errors[_i].old, errors[_i].new);
     snprintf(more, sizeof more, "kernels=%s", kernels);
     skg_context *context = open_first(more);
+    /* Squares are the tiles of GPUs. */
+    context->device->info.is_gpu |= strstr("raster_squares.cl tiles.cl", errors[_i].file) != NULL;
     ck_skg(skg_trial_again(context, errors[_i].test, &finding));
     ck_assert_int_eq(finding.good, 0);
     ck_assert_msg(strstr(finding.reason, "pixel") != NULL, "%s", finding.reason);
@@ -284,6 +322,40 @@ START_TEST(wrong_kernels_are_refused_when_they_are_needed) {
 }
 END_TEST
 
+/* Kernels that no plan needs by itself: the calls that need them are refused. */
+START_TEST(calls_are_refused_whose_kernels_are_wrong) {
+    skg_context *context = NULL;
+    skg_trial_scene scene;
+    skg_plan *plan = NULL;
+    skg_job *job = NULL;
+    skg_output output;
+    const float bound[3] = {0};
+    float lengths[256];
+    uint8_t rgba[4];
+    skg_output_init(&output);
+    output.data = lengths;
+    output.type = SKG_TYPE_FLOAT32;
+    ck_skg(skg_context_create("device=0:0", &context));
+    ck_skg(skg_trial_scene_create(context, SKG_TRIAL_CORE, 16, &scene));
+    ck_skg(skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan));
+    keep_verdict(context, "path lengths", 0, 0);
+    keep_verdict(context, "positions on the device", 0, 0);
+    keep_verdict(context, "3D view", 0, 0);
+    ck_skg_fails(skg_plan_lengths(plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job), SKG_ERR_DEVICE,
+                 "with the kernels of path lengths");
+    ck_skg_fails(skg_plan_positions_set_cl(plan, 0, NULL, 0, bound, bound, 0, NULL, NULL), SKG_ERR_DEVICE,
+                 "with the kernels of positions on the device");
+    ck_skg_fails(skg_view_picture(context, scene.scene, &scene.view, NULL, rgba), SKG_ERR_DEVICE,
+                 "with the kernels of 3D view");
+    keep_verdict(context, "path lengths", 1, 0);
+    ck_skg(skg_plan_lengths(plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    skg_plan_release(&plan);
+    skg_trial_scene_release(&scene);
+    skg_context_release(&context);
+}
+END_TEST
+
 START_TEST(where_nothing_is_kept_every_context_tests) {
     skg_context *context = NULL;
     setenv("SKG_CACHE_DIR", "none", 1);
@@ -322,6 +394,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_refused_device_is_listed_with_the_reason);
 #endif
     tcase_add_test(tests, wrong_kernels_are_refused_when_they_are_needed);
+    tcase_add_test(tests, calls_are_refused_whose_kernels_are_wrong);
     tcase_add_test(tests, where_nothing_is_kept_every_context_tests);
     tcase_add_test(tests, bad_numbers_are_refused);
 }
