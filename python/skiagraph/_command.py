@@ -23,13 +23,15 @@ def path() -> str:
     return found
 
 
-def cost(source: Source, quick: bool) -> dict[str, Any]:
+def cost(source: Source, quick: bool, within: float, frames: int) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
         scene = source.path
         if scene is None:
             scene = os.path.join(folder, "scene.json")
             pathlib.Path(scene).write_bytes(source.text)
-        words = [path(), "cost", scene, "--json", *(["--quick"] if quick else [])]
+        words = [path(), "cost", scene, "--json", "--within", f"{within:g}", "--frames", str(frames)]
+        if quick:
+            words.append("--quick")
         if source.lenient:
             words.append("--lenient")
         for setting in source.settings:

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char folder[64], said[65536], complained[65536];
+static char folder[64], said[1 << 18], complained[65536];
 
 static inline void set_up(void) {
     strcpy(folder, "/tmp/skg-cli-XXXXXX");
@@ -113,13 +113,13 @@ static inline int run(const char *format, ...) {
 static inline json_t *said_json(void) {
     json_error_t error;
     json_t *object = json_loads(said, JSON_REJECT_DUPLICATES, &error);
-    ck_assert_msg(json_is_object(object), "%s in: %s", error.text, said);
+    ck_assert_msg(json_is_object(object), "%s in: %.2000s", error.text, said);
     return object;
 }
 
 static inline json_t *member(json_t *object, const char *key) {
     json_t *value = json_object_get(object, key);
-    ck_assert_msg(value != NULL, "no \"%s\" in: %s", key, said);
+    ck_assert_msg(value != NULL, "no \"%s\" in: %.2000s", key, said);
     return value;
 }
 

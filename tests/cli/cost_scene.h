@@ -2,11 +2,7 @@
 #ifndef SKG_TESTS_COST_SCENE_H
 #define SKG_TESTS_COST_SCENE_H
 
-#include "cli/command.h"
-
-#include <stdlib.h>
-
-enum { LARGEST_PAGE = 1 << 23 };
+#include "cli/browser.h"
 
 /* A tube, a box and a sphere in it: every dial but the source's. */
 static const char small_scene[] =
@@ -23,20 +19,6 @@ static const char disc[] = "--set 'Source.Shape=[\"Disc\",2,\"mm\"]'";
 static inline void set_up_scene(void) {
     set_up();
     write_text("small scene.json", small_scene);
-}
-
-/* A page of any size; the caller frees it. */
-static inline char *read_page(const char *name) {
-    char path[512], *text = malloc(LARGEST_PAGE);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *stream = fopen(path, "rb");
-    ck_assert_ptr_nonnull(text);
-    ck_assert_ptr_nonnull(stream);
-    size_t count = fread(text, 1, LARGEST_PAGE - 1, stream);
-    fclose(stream);
-    ck_assert_uint_lt(count, LARGEST_PAGE - 1);
-    text[count] = '\0';
-    return text;
 }
 
 #endif

@@ -98,7 +98,7 @@ static void check_advice(json_t *study, size_t first, const char *extra) {
 }
 
 START_TEST(an_extended_source_is_swept) {
-    ck_run(0, "cost 'small scene.json' --quick --json %s", disc);
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json %s", disc);
     json_t *study = said_json(), *point;
     size_t index;
     double first = -1, last = -1;
@@ -151,7 +151,7 @@ static void check_errors(json_t *study) {
 }
 
 START_TEST(errors_are_those_of_the_dials_and_advice_holds) {
-    ck_run(0, "cost 'small scene.json' --quick --json");
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json");
     json_t *study = said_json();
     check_errors(study);
     check_advice(study, 0, "");
@@ -177,7 +177,7 @@ static int list_dial(json_t *study, const char *dial, const char *key, double *v
 START_TEST(round_parts_are_swept) {
     static const char grey[] = "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
     double rms[16], rms_mm[16];
-    ck_run(0, "cost 'small scene.json' --quick --json %s --set Samples.bone.Sphere.0=32", grey);
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json %s --set Samples.bone.Sphere.0=32", grey);
     json_t *study = said_json();
     int count = list_dial(study, "triangles", "rms_open", rms);
     ck_assert_int_eq(count, 4); /* 8, 16, 32 and 64 sectors, against 128 */
@@ -190,7 +190,7 @@ START_TEST(round_parts_are_swept) {
         json_string_value(member(json_array_get(member(study, "advice"), 3), "whole_command"));
     ck_assert_ptr_nonnull(strstr(command, " --set Samples.bone.Sphere.0=64"));
     json_decref(study);
-    ck_run(0, "cost 'small scene.json' --quick --json %s --set Samples.bone.Sphere.0=6", grey);
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json %s --set Samples.bone.Sphere.0=6", grey);
     study = said_json();
     ck_assert_int_eq(list_dial(study, "triangles", "rms_open", rms),
                      0); /* six-sided, for all that is known */
@@ -211,7 +211,7 @@ START_TEST(repair_of_an_open_mesh_is_swept) {
         "\"PhotonCount\":100}]'";
     double worst[16], rms[16], mm[16];
     write_text("box.obj", box);
-    ck_run(0, "cost 'small scene.json' --quick --json %s", bone);
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json %s", bone);
     json_t *study = said_json();
     ck_assert_int_eq(list_dial(study, "repair", "max_open", worst), 3);
     ck_assert_int_eq(list_dial(study, "repair", "max_mm", mm), 3);
@@ -240,7 +240,7 @@ START_TEST(thorax_and_breath_are_swept) {
                                 "'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
     double rms[16], mm[16];
     ck_run(0, "thorax -o t --simple --triangles 10000 --quiet");
-    ck_run(0, "cost t/thorax.json --quick --json %s", small);
+    ck_run(0, "cost t/thorax.json --quick --within 3600 --json %s", small);
     json_t *study = said_json();
     int count = list_dial(study, "triangles", "rms_mm", mm);
     ck_assert_int_eq(count, 5); /* the scene's, 10500, 21000, 42000, 84000, against 168000 */
@@ -263,11 +263,13 @@ START_TEST(thorax_and_breath_are_swept) {
 END_TEST
 
 START_TEST(table_csv_and_page_are_written) {
-    ck_run(0, "cost 'small scene.json' --quick -o a.html");
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 -o a.html");
     ck_assert_str_eq(complained, "");
-    ck_assert_ptr_nonnull(strstr(said, "\n* precision      double, "));
+    ck_assert_int_eq(strncmp(said, "This scene: ", 12), 0);
+    ck_assert_ptr_nonnull(strstr(said, "Largest error: "));
     ck_assert_ptr_nonnull(strstr(said, "\n  supersampling "));
-    ck_assert_ptr_nonnull(strstr(said, "for an error of 1e-06: largest "));
+    ck_assert_ptr_nonnull(strstr(said, "\n  scatter "));
+    ck_assert_ptr_nonnull(strstr(said, "\n  1e-06 "));
     ck_assert_ptr_nonnull(strstr(said, "skiagraph image 'small scene.json' -o image.mha --precision "));
     ck_assert_ptr_nonnull(strstr(said, "wrote a.html, and its table as .csv\n"));
     char *page = read_page("a.html"), *table = read_page("a.csv");
@@ -279,7 +281,7 @@ START_TEST(table_csv_and_page_are_written) {
     int lines = 0, commas = 0;
     for (const char *at = table; *at; at++) lines += *at == '\n', commas += *at == ',';
     ck_assert_int_gt(lines, 12);
-    ck_assert_int_eq(commas, 22 * lines);
+    ck_assert_int_eq(commas, 24 * lines);
     ck_assert_int_eq(look_at_folder(0), 3); /* no half-written file */
     free(page);
     free(table);
@@ -295,7 +297,7 @@ START_TEST(advice_stops_at_a_tenth_of_the_noise) {
     ck_run(0, "image 'small scene.json' --quiet -o image.mha --quantity transmission %s", beam);
     read_pixels("image.mha", image);
     for (int i = 0; i < PIXELS; i++) mean += image[i] / PIXELS;
-    ck_run(0, "cost 'small scene.json' --quick --json --set Noise=true %s", beam);
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json --set Noise=true %s", beam);
     json_t *study = said_json(), *advice = json_array_get(member(study, "advice"), 3);
     double noise = number(study, "noise");
     /* Six standard errors, see above. */
@@ -306,7 +308,111 @@ START_TEST(advice_stops_at_a_tenth_of_the_noise) {
 }
 END_TEST
 
+/* A setting is computed and timed once, whatever it is compared with, and the scene as it is stands among them. */
+static void check_settings(json_t *study) {
+    json_t *settings = member(study, "settings"), *here, *setting, *point;
+    size_t i, k;
+    here = json_array_get(settings, (size_t)json_integer_value(member(study, "here")));
+    ck_assert_str_eq(json_string_value(member(here, "dial")), "scene");
+    json_array_foreach(settings, i, setting) {
+        ck_assert_double_le(number(setting, "min_ms"), number(setting, "median_ms"));
+        for (k = 0; k < i; k++)
+            ck_assert(
+                !json_equal(member(setting, "setting"), member(json_array_get(settings, k), "setting")));
+    }
+    json_array_foreach(member(study, "points"), i, point) {
+        setting = json_array_get(settings, (size_t)json_integer_value(member(point, "settings_index")));
+        ck_assert(json_equal(member(setting, "setting"), member(point, "setting")));
+        ck_assert(number(setting, "min_ms") == number(point, "min_ms"));
+        if (json_integer_value(member(point, "reference")) == 6) /* all dials together */
+            ck_assert(number(setting, "rms") == number(point, "rms_open"));
+    }
+}
+
+static json_t *source_of(json_t *study, const char *name) {
+    json_t *source;
+    size_t i;
+    json_array_foreach(member(study, "sources"), i,
+                       source) if (strcmp(json_string_value(member(source, "name")), name) ==
+                                   0) return source;
+    ck_abort_msg("no source %s", name);
+    return NULL;
+}
+
+/* A sphere of 32 sectors in a cube, one energy, single precision: the triangles err by thousandths of the sphere's contrast at
+ * its edge and the single ray a pixel by more, precision by rounding, and the rest not at all. Twice the sectors quarter the
+ * error of the triangles. The errors of all sources add as squares to that of the whole, but for what they share: the pixels of
+ * the sphere's edge; their sum and their difference bound it. */
+START_TEST(sources_of_error_are_told_apart) {
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json --set Samples.bone.Sphere.0=32 --set "
+              "'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'");
+    json_t *study = said_json(), *triangles = source_of(study, "triangles"),
+           *scatter = source_of(study, "scatter");
+    const double faceted = number(triangles, "error"),
+                 sampled = number(source_of(study, "supersampling"), "error");
+    const double rounded = number(source_of(study, "precision"), "error");
+    ck_assert(rounded > 0 && rounded < 1e-6); /* 16 roundings of single */
+    ck_assert_double_gt(faceted, 100 * rounded);
+    ck_assert_ptr_nonnull(strstr(json_string_value(member(triangles, "halving")), " triangles"));
+    ck_assert_ptr_nonnull(
+        strstr(json_string_value(member(triangles, "command")), "Samples.bone.Sphere.0=64"));
+    ck_assert(json_is_number(member(triangles, "halving_ms")));
+    ck_assert(json_is_null(member(scatter, "error")) && json_is_string(member(scatter, "reason")));
+    static const char *const none[] = {"bins of the spectrum", "tolerance", "source samples", "repair",
+                                       "true surface"};
+    for (int i = 0; i < 5; i++) ck_assert(number(source_of(study, none[i]), "error") == 0);
+    json_t *here =
+        json_array_get(member(study, "settings"), (size_t)json_integer_value(member(study, "here")));
+    const double whole = number(here, "rms"), sure = number(study, "reference_error");
+    ck_assert_double_le(whole, faceted + sampled + sure);
+    ck_assert_double_ge(whole, fabs(sampled - faceted) - sure);
+    ck_assert(json_is_number(member(study, "unrest")));
+    ck_assert_int_eq(strncmp(json_string_value(member(study, "summary")), "This scene: ", 12), 0);
+    check_settings(study);
+    json_decref(study);
+}
+END_TEST
+
+START_TEST(batches_are_timed) {
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json --frames 5");
+    json_t *study = said_json();
+    ck_assert_int_eq((int)json_integer_value(member(study, "frames")), 5);
+    ck_assert_ptr_nonnull(strstr(json_string_value(member(study, "summary")), " a frame in batches"));
+    check_errors(study);
+    json_decref(study);
+}
+END_TEST
+
+/* With hardly any time there is still the scene itself, and what was left out is counted. */
+START_TEST(little_time_leaves_settings_out) {
+    ck_run(0, "cost 'small scene.json' --within 1 -o a.html");
+    ck_assert_int_eq(strncmp(said, "This scene: ", 12), 0);
+    ck_assert_ptr_nonnull(strstr(said, " settings did not fit in 1 s; --within gives more time\n"));
+    ck_assert(has_file("a.html") && has_file("a.csv"));
+}
+END_TEST
+
+/* A signal ends the measurement, not the command: what is done is written. (A shell's background process ignores SIGINT.) */
+START_TEST(a_stopped_measurement_is_kept) {
+    char line[1024];
+    snprintf(line, sizeof line,
+             "cd %s && { %s cost 'small scene.json' --verbose --within 3600 -o a.html >said 2>log & pid=$!; "
+             "until grep -qs skiagraph: log; do sleep 0.02; done; kill -TERM $pid; wait $pid; }",
+             folder, SKG_COMMAND);
+    ck_assert_int_eq(system(line), 0);
+    read_back("said", said, sizeof said);
+    ck_assert_int_eq(strncmp(said, "This scene: ", 12), 0);
+    ck_assert_ptr_nonnull(strstr(said, "  stopped: what was measured until then is kept\n"));
+    char *page = read_page("a.html");
+    ck_assert_ptr_nonnull(strstr(page, "\"stopped\":true"));
+    free(page);
+}
+END_TEST
+
 START_TEST(what_cannot_be_done_is_refused) {
+    ck_run_fails(2, "--within", "cost 'small scene.json' --within 0");
+    ck_run_fails(2, "--frames", "cost 'small scene.json' --frames 0");
+
     ck_run_fails(2, "its extension is neither .html nor .csv", "cost 'small scene.json' -o a.png");
     ck_run_fails(5, "nowhere/a.html: cannot be written", "cost 'small scene.json' -o nowhere/a.html");
     ck_run_fails(3, "none.json", "cost none.json --quick");
@@ -323,6 +429,10 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, thorax_and_breath_are_swept);
     tcase_add_test(tests, table_csv_and_page_are_written);
     tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);
+    tcase_add_test(tests, sources_of_error_are_told_apart);
+    tcase_add_test(tests, batches_are_timed);
+    tcase_add_test(tests, little_time_leaves_settings_out);
+    tcase_add_test(tests, a_stopped_measurement_is_kept);
     tcase_add_test(tests, what_cannot_be_done_is_refused);
 }
 

@@ -1,7 +1,5 @@
 /* The page of the verb view in a real browser, with WebGL in software: needs chromium. */
-#include "cli/command.h"
-
-enum { LARGEST_PAGE = 8 << 20 };
+#include "cli/browser.h"
 
 /* A cube with a cylinder in it, 400 mm from a point source, the detector 100 mm behind. */
 static const char scene[] =
@@ -38,7 +36,7 @@ static const char end_script[] =
     "}\n"
     "try { work(); } catch (error) { verdict.push(error.stack); }\n"
     "document.body.setAttribute('data-verdict', verdict.length ? 'failed: ' + verdict : 'all works');\n"
-    "</script>\n</body>";
+    "</script>\n";
 
 /* Camera, list, names, the detector's image. */
 static const char still_script[] =
@@ -102,50 +100,19 @@ static const char moving_script[] =
     "const mean = f => ofFrame(f).reduce((s, x) => s + x, 0) / liver.vertices * liver.step[2];\n"
     "check('the liver goes down', mean(10) - mean(0) > 8);\n"; /* mm, from inspiration to expiration; breathe_test */
 
-static char *read_text(const char *name) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *stream = fopen(path, "rb");
-    char *text = calloc(LARGEST_PAGE, 1);
-    ck_assert(stream && text);
-    ck_assert_uint_lt(fread(text, 1, LARGEST_PAGE - 1, stream), LARGEST_PAGE - 1);
-    fclose(stream);
-    return text;
-}
-
 /* Adds the script to a.html and lets the browser work on it. */
 static void work(const char *script) {
-    char *page = read_text("a.html"), line[1024], profile[] = "/tmp/skg-browser-XXXXXX";
-    char *end = strstr(page, "</body>");
-    ck_assert_ptr_nonnull(end);
-    snprintf(end, (size_t)(LARGEST_PAGE - (end - page)), "%s%s%s", begin_script, script, end_script);
-    write_text("worked.html", page);
-    free(page);
-    ck_assert_ptr_nonnull(mkdtemp(profile));
-    snprintf(line, sizeof line,
-             "cd %s && HOME=%s timeout 200 \"${CHROMIUM:-chromium}\" --headless --no-sandbox --use-gl=angle "
-             "--use-angle=swiftshader --enable-unsafe-swiftshader --user-data-dir=%s --window-size=900,600 "
-             "--virtual-time-budget=60000 --dump-dom 'file://%s/worked.html' 2>/dev/null >dom.html",
-             folder, profile, profile, folder);
-    const int status = system(line);
-    snprintf(line, sizeof line, "rm -rf %s", profile);
-    ck_assert_int_eq(system(line), 0);
-    ck_assert_int_eq(status, 0);
-    page = read_text("dom.html");
-    const char *verdict = strstr(page, "data-verdict=\"");
-    ck_assert_msg(verdict != NULL, "the page's script did not end");
-    if (strncmp(verdict, "data-verdict=\"failed: no WebGL\"", 31) == 0)
-        skip_test("the browser has no WebGL 2");
-    ck_assert_msg(strncmp(verdict, "data-verdict=\"all works\"", 24) == 0, "%.600s", verdict);
-    free(page);
-}
-
-static int has_browser(void) {
-    return system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") == 0;
+    const char *const texts[] = {begin_script, script, end_script};
+    char *verdict = work_on_page(
+        "a.html", "--use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --window-size=900,600",
+        3, texts);
+    if (strcmp(verdict, "failed: no WebGL") == 0) skip_test("the browser has no WebGL 2");
+    ck_assert_msg(strcmp(verdict, "all works") == 0, "%.600s", verdict);
+    free(verdict);
 }
 
 START_TEST(a_page_can_be_turned) {
-    if (!has_browser()) skip_test("no chromium; CHROMIUM names another browser of that kind");
+    need_browser();
     write_text("s.json", scene);
     ck_run(0, "view s.json -o a.html --quiet");
     work(still_script);
@@ -153,7 +120,7 @@ START_TEST(a_page_can_be_turned) {
 END_TEST
 
 START_TEST(a_page_breathes) {
-    if (!has_browser()) skip_test("no chromium; CHROMIUM names another browser of that kind");
+    need_browser();
     ck_run(0, "thorax -o . --simple --triangles 10000 --quiet");
     ck_run(
         0,

@@ -25,6 +25,7 @@ static volatile sig_atomic_t guarded_child;
 /* Two sentences, so that the handler reads a whole one while the other is written. */
 static char kept[2][LONGEST_PATH] = {"no output was written", ""};
 static volatile sig_atomic_t kept_now;
+static volatile sig_atomic_t is_gentle, is_asked;
 
 void cli_keep(const char *format, ...) {
     va_list arguments;
@@ -43,6 +44,14 @@ void cli_guard_child(pid_t child) {
 static void say(const char *text) {
     const ssize_t written = write(STDERR_FILENO, text, strlen(text));
     (void)written;
+}
+
+void cli_stop_gently(void) {
+    is_gentle = 1;
+}
+
+int cli_stop_asked(void) {
+    return is_asked;
 }
 
 static int is_unfinished(const char *name) {
@@ -70,6 +79,11 @@ static void end(int number) {
         pthread_kill(writer, number);
         return;
     }
+    if (is_gentle && !is_asked) {
+        is_asked = 1;
+        say("\nskiagraph: stopping; what is done is kept (a second signal ends at once)\n");
+        return;
+    }
     if (guarded_child > 0 && kill(guarded_child, SIGKILL) == 0) waitpid(guarded_child, NULL, 0);
     for (int f = 0; f < folder_count; f++) clear_folder(folders[f]);
     say("\nskiagraph: interrupted; ");
@@ -81,7 +95,7 @@ static void end(int number) {
 
 void cli_catch_signals(void) {
     static const int numbers[3] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction action = {.sa_handler = end}, before;
+    struct sigaction action = {.sa_handler = end, .sa_flags = SA_RESTART}, before;
     writer = pthread_self();
     snprintf(suffix, sizeof suffix, ".part-%ld", (long)getpid());
     sigemptyset(&action.sa_mask);

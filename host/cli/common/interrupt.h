@@ -14,6 +14,13 @@ void cli_guard_output(const char *path);
 /* The handler kills this child process before it removes files, so that the child makes none. 0: there is no child. */
 void cli_guard_child(pid_t child);
 
+/* From now on the first signal only asks the computation to stop, which cli_stop_asked then reports; the second one ends the
+ * process as described above. */
+void cli_stop_gently(void);
+
+/* Whether a signal asked the computation to stop. */
+int cli_stop_asked(void);
+
 /* What the handler says after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
  * written". */
 void cli_keep(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -20,6 +20,7 @@ static struct {
     const char *what;
     int64_t done, total;
     double start_ms;
+    double end_ms; /* when it is expected to end; 0: no forecast */
     int is_running;
 } task;
 
@@ -34,7 +35,17 @@ double cli_now_ms(void) {
 
 static void show(void) {
     char line[160];
-    const double ms = cli_now_ms() - task.start_ms, seconds = 1e-3 * ms;
+    const double now = cli_now_ms(), ms = now - task.start_ms, seconds = 1e-3 * ms;
+    if (task.end_ms > 0) {
+        const double left = task.end_ms > now ? 1e-3 * (task.end_ms - now) : 0;
+        int used = snprintf(line, sizeof line, "%s", task.what);
+        if (task.total > 0)
+            used += snprintf(line + used, sizeof line - (size_t)used, ": %" PRId64 " of %" PRId64, task.done,
+                             task.total);
+        snprintf(line + used, sizeof line - (size_t)used, ", %.0f s left", left);
+        cli_show_line(line);
+        return;
+    }
     if (ms < SILENT_MS) return;
     if (task.total > 0 && task.done > 0) {
         const double rate = (double)task.done / seconds;
@@ -64,7 +75,8 @@ void cli_progress_begin(const char *what, int64_t total) {
     sigset_t all, before; /* signals belong to the thread that writes */
     cli_progress_end();
     if (cli_is_quiet() || !isatty(STDERR_FILENO)) return;
-    task.what = what, task.total = total, task.done = 0, task.start_ms = cli_now_ms(), task.is_running = 1;
+    task.what = what, task.total = total, task.done = 0, task.end_ms = 0;
+    task.start_ms = cli_now_ms(), task.is_running = 1;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     has_shower = pthread_create(&shower, NULL, run, NULL) == 0; /* without it there is no line */
@@ -74,6 +86,16 @@ void cli_progress_begin(const char *what, int64_t total) {
 void cli_progress_step(int64_t done) {
     pthread_mutex_lock(&lock);
     task.done = done;
+    pthread_mutex_unlock(&lock);
+}
+
+void cli_progress_forecast(const char *what, int64_t done, int64_t total, double left_ms) {
+    if (!has_shower) cli_progress_begin(what, total);
+    if (!has_shower) return; /* no terminal */
+    pthread_mutex_lock(&lock);
+    task.what = what, task.done = done, task.total = total;
+    task.end_ms = cli_now_ms() + left_ms;
+    show();
     pthread_mutex_unlock(&lock);
 }
 

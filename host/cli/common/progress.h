@@ -18,6 +18,10 @@ void cli_progress_begin(const char *what, int64_t total);
 /* `done` things are done by now. */
 void cli_progress_step(int64_t done);
 
+/* How much longer the computation will take, in ms from now, for one whose things take different times. The line then shows
+ * from the first moment on "measuring: 12 of 44, 31 s left". Begins a computation if there is none. */
+void cli_progress_forecast(const char *what, int64_t done, int64_t total, double left_ms);
+
 /* Ends the computation and erases the line. Does nothing if there is none. */
 void cli_progress_end(void);
 

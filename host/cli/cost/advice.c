@@ -6,8 +6,16 @@
 #include "cost/compare.h"
 #include "cost/measure.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+
+static const double ADVISED =
+    0.97; /* the share of the given time after which no recommendation is measured */
+
+static double ms_of(const cost_study *study, const cost_point *point) {
+    return study->shots[point->shot].min_ms;
+}
 
 /* Marks the frontier of the rays' settings: no other is both faster and better. */
 static void find_frontier(cost_study *study) {
@@ -16,9 +24,10 @@ static void find_frontier(cost_study *study) {
         point->on_frontier = point->reference == COST_OF_RAYS && !isnan(point->max_flat);
         for (int k = 0; k < study->count && point->on_frontier; k++) {
             const cost_point *other = &study->points[k];
-            int no_worse = other->reference == COST_OF_RAYS && other->min_ms <= point->min_ms &&
-                           other->max_flat <= point->max_flat;
-            int better = other->min_ms < point->min_ms || other->max_flat < point->max_flat;
+            const double its = ms_of(study, other), ms = ms_of(study, point);
+            int no_worse =
+                other->reference == COST_OF_RAYS && its <= ms && other->max_flat <= point->max_flat;
+            int better = its < ms || other->max_flat < point->max_flat;
             if (no_worse && better) point->on_frontier = 0;
         }
     }
@@ -33,7 +42,7 @@ static int choose_rays(const cost_study *study, double bar) {
         if (point->reference != COST_OF_RAYS || isnan(point->max_flat)) continue;
         if (best < 0 || point->max_flat < study->points[best].max_flat) best = i;
         if (!(point->max_flat <= bar)) continue;
-        if (fastest < 0 || point->min_ms < study->points[fastest].min_ms) fastest = i;
+        if (fastest < 0 || ms_of(study, point) < ms_of(study, &study->points[fastest])) fastest = i;
     }
     return fastest >= 0 ? fastest : best;
 }
@@ -76,7 +85,8 @@ static cost_setting whole_of(const cost_study *study, const cost_advice *advice)
 static double reference_ms(const cost_study *study, const cost_setting *setting) {
     double slowest = 0;
     for (int i = 0; i < study->count; i++)
-        if (study->points[i].reference == COST_OF_RAYS) slowest = fmax(slowest, study->points[i].median_ms);
+        if (study->points[i].reference == COST_OF_RAYS)
+            slowest = fmax(slowest, ms_of(study, &study->points[i]));
     return slowest / cost_passes(&study->own) * cost_passes(setting);
 }
 
@@ -92,16 +102,31 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
     if (!image || !reference) {
         exit_status = cli_error(CLI_DEVICE, "out of host memory for the image");
     } else {
-        skg_status status = cost_image(study, &advice->whole.setting, image, &advice->whole);
+        skg_status status = cost_shoot(study, &advice->whole.setting, image, &advice->whole.shot);
         if (status >= SKG_OK) status = cost_image(study, &best, reference, NULL);
         exit_status =
             status < SKG_OK ? cli_fail(status) : cost_compare(study, 1, image, reference, &advice->whole);
+        if (exit_status == CLI_DONE)
+            exit_status = cost_compare_shot(study, image, &study->shots[advice->whole.shot]);
     }
     free(advice->whole.difference);
-    free(advice->whole.small);
-    advice->whole.difference = advice->whole.small = NULL;
+    advice->whole.difference = NULL;
     free(image);
     free(reference);
+    return exit_status;
+}
+
+/* Times a combination whose reference would take too long, if it does not take too long itself. */
+static int time_whole(cost_study *study, const cost_setting *setting) {
+    int number, exit_status = CLI_DONE;
+    if (cost_find_shot(study, setting) >= 0 || cost_estimate_ms(study, setting) > cost_patience_ms(study) ||
+        cost_effort_ms(study, setting) > cost_left_ms(study, ADVISED))
+        return CLI_DONE;
+    double *image = calloc((size_t)study->pixels, sizeof *image);
+    if (!image) return cli_error(CLI_DEVICE, "out of host memory for the image");
+    const skg_status status = cost_shoot(study, setting, image, &number);
+    exit_status = status < SKG_OK ? cli_fail(status) : cost_compare_shot(study, image, &study->shots[number]);
+    free(image);
     return exit_status;
 }
 
@@ -119,7 +144,10 @@ static int advise_whole(cost_study *study, cost_advice *advice) {
             setting->meshing < 0 && setting->repair < 0)
             return CLI_DONE;
         advice->whole_state = COST_WHOLE_TOO_LONG;
-        if (reference_ms(study, setting) > cost_patience_ms(study)) return CLI_DONE;
+        const double ms = reference_ms(study, setting);
+        const int too_long = ms > cost_patience_ms(study) ||
+                             ms + 2 * cost_effort_ms(study, setting) > cost_left_ms(study, ADVISED);
+        if (too_long) return time_whole(study, setting);
         advice->whole_state = COST_WHOLE_MEASURED;
         int exit_status = measure_whole(study, advice);
         if (exit_status != CLI_DONE || !advice->rays_met || advice->whole.max_flat <= advice->bar)
@@ -133,13 +161,44 @@ static int is_met(const cost_study *study, int point, double bar) {
     return point < 0 || study->points[point].rms_flat <= bar;
 }
 
+/* Appends the point's value if its error is above the bar: it is the best that was measured of its dial. */
+static void blame(const cost_study *study, int point, double error, double bar, char *text, size_t size) {
+    char value[96];
+    if (point < 0 || error <= bar) return;
+    const cost_point *its = &study->points[point];
+    cost_describe_dial(study, &its->setting, its->dial, value, sizeof value);
+    cost_append(text, size, "%s%s, the most accurate measured, still err%s %.1e", *text ? "; " : "", value,
+                its->dial == COST_PRECISION || its->dial == COST_TOLERANCE || its->dial == COST_REPAIR ? "s"
+                                                                                                       : "",
+                error);
+}
+
+/* Why the tolerance is not reached. */
+static void give_reason(const cost_study *study, cost_advice *advice) {
+    const int sampled[] = {advice->samples, advice->supersampling, advice->triangles};
+    char *text = advice->reason;
+    const size_t size = sizeof advice->reason;
+    const cost_point *rays = &study->points[advice->rays];
+    if (!advice->rays_met && rays->max_flat > advice->bar)
+        cost_append(text, size, "no precision, tolerance or number of bins errs less than %.1e",
+                    rays->max_flat);
+    else if (!advice->rays_met)
+        cost_append(text, size, "all dials together err %.1e", advice->whole.max_flat);
+    for (int k = 0; k < 3; k++)
+        blame(study, sampled[k], sampled[k] < 0 ? 0 : study->points[sampled[k]].rms_flat, advice->bar, text,
+              size);
+    if (*text && study->left_out)
+        cost_append(text, size, "; %" PRId64 " settings did not fit in the given time", study->left_out);
+}
+
 int cost_advise(cost_study *study) {
     find_frontier(study);
     if (choose_rays(study, 0) < 0)
         return cli_error(CLI_DEVICE, "no setting could be measured: one image of the scene takes too long");
-    cli_progress_begin("measuring the settings that are recommended", COST_TOLERANCES);
     for (int i = 0; i < COST_TOLERANCES; i++) {
         cost_advice *advice = &study->advice[i];
+        cli_progress_forecast("measuring the settings that are recommended", i, COST_TOLERANCES,
+                              fmax(cost_left_ms(study, ADVISED), 0));
         advice->tolerance = cost_tolerances[i];
         advice->bar = fmax(advice->tolerance, study->noise / 10);
         advice->samples = choose_sampling(study, COST_OF_SAMPLES, advice->bar);
@@ -155,8 +214,7 @@ int cost_advise(cost_study *study) {
         advice->whole_command = cost_command(study, &advice->whole.setting);
         if (!advice->rays_command || !advice->whole_command)
             return cli_error(CLI_DEVICE, "out of host memory");
-        cli_progress_step(i + 1);
+        give_reason(study, advice);
     }
-    cli_progress_end();
     return CLI_DONE;
 }

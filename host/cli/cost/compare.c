@@ -7,48 +7,80 @@
 #include <math.h>
 #include <stdlib.h>
 
-static int shrink(const cost_study *study, int64_t images, const double *image, const double *reference,
-                  cost_point *point) {
+/* The small picture of differences: of each block of pixels the one that is largest in magnitude. NULL: out of memory. */
+static float *shrink_difference(const cost_study *study, int64_t images, const double *image,
+                                const double *reference) {
     const int64_t columns = study->session.view.columns, block = study->thumb_block;
-    const size_t places = (size_t)(study->thumb_columns * study->thumb_rows);
-    int32_t *count = calloc(places, sizeof *count);
-    point->difference = calloc(places, sizeof *point->difference);
-    point->small = calloc(places, sizeof *point->small);
-    int enough = count && point->difference && point->small;
-    for (int64_t i = 0; enough && i < images * study->pixels; i++) {
+    float *difference = calloc((size_t)(study->thumb_columns * study->thumb_rows), sizeof *difference);
+    for (int64_t i = 0; difference && i < images * study->pixels; i++) {
         const int64_t pixel = i % study->pixels;
         const int64_t at = pixel / columns / block * study->thumb_columns + pixel % columns / block;
         const float value = (float)((image[i] - reference[i]) / study->flat_field);
-        if (fabsf(value) > fabsf(point->difference[at])) point->difference[at] = value;
-        if (i >= study->pixels) continue; /* the small picture shows the first image */
-        point->small[at] += (float)(image[i] / study->flat_field);
+        if (fabsf(value) > fabsf(difference[at])) difference[at] = value;
+    }
+    return difference;
+}
+
+/* The small picture of an image: the mean of each block of pixels. NULL: out of memory. */
+static float *shrink_image(const cost_study *study, const double *image) {
+    const int64_t columns = study->session.view.columns, block = study->thumb_block;
+    const size_t places = (size_t)(study->thumb_columns * study->thumb_rows);
+    int32_t *count = calloc(places, sizeof *count);
+    float *small = calloc(places, sizeof *small);
+    for (int64_t i = 0; count && small && i < study->pixels; i++) {
+        const int64_t at = i / columns / block * study->thumb_columns + i % columns / block;
+        small[at] += (float)(image[i] / study->flat_field);
         count[at]++;
     }
-    for (size_t at = 0; enough && at < places; at++) point->small[at] /= (float)count[at];
+    if (!count) free(small), small = NULL;
+    for (size_t at = 0; small && at < places; at++) small[at] /= (float)count[at];
     free(count);
-    return enough ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+    return small;
+}
+
+/* The largest error and the sum of their squares, as fractions of the flat field. An error that is not finite stays. */
+static double worst_of_flat(const cost_study *study, int64_t count, const double *image,
+                            const double *reference, double *squares) {
+    double worst = 0;
+    *squares = 0;
+    for (int64_t i = 0; i < count; i++) {
+        const double error = fabs(image[i] - reference[i]) / study->flat_field;
+        if (!(error <= worst)) worst = error;
+        *squares += error * error;
+    }
+    return worst;
 }
 
 int cost_compare(const cost_study *study, int64_t images, const double *image, const double *reference,
                  cost_point *point) {
-    double squares_flat = 0, squares_ref = 0;
+    double squares_flat, squares_ref = 0;
     int64_t seen = 0;
-    point->max_flat = point->max_ref = 0;
+    point->max_ref = 0;
     point->max_mm = point->rms_mm = (double)NAN;
+    point->max_flat = worst_of_flat(study, images * study->pixels, image, reference, &squares_flat);
     for (int64_t i = 0; i < images * study->pixels; i++) {
-        double error = fabs(image[i] - reference[i]), of_flat = error / study->flat_field;
-        if (!(of_flat <= point->max_flat))
-            point->max_flat = of_flat; /* also if it is NaN, which then stays */
-        squares_flat += of_flat * of_flat;
         if (!(reference[i] > 0)) continue;
-        double of_ref = error / reference[i];
+        const double of_ref = fabs(image[i] - reference[i]) / reference[i];
         if (!(of_ref <= point->max_ref)) point->max_ref = of_ref;
         squares_ref += of_ref * of_ref;
         seen++;
     }
     point->rms_flat = sqrt(squares_flat / (double)(images * study->pixels));
     point->rms_ref = seen ? sqrt(squares_ref / (double)seen) : 0;
-    return shrink(study, images, image, reference, point);
+    free(point->difference);
+    point->difference = shrink_difference(study, images, image, reference);
+    return point->difference ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+}
+
+int cost_compare_shot(const cost_study *study, const double *image, cost_shot *shot) {
+    const double *reference = study->references[COST_OF_ALL].image;
+    double squares;
+    if (shot->small || !reference) return CLI_DONE; /* once is enough */
+    shot->total_max = worst_of_flat(study, study->pixels, image, reference, &squares);
+    shot->total_rms = sqrt(squares / (double)study->pixels);
+    shot->difference = shrink_difference(study, 1, image, reference);
+    shot->small = shrink_image(study, image);
+    return shot->difference && shot->small ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }
 
 static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t pixels, double *data) {

@@ -1,14 +1,21 @@
 #include "cost/cost.h"
 
 #include "common/file.h"
+#include "common/interrupt.h"
 #include "common/json.h"
 #include "common/overwrite.h"
+#include "common/progress.h"
 #include "common/say.h"
 #include "cost/advice.h"
+#include "cost/combine.h"
+#include "cost/command.h"
+#include "cost/csv.h"
 #include "cost/data.h"
 #include "cost/open.h"
 #include "cost/page.h"
 #include "cost/print.h"
+#include "cost/sources.h"
+#include "cost/summary.h"
 #include "cost/sweep.h"
 
 #include <errno.h>
@@ -86,18 +93,57 @@ static int report(const cost_study *study) {
     return CLI_DONE;
 }
 
+static int read_flags(cost_study *study) {
+    const cli_arguments *arguments = study->arguments;
+    double within = 60;
+    study->quick = cli_given(arguments, &cli_flag_cost_quick);
+    study->frames = 1;
+    int exit_status = cli_number(arguments, &cli_flag_cost_within, 1, 86400, &within);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_cost_frames, 1, 4096, &study->frames);
+    study->begun_ms = cli_now_ms();
+    study->within_ms = 1e3 * within;
+    return exit_status;
+}
+
+/* Each shot's command line. */
+static int find_commands(cost_study *study) {
+    for (int i = 0; i < study->shot_count; i++) {
+        study->shots[i].command = cost_command(study, &study->shots[i].setting);
+        if (!study->shots[i].command) return cli_error(CLI_DEVICE, "out of host memory");
+    }
+    return CLI_DONE;
+}
+
+static int measure(cost_study *study) {
+    int exit_status = cost_sweep(study);
+    if (exit_status == CLI_DONE) exit_status = cost_advise(study);
+    if (exit_status == CLI_DONE) exit_status = find_commands(study);
+    if (exit_status != CLI_DONE) return exit_status;
+    cost_find_frontier(study);
+    cost_find_trust(study);
+    exit_status = cost_find_sources(study);
+    cost_summarise(study);
+    study->stopped = cli_stop_asked();
+    study->ended_ms = cli_now_ms();
+    return exit_status;
+}
+
 int cli_cost(const cli_arguments *arguments) {
     if (strcmp(arguments->operands[0], "-") == 0)
         return cli_error(CLI_USAGE, "cost reads its scene several times; give a file instead of -");
     cost_study *study = calloc(1, sizeof *study);
     if (!study) return cli_error(CLI_DEVICE, "out of host memory");
     study->arguments = arguments;
-    study->quick = cli_given(arguments, &cli_flag_cost_quick);
-    int exit_status = check_outputs(arguments);
+    int exit_status = read_flags(study);
+    if (exit_status == CLI_DONE) exit_status = check_outputs(arguments);
     if (exit_status == CLI_DONE) {
+        cli_stop_gently();
+        cli_progress_forecast("opening the scene", 0, 0, study->within_ms);
         exit_status = cost_open(study);
-        if (exit_status == CLI_DONE) exit_status = cost_sweep(study);
-        if (exit_status == CLI_DONE) exit_status = cost_advise(study);
+        study->begun_ms = cli_now_ms(); /* opening takes the time that every image of the scene takes once */
+        if (exit_status == CLI_DONE) exit_status = measure(study);
+        cli_progress_end();
         if (exit_status == CLI_DONE) exit_status = write_outputs(study);
         if (exit_status == CLI_DONE) exit_status = report(study);
         cost_close(study);

@@ -1,20 +1,14 @@
 #include "cost/data.h"
 
 #include "common/json.h"
+#include "cost/measure.h"
+#include "cost/sources.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-
-static int32_t repair_of(const cost_study *study, const cost_setting *setting) {
-    return setting->repair >= 0 ? setting->repair : study->session.options.repair;
-}
-
-static int64_t triangles_of(const cost_study *study, const cost_setting *setting) {
-    return setting->meshing >= 0 ? study->meshings[setting->meshing].triangles : study->triangles;
-}
 
 static json_t *setting_json(const cost_study *study, const cost_setting *setting) {
     const int breathes = setting->relaxation >= 0;
@@ -29,32 +23,71 @@ static json_t *setting_json(const cost_study *study, const cost_setting *setting
                         setting->samples > 0 ? json_integer(setting->samples) : json_null());
     json_object_set_new(object, "supersampling", json_integer(setting->supersampling));
     json_object_set_new(object, "repair",
-                        study->has_leaky ? cli_json_text(cost_repair_names[repair_of(study, setting)])
-                                         : json_null());
-    json_object_set_new(object, "triangles", json_integer(triangles_of(study, setting)));
+                        study->has_leaky ? cli_json_text(cost_repair_of(study, setting)) : json_null());
+    json_object_set_new(object, "triangles", json_integer(cost_triangles(study, setting)));
     json_object_set_new(object, "relaxation", breathes ? json_integer(setting->relaxation) : json_null());
     json_object_set_new(object, "hysteresis", breathes ? json_real(setting->hysteresis) : json_null());
     return object;
 }
 
 static json_t *point_json(const cost_study *study, const cost_point *point) {
+    const cost_shot *shot = &study->shots[point->shot];
     json_t *object = json_object();
-    json_object_set_new(object, "dial", cli_json_text(cost_dial_names[point->dial]));
+    json_object_set_new(object, "dial", cli_json_text(cost_dial_name(point->dial)));
     json_object_set_new(object, "setting", setting_json(study, &point->setting));
     json_object_set_new(object, "reference", json_integer(point->reference));
+    json_object_set_new(object, "settings_index", json_integer(point->shot));
     json_object_set_new(object, "frontier", json_boolean(point->on_frontier));
-    json_object_set_new(object, "nodes", json_integer(point->nodes));
-    json_object_set_new(object, "planes", json_integer(point->planes));
-    json_object_set_new(object, "runs", json_integer(point->runs));
-    json_object_set_new(object, "plan_ms", cli_json_number(point->plan_ms));
-    json_object_set_new(object, "min_ms", cli_json_number(point->min_ms));
-    json_object_set_new(object, "median_ms", cli_json_number(point->median_ms));
+    json_object_set_new(object, "nodes", json_integer(shot->nodes));
+    json_object_set_new(object, "planes", json_integer(shot->planes));
+    json_object_set_new(object, "runs", json_integer(shot->runs));
+    json_object_set_new(object, "plan_ms", cli_json_number(shot->plan_ms));
+    json_object_set_new(object, "min_ms", cli_json_number(shot->min_ms));
+    json_object_set_new(object, "median_ms", cli_json_number(shot->median_ms));
     json_object_set_new(object, "max_open", cli_json_number(point->max_flat));
     json_object_set_new(object, "rms_open", cli_json_number(point->rms_flat));
     json_object_set_new(object, "max_ref", cli_json_number(point->max_ref));
     json_object_set_new(object, "rms_ref", cli_json_number(point->rms_ref));
     json_object_set_new(object, "max_mm", cli_json_number(point->max_mm));
     json_object_set_new(object, "rms_mm", cli_json_number(point->rms_mm));
+    return object;
+}
+
+/* A shot as the page needs it. Times in ms, errors as fractions of the flat field against the best of all dials. */
+static json_t *shot_json(const cost_study *study, const cost_shot *shot) {
+    const int dial = cost_changed_dial(study, &shot->setting);
+    char value[160];
+    json_t *object = json_object();
+    cost_describe_dial(study, &shot->setting, dial, value, sizeof value);
+    json_object_set_new(object, "dial", cli_json_text(cost_dial_name(dial)));
+    json_object_set_new(object, "value", cli_json_text(value));
+    json_object_set_new(object, "setting", setting_json(study, &shot->setting));
+    json_object_set_new(object, "best", json_boolean(shot->on_frontier));
+    json_object_set_new(object, "runs", json_integer(shot->runs));
+    json_object_set_new(object, "visits", json_integer(shot->visits));
+    json_object_set_new(object, "min_ms", cli_json_number(shot->min_ms));
+    json_object_set_new(object, "median_ms", cli_json_number(shot->median_ms));
+    json_object_set_new(object, "spread_ms", cli_json_number(shot->spread_ms));
+    json_object_set_new(object, "rms", cli_json_number(shot->total_rms));
+    json_object_set_new(object, "max", cli_json_number(shot->total_max));
+    json_object_set_new(object, "command", cli_json_text(shot->command));
+    return object;
+}
+
+static json_t *source_json(const cost_study *study, int number) {
+    const cost_source *source = &study->sources[number];
+    char today[160];
+    json_t *object = json_object();
+    cost_describe_source(study, number, today, sizeof today);
+    json_object_set_new(object, "name", cli_json_text(cost_source_names[number]));
+    json_object_set_new(object, "error", cli_json_number(source->error));
+    json_object_set_new(object, "max", cli_json_number(source->max));
+    json_object_set_new(object, "today", *today ? cli_json_text(today) : json_null());
+    json_object_set_new(object, "halving_ms", cli_json_number(source->halving_ms));
+    json_object_set_new(object, "halving_spread_ms", cli_json_number(source->halving_spread_ms));
+    json_object_set_new(object, "halving", source->halving < 0 ? json_null() : cli_json_text(source->buys));
+    json_object_set_new(object, "command", source->command ? cli_json_text(source->command) : json_null());
+    json_object_set_new(object, "reason", *source->reason ? cli_json_text(source->reason) : json_null());
     return object;
 }
 
@@ -74,6 +107,8 @@ static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
     json_object_set_new(object, "triangles", index_json(advice->triangles));
     json_object_set_new(object, "repair", index_json(advice->repair));
     json_object_set_new(object, "sampling_met", json_boolean(advice->sampling_met));
+    json_object_set_new(object, "reason", *advice->reason ? cli_json_text(advice->reason) : json_null());
+    json_object_set_new(object, "settings_index", index_json(cost_find_shot(study, &advice->whole.setting)));
     json_object_set_new(object, "whole_command", cli_json_text(advice->whole_command));
     json_object_set_new(object, "whole",
                         advice->whole_state == COST_WHOLE_MEASURED ? point_json(study, &advice->whole)
@@ -81,12 +116,8 @@ static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
     return object;
 }
 
-json_t *cost_json(const cost_study *study) {
-    char date[32];
-    const time_t now = time(NULL);
-    strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now));
-    json_t *object = json_object(), *references = json_array(), *points = json_array(),
-           *advice = json_array(), *notes = json_array();
+static json_t *references_json(const cost_study *study) {
+    json_t *references = json_array();
     for (int i = 0; i < COST_REFERENCES; i++) {
         json_t *reference =
             study->references[i].image ? setting_json(study, &study->references[i].setting) : json_null();
@@ -94,11 +125,14 @@ json_t *cost_json(const cost_study *study) {
             json_object_set_new(reference, "dials", cli_json_text(cost_reference_names[i]));
         json_array_append_new(references, reference);
     }
-    for (int i = 0; i < study->count; i++)
-        json_array_append_new(points, point_json(study, &study->points[i]));
-    for (int i = 0; i < COST_TOLERANCES; i++)
-        json_array_append_new(advice, advice_json(study, &study->advice[i]));
-    for (int i = 0; i < study->note_count; i++) json_array_append_new(notes, cli_json_text(study->notes[i]));
+    return references;
+}
+
+/* What was measured on, and how well. */
+static void add_run(const cost_study *study, json_t *object) {
+    char date[32];
+    const time_t now = time(NULL);
+    strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now));
     json_object_set_new(object, "scene", cli_json_text(study->session.path));
     json_object_set_new(object, "version", cli_json_text(skg_version()));
     json_object_set_new(object, "date", cli_json_text(date));
@@ -106,49 +140,40 @@ json_t *cost_json(const cost_study *study) {
     json_object_set_new(object, "columns", json_integer(study->session.view.columns));
     json_object_set_new(object, "rows", json_integer(study->session.view.rows));
     json_object_set_new(object, "triangles", json_integer(study->triangles));
+    json_object_set_new(object, "frames", json_integer(study->frames));
+    json_object_set_new(object, "within_s", cli_json_number(1e-3 * study->within_ms));
+    json_object_set_new(object, "seconds", cli_json_number(1e-3 * (study->ended_ms - study->begun_ms)));
+    json_object_set_new(object, "stopped", json_boolean(study->stopped));
+    json_object_set_new(object, "left_out", json_integer(study->left_out));
+    json_object_set_new(object, "unrest", cli_json_number(study->unrest));
+    json_object_set_new(object, "reference_error", cli_json_number(study->reference_error));
+    json_object_set_new(object, "grey_levels",
+                        study->grey_levels > 0 ? cli_json_number(study->grey_levels) : json_null());
     json_object_set_new(object, "open_keV", cli_json_number(study->flat_field));
     json_object_set_new(object, "noise", study->noise > 0 ? cli_json_number(study->noise) : json_null());
-    json_object_set_new(object, "references", references);
+}
+
+json_t *cost_json(const cost_study *study) {
+    json_t *object = json_object(), *points = json_array(), *advice = json_array(), *notes = json_array(),
+           *sources = json_array(), *shots = json_array();
+    for (int i = 0; i < COST_SOURCES; i++) json_array_append_new(sources, source_json(study, i));
+    for (int i = 0; i < study->shot_count; i++)
+        json_array_append_new(shots, shot_json(study, &study->shots[i]));
+    for (int i = 0; i < study->count; i++)
+        json_array_append_new(points, point_json(study, &study->points[i]));
+    for (int i = 0; i < COST_TOLERANCES; i++)
+        json_array_append_new(advice, advice_json(study, &study->advice[i]));
+    for (int i = 0; i < study->note_count; i++) json_array_append_new(notes, cli_json_text(study->notes[i]));
+    json_object_set_new(object, "summary", cli_json_text(study->summary));
+    json_object_set_new(object, "sources", sources);
+    add_run(study, object);
+    json_object_set_new(object, "here", json_integer(study->here));
+    json_object_set_new(object, "buy", index_json(study->buy));
+    json_object_set_new(object, "saving", index_json(study->saving));
+    json_object_set_new(object, "settings", shots);
+    json_object_set_new(object, "references", references_json(study));
     json_object_set_new(object, "points", points);
     json_object_set_new(object, "advice", advice);
     json_object_set_new(object, "notes", notes);
     return object;
-}
-
-static void put_setting(FILE *stream, const cost_study *study, const cost_setting *setting) {
-    fprintf(stream, "%s,%.6g,", cost_precision_name(setting), setting->tolerance);
-    fprintf(stream, "%" PRId64 ",%" PRId64 ",%d,", setting->bins, setting->samples,
-            (int)setting->supersampling);
-    fprintf(stream, "%s,%" PRId64 ",", study->has_leaky ? cost_repair_names[repair_of(study, setting)] : "",
-            triangles_of(study, setting));
-    if (setting->relaxation < 0)
-        fputs(",,", stream); /* empty: the setting has no breath */
-    else
-        fprintf(stream, "%d,%g,", (int)setting->relaxation, setting->hysteresis);
-}
-
-char *cost_csv(const cost_study *study) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    if (!stream) return NULL;
-    fputs("dial,precision,tolerance,max_bins,samples,supersampling,repair,triangles,relaxation,hysteresis,"
-          "nodes,planes,runs,plan_ms,min_ms,median_ms,max_open,rms_open,max_ref,rms_ref,max_mm,rms_mm,"
-          "frontier\n",
-          stream);
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *p = &study->points[i];
-        fprintf(stream, "%s,", cost_dial_names[p->dial]);
-        put_setting(stream, study, &p->setting);
-        fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64, p->nodes, p->planes, p->runs);
-        fprintf(stream, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,", p->plan_ms, p->min_ms, p->median_ms,
-                p->max_flat, p->rms_flat, p->max_ref, p->rms_ref);
-        if (!isnan(p->max_mm)) fprintf(stream, "%.6g", p->max_mm); /* empty: not measured */
-        fputc(',', stream);
-        if (!isnan(p->rms_mm)) fprintf(stream, "%.6g", p->rms_mm);
-        fprintf(stream, ",%d\n", p->on_frontier);
-    }
-    if (fclose(stream) == 0) return text;
-    free(text);
-    return NULL;
 }

@@ -8,7 +8,4 @@
 
 json_t *cost_json(const cost_study *study);
 
-/* The caller frees the text; NULL if memory is exhausted. */
-char *cost_csv(const cost_study *study);
-
 #endif

@@ -1,11 +1,13 @@
 #include "cost/measure.h"
 
 #include "common/progress.h"
+#include "cost/meshing.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_RUNS = 200 };
+static const int64_t KEPT_BYTES = (int64_t)1 << 29; /* of all plans that wait for further visits */
 
 double cost_passes(const cost_setting *setting) {
     return (double)(setting->samples > 0 ? setting->samples : 1) * setting->supersampling *
@@ -13,7 +15,30 @@ double cost_passes(const cost_setting *setting) {
 }
 
 double cost_patience_ms(const cost_study *study) {
-    return study->quick ? 1e3 : 4e3;
+    return fmin(study->within_ms / 40, 4e3);
+}
+
+double cost_estimate_ms(const cost_study *study, const cost_setting *setting) {
+    const double ratio =
+        (double)cost_triangles(study, setting) / (double)(study->triangles ? study->triangles : 1);
+    const double pass = setting->precision == SKG_PRECISION_SINGLE
+                            ? study->pass_ms
+                            : fmax(study->pass_ms, study->best_pass_ms);
+    return pass * cost_passes(setting) * fmax(ratio, 1);
+}
+
+double cost_effort_ms(const cost_study *study, const cost_setting *setting) {
+    const double image = cost_estimate_ms(study, setting);
+    const double runs = image * (double)(cost_first_runs(study) * study->frames);
+    return study->plan_ms + image + fmax(runs, cost_first_ms(study));
+}
+
+int64_t cost_first_runs(const cost_study *study) {
+    return study->quick ? 3 : 4;
+}
+
+double cost_first_ms(const cost_study *study) {
+    return study->quick ? 20 : 80;
 }
 
 skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *scene, skg_plan **plan) {
@@ -21,6 +46,7 @@ skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *
     skg_spot spot;
     skg_spectrum *spectrum = NULL;
     skg_status status = cost_spectrum(study, setting->bins, &spectrum);
+    if (status == SKG_OK && !scene) status = cost_scene_of(study, setting, &scene);
     if (status != SKG_OK) return status;
     options.precision = setting->precision;
     options.tolerance = setting->tolerance;
@@ -36,7 +62,6 @@ skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *
         spot.samples = setting->samples;
         options.spot = &spot;
     }
-    if (!scene) scene = setting->meshing < 0 ? study->session.scene : study->meshings[setting->meshing].scene;
     return skg_plan_create(study->session.context, scene, &study->session.view, spectrum, &options, plan);
 }
 
@@ -45,34 +70,49 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Runs until there are enough runs and they took long enough for the clock. */
-skg_status cost_time(const cost_study *study, cost_run run, void *user, cost_point *point) {
-    const int64_t least = study->quick ? 3 : 9;
-    const double wish_ms = study->quick ? 20 : 300, limit_ms = study->quick ? 1000 : 3000;
-    double ms[MOST_RUNS], begun = cli_now_ms(), passed = 0;
-    int64_t n = 0;
-    skg_status status = SKG_OK;
-    while (n < MOST_RUNS && (n < least || passed < wish_ms) && (n < 2 || passed < limit_ms)) {
-        double start = cli_now_ms();
-        status = run(user);
-        if (status < SKG_OK) return status;
-        ms[n++] = cli_now_ms() - start;
-        passed = cli_now_ms() - begun;
-    }
-    qsort(ms, (size_t)n, sizeof *ms, ascending);
-    point->runs = n;
-    point->min_ms = ms[0];
-    point->median_ms = 0.5 * (ms[(n - 1) / 2] + ms[n / 2]);
-    return status;
+/* Minimum, median and spread of what was timed so far. */
+static void summarise(cost_shot *shot) {
+    double ms[COST_MOST_RUNS], visit[COST_MOST_VISITS];
+    memcpy(ms, shot->run_ms, sizeof ms);
+    memcpy(visit, shot->visit_ms, sizeof visit);
+    qsort(ms, (size_t)shot->runs, sizeof *ms, ascending);
+    qsort(visit, (size_t)shot->visits, sizeof *visit, ascending);
+    shot->min_ms = ms[0];
+    shot->median_ms = 0.5 * (ms[(shot->runs - 1) / 2] + ms[shot->runs / 2]);
+    shot->spread_ms = shot->visits > 1
+                          ? 0.5 * (visit[(shot->visits - 1) / 2] + visit[shot->visits / 2]) - visit[0]
+                          : (double)NAN;
 }
 
-skg_status cost_report_plan(const skg_plan *plan, cost_point *point) {
+skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least, double wish_ms,
+                     cost_shot *shot) {
+    const double begun = cli_now_ms(), limit_ms = cost_patience_ms(study);
+    double passed = 0, fastest = HUGE_VAL;
+    int64_t n = 0;
+    while (shot->runs < COST_MOST_RUNS && n < COST_MOST_RUNS / COST_MOST_VISITS &&
+           (n < least || passed < wish_ms) && (n < 2 || passed < limit_ms)) {
+        const double start = cli_now_ms();
+        const skg_status status = run(user);
+        if (status < SKG_OK) return status;
+        const double ms = (cli_now_ms() - start) / (double)shot->frames;
+        fastest = fmin(fastest, ms);
+        shot->run_ms[shot->runs++] = ms;
+        passed = cli_now_ms() - begun;
+        n++;
+    }
+    if (n && shot->visits < COST_MOST_VISITS) shot->visit_ms[shot->visits++] = fastest;
+    if (n) summarise(shot);
+    return SKG_OK;
+}
+
+skg_status cost_report_plan(const skg_plan *plan, cost_shot *shot) {
     skg_plan_report report;
     skg_plan_report_init(&report);
     skg_status status = skg_plan_report_get(plan, &report);
-    point->nodes = report.nodes;
-    point->planes = report.planes;
-    point->bins = report.bins;
+    shot->nodes = report.nodes;
+    shot->planes = report.planes;
+    shot->bins = report.bins;
+    shot->device_bytes = report.device_bytes;
     return status;
 }
 
@@ -91,26 +131,142 @@ void cost_widen(int32_t type, int64_t count, double *values) {
 typedef struct {
     skg_plan *plan;
     skg_output output;
+    int64_t frames;
 } still;
 
+/* One batch of frames. */
 static skg_status make_still(void *user) {
     still *its = user;
-    return skg_plan_image(its->plan, &its->output);
+    skg_job *job = NULL;
+    skg_status status = skg_plan_submit(its->plan, its->frames, NULL, &its->output, &job);
+    return status >= SKG_OK ? skg_job_wait(&job) : status;
 }
 
-skg_status cost_image(cost_study *study, const cost_setting *setting, double *image, cost_point *point) {
+static void begin_still(const cost_setting *setting, double *data, int64_t frames, still *its) {
+    skg_output_init(&its->output);
+    its->output.type = cost_type(setting->precision);
+    its->output.data = data;
+    its->frames = frames;
+}
+
+skg_status cost_image(cost_study *study, const cost_setting *setting, double *image, double *ms) {
     still its = {0};
-    double start = cli_now_ms();
     skg_status status = cost_plan(study, setting, NULL, &its.plan);
     if (status < SKG_OK) return status;
-    if (point) point->plan_ms = cli_now_ms() - start;
-    skg_output_init(&its.output);
-    its.output.type = cost_type(setting->precision);
-    its.output.data = image;
+    begin_still(setting, image, 1, &its);
+    const double begun = cli_now_ms();
     status = make_still(&its);
-    if (status >= SKG_OK && point) status = cost_time(study, make_still, &its, point);
-    if (status >= SKG_OK && point) status = cost_report_plan(its.plan, point);
+    if (ms) *ms = cli_now_ms() - begun;
+    if (status >= SKG_OK && ms &&
+        *ms < 4 * cost_patience_ms(study)) { /* the first run of a plan takes longer */
+        const double again = cli_now_ms();
+        status = make_still(&its);
+        *ms = fmin(*ms, cli_now_ms() - again);
+    }
     if (status >= SKG_OK) cost_widen(its.output.type, study->pixels, image);
     skg_plan_release(&its.plan);
+    return status < SKG_OK ? status : SKG_OK;
+}
+
+int cost_find_shot(const cost_study *study, const cost_setting *setting) {
+    for (int i = 0; i < study->shot_count; i++)
+        if (cost_is_same(study, &study->shots[i].setting, setting)) return i;
+    return -1;
+}
+
+int cost_add_shot(cost_study *study, const cost_setting *setting) {
+    if (study->shot_count == COST_MOST_SHOTS) return -1;
+    study->shots[study->shot_count] = (cost_shot){
+        .setting = *setting, .total_rms = (double)NAN, .total_max = (double)NAN, .spread_ms = (double)NAN};
+    return study->shot_count++;
+}
+
+/* Keeps the plan for further visits if memory allows. The scene's own is always kept: it is the pulse. */
+static void keep_plan(cost_study *study, int number, skg_plan **plan) {
+    cost_shot *shot = &study->shots[number];
+    if (number != 0 && study->kept_bytes + shot->device_bytes > KEPT_BYTES) {
+        skg_plan_release(plan);
+        return;
+    }
+    study->kept_bytes += shot->device_bytes;
+    shot->plan = *plan;
+    *plan = NULL;
+}
+
+/* Runs the scene's own image once: what it takes now, compared with other times, is the machine's unrest. */
+static skg_status feel_pulse(cost_study *study) {
+    cost_shot *own = &study->shots[study->here];
+    still its = {.plan = own->plan};
+    if (!own->plan) return SKG_OK;
+    if (study->pulse_count == study->pulse_capacity) {
+        const int64_t capacity = study->pulse_capacity ? 2 * study->pulse_capacity : 64;
+        double *larger = realloc(study->pulse_ms, (size_t)capacity * sizeof *larger);
+        if (!larger) return SKG_ERR_MEMORY;
+        study->pulse_ms = larger;
+        study->pulse_capacity = capacity;
+    }
+    begin_still(&own->setting, study->batch, study->frames, &its);
+    const double begun = cli_now_ms();
+    const skg_status status = make_still(&its);
+    study->pulse_ms[study->pulse_count++] = (cli_now_ms() - begun) / (double)study->frames;
+    return status;
+}
+
+skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *image, int *number) {
+    still its = {0};
+    *number = cost_find_shot(study, setting);
+    if (*number >= 0) return cost_image(study, setting, image, NULL);
+    const double begun = cli_now_ms();
+    skg_status status = cost_plan(study, setting, NULL, &its.plan);
+    const double plan_ms = cli_now_ms() - begun;
+    if (status < SKG_OK) return status;
+    begin_still(setting, image, 1, &its);
+    status = make_still(&its);
+    if (status >= SKG_OK) cost_widen(its.output.type, study->pixels, image);
+    cost_shot shot = {.plan_ms = plan_ms, .frames = study->frames};
+    begin_still(setting, study->batch, study->frames, &its);
+    if (status >= SKG_OK && study->shot_count) status = feel_pulse(study);
+    if (status >= SKG_OK)
+        status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), &shot);
+    if (status >= SKG_OK) status = cost_report_plan(its.plan, &shot);
+    if (status >= SKG_OK && (*number = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
+    if (status >= SKG_OK) {
+        shot.setting = *setting;
+        shot.total_rms = shot.total_max = (double)NAN;
+        study->shots[*number] = shot;
+        keep_plan(study, *number, &its.plan);
+    }
+    skg_plan_release(&its.plan);
+    return status < SKG_OK ? status : SKG_OK;
+}
+
+static skg_status visit(cost_study *study, int number) {
+    cost_shot *shot = &study->shots[number];
+    still its = {.plan = shot->plan};
+    skg_status status = feel_pulse(study);
+    if (status >= SKG_OK && !its.plan) status = cost_plan(study, &shot->setting, NULL, &its.plan);
+    begin_still(&shot->setting, study->batch, study->frames, &its);
+    if (status >= SKG_OK && !shot->plan)
+        status = make_still(&its); /* the first frame of a plan takes longer */
+    if (status >= SKG_OK) status = cost_time(study, make_still, &its, 2, 0.25 * cost_first_ms(study), shot);
+    if (!shot->plan) skg_plan_release(&its.plan);
+    return status;
+}
+
+/* The time that another visit takes. */
+static double visit_ms(const cost_study *study, const cost_shot *shot) {
+    const double run = shot->median_ms * (double)study->frames;
+    return fmax(2 * run, 0.25 * cost_first_ms(study)) + (shot->plan ? 0 : shot->plan_ms + run);
+}
+
+skg_status cost_visit_again(cost_study *study, double share) {
+    skg_status status = SKG_OK;
+    for (int round = 0; round < 3; round++)
+        for (int i = 0; i < study->shot_count && status >= SKG_OK; i++) {
+            const cost_shot *shot = &study->shots[i];
+            if (shot->setting.relaxation >= 0 || shot->visits == COST_MOST_VISITS) continue;
+            if (visit_ms(study, shot) > cost_left_ms(study, share)) continue;
+            status = visit(study, i);
+        }
     return status < SKG_OK ? status : SKG_OK;
 }

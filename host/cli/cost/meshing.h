@@ -8,4 +8,7 @@
  * meshes it is not known which surface the triangles approximate. */
 int cost_find_meshings(cost_study *study);
 
+/* The scene of a setting, which belongs to the study; made when it is first needed. */
+skg_status cost_scene_of(cost_study *study, const cost_setting *setting, skg_scene **scene);
+
 #endif

@@ -81,10 +81,16 @@ void cost_close(cost_study *study) {
     }
     for (int i = 0; i < study->spectrum_count; i++) skg_spectrum_release(&study->spectra[i].spectrum);
     for (int i = 0; i < study->meshing_count; i++) cost_meshing_free(&study->meshings[i]);
-    for (int i = 0; i < study->count; i++) {
-        free(study->points[i].difference);
-        free(study->points[i].small);
+    for (int i = 0; i < study->count; i++) free(study->points[i].difference);
+    for (int i = 0; i < study->shot_count; i++) {
+        skg_plan_release(&study->shots[i].plan);
+        free(study->shots[i].difference);
+        free(study->shots[i].small);
+        free(study->shots[i].command);
     }
+    for (int i = 0; i < COST_SOURCES; i++) free(study->sources[i].command);
+    free(study->batch);
+    free(study->pulse_ms);
     for (int i = 0; i < COST_TOLERANCES; i++) {
         free(study->advice[i].rays_command);
         free(study->advice[i].whole_command);

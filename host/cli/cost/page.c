@@ -78,14 +78,13 @@ static int levels_json(const cost_study *study, float *values, double low, doubl
     return picture_json(&picture, uri);
 }
 
-/* -ln(I/I0) of a point's image. low, high: set by the first picture and used for all. */
-static int small_json(const cost_study *study, const cost_point *point, double *low, double *high,
-                      json_t **uri) {
+/* -ln(I/I0) of an image. low, high: set by the first picture and used for all. */
+static int small_json(const cost_study *study, const float *small, double *low, double *high, json_t **uri) {
     const int64_t places = study->thumb_columns * study->thumb_rows;
     float *dense = calloc((size_t)places, sizeof *dense);
     skg_picture picture;
     if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
-    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(point->small[i], LEAST_SHOWN));
+    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(small[i], LEAST_SHOWN));
     begin_picture(study, dense, &picture);
     picture.quantity = SKG_QUANTITY_ATTENUATION;
     skg_status status = *high > *low ? SKG_OK : skg_picture_range_get(&picture, low, high);
@@ -97,51 +96,55 @@ static int small_json(const cost_study *study, const cost_point *point, double *
 
 /* The differences: middle grey is none, black and white are the largest finite one of either sign, *range.
  * Levels between are cube roots, so that eight bits also resolve small differences; the page can undo them. */
-static int difference_json(const cost_study *study, const cost_point *point, json_t **uri, double *range) {
+static int difference_json(const cost_study *study, const float *difference, json_t **uri, double *range) {
     const int64_t places = study->thumb_columns * study->thumb_rows;
     float largest = 0, *roots = calloc((size_t)places, sizeof *roots);
     if (!roots) return cli_error(CLI_DEVICE, "out of host memory");
     for (int64_t i = 0; i < places; i++)
-        if (isfinite(point->difference[i])) largest = fmaxf(largest, fabsf(point->difference[i]));
-    for (int64_t i = 0; i < places && largest > 0; i++) roots[i] = cbrtf(point->difference[i] / largest);
+        if (isfinite(difference[i])) largest = fmaxf(largest, fabsf(difference[i]));
+    for (int64_t i = 0; i < places && largest > 0; i++) roots[i] = cbrtf(difference[i] / largest);
     *range = (double)largest;
     int exit_status = levels_json(study, roots, -1, 1, uri);
     free(roots);
     return exit_status;
 }
 
-/* Pictures are kept of the frontier, of the advised settings and of every dial other than the rays'. */
-static int is_pictured(const cost_study *study, int index) {
-    const cost_point *point = &study->points[index];
-    if (point->on_frontier || point->dial == COST_SCENE || point->dial == COST_PRECISION) return 1;
-    if (point->reference != COST_OF_RAYS) return 1;
-    for (int i = 0; i < COST_TOLERANCES; i++)
-        if (study->advice[i].rays == index) return 1;
-    return 0;
-}
-
-static int add_point_pictures(const cost_study *study, const cost_point *point, double *low, double *high,
-                              json_t *object) {
+static int add_difference(const cost_study *study, const float *difference, json_t *object) {
     json_t *uri = NULL;
     double range = 0;
-    int exit_status = small_json(study, point, low, high, &uri);
-    if (exit_status != CLI_DONE) return exit_status;
-    json_object_set_new(object, "image", uri);
-    exit_status = difference_json(study, point, &uri, &range);
+    const int exit_status = difference_json(study, difference, &uri, &range);
     if (exit_status != CLI_DONE) return exit_status;
     json_object_set_new(object, "difference", uri);
     json_object_set_new(object, "range", cli_json_number(range));
     return CLI_DONE;
 }
 
-static int add_pictures(const cost_study *study, json_t *object) {
-    json_t *points = json_object_get(object, "points");
+/* Pictures are kept of the scene as it is, of what is worth changing to, and of the settings that the sliders reach. */
+static int add_shot_pictures(const cost_study *study, json_t *shots) {
     int exit_status = CLI_DONE;
     double low = 0, high = 0;
-    for (int i = 0; exit_status == CLI_DONE && i < study->count; i++)
-        if (is_pictured(study, i))
-            exit_status =
-                add_point_pictures(study, &study->points[i], &low, &high, json_array_get(points, (size_t)i));
+    for (int i = 0; exit_status == CLI_DONE && i < study->shot_count; i++) {
+        const cost_shot *shot = &study->shots[i];
+        json_t *object = json_array_get(shots, (size_t)i), *uri = NULL;
+        if (!shot->small || !(shot->on_frontier || i == study->here || i == study->buy || i == study->saving))
+            continue;
+        exit_status = small_json(study, shot->small, &low, &high, &uri);
+        if (exit_status != CLI_DONE) break;
+        json_object_set_new(object, "image", uri);
+        exit_status = add_difference(study, shot->difference, object);
+    }
+    return exit_status;
+}
+
+/* What today's value of each dial does by itself. */
+static int add_source_pictures(const cost_study *study, json_t *sources) {
+    int exit_status = CLI_DONE;
+    for (int i = 0; exit_status == CLI_DONE && i < COST_SOURCES; i++) {
+        const int own = study->sources[i].own;
+        if (own < 0 || !(study->sources[i].error > 0)) continue;
+        exit_status =
+            add_difference(study, study->points[own].difference, json_array_get(sources, (size_t)i));
+    }
     return exit_status;
 }
 
@@ -167,7 +170,8 @@ static char *fill_page(json_t *object) {
 
 int cost_write_page(const cost_study *study, const char *path) {
     json_t *object = cost_json(study);
-    int exit_status = add_pictures(study, object);
+    int exit_status = add_shot_pictures(study, json_object_get(object, "settings"));
+    if (exit_status == CLI_DONE) exit_status = add_source_pictures(study, json_object_get(object, "sources"));
     char *text = exit_status == CLI_DONE ? fill_page(object) : NULL;
     if (exit_status == CLI_DONE && !text) exit_status = cli_error(CLI_DEVICE, "out of host memory");
     if (exit_status == CLI_DONE) exit_status = cli_write_file(path, text, strlen(text));

@@ -107,7 +107,7 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
     int64_t vertices = 0;
     *exit_status = CLI_DONE;
     skg_status status = begin(&b, setting);
-    if (point) point->plan_ms = cli_now_ms() - start;
+    cost_shot shot = {.plan_ms = cli_now_ms() - start, .setting = *setting, .frames = 1};
     if (status >= SKG_OK) status = read_positions(&b, NULL, &vertices);
     if (status >= SKG_OK && point && vertices != reference->vertices) {
         *exit_status =
@@ -127,8 +127,13 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
         *exit_status = cost_compare(study, COST_PHASES, images, reference->image, point);
         compare_positions(positions, reference->positions, COST_PHASES * vertices, point);
         b.output.data = images;
-        status = cost_time(study, run, &b, point);
-        if (status >= SKG_OK) status = cost_report_plan(b.plan, point);
+        status = cost_time(study, run, &b, cost_first_runs(study), cost_first_ms(study), &shot);
+        if (status >= SKG_OK) status = cost_report_plan(b.plan, &shot);
+        if (status >= SKG_OK && (point->shot = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
+        if (status >= SKG_OK) {
+            shot.total_rms = shot.total_max = (double)NAN;
+            study->shots[point->shot] = shot;
+        }
     }
     end(&b);
     free(images);

@@ -1,101 +1,90 @@
 #include "cost/print.h"
 
+#include "cost/measure.h"
+#include "cost/summary.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static int widest_description(const cost_study *study) {
-    int widest = 0;
-    for (int i = 0; i < study->count; i++) {
-        char text[160];
-        cost_describe(study, &study->points[i].setting, text, sizeof text);
-        if ((int)strlen(text) > widest) widest = (int)strlen(text);
+enum { WIDTH = 100 };
+
+/* A paragraph, broken at blanks. */
+static void print_wrapped(const char *text) {
+    size_t used = 0;
+    while (*text) {
+        const size_t word = strcspn(text, " ");
+        if (used && used + 1 + word > WIDTH) {
+            putchar('\n');
+            used = 0;
+        }
+        used += (size_t)printf("%s%.*s", used ? " " : "", (int)word, text);
+        text += word + (text[word] == ' ');
     }
-    return widest;
-}
-
-static void print_point(const cost_study *study, const cost_point *point, int width) {
-    char text[160], mm[32] = "";
-    cost_describe(study, &point->setting, text, sizeof text);
-    if (!isnan(point->max_mm)) snprintf(mm, sizeof mm, "  %8.1e %8.1e", point->max_mm, point->rms_mm);
-    printf("%c %-14s %-*s %4" PRId64 " %6" PRId64 " %9.3f %9.3f  %8.1e %8.1e  %8.1e %8.1e%s\n",
-           point->on_frontier ? '*' : ' ', cost_dial_names[point->dial], width, text, point->nodes,
-           point->planes, point->min_ms, point->median_ms, point->max_flat, point->rms_flat, point->max_ref,
-           point->rms_ref, mm);
-}
-
-static void print_points(const cost_study *study) {
-    const int width = widest_description(study);
-    printf("\n  %-14s %-*s %4s %6s %9s %9s  %8s %8s  %8s %8s  %8s %8s\n", "", width, "", "", "", "ms", "ms",
-           "of flat", "of flat", "of pixel", "of pixel", "mm", "mm");
-    printf("  %-14s %-*s %4s %6s %9s %9s  %8s %8s  %8s %8s  %8s %8s\n", "dial", width, "setting", "keV",
-           "planes", "minimum", "median", "largest", "rms", "largest", "rms", "largest", "rms");
-    for (int i = 0; i < study->count; i++) print_point(study, &study->points[i], width);
-    printf(
-        "  * frontier: no other setting of the rays is both faster and more accurate; keV: number of energies; "
-        "planes: of path lengths, for a basis of the materials or for each\n"
-        "  mm: path lengths, rms of rays that meet the part");
-    if (study->references[COST_OF_BREATH].image)
-        printf("; relaxation and hysteresis: vertices at %d phases, time of a pose and its image",
-               COST_PHASES);
     putchar('\n');
 }
 
-static void print_references(const cost_study *study) {
-    printf("compared with\n");
-    for (int i = 0; i < COST_REFERENCES; i++) {
-        char text[160];
-        if (!study->references[i].image) continue;
-        cost_describe(study, &study->references[i].setting, text, sizeof text);
-        printf("  %s: %s\n", cost_reference_names[i], text);
-    }
+static void print_source(const cost_study *study, int number) {
+    const cost_source *source = &study->sources[number];
+    char error[48] = "?", ms[64];
+    if (source->error == 0) return; /* named in one line by print_none */
+    if (!isnan(source->error)) cost_percent(source->error, error, sizeof error);
+    printf("  %-21s %14s  ", cost_source_names[number], error);
+    if (source->halving >= 0)
+        printf("%s, %s\n", source->buys,
+               cost_more(source->halving_ms, source->halving_spread_ms, ms, sizeof ms));
+    else
+        printf("%s\n", source->reason);
 }
 
-/* "source samples, supersampling": the scene's dials. *worst: the largest of their root mean square errors. */
-static void name_dials(const cost_study *study, const cost_advice *advice, char *text, size_t size,
-                       double *worst) {
-    const int points[] = {advice->samples, advice->supersampling, advice->triangles};
-    *text = '\0';
-    *worst = 0;
-    for (int k = 0; k < 3; k++) {
-        if (points[k] < 0) continue;
-        cost_append(text, size, "%s%s", *text ? ", " : "", cost_dial_names[study->points[points[k]].dial]);
-        *worst = fmax(*worst, study->points[points[k]].rms_flat);
-    }
-    if (advice->repair >= 0) cost_append(text, size, "%s%s", *text ? ", " : "", cost_dial_names[COST_REPAIR]);
+/* The sources that make no error at all, in one line. */
+static void print_none(const cost_study *study) {
+    char text[256] = "";
+    for (int i = 0; i < COST_SOURCES; i++)
+        if (study->sources[i].error == 0)
+            cost_append(text, sizeof text, "%s%s", *text ? ", " : "", cost_source_names[i]);
+    if (*text) printf("  %-21s %14s  %s\n", "none", "0 %", text);
+}
+
+static void print_sources(const cost_study *study) {
+    printf("\n  %-21s %14s  %s\n", "source of error", "of open beam", "what halves it");
+    for (int i = 0; i < COST_SOURCES; i++) print_source(study, i);
+    print_none(study);
 }
 
 static void print_advice(const cost_study *study, const cost_advice *advice) {
-    static const char *const states[] = {", the same command\n", ":\n    ",
-                                         "; not measured together, because it takes too long:\n    "};
-    const cost_point *rays = &study->points[advice->rays];
-    char dials[160];
-    double worst;
-    printf("\nfor an error of %g%s: largest %.1e of the flat field, %.3f ms\n    %s\n", advice->tolerance,
-           advice->rays_met ? "" : ", NOT reached; the best tried", rays->max_flat, rays->min_ms,
-           advice->rays_command);
-    name_dials(study, advice, dials, sizeof dials, &worst);
-    if (!*dials) return;
-    printf("  with %s%s: root mean square %.1e of the flat field", dials,
-           advice->sampling_met ? "" : ", NOT reached; the best tried", worst);
-    if (advice->whole_state == COST_WHOLE_MEASURED) printf(", %.3f ms", advice->whole.min_ms);
-    printf("%s", states[advice->whole_state]);
-    if (advice->whole_state != COST_WHOLE_IS_RAYS) printf("%s\n", advice->whole_command);
+    const int number = cost_find_shot(study, &advice->whole.setting);
+    char text[160], ms[64] = "not timed";
+    cost_describe(study, &advice->whole.setting, text, sizeof text);
+    if (number >= 0) cost_ms(study->shots[number].min_ms, study->shots[number].spread_ms, ms, sizeof ms);
+    printf("  %-7g %-18s %s%s%s\n", advice->tolerance, ms, *advice->reason ? "(not reached) " : "", text,
+           advice->bar > advice->tolerance ? " (a tenth of the noise is enough)" : "");
+}
+
+/* The machine, and how far the numbers can be trusted. */
+static void print_trust(const cost_study *study) {
+    char sure[48];
+    printf("\n  %lld settings in %.0f s on %s", (long long)study->shot_count,
+           1e-3 * (study->ended_ms - study->begun_ms), study->session.device.name);
+    if (!isnan(study->unrest)) printf("; unrest of its times %.0f %%", 100 * study->unrest);
+    if (study->reference_error > 0)
+        printf("; best image known to %s", cost_percent(study->reference_error, sure, sizeof sure));
+    putchar('\n');
+    if (study->stopped)
+        printf("  stopped: what was measured until then is kept\n");
+    else if (study->left_out)
+        printf("  %" PRId64 " settings did not fit in %.3g s; --within gives more time\n", study->left_out,
+               1e-3 * study->within_ms);
 }
 
 void cost_print(const cost_study *study) {
-    const skg_view *view = &study->session.view;
-    printf("%s: %" PRId64 " x %" PRId64 " pixels, %" PRId64
-           " triangles, flat field %.6g keV per pixel, on %s\n",
-           study->session.path, view->columns, view->rows, study->triangles, study->flat_field,
-           study->session.device.name);
-    print_references(study);
-    print_points(study);
-    if (study->noise > 0)
-        printf(
-            "  noise: root mean square %.1e of the flat field; errors below a tenth of it are not sought\n",
-            study->noise);
-    for (int i = 0; i < study->note_count; i++) printf("  %s\n", study->notes[i]);
+    print_wrapped(study->summary);
+    print_sources(study);
+    printf("\n  %-7s %-18s %s\n", "error", study->frames > 1 ? "ms a frame" : "ms an image",
+           "fastest setting");
     for (int i = 0; i < COST_TOLERANCES; i++) print_advice(study, &study->advice[i]);
+    if (study->buy >= 0) printf("\n  best buy: %s\n", study->shots[study->buy].command);
+    if (study->saving >= 0) printf("  to save time: %s\n", study->shots[study->saving].command);
+    print_trust(study);
 }

@@ -141,3 +141,21 @@ skg_status cost_find_round(cost_study *study) {
         status = add_round(study, factors[i]);
     return status;
 }
+
+int64_t cost_count_unknown(const cost_study *study, const char **label) {
+    int64_t parts = 0, unknown = 0;
+    skg_scene_part_count(study->session.scene, &parts);
+    for (int64_t i = 0; i < parts; i++) {
+        int64_t sectors;
+        const char *name = "";
+        skg_part part;
+        skg_part_init(&part);
+        if (skg_scene_part_get(study->session.scene, i, &part) != SKG_OK) continue;
+        if (skg_mesh_name_get(part.mesh, &name) != SKG_OK) continue;
+        if (strcmp(name, "cube") == 0 || strcmp(name, "cuboid") == 0 || strcmp(name, "step wedge") == 0 ||
+            is_round(part.mesh, &sectors))
+            continue;
+        if (unknown++ == 0) *label = part.label;
+    }
+    return unknown;
+}

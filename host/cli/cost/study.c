@@ -1,20 +1,95 @@
 #include "cost/study.h"
 
+#include "common/interrupt.h"
+#include "common/progress.h"
+
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *const cost_dial_names[COST_DIALS] = {"scene",          "precision",     "tolerance", "bins",
-                                                 "source samples", "supersampling", "repair",    "triangles",
-                                                 "relaxation",     "hysteresis"};
+static const char *const dial_names[COST_DIALS + 1] = {
+    "scene",  "precision", "tolerance",  "bins",       "source samples", "supersampling",
+    "repair", "triangles", "relaxation", "hysteresis", "several"};
+const char *const cost_source_names[COST_SOURCES] = {"triangles", "precision",      "bins of the spectrum",
+                                                     "tolerance", "source samples", "supersampling",
+                                                     "repair",    "true surface",   "scatter"};
 const char *const cost_repair_names[3] = {
     [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
 const char *const cost_reference_names[COST_REFERENCES] = {
-    "precision, tolerance, bins", "source samples", "supersampling", "repair", "triangles",
-    "relaxation, hysteresis"};
+    "precision, tolerance, bins", "source samples",    "supersampling", "repair", "triangles",
+    "relaxation, hysteresis",     "all dials together"};
 const double cost_tolerances[COST_TOLERANCES] = {1e-2, 1e-3, 1e-4, 1e-6};
+
+double cost_left_ms(const cost_study *study, double share) {
+    return cli_stop_asked() ? 0 : study->begun_ms + share * study->within_ms - cli_now_ms();
+}
+
+const char *cost_dial_name(int dial) {
+    return dial_names[dial];
+}
+
+static int32_t repair_of(const cost_study *study, const cost_setting *setting) {
+    return setting->repair >= 0 ? setting->repair : study->session.options.repair;
+}
+
+const char *cost_repair_of(const cost_study *study, const cost_setting *setting) {
+    return cost_repair_names[repair_of(study, setting)];
+}
+
+int64_t cost_triangles(const cost_study *study, const cost_setting *setting) {
+    return setting->meshing >= 0 ? study->meshings[setting->meshing].triangles : study->triangles;
+}
+
+int cost_is_same(const cost_study *study, const cost_setting *a, const cost_setting *b) {
+    return a->precision == b->precision && a->supersampling == b->supersampling &&
+           a->tolerance == b->tolerance && a->bins == b->bins && a->samples == b->samples &&
+           repair_of(study, a) == repair_of(study, b) && a->meshing == b->meshing &&
+           a->relaxation == b->relaxation && a->hysteresis == b->hysteresis;
+}
+
+int cost_changed_dial(const cost_study *study, const cost_setting *setting) {
+    const cost_setting *own = &study->own;
+    const int changed[COST_DIALS] = {[COST_PRECISION] = setting->precision != own->precision,
+                                     [COST_TOLERANCE] = setting->tolerance != own->tolerance,
+                                     [COST_BINS] = setting->bins != own->bins,
+                                     [COST_SAMPLES] = setting->samples != own->samples,
+                                     [COST_SUPERSAMPLING] = setting->supersampling != own->supersampling,
+                                     [COST_REPAIR] = repair_of(study, setting) != repair_of(study, own),
+                                     [COST_TRIANGLES] = setting->meshing != own->meshing,
+                                     [COST_RELAXATION] = setting->relaxation != own->relaxation,
+                                     [COST_HYSTERESIS] = setting->hysteresis != own->hysteresis};
+    int found = COST_SCENE;
+    for (int dial = 0; dial < COST_DIALS; dial++)
+        if (changed[dial]) found = found == COST_SCENE ? dial : COST_SEVERAL;
+    return found;
+}
+
+static void describe_bins(int64_t bins, char *text, size_t size) {
+    if (bins == COST_FINEST_BINS)
+        cost_append(text, size, "bins of 1 keV");
+    else if (bins > 0)
+        cost_append(text, size, "%" PRId64 " bins", bins);
+    else
+        cost_append(text, size, "the scene's bins");
+}
+
+void cost_describe_dial(const cost_study *study, const cost_setting *setting, int dial, char *text,
+                        size_t size) {
+    *text = '\0';
+    if (dial == COST_PRECISION) cost_append(text, size, "%s precision", cost_precision_name(setting));
+    if (dial == COST_TOLERANCE) cost_append(text, size, "tolerance %.3g", setting->tolerance);
+    if (dial == COST_BINS) describe_bins(setting->bins, text, size);
+    if (dial == COST_SAMPLES) cost_append(text, size, "%" PRId64 " source samples", setting->samples);
+    if (dial == COST_SUPERSAMPLING)
+        cost_append(text, size, "%d x %d rays a pixel", (int)setting->supersampling,
+                    (int)setting->supersampling);
+    if (dial == COST_REPAIR) cost_append(text, size, "%s repair", cost_repair_of(study, setting));
+    if (dial == COST_TRIANGLES)
+        cost_append(text, size, "%" PRId64 " triangles", cost_triangles(study, setting));
+    if (*text == '\0') cost_describe(study, setting, text, size);
+}
 
 const char *cost_precision_name(const cost_setting *setting) {
     return cli_flag_precision.values[setting->precision].name;
@@ -31,10 +106,10 @@ void cost_append(char *text, size_t size, const char *format, ...) {
 void cost_describe(const cost_study *study, const cost_setting *setting, char *text, size_t size) {
     *text = '\0';
     cost_append(text, size, "%s, tolerance %.3g", cost_precision_name(setting), setting->tolerance);
-    if (setting->bins == COST_FINEST_BINS)
-        cost_append(text, size, ", bins of 1 keV");
-    else if (setting->bins > 0)
-        cost_append(text, size, ", %" PRId64 " bins", setting->bins);
+    if (setting->bins > 0) {
+        cost_append(text, size, ", ");
+        describe_bins(setting->bins, text, size);
+    }
     if (setting->samples > 0) cost_append(text, size, ", %" PRId64 " samples", setting->samples);
     cost_append(text, size, ", %d x %d rays", (int)setting->supersampling, (int)setting->supersampling);
     if (setting->repair >= 0) cost_append(text, size, ", repair %s", cost_repair_names[setting->repair]);

@@ -19,7 +19,8 @@ enum {
     COST_DIALS
 };
 
-/* The references. Each varies one dial, or one kind of dials, and has all others as the scene has them. */
+/* The references. Each varies one dial, or one kind of dials, and has all others as the scene has them; the last one has
+ * the best of every dial. */
 enum {
     COST_OF_RAYS, /* precision, tolerance, bins */
     COST_OF_SAMPLES,
@@ -27,17 +28,24 @@ enum {
     COST_OF_REPAIR,
     COST_OF_TRIANGLES,
     COST_OF_BREATH,
+    COST_OF_ALL,
     COST_REFERENCES
 };
 
 enum {
-    COST_MOST_POINTS = 112,
+    COST_MOST_POINTS = 144,
+    COST_MOST_SHOTS = 144,
+    COST_MOST_VISITS = 6,
+    COST_MOST_RUNS = 240,
     COST_MOST_NOTES = 24,
     COST_MOST_SPECTRA = 16,
     COST_MOST_MESHINGS = 9,
     COST_TOLERANCES = 4
 };
 enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: gives bins of 1 keV at every voltage */
+enum {
+    COST_SEVERAL = COST_DIALS
+}; /* instead of a dial: a setting that differs from the scene's in several */
 
 typedef struct {
     int32_t precision, supersampling;
@@ -52,7 +60,7 @@ typedef struct {
 
 /* The scene in which the round parts, or the parts of the generated thorax, have another number of triangles. */
 typedef struct {
-    skg_scene *scene;
+    skg_scene *scene;  /* NULL: not made yet */
     int64_t triangles; /* of all parts */
     int64_t thorax;    /* the N of `skiagraph thorax --triangles N`; 0: round parts */
     char **settings;   /* [setting_count] "Samples.bone.Sphere.0=128" */
@@ -69,21 +77,67 @@ typedef struct {
 
 enum { COST_PHASES = 4 }; /* evenly over the breath, from end-inspiration */
 
-/* A setting that was timed and compared. */
+/* A setting that was computed and timed. Each setting is a shot once, whichever points it belongs to. */
+typedef struct {
+    cost_setting setting;
+    skg_plan *plan; /* kept for further visits while memory suffices, otherwise NULL */
+    int64_t nodes, planes, bins, device_bytes;
+    double plan_ms;
+    /* Times of single runs, in the order in which they were measured, and of the fastest of each visit. A visit is a number of
+     * runs in a row; visits to different shots alternate. */
+    int64_t frames; /* of a run; times are those of one frame */
+    int64_t runs, visits;
+    double run_ms[COST_MOST_RUNS], visit_ms[COST_MOST_VISITS];
+    double min_ms, median_ms;
+    double spread_ms; /* the median of visit_ms minus min_ms; NaN: a single visit */
+    /* Errors against the reference COST_OF_ALL, as fractions of the flat field. NaN: not compared. */
+    double total_rms, total_max;
+    /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels the difference from
+     * COST_OF_ALL that is largest in magnitude, and the mean intensity. NULL: none. */
+    float *difference, *small;
+    int on_frontier; /* 1: no other shot is both faster and nearer to COST_OF_ALL */
+    char *command;
+} cost_shot;
+
+enum { COST_PLANNED, COST_MEASURED, COST_LEFT_OUT };
+
+/* A setting that was compared with a reference. */
 typedef struct {
     int dial, reference, on_frontier;
+    int priority; /* those with a small one are measured first */
+    int state;    /* COST_PLANNED ... */
+    int shot;     /* number in study->shots; negative: not measured */
     cost_setting setting;
-    int64_t nodes, planes, bins, runs;
-    double plan_ms, min_ms, median_ms;
     /* Errors as fractions: of the flat field, and of the reference's pixel. */
     double max_flat, rms_flat, max_ref, rms_ref;
     /* Errors of path lengths, the root mean square over rays that meet a part. For breathing dials: errors of
      * the vertices' positions. NaN: not measured. */
     double max_mm, rms_mm;
-    /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels
-     * the difference that is largest in magnitude, and the mean intensity. */
-    float *difference, *small;
+    float *difference; /* as of a shot, from the point's own reference */
 } cost_point;
+
+/* What makes today's image differ from the true one. */
+enum {
+    COST_SOURCE_TRIANGLES,
+    COST_SOURCE_PRECISION,
+    COST_SOURCE_BINS,
+    COST_SOURCE_TOLERANCE,
+    COST_SOURCE_SAMPLES,
+    COST_SOURCE_SUPERSAMPLING,
+    COST_SOURCE_REPAIR,
+    COST_SOURCE_SURFACE,
+    COST_SOURCE_SCATTER,
+    COST_SOURCES
+};
+
+typedef struct {
+    double error, max; /* root mean square and largest, as fractions of the flat field; NaN: not known */
+    int own, halving;  /* points: of today's setting and of the fastest with half of its error; -1: none */
+    double halving_ms, halving_spread_ms; /* what `halving` adds to the time of an image; NaN: not known */
+    char buys[96];                        /* the dial's value that halves it: "84000 triangles" */
+    char reason[192];                     /* why something is not known, or why the error is 0 */
+    char *command;                        /* NULL: none */
+} cost_source;
 
 enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
 
@@ -99,12 +153,20 @@ typedef struct {
     int whole_state;            /* COST_WHOLE_... */
     cost_point whole;           /* all of these together, against the best rays of the same number */
     char *rays_command, *whole_command;
+    char reason[256]; /* why the tolerance is not reached; empty: it is */
 } cost_advice;
 
 typedef struct {
     const cli_arguments *arguments;
     cli_session session;
     int quick;
+    double begun_ms, within_ms,
+        ended_ms;     /* on the clock of cli_now_ms, the time that was given, and the clock at the end */
+    int64_t frames;   /* of a batch; 1: single images */
+    double *batch;    /* [frames][pixels], for timing batches */
+    int64_t left_out; /* settings that the time did not suffice for */
+    int64_t planned;  /* settings that were to be measured */
+    int stopped;      /* 1: by a signal */
     int64_t pixels, thumb_columns, thumb_rows, thumb_block;
     int noisy;         /* 1: images have the scene's noise */
     double noise;      /* its root mean square, as a fraction of the flat field; 0: the scene has none */
@@ -120,18 +182,36 @@ typedef struct {
     } spectra[COST_MOST_SPECTRA]; /* of the tube, each made when it was first needed */
     int spectrum_count;
     double pass_ms;                            /* of one ray per pixel at the scene's setting */
+    double best_pass_ms;                       /* the same with the best precision and every energy */
+    double plan_ms;                            /* of the scene's setting */
     cost_meshing meshings[COST_MOST_MESHINGS]; /* rising in triangles; the last one is the reference */
     int meshing_count;
-    int thorax_is_simple; /* 1: the thorax of the scene is that of `thorax --simple` */
+    int is_thorax, has_round; /* 1: the generated thorax; a sphere or cylinder */
+    double thorax_ms;         /* that generating it took */
+    int thorax_is_simple;     /* 1: the thorax of the scene is that of `thorax --simple` */
     cost_reference references[COST_REFERENCES];
     cost_point points[COST_MOST_POINTS];
     int count;
+    cost_shot shots[COST_MOST_SHOTS];
+    int shot_count;
+    int here;           /* the shot of the scene as its file has it */
+    int64_t kept_bytes; /* of the plans that are kept */
+    double *pulse_ms; /* [pulse_count] times of the scene's own image between visits: the machine's unrest */
+    int64_t pulse_count, pulse_capacity;
+    double unrest; /* their interquartile range over their median; NaN: fewer than 4 */
+    double
+        reference_error; /* of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known */
+    double grey_levels; /* of 256 in a PNG of transmission, for a whole flat field; 0: not known */
+    cost_source sources[COST_SOURCES];
+    int largest;     /* the source with the largest error; -1: none is known */
+    int buy, saving; /* shots that are worth changing to; -1: none */
+    char summary[640];
     char notes[COST_MOST_NOTES][512];
     int note_count;
     cost_advice advice[COST_TOLERANCES];
 } cost_study;
 
-extern const char *const cost_dial_names[COST_DIALS];
+extern const char *const cost_source_names[COST_SOURCES];
 extern const char *const cost_repair_names[3]; /* by SKG_REPAIR_ value */
 extern const double cost_tolerances[COST_TOLERANCES];
 
@@ -140,6 +220,28 @@ extern const char *const cost_reference_names[COST_REFERENCES];
 
 /* The name of a setting's precision. */
 const char *cost_precision_name(const cost_setting *setting);
+
+/* Milliseconds until the share of the given time has passed; 0 or less: it has, or a signal asked to stop. */
+double cost_left_ms(const cost_study *study, double share);
+
+/* Whether two settings mean the same image. */
+int cost_is_same(const cost_study *study, const cost_setting *a, const cost_setting *b);
+
+/* The dial in which a setting differs from the scene's own; COST_SCENE: none, COST_SEVERAL: more than one. */
+int cost_changed_dial(const cost_study *study, const cost_setting *setting);
+
+/* The name of a dial, or "several". */
+const char *cost_dial_name(int dial);
+
+/* The dial's value in words: "84000 triangles", "2 x 2 rays". */
+void cost_describe_dial(const cost_study *study, const cost_setting *setting, int dial, char *text,
+                        size_t size);
+
+/* The name of a setting's repair. */
+const char *cost_repair_of(const cost_study *study, const cost_setting *setting);
+
+/* Triangles of a setting. */
+int64_t cost_triangles(const cost_study *study, const cost_setting *setting);
 
 /* Keeps a sentence for the report, up to COST_MOST_NOTES of them. */
 void cost_note(cost_study *study, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -7,7 +7,10 @@
 /* Whether every part of the generated thorax is in the scene, in its place. */
 int cost_is_thorax(cost_study *study);
 
-/* Adds meshings, coarser to finer, in which these parts are generated again. */
-skg_status cost_find_thorax(cost_study *study);
+/* Makes the scene of a meshing. */
+skg_status cost_make_thorax(const cost_study *study, cost_meshing *meshing);
+
+/* Adds meshings, coarser to finer, in which these parts are generated again. Their scenes are not made yet. */
+void cost_find_thorax(cost_study *study);
 
 #endif

@@ -1,0 +1,152 @@
+#include "cost/combine.h"
+
+#include "common/progress.h"
+#include "cost/measure.h"
+#include "cost/points.h"
+#include "cost/settings.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST_VALUES = 48, MOST_GUESSES = 40000, MOST_TRIED = 8 };
+
+/* The measured values of one dial, or of the rays' three. */
+typedef struct {
+    int count, points[MOST_VALUES];
+    double own_ms; /* of the value that the scene has; 0: it was not measured */
+} values;
+
+typedef struct {
+    cost_setting setting;
+    double ms, error; /* predicted */
+} guess;
+
+static double ms_of(const cost_study *study, const cost_point *point) {
+    return study->shots[point->shot].min_ms;
+}
+
+static void list(const cost_study *study, int reference, values *its) {
+    *its = (values){0};
+    for (int i = 0; i < study->count; i++) {
+        const cost_point *point = &study->points[i];
+        if (point->reference != reference || point->state != COST_MEASURED || isnan(point->rms_flat))
+            continue;
+        const int dial = cost_changed_dial(study, &point->setting);
+        /* Supersampling is measured with fewer source samples than the scene has. */
+        const int is_own = reference == COST_OF_AREAS
+                               ? point->setting.supersampling == study->own.supersampling
+                               : dial == COST_SCENE;
+        if (is_own) its->own_ms = ms_of(study, point);
+        if (its->count < MOST_VALUES) its->points[its->count++] = i;
+    }
+    if (!(its->own_ms > 0)) its->count = 0;
+}
+
+/* Changes a guess by one value: errors of different dials add as squares, and times multiply. */
+static guess change(const cost_study *study, const guess *before, const values *its, int value) {
+    guess after = *before;
+    const cost_point *point = &study->points[its->points[value]];
+    const cost_setting *to = &point->setting;
+    after.ms *= ms_of(study, point) / its->own_ms;
+    after.error = hypot(before->error, point->rms_flat);
+    switch (point->reference) {
+    case COST_OF_RAYS:
+        after.setting.precision = to->precision;
+        after.setting.tolerance = to->tolerance;
+        after.setting.bins = to->bins;
+        break;
+    case COST_OF_SAMPLES:
+        after.setting.samples = to->samples;
+        break;
+    case COST_OF_AREAS:
+        after.setting.supersampling = to->supersampling;
+        break;
+    case COST_OF_REPAIR:
+        after.setting.repair = to->repair;
+        break;
+    default:
+        after.setting.meshing = to->meshing;
+        break;
+    }
+    return after;
+}
+
+/* All combinations; the caller frees them. */
+static guess *guess_all(const cost_study *study, int64_t *count) {
+    static const int references[] = {COST_OF_RAYS, COST_OF_TRIANGLES, COST_OF_AREAS, COST_OF_SAMPLES,
+                                     COST_OF_REPAIR};
+    guess *all = calloc(MOST_GUESSES, sizeof *all);
+    *count = 1;
+    if (!all) return NULL;
+    all[0] = (guess){.setting = study->own, .ms = study->shots[study->here].min_ms};
+    for (int r = 0; r < 5; r++) {
+        values its;
+        const int64_t before = *count;
+        list(study, references[r], &its);
+        if (its.count == 0 || before * its.count > MOST_GUESSES) continue;
+        for (int v = its.count - 1; v >= 0;
+             v--) /* the first value last: it overwrites what the others start from */
+            for (int64_t i = 0; i < before; i++) all[v * before + i] = change(study, &all[i], &its, v);
+        *count = before * its.count;
+    }
+    return all;
+}
+
+static int faster(const void *a, const void *b) {
+    const guess *x = a, *y = b;
+    if (x->ms != y->ms) return x->ms < y->ms ? -1 : 1;
+    return (x->error > y->error) - (x->error < y->error);
+}
+
+/* Keeps the guesses than which none is both faster and more accurate, by rising time. */
+static int64_t keep_best(guess *all, int64_t count) {
+    int64_t kept = 0;
+    qsort(all, (size_t)count, sizeof *all, faster);
+    for (int64_t i = 0; i < count; i++)
+        if (kept == 0 || all[i].error < all[kept - 1].error) all[kept++] = all[i];
+    return kept;
+}
+
+/* Measures a guess, if it is new and the time suffices. */
+static int try_guess(cost_study *study, const guess *its, double share, double *image, int *tried) {
+    const double runs = (double)(1 + cost_first_runs(study) * study->frames);
+    if (cost_find_shot(study, &its->setting) >= 0 || its->ms > cost_patience_ms(study)) return 0;
+    const int count = study->count;
+    if (study->plan_ms + runs * its->ms > cost_left_ms(study, share)) {
+        study->left_out++;
+        return 0;
+    }
+    cost_add_point(study, COST_SEVERAL, COST_OF_ALL, 0, its->setting);
+    if (study->count == count) return 0;
+    (*tried)++;
+    return cost_measure(study, &study->points[count], image);
+}
+
+int cost_combine(cost_study *study, double share, double *image) {
+    int64_t count;
+    int tried = 0, exit_status = 0;
+    guess *all = guess_all(study, &count);
+    if (!all) return exit_status; /* the study goes without combinations */
+    const int64_t best = keep_best(all, count);
+    const int64_t most = study->quick ? MOST_TRIED / 2 : MOST_TRIED;
+    cli_progress_forecast("measuring combinations of settings", 0, 0, fmax(cost_left_ms(study, share), 0));
+    /* evenly along the frontier */
+    for (int64_t i = 0; i < most && exit_status == 0; i++)
+        exit_status =
+            try_guess(study, &all[best == 1 ? 0 : i * (best - 1) / (most - 1)], share, image, &tried);
+    free(all);
+    return exit_status;
+}
+
+void cost_find_frontier(cost_study *study) {
+    for (int i = 0; i < study->shot_count; i++) {
+        cost_shot *shot = &study->shots[i];
+        shot->on_frontier = !isnan(shot->total_rms);
+        for (int k = 0; k < study->shot_count && shot->on_frontier; k++) {
+            const cost_shot *other = &study->shots[k];
+            const int no_worse = other->min_ms <= shot->min_ms && other->total_rms <= shot->total_rms;
+            const int better = other->min_ms < shot->min_ms || other->total_rms < shot->total_rms;
+            if (no_worse && better) shot->on_frontier = 0;
+        }
+    }
+}

@@ -1,0 +1,53 @@
+#include "cost/csv.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* A number and a comma; empty: not measured. */
+static void put_number(FILE *stream, double value) {
+    if (!isnan(value)) fprintf(stream, "%.6g", value);
+    fputc(',', stream);
+}
+
+static void put_setting(FILE *stream, const cost_study *study, const cost_setting *setting) {
+    fprintf(stream, "%s,%.6g,", cost_precision_name(setting), setting->tolerance);
+    fprintf(stream, "%" PRId64 ",%" PRId64 ",%d,", setting->bins, setting->samples,
+            (int)setting->supersampling);
+    fprintf(stream, "%s,%" PRId64 ",", study->has_leaky ? cost_repair_of(study, setting) : "",
+            cost_triangles(study, setting));
+    if (setting->relaxation < 0)
+        fputs(",,", stream); /* empty: the setting has no breath */
+    else
+        fprintf(stream, "%d,%g,", (int)setting->relaxation, setting->hysteresis);
+}
+
+char *cost_csv(const cost_study *study) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream) return NULL;
+    fputs(
+        "dial,precision,tolerance,max_bins,samples,supersampling,repair,triangles,relaxation,hysteresis,"
+        "nodes,planes,runs,plan_ms,min_ms,median_ms,spread_ms,total_rms,max_open,rms_open,max_ref,rms_ref,max_mm,rms_mm,"
+        "frontier\n",
+        stream);
+    for (int i = 0; i < study->count; i++) {
+        const cost_point *p = &study->points[i];
+        const cost_shot *shot = &study->shots[p->shot];
+        fprintf(stream, "%s,", cost_dial_name(p->dial));
+        put_setting(stream, study, &p->setting);
+        fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64 ",%.6g,%.6g,%.6g,", shot->nodes, shot->planes,
+                shot->runs, shot->plan_ms, shot->min_ms, shot->median_ms);
+        put_number(stream, shot->spread_ms);
+        put_number(stream, shot->total_rms);
+        fprintf(stream, "%.6g,%.6g,%.6g,%.6g,", p->max_flat, p->rms_flat, p->max_ref, p->rms_ref);
+        put_number(stream, p->max_mm);
+        put_number(stream, p->rms_mm);
+        fprintf(stream, "%d\n", p->on_frontier);
+    }
+    if (fclose(stream) == 0) return text;
+    free(text);
+    return NULL;
+}

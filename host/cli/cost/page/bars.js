@@ -1,0 +1,25 @@
+"use strict";
+/* A bar for each source of error, and what halving it costs. */
+const dialOf = {"triangles": "triangles", "precision": "precision", "bins of the spectrum": "bins", "tolerance": "tolerance", "source samples": "source samples",
+                "supersampling": "supersampling", "repair": "repair"};
+const extra = (ms, spread) => Math.abs(ms) <= (spread || 0) ? "no more time than the clock resolves" : (ms > 0 ? "+" : "\u2212") + duration(Math.abs(ms), spread);
+
+function bar(source, i, largest) {
+  const name = `<span>${plain(source.name)}${source.today ? `<br><span class="faint">${plain(source.today)}</span>` : ""}</span>`;
+  if (source.error === null)
+    return `${name}<span class="track"><span class="unknown"></span></span><span class="why">not known: ${plain(source.reason)}</span>`;
+  const buys = source.halving === null ? `<span class="faint">${plain(source.reason || "")}</span><span></span>`
+    : `<span class="buys">half of it: ${plain(source.halving)}, ${extra(source.halving_ms, source.halving_spread_ms)}</span>` +
+      `<button data-copy="${plain(source.command)}" title="${plain(source.command)}">copy</button>`;
+  return `${name}<button class="track" data-source="${i}" aria-label="${plain(source.name)}: ${percent(source.error)}; show where">` +
+    `<span class="fill" style="width:${100 * source.error / largest}%;background:${colour(dialOf[source.name])}"></span></button>` +
+    `<span class="number">${percent(source.error)}</span>${buys}`;
+}
+
+function drawBars() {
+  const largest = Math.max(...study.sources.map(s => s.error || 0)) || 1;
+  const order = study.sources.map((s, i) => ({s, i})).filter(p => p.s.error !== 0).sort((a, b) => (b.s.error ?? -1) - (a.s.error ?? -1));
+  const none = study.sources.filter(s => s.error === 0);
+  byId("bars").innerHTML = order.map(p => bar(p.s, p.i, largest)).join("") +
+    (none.length ? `<span>none</span><span></span><span class="why">${none.map(s => plain(s.name + (s.reason ? " (" + s.reason + ")" : ""))).join(", ")}</span>` : "");
+}

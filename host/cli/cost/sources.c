@@ -1,0 +1,283 @@
+#include "cost/sources.h"
+
+#include "common/say.h"
+#include "cost/command.h"
+#include "cost/round.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The points of a source: of one dial and one reference, and with all else as in the point of today's value. */
+typedef struct {
+    int dial, reference;
+} family;
+
+static const family families[COST_SOURCES] = {
+    [COST_SOURCE_TRIANGLES] = {COST_TRIANGLES, COST_OF_TRIANGLES},
+    [COST_SOURCE_PRECISION] = {COST_PRECISION, COST_OF_RAYS},
+    [COST_SOURCE_BINS] = {COST_BINS, COST_OF_RAYS},
+    [COST_SOURCE_TOLERANCE] = {COST_TOLERANCE, COST_OF_RAYS},
+    [COST_SOURCE_SAMPLES] = {COST_SAMPLES, COST_OF_SAMPLES},
+    [COST_SOURCE_SUPERSAMPLING] = {COST_SUPERSAMPLING, COST_OF_AREAS},
+    [COST_SOURCE_REPAIR] = {COST_REPAIR, COST_OF_REPAIR}};
+
+/* The setting in which only this source errs, compared with the family's reference. */
+static cost_setting alone(const cost_study *study, int source) {
+    cost_setting its = study->own;
+    const cost_setting *best = &study->references[COST_OF_RAYS].setting;
+    if (source == COST_SOURCE_PRECISION) its.tolerance = best->tolerance, its.bins = best->bins;
+    if (source == COST_SOURCE_BINS) its.tolerance = best->tolerance, its.precision = best->precision;
+    if (source == COST_SOURCE_TOLERANCE) its.bins = best->bins, its.precision = best->precision;
+    if (source == COST_SOURCE_SUPERSAMPLING) its.samples = study->references[COST_OF_AREAS].setting.samples;
+    return its;
+}
+
+static int find_point(const cost_study *study, int reference, const cost_setting *setting) {
+    for (int i = 0; i < study->count; i++)
+        if (study->points[i].reference == reference &&
+            cost_is_same(study, &study->points[i].setting, setting))
+            return i;
+    return -1;
+}
+
+/* Copies the value of the dial from one setting to another. */
+static void take_value(int dial, const cost_setting *from, cost_setting *to) {
+    switch (dial) {
+    case COST_PRECISION:
+        to->precision = from->precision;
+        break;
+    case COST_TOLERANCE:
+        to->tolerance = from->tolerance;
+        break;
+    case COST_BINS:
+        to->bins = from->bins;
+        break;
+    case COST_SAMPLES:
+        to->samples = from->samples;
+        break;
+    case COST_SUPERSAMPLING:
+        to->supersampling = from->supersampling;
+        break;
+    case COST_REPAIR:
+        to->repair = from->repair;
+        break;
+    default:
+        to->meshing = from->meshing;
+        break;
+    }
+}
+
+/* Whether a point differs from today's in the source's dial only. */
+static int is_of_family(const cost_study *study, int source, const cost_setting *today,
+                        const cost_point *point) {
+    cost_setting its = *today;
+    if (point->reference != families[source].reference) return 0;
+    take_value(families[source].dial, &point->setting, &its);
+    return cost_is_same(study, &its, &point->setting);
+}
+
+/* The fastest point of the family with half of today's error, or less. */
+static int find_halving(const cost_study *study, int source, int today) {
+    const cost_point *own = &study->points[today];
+    int found = -1;
+    for (int i = 0; i < study->count; i++) {
+        const cost_point *point = &study->points[i];
+        if (i == today || !is_of_family(study, source, &own->setting, point)) continue;
+        if (!(point->rms_flat <= own->rms_flat / 2)) continue;
+        if (found < 0 || study->shots[point->shot].min_ms < study->shots[study->points[found].shot].min_ms)
+            found = i;
+    }
+    return found;
+}
+
+/* What the halving adds to the time of today's image. Where today's value was measured with other settings of the remaining
+ * dials, their ratio counts. */
+static void price(const cost_study *study, cost_source *source) {
+    const cost_shot *here = &study->shots[study->here];
+    const cost_shot *from = &study->shots[study->points[source->own].shot];
+    const cost_shot *to = &study->shots[study->points[source->halving].shot];
+    const double scale = from == here ? 1 : here->min_ms / from->min_ms;
+    source->halving_ms = scale * (to->min_ms - from->min_ms);
+    source->halving_spread_ms = scale * hypot(to->spread_ms, from->spread_ms); /* NaN: timed once */
+}
+
+/* The scene with the dial's better value, all else as it is. */
+static int name_halving(const cost_study *study, int number, cost_source *source) {
+    const int dial = families[number].dial;
+    cost_setting setting = study->own;
+    take_value(dial, &study->points[source->halving].setting, &setting);
+    cost_describe_dial(study, &setting, dial, source->buys, sizeof source->buys);
+    source->command = cost_command(study, &setting);
+    return source->command ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
+}
+
+static const char *why_not_measured(const cost_study *study, int source) {
+    const skg_spot *spot = study->session.options.spot;
+    const int has_spot = spot && spot->shape != SKG_SPOT_POINT;
+    switch (source) {
+    case COST_SOURCE_TRIANGLES:
+        return "the body that the triangles stand for is not known, so that no finer mesh can be made";
+    case COST_SOURCE_PRECISION:
+        return study->session.device.has_double ? "" : "the device has no double precision";
+    case COST_SOURCE_SAMPLES:
+        return has_spot && spot->grid > 0 ? "the scene fixes the samples by a grid" : "";
+    default:
+        return "";
+    }
+}
+
+/* Why the source makes no error at all; NULL: it may. */
+static const char *why_none(const cost_study *study, int source) {
+    const char *label;
+    switch (source) {
+    case COST_SOURCE_TRIANGLES:
+    case COST_SOURCE_SURFACE:
+        if (source == COST_SOURCE_SURFACE && !study->has_round) return "see triangles";
+        if (cost_count_unknown(study, &label) > 0 && !study->is_thorax) return NULL;
+        if (source == COST_SOURCE_SURFACE) return "every part is a body whose surface is known";
+        return study->has_round ? NULL : "cuboids and step wedges are exact";
+    case COST_SOURCE_PRECISION:
+        return study->own.precision == SKG_PRECISION_DOUBLE ? "the scene has double precision" : NULL;
+    case COST_SOURCE_BINS:
+        if (!study->has_energies) return "the beam has one energy";
+        return study->finest == 0 ? "the spectrum's bins are not wider than they need be" : NULL;
+    case COST_SOURCE_TOLERANCE:
+        if (!study->has_energies) return "the beam has one energy";
+        return study->own.tolerance > 0 ? NULL : "the tolerance is 0: every energy is computed";
+    case COST_SOURCE_SAMPLES:
+        return study->has_spot || (study->session.options.spot && study->session.options.spot->grid > 0)
+                   ? NULL
+                   : "the source is a point or a parallel beam";
+    case COST_SOURCE_REPAIR:
+        return study->has_leaky ? NULL : "no mesh is leaky";
+    default:
+        return NULL;
+    }
+}
+
+static int measure_source(cost_study *study, int number) {
+    cost_source *source = &study->sources[number];
+    const cost_setting setting = alone(study, number);
+    source->own = find_point(study, families[number].reference, &setting);
+    if (source->own < 0) {
+        const char *reason = why_not_measured(study, number);
+        snprintf(source->reason, sizeof source->reason, "%s",
+                 *reason ? reason : "not measured: the time did not suffice");
+        return CLI_DONE;
+    }
+    const cost_point *today = &study->points[source->own];
+    source->error = today->rms_flat;
+    source->max = today->max_flat;
+    source->halving = find_halving(study, number, source->own);
+    if (source->halving < 0) {
+        snprintf(source->reason, sizeof source->reason, "%s",
+                 source->error > 0 ? "no measured setting has half of this error"
+                                   : "nothing is left to halve");
+        return CLI_DONE;
+    }
+    price(study, source);
+    return name_halving(study, number, source);
+}
+
+/* What no setting of the scene changes, and which therefore no run can measure. */
+static void name_unknown(const cost_study *study, int number, cost_source *source) {
+    const char *label = "";
+    const int64_t parts = cost_count_unknown(study, &label);
+    if (number == COST_SOURCE_SCATTER)
+        snprintf(source->reason, sizeof source->reason,
+                 "the image has directly transmitted photons only: scattered ones are not simulated here");
+    else
+        snprintf(source->reason, sizeof source->reason,
+                 "the body behind the triangles of %" PRId64 " part%s (%.40s%s) is not known", parts,
+                 parts == 1 ? "" : "s", label, parts > 1 ? " and others" : "");
+}
+
+int cost_find_sources(cost_study *study) {
+    int exit_status = CLI_DONE;
+    study->largest = -1;
+    for (int number = 0; number < COST_SOURCES && exit_status == CLI_DONE; number++) {
+        cost_source *source = &study->sources[number];
+        const char *none = why_none(study, number);
+        *source = (cost_source){.error = (double)NAN,
+                                .max = (double)NAN,
+                                .own = -1,
+                                .halving = -1,
+                                .halving_ms = (double)NAN,
+                                .halving_spread_ms = (double)NAN};
+        if (none) {
+            source->error = source->max = 0;
+            snprintf(source->reason, sizeof source->reason, "%s", none);
+        } else if (number >= COST_SOURCE_SURFACE) {
+            name_unknown(study, number, source);
+        } else {
+            exit_status = measure_source(study, number);
+        }
+        if (source->error > (study->largest < 0 ? 0 : study->sources[study->largest].error))
+            study->largest = number;
+    }
+    return exit_status;
+}
+
+void cost_describe_source(const cost_study *study, int number, char *text, size_t size) {
+    *text = '\0';
+    if (number < COST_SOURCE_SURFACE)
+        cost_describe_dial(study, &study->own, families[number].dial, text, size);
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The error of the most accurate point of a family that is not more accurate than `best`: an upper bound of that of `best`. */
+static double error_near(const cost_study *study, int source, const cost_setting *best) {
+    double least = (double)NAN;
+    for (int i = 0; i < study->count; i++) {
+        const cost_point *point = &study->points[i];
+        if (point->reference != families[source].reference || point->dial != families[source].dial) continue;
+        if (point->setting.samples > best->samples || point->setting.supersampling > best->supersampling)
+            continue;
+        if (!(point->rms_flat >= least)) least = point->rms_flat;
+    }
+    return least;
+}
+
+/* Grey levels, of 256, that a whole flat field is in a PNG of transmission, whose ends are percentiles of the pixels. */
+static double find_grey_levels(const cost_study *study) {
+    double low = 0, high = 0;
+    skg_picture picture;
+    skg_picture_init(&picture);
+    picture.type = SKG_TYPE_FLOAT64;
+    picture.columns = study->session.view.columns;
+    picture.rows = study->session.view.rows;
+    picture.channels = 1;
+    picture.data = study->references[COST_OF_ALL].image;
+    picture.display = SKG_DISPLAY_TRANSMISSION;
+    picture.quantity = SKG_QUANTITY_ENERGY;
+    picture.flat_field = study->flat_field;
+    if (!picture.data || skg_picture_window_get(&picture, 0.005, 0.005, &low, &high) != SKG_OK ||
+        !(high > low))
+        return 0;
+    return 255 / (high - low);
+}
+
+void cost_find_trust(cost_study *study) {
+    static const int sampled[] = {COST_SOURCE_TRIANGLES, COST_SOURCE_SAMPLES, COST_SOURCE_SUPERSAMPLING};
+    const cost_setting *best = &study->references[COST_OF_ALL].setting;
+    double squares = 0;
+    for (int k = 0; k < 3; k++) {
+        const double error = error_near(study, sampled[k], best);
+        if (!isnan(error)) squares += error * error;
+    }
+    study->reference_error = study->references[COST_OF_ALL].image ? sqrt(squares) : (double)NAN;
+    study->grey_levels = find_grey_levels(study);
+    study->unrest = (double)NAN;
+    if (study->pulse_count < 4) return;
+    qsort(study->pulse_ms, (size_t)study->pulse_count, sizeof *study->pulse_ms, ascending);
+    const double *ms = study->pulse_ms;
+    const int64_t n = study->pulse_count;
+    study->unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
+}

@@ -1,0 +1,180 @@
+#include "cost/summary.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double HALF = 0.55; /* of today's error counts as half */
+static const double LESS = 0.9;  /* of today's time or error counts as less */
+static const double SAME = 1.05; /* of today's error counts as the same */
+
+/* Two significant digits, without an exponent. */
+static void put_number(double value, char *text, size_t size) {
+    const double magnitude = fabs(value);
+    int decimals = 0;
+    if (magnitude > 0) decimals = 1 - (int)floor(log10(magnitude));
+    snprintf(text, size, "%.*f", decimals < 0 ? 0 : decimals > 7 ? 7 : decimals, value);
+}
+
+const char *cost_percent(double share, char *text, size_t size) {
+    char number[32];
+    put_number(100 * share, number, sizeof number);
+    if (isnan(share))
+        snprintf(text, size, "not finite");
+    else if (share > 0 && share < 1e-8)
+        snprintf(text, size, "below 0.000001 %%");
+    else
+        snprintf(text, size, "%s %%", share > 0 ? number : "0");
+    return text;
+}
+
+const char *cost_ms(double ms, double spread_ms, char *text, size_t size) {
+    char number[32], spread[32];
+    put_number(ms, number, sizeof number);
+    put_number(spread_ms, spread, sizeof spread);
+    if (spread_ms > 0.05 * fabs(ms))
+        snprintf(text, size, "%s +- %s ms", number, spread);
+    else
+        snprintf(text, size, "%s ms", number);
+    return text;
+}
+
+const char *cost_more(double ms, double spread_ms, char *text, size_t size) {
+    char number[64];
+    if (fabs(ms) <= spread_ms)
+        snprintf(text, size, "in the same time");
+    else
+        snprintf(text, size, "%s%s", ms > 0 ? "+" : "", cost_ms(ms, spread_ms, number, sizeof number));
+    return text;
+}
+
+/* The shot that is best to change to: the fastest that halves the error of the whole, otherwise the most accurate one. Changes of
+ * one dial come before others, unless those are faster by a tenth. -1: none is more accurate. */
+static int choose_buy(const cost_study *study) {
+    const cost_shot *here = &study->shots[study->here];
+    int half = -1, best = -1;
+    for (int i = 0; i < study->shot_count; i++) {
+        const cost_shot *shot = &study->shots[i];
+        if (!(shot->total_rms < LESS * here->total_rms)) continue;
+        if (best < 0 || shot->total_rms < study->shots[best].total_rms) best = i;
+        if (!(shot->total_rms <= HALF * here->total_rms)) continue;
+        const double weight = cost_changed_dial(study, &shot->setting) == COST_SEVERAL ? 1.1 : 1;
+        const double its = weight * shot->min_ms;
+        if (half < 0) {
+            half = i;
+            continue;
+        }
+        const double other = cost_changed_dial(study, &study->shots[half].setting) == COST_SEVERAL ? 1.1 : 1;
+        if (its < other * study->shots[half].min_ms) half = i;
+    }
+    return half >= 0 ? half : best;
+}
+
+/* The fastest shot that errs no more than today's image. -1: none is faster by a tenth. */
+static int choose_saving(const cost_study *study) {
+    const cost_shot *here = &study->shots[study->here];
+    int found = -1;
+    for (int i = 0; i < study->shot_count; i++) {
+        const cost_shot *shot = &study->shots[i];
+        const double spread = isnan(shot->spread_ms) ? 0 : shot->spread_ms;
+        if (!(shot->total_rms <= SAME * here->total_rms)) continue;
+        if (!(shot->min_ms + spread < LESS * here->min_ms)) continue;
+        if (found < 0 || shot->min_ms < study->shots[found].min_ms) found = i;
+    }
+    return found;
+}
+
+/* The values of the dials in which a shot differs from the scene: "84000 triangles, double precision". */
+static void name_change(const cost_study *study, const cost_setting *setting, char *text, size_t size) {
+    *text = '\0';
+    for (int dial = COST_PRECISION; dial <= COST_TRIANGLES; dial++) {
+        char value[96];
+        cost_setting its = study->own;
+        switch (dial) {
+        case COST_PRECISION:
+            its.precision = setting->precision;
+            break;
+        case COST_TOLERANCE:
+            its.tolerance = setting->tolerance;
+            break;
+        case COST_BINS:
+            its.bins = setting->bins;
+            break;
+        case COST_SAMPLES:
+            its.samples = setting->samples;
+            break;
+        case COST_SUPERSAMPLING:
+            its.supersampling = setting->supersampling;
+            break;
+        case COST_REPAIR:
+            its.repair = setting->repair;
+            break;
+        default:
+            its.meshing = setting->meshing;
+            break;
+        }
+        if (cost_changed_dial(study, &its) == COST_SCENE) continue;
+        cost_describe_dial(study, setting, dial, value, sizeof value);
+        cost_append(text, size, "%s%s", *text ? " with " : "", value);
+    }
+}
+
+static void add_change(cost_study *study, const char *what, int number) {
+    const cost_shot *here = &study->shots[study->here], *shot = &study->shots[number];
+    char change[256], ms[64], percent[48];
+    const double more = shot->min_ms - here->min_ms, ratio = shot->total_rms / here->total_rms;
+    name_change(study, &shot->setting, change, sizeof change);
+    cost_append(study->summary, sizeof study->summary, " %s: %s, %s, ", what, change,
+                cost_more(more, hypot(shot->spread_ms, here->spread_ms), ms, sizeof ms));
+    if (ratio <= HALF && ratio > 0.4)
+        cost_append(study->summary, sizeof study->summary, "error halved.");
+    else if (ratio > LESS && ratio <= SAME)
+        cost_append(study->summary, sizeof study->summary, "with the same error.");
+    else
+        cost_append(study->summary, sizeof study->summary, "error %s.",
+                    cost_percent(shot->total_rms, percent, sizeof percent));
+}
+
+static void name_largest(cost_study *study) {
+    char percent[48];
+    if (study->largest < 0) {
+        cost_append(study->summary, sizeof study->summary,
+                    " No source of error that was measured is above 0.");
+        return;
+    }
+    cost_append(study->summary, sizeof study->summary, " Largest error: %s (%s).",
+                cost_source_names[study->largest],
+                cost_percent(study->sources[study->largest].error, percent, sizeof percent));
+}
+
+void cost_summarise(cost_study *study) {
+    const cost_shot *here = &study->shots[study->here];
+    char ms[64], percent[48], sure[48];
+    study->buy = choose_buy(study);
+    study->saving = choose_saving(study);
+    if (study->buy >= 0 && study->shots[study->buy].min_ms < here->min_ms)
+        study->saving = -1; /* it saves time as well */
+    const char *each = study->frames > 1 ? "a frame in batches" : "an image";
+    cost_append(study->summary, sizeof study->summary, "This scene: %s %s",
+                cost_ms(here->min_ms, here->spread_ms, ms, sizeof ms), each);
+    if (!isnan(here->total_rms))
+        cost_append(study->summary, sizeof study->summary, ", %s%s off",
+                    study->reference_error > here->total_rms ? "at least " : "",
+                    cost_percent(here->total_rms, percent, sizeof percent));
+    if (study->reference_error > 0.1 * here->total_rms && study->reference_error <= here->total_rms)
+        cost_append(study->summary, sizeof study->summary, " (+- %s)",
+                    cost_percent(study->reference_error, sure, sizeof sure));
+    cost_append(study->summary, sizeof study->summary, ".");
+    name_largest(study);
+    if (study->noise > 10 * here->total_rms) {
+        cost_append(study->summary, sizeof study->summary,
+                    " The scene's noise is %s, so nothing needs to be bought.",
+                    cost_percent(study->noise, percent, sizeof percent));
+        study->buy = -1;
+    } else if (study->buy >= 0) {
+        add_change(study, "Best buy", study->buy);
+    } else {
+        cost_append(study->summary, sizeof study->summary, " No setting that was measured errs less.");
+    }
+    if (study->saving >= 0) add_change(study, "To save time", study->saving);
+}
