@@ -6,9 +6,9 @@ skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev openc
 libassimp-dev libcglm-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
 
 # Without these something is left out: HDF5 files of scans, scans under MPI, films as .gif, films as .mp4 and .webm, pages
-# of large scenes with fewer triangles.
+# of large scenes with fewer triangles, fits by CMA-ES.
 # shellcheck disable=SC2034
-skg_optional_packages="libhdf5-dev libopenmpi-dev openmpi-bin libgif-dev ffmpeg libmeshoptimizer-dev"
+skg_optional_packages="libhdf5-dev libopenmpi-dev openmpi-bin libgif-dev ffmpeg libmeshoptimizer-dev liblapacke-dev"
 
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {

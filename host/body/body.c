@@ -33,6 +33,12 @@ static skg_status check_options(const skg_body_options *o) {
           o->reference_diaphragmatic <= 4))
         return skg_fail(SKG_ERR_BREATHING, "body: reference weights are %g and %g; the range is 0 to 4",
                         o->reference_thoracic, o->reference_diaphragmatic);
+    if (!(o->diaphragm_ribs_mm >= 0 && o->diaphragm_ribs_mm <= 1000 && o->diaphragm_liver_mm >= 0 &&
+          o->diaphragm_liver_mm <= 1000))
+        return skg_fail(
+            SKG_ERR_BREATHING,
+            "body: the diaphragm's links reach %g mm to ribs and %g mm to the liver; the range is 0 to 1000 mm",
+            o->diaphragm_ribs_mm, o->diaphragm_liver_mm);
     if (!(o->hysteresis >= 0 && o->hysteresis <= 1))
         return skg_fail(SKG_ERR_BREATHING, "body: hysteresis is %g; the range is 0 to 1", o->hysteresis);
     return SKG_OK;
@@ -67,9 +73,10 @@ static void free_organ(skg_body_organ *o) {
         char *to = (char *)(uintptr_t)o->given[l].to; /* our own copy */
         skg_free(&to);
     }
-    void *block[] = {&o->label,  &o->rest,   &o->corner, &o->node_of,     &o->moved,
-                     &o->link,   &o->anchor, &o->target, &o->block,       &o->state,
-                     &o->memory, &o->near,   &o->given,  &o->near_weight, &o->fraction};
+    skg_tree_free(&o->tree);
+    void *block[] = {&o->label, &o->rest,   &o->corner,      &o->node_of, &o->moved,
+                     &o->link,  &o->anchor, &o->target,      &o->state,   &o->memory,
+                     &o->near,  &o->given,  &o->near_weight, &o->fraction};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 

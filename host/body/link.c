@@ -6,6 +6,13 @@
 #include "body/rules.h"
 #include "body/tie.h"
 
+static skg_status make_chains(skg_body *body) {
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].role == ROLE_DIAPHRAGM || body->organ[i].role == ROLE_LINKED)
+            SKG_TRY(skg_body_make_chain(body, body->organ + i));
+    return SKG_OK;
+}
+
 skg_status skg_body_find_links(skg_body *body) {
     skg_body_set_tendon_plane(body);
     for (int64_t i = 0; i < body->organs; i++)
@@ -18,8 +25,10 @@ skg_status skg_body_find_links(skg_body *body) {
         if (o->role == ROLE_STATIC) SKG_TRY(skg_carry_adopt(body, o));
     }
     SKG_TRY(skg_body_check_ties(body));
-    for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == ROLE_DIAPHRAGM || body->organ[i].role == ROLE_LINKED)
-            SKG_TRY(skg_body_make_chain(body, body->organ + i));
-    return SKG_OK;
+    return make_chains(body);
+}
+
+skg_status skg_body_find_links_again(skg_body *body) {
+    for (int64_t i = 0; i < body->organs; i++) skg_body_drop_chain(body->organ + i);
+    return make_chains(body);
 }

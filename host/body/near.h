@@ -4,9 +4,6 @@
 
 #include "body/types.h"
 
-/* Bounds of blocks of the organ's triangles, for skg_nearest. */
-skg_status skg_near_prepare(skg_body_organ *organ);
-
 /* The distance in mm from a point to the nearest point of an organ's triangles, and that point as corners and weights
  * of the link; HUGE_VAL where it is farther than `reach`. */
 double skg_nearest(const skg_body_organ *organ, const double point[3], double reach, skg_link *link);

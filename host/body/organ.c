@@ -1,7 +1,6 @@
 #include "body/organ.h"
 
 #include "body/axes.h"
-#include "body/near.h"
 #include "core/maths.h"
 #include "core/vector.h"
 
@@ -123,7 +122,7 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
         }
         o->node_of[i] = o->mesh->weld ? o->mesh->weld[i] : (int32_t)i;
     }
-    SKG_TRY(skg_near_prepare(o));
+    SKG_TRY(skg_tree_create(o->label, o->rest, o->triangles, o->corner, &o->tree));
     skg_mesh_health health;
     skg_mesh_health_init(&health);
     SKG_TRY(skg_mesh_health_get(o->mesh, &health));

@@ -20,6 +20,14 @@ static double nearest_of(const skg_body *body, skg_role role, int first, int las
     return least;
 }
 
+double skg_diaphragm_ribs_reach(const skg_body_options *options) {
+    return options->diaphragm_ribs_mm > 0 ? options->diaphragm_ribs_mm : 16;
+}
+
+double skg_diaphragm_liver_reach(const skg_body_options *options) {
+    return options->diaphragm_liver_mm > 0 ? options->diaphragm_liver_mm : 9;
+}
+
 /* Above 0 in the tendon. */
 static double plane_value(const skg_body *body, const double p[3]) {
     return skg_dot(body->options.tendon_plane, p) + body->options.tendon_plane[3];
@@ -32,7 +40,7 @@ static int diaphragm_rule(const skg_body *body, const skg_body_organ *organ, con
     const double *bounds = organ->bounds;
     *link = (skg_link){.organ = LINK_TENDON, .fraction = 1};
     if (plane_value(body, p) > 0) return 1;
-    const double rib_reach = 16, spine_reach = 12;
+    const double rib_reach = skg_diaphragm_ribs_reach(&body->options), spine_reach = 12;
     if (p[2] > bounds[2] + 0.1 * (bounds[5] - bounds[2])) return 0;
     if (nearest_of(body, ROLE_RIB, 6, 12, p, rib_reach, link) < HUGE_VAL) return 1;
     *link = (skg_link){.organ = LINK_STAYS};
@@ -57,8 +65,8 @@ static int lung_rule(const skg_body *body, const skg_body_organ *organ, const do
 
 /* Liver, heart and others: what lies under or on the tendon follows it. */
 static int tendon_rule(const skg_body *body, const skg_body_organ *organ, const double p[3], skg_link *link) {
-    const double reach = 9;
-    (void)organ;
+    const int is_liver = skg_label_begins(organ->label, "liver");
+    const double reach = is_liver ? skg_diaphragm_liver_reach(&body->options) : 9;
     if (nearest_of(body, ROLE_DIAPHRAGM, 0, 0, p, reach, link) == HUGE_VAL) return 0;
     int tendon = 1;
     for (int c = 0; c < 3; c++)

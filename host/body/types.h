@@ -6,6 +6,7 @@
 #include "body/roles.h"
 #include "chainmail/chainmail.h"
 #include "core/context.h"
+#include "distance/tree.h"
 #include "mesh/mesh.h"
 
 /* Values of skg_link.organ that are no organ: the point stays at rest, or moves with the diaphragm's tendon. */
@@ -21,9 +22,9 @@ typedef struct {
     double point[3]; /* at rest, where fixed */
 } skg_link;
 
-/* CARRIERS: vertices that together carry a vertex of another organ. BLOCK: triangles with common bounds, so that a
- * search skips most of them. LOOP_STEPS: states of a breath that are stored for hysteresis. All three are choices. */
-enum { CARRIERS = 12, BLOCK = 32, LOOP_STEPS = 24 };
+/* CARRIERS: vertices that together carry a vertex of another organ. LOOP_STEPS: states of a breath that are stored for
+ * hysteresis. Both are choices. */
+enum { CARRIERS = 12, LOOP_STEPS = 24 };
 
 typedef struct {
     skg_mesh *mesh;
@@ -37,7 +38,7 @@ typedef struct {
     double *rest;     /* rows of x, y, z, mm */
     double bounds[6]; /* of rest: low, high */
     int32_t *corner;
-    double *block;    /* bounds of BLOCK triangles each: low, high */
+    skg_tree tree;    /* of the triangles at rest */
     int32_t *node_of; /* per vertex: the first vertex at the same place */
     double *moved;    /* displacements, rows of x, y, z, mm */
     int changed;      /* 1: the mesh is not at rest */

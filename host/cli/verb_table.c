@@ -2,6 +2,7 @@
 
 #include "breathe/breathe.h"
 #include "cost/cost.h"
+#include "fit/fit.h"
 #include "scan/scan.h"
 #include "verbs/verbs.h"
 #include "view/view.h"
@@ -19,6 +20,7 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_devices, cli_devices},
     {&cli_manual_thorax, cli_thorax},
     {&cli_manual_breathe, cli_breathe},
+    {&cli_manual_fit, cli_fit},
     {&cli_manual_scan, cli_scan},
     {&cli_manual_reconstruct, cli_reconstruct},
     {NULL, NULL},

@@ -116,7 +116,7 @@ void skg_tree_free(skg_tree *tree) {
 static double box_distance(const double *bounds, const double p[3]) {
     double away = 0;
     for (int k = 0; k < 3; k++) {
-        const double d = fmax(0, fmax(bounds[k] - p[k], p[k] - bounds[3 + k]));
+        const double d = p[k] < bounds[k] ? bounds[k] - p[k] : p[k] > bounds[3 + k] ? p[k] - bounds[3 + k] : 0;
         away += d * d;
     }
     return away;
@@ -133,7 +133,8 @@ static double triangle_distance(const double *corners, const double p[3]) {
 static void search_leaf(const skg_tree *t, int64_t node, const double p[3], double *least, int64_t *found) {
     for (int64_t i = t->first[node]; i < t->first[node] + t->count[node]; i++) {
         const double square = triangle_distance(t->corners + 9 * i, p);
-        if (square < *least) *least = square, *found = t->order[i];
+        if (square > *least || (square == *least && *found >= 0 && t->order[i] > *found)) continue;
+        *least = square, *found = t->order[i];
     }
 }
 

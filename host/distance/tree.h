@@ -25,7 +25,7 @@ void skg_tree_free(skg_tree *tree);
 
 /* The square of the distance from a point to the surface, mm2. within: the square of a distance that is known to reach
  * the surface, or HUGE_VAL; if nothing is that near, the result is `within`. triangle: result, may be NULL: the number
- * of the nearest triangle, -1 if nothing is that near. */
+ * of the nearest triangle, of several the least; -1 if nothing is that near. */
 double skg_tree_nearest(const skg_tree *tree, const double point[3], double within, int64_t *triangle);
 
 #endif

@@ -5,15 +5,16 @@
 #include <math.h>
 
 static const skg_json_key breathing_keys[] = {
-    {"Pattern", NULL, SKG_KEY_READ},     {"Waveform", NULL, SKG_KEY_READ},
-    {"Exponent", NULL, SKG_KEY_READ},    {"Period", NULL, SKG_KEY_READ},
-    {"StartPhase", NULL, SKG_KEY_READ},  {"ExpirationRatio", NULL, SKG_KEY_READ},
-    {"Thoracic", NULL, SKG_KEY_READ},    {"Diaphragmatic", NULL, SKG_KEY_READ},
-    {"ThoracicLag", NULL, SKG_KEY_READ}, {"Reference", NULL, SKG_KEY_READ},
-    {"Tendon", NULL, SKG_KEY_READ},      {"TendonPlane", NULL, SKG_KEY_READ},
-    {"Hysteresis", NULL, SKG_KEY_READ},  {"Relaxation", NULL, SKG_KEY_READ},
-    {"LungDensity", NULL, SKG_KEY_READ}, {"Organs", NULL, SKG_KEY_READ},
-    {"Events", NULL, SKG_KEY_READ},      {"RibAxes", NULL, SKG_KEY_READ},
+    {"Pattern", NULL, SKG_KEY_READ},       {"Waveform", NULL, SKG_KEY_READ},
+    {"Exponent", NULL, SKG_KEY_READ},      {"Period", NULL, SKG_KEY_READ},
+    {"StartPhase", NULL, SKG_KEY_READ},    {"ExpirationRatio", NULL, SKG_KEY_READ},
+    {"Thoracic", NULL, SKG_KEY_READ},      {"Diaphragmatic", NULL, SKG_KEY_READ},
+    {"ThoracicLag", NULL, SKG_KEY_READ},   {"Reference", NULL, SKG_KEY_READ},
+    {"Tendon", NULL, SKG_KEY_READ},        {"TendonPlane", NULL, SKG_KEY_READ},
+    {"Hysteresis", NULL, SKG_KEY_READ},    {"Relaxation", NULL, SKG_KEY_READ},
+    {"LungDensity", NULL, SKG_KEY_READ},   {"Organs", NULL, SKG_KEY_READ},
+    {"Events", NULL, SKG_KEY_READ},        {"RibAxes", NULL, SKG_KEY_READ},
+    {"DiaphragmRibs", NULL, SKG_KEY_READ}, {"DiaphragmLiver", NULL, SKG_KEY_READ},
 };
 
 static const skg_json_key event_keys[] = {
@@ -84,6 +85,15 @@ static skg_status read_waveform(skg_breathing_section *section, const skg_json_o
     return read_number(object, "ThoracicLag", &breath->thoracic_lag);
 }
 
+/* How far the diaphragm's links reach. */
+static skg_status read_reach(const skg_json_object *object, const char *name, double *mm) {
+    skg_json_node node = skg_json_member(object, name);
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_lengths(&node, "[12, \"mm\"]", 1, mm));
+    if (*mm > 0 && *mm <= 1000) return SKG_OK;
+    return skg_json_fail(&node, SKG_ERR_BREATHING, "is %g mm; the range is above 0 to 1000 mm", *mm);
+}
+
 static skg_status read_body(skg_breathing_section *section, const skg_json_object *object) {
     skg_body_options *body = &section->body;
     skg_json_node tendon = skg_json_member(object, "Tendon"), plane = skg_json_member(object, "TendonPlane");
@@ -102,6 +112,8 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     body->reference_thoracic = amplitude * section->breath.thoracic;
     body->reference_diaphragmatic = amplitude * section->breath.diaphragmatic;
     if (tendon.value) SKG_TRY(skg_json_lengths(&tendon, "[0, 0, -15, \"mm\"]", 3, body->tendon_mm));
+    SKG_TRY(read_reach(object, "DiaphragmRibs", &body->diaphragm_ribs_mm));
+    SKG_TRY(read_reach(object, "DiaphragmLiver", &body->diaphragm_liver_mm));
     if (plane.value) SKG_TRY(skg_json_numbers(&plane, "[0, 1, 1, 20]", 4, body->tendon_plane));
     if (relaxation.value) SKG_TRY(skg_json_integer(&relaxation, 0, 20, &passes));
     body->relaxation = (int32_t)passes;

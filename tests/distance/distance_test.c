@@ -12,17 +12,21 @@
 #include <omp.h>
 #include <string.h>
 
+static long double minus(double a, double b) {
+    return (long double)a - (long double)b;
+}
+
 /* The distance from a point to a segment, in long double. */
 static long double to_segment(const double *a, const double *b, const double *p) {
     long double along = 0, square = 0, away = 0;
     for (int k = 0; k < 3; k++) {
-        along += ((long double)b[k] - a[k]) * ((long double)p[k] - a[k]);
-        square += ((long double)b[k] - a[k]) * ((long double)b[k] - a[k]);
+        along += minus(b[k], a[k]) * minus(p[k], a[k]);
+        square += minus(b[k], a[k]) * minus(b[k], a[k]);
     }
     long double t = square > 0 ? along / square : 0;
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     for (int k = 0; k < 3; k++) {
-        const long double d = a[k] + t * ((long double)b[k] - a[k]) - p[k];
+        const long double d = t * minus(b[k], a[k]) - minus(p[k], a[k]);
         away += d * d;
     }
     return sqrtl(away);
@@ -33,17 +37,17 @@ static long double to_segment(const double *a, const double *b, const double *p)
 static long double to_triangle(const double *a, const double *b, const double *c, const double *p) {
     const double *corner[3] = {a, b, c};
     long double normal[3], e[3], f[3], size = 0, away = 0;
-    for (int k = 0; k < 3; k++) e[k] = (long double)b[k] - a[k], f[k] = (long double)c[k] - a[k];
+    for (int k = 0; k < 3; k++) e[k] = minus(b[k], a[k]), f[k] = minus(c[k], a[k]);
     for (int k = 0; k < 3; k++) normal[k] = e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3];
-    for (int k = 0; k < 3; k++) size += normal[k] * normal[k], away += normal[k] * ((long double)p[k] - a[k]);
+    for (int k = 0; k < 3; k++) size += normal[k] * normal[k], away += normal[k] * minus(p[k], a[k]);
     int inside = size > 0;
     for (int s = 0; s < 3 && inside; s++) {
         const double *from = corner[s], *to = corner[(s + 1) % 3];
         long double side = 0;
         for (int k = 0; k < 3; k++) {
             const int i = (k + 1) % 3, j = (k + 2) % 3;
-            side += normal[k] * (((long double)to[i] - from[i]) * ((long double)p[j] - from[j]) -
-                                 ((long double)to[j] - from[j]) * ((long double)p[i] - from[i]));
+            side += normal[k] * (minus(to[i], from[i]) * minus(p[j], from[j]) -
+                                 minus(to[j], from[j]) * minus(p[i], from[i]));
         }
         inside = side >= 0;
     }

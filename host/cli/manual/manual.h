@@ -42,8 +42,9 @@ int cli_flag_has_value(const cli_flag *flag);
 void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
-    cli_manual_distance, cli_manual_image, cli_manual_lbuffer, cli_manual_material, cli_manual_mesh,
-    cli_manual_plan, cli_manual_reconstruct, cli_manual_scan, cli_manual_thorax, cli_manual_view;
+    cli_manual_distance, cli_manual_fit, cli_manual_image, cli_manual_lbuffer, cli_manual_material,
+    cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct, cli_manual_scan, cli_manual_thorax,
+    cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -68,6 +69,9 @@ extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;
 extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output;
 extern const cli_flag cli_flag_distance_map, cli_flag_distance_output, cli_flag_distance_high,
     cli_flag_distance_sampling, cli_flag_distance_spacing;
+extern const cli_flag cli_flag_fit_target, cli_flag_fit_phase, cli_flag_fit_output, cli_flag_fit_parameters,
+    cli_flag_fit_bounds, cli_flag_fit_evaluations, cli_flag_fit_seed, cli_flag_fit_method,
+    cli_flag_fit_checkpoint;
 extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_flag_material_list,
     cli_flag_material_naive;
 extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_angle, cli_flag_beam_anode,

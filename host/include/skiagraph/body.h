@@ -72,6 +72,10 @@ typedef struct {
     int32_t rib_axes;
     /** 0 */
     int32_t reserved;
+    /** How near to ribs 6 to 12 the diaphragm's rim goes with them, mm, up to 1000; 0, the default, is 16. */
+    double diaphragm_ribs_mm;
+    /** How near to the tendon the liver goes with it, mm, up to 1000; 0, the default, is 9. */
+    double diaphragm_liver_mm;
 } skg_body_options;
 
 /** Prepares the options of a body, of `size` bytes (export.h). */

@@ -19,6 +19,7 @@
 #include <skiagraph/context.h>
 #include <skiagraph/distance.h>
 #include <skiagraph/error.h>
+#include <skiagraph/fit.h>
 #include <skiagraph/image.h>
 #include <skiagraph/material.h>
 #include <skiagraph/memory.h>

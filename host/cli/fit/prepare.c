@@ -1,0 +1,147 @@
+#include "fit/work.h"
+
+#include "common/file.h"
+#include "common/say.h"
+#include "common/unit.h"
+#include "core/names.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int fit_load_scene(const cli_arguments *arguments, const char *path, int with_settings, skg_setup **setup) {
+    int count = 0;
+    const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings);
+    if (!settings) return cli_error(CLI_DEVICE, "out of host memory");
+    for (const char *set; with_settings && (set = cli_nth_value(arguments, &cli_flag_set, count)); count++)
+        settings[count] = set;
+    skg_setup_source source;
+    skg_setup_source_init(&source);
+    source.path = path;
+    source.settings = settings;
+    source.setting_count = count;
+    source.lenient = cli_given(arguments, &cli_flag_lenient);
+    const skg_status status = skg_setup_create(NULL, &source, setup);
+    free(settings);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+const char *fit_output(const fit_work *work, const char *extension) {
+    const char *path;
+    for (int i = 0; (path = cli_nth_value(work->arguments, &cli_flag_fit_output, i)); i++)
+        if (cli_has_extension(path, extension)) return path;
+    return NULL;
+}
+
+/* Checks before the search that every output has a known extension and can be written. */
+static int check_outputs(const fit_work *work) {
+    const char *path;
+    int exit_status = CLI_DONE;
+    for (int i = 0;
+         exit_status == CLI_DONE && (path = cli_nth_value(work->arguments, &cli_flag_fit_output, i)); i++) {
+        if (!cli_has_extension(path, ".json") && !cli_has_extension(path, ".html") &&
+            !cli_has_extension(path, ".csv") && !cli_has_extension(path, ".png"))
+            return cli_error(CLI_USAGE, "-o %s: its extension is none of .json, .html, .csv and .png", path);
+        exit_status = cli_file_check(path);
+    }
+    if (exit_status == CLI_DONE && !fit_output(work, ".json"))
+        return cli_error(CLI_USAGE, "fit: no file is named for the fitted scene; add -o fitted.json");
+    return exit_status;
+}
+
+/* The number of the part that the word before "=" names. */
+static int find_part(const fit_work *work, const char *word, size_t length, int64_t *part) {
+    int64_t count = 0;
+    const char *labels[512];
+    char name[256];
+    skg_status status = skg_scene_part_count(work->scene, &count);
+    snprintf(name, sizeof name, "%.*s", (int)length, word);
+    for (int64_t p = 0; p < count && status == SKG_OK; p++) {
+        skg_part one;
+        skg_part_init(&one);
+        status = skg_scene_part_get(work->scene, p, &one);
+        if (status != SKG_OK) break;
+        if (p < 512) labels[p] = one.label;
+        if (!skg_same_name(one.label, name)) continue;
+        *part = p;
+        return CLI_DONE;
+    }
+    if (status != SKG_OK) return cli_fail(status);
+    return cli_error(CLI_USAGE, "--target %s: the scene has no part \"%s\"; did you mean %s?", word, name,
+                     skg_nearest_name(name, labels, (int)(count < 512 ? count : 512)));
+}
+
+static int add_target(fit_work *work, const char *word, double phase, double unit_mm) {
+    const char *equals = strchr(word, '=');
+    skg_mesh *mesh = NULL;
+    int64_t part = 0;
+    if (!equals || equals == word || !equals[1])
+        return cli_error(CLI_USAGE, "--target %s: give PART=FILE, such as liver=liver.stl", word);
+    const int exit_status = find_part(work, word, (size_t)(equals - word), &part);
+    if (exit_status != CLI_DONE) return exit_status;
+    skg_status status = skg_mesh_load(NULL, equals + 1, unit_mm, &mesh);
+    if (status == SKG_OK) status = skg_fit_target_add(work->fit, part, phase, mesh);
+    skg_mesh_release(&mesh);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int read_phase(const char *value, double *phase) {
+    char *end = NULL;
+    *phase = strtod(value, &end);
+    if (end != value && !*end && *phase >= 0 && *phase < 1) return CLI_DONE;
+    return cli_error(CLI_USAGE, "--phase %s: a phase is a number from 0 to below 1", value);
+}
+
+/* A phase holds for the targets after it; the first also for those before it. */
+static int add_targets(fit_work *work) {
+    const cli_arguments *arguments = work->arguments;
+    const char *first = cli_nth_value(arguments, &cli_flag_fit_phase, 0);
+    double phase = 0, unit_mm = 1;
+    if (!cli_given(arguments, &cli_flag_fit_target) || !first)
+        return cli_error(CLI_USAGE,
+                         "fit: give at least one target and its phase: --target liver=liver.stl --phase 0");
+    int exit_status = cli_mesh_unit(arguments, &unit_mm);
+    if (exit_status == CLI_DONE) exit_status = read_phase(first, &phase);
+    for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++) {
+        const struct cli_given *given = arguments->given + i;
+        if (given->flag == &cli_flag_fit_phase) exit_status = read_phase(given->value, &phase);
+        if (given->flag == &cli_flag_fit_target) exit_status = add_target(work, given->value, phase, unit_mm);
+    }
+    return exit_status;
+}
+
+static int set_bounds(fit_work *work) {
+    const char *value;
+    for (int i = 0; (value = cli_nth_value(work->arguments, &cli_flag_fit_bounds, i)); i++) {
+        char name[64] = "", rest = 0;
+        double low = 0, high = 0;
+        if (sscanf(value, "%63[^=]=%lf:%lf%c", name, &low, &high, &rest) != 3)
+            return cli_error(CLI_USAGE, "--bounds %s: give NAME=LOW:HIGH, such as tendon-z=-30:0", value);
+        const skg_status status = skg_fit_bounds_set(work->fit, name, low, high);
+        if (status != SKG_OK) return cli_fail(status);
+    }
+    return CLI_DONE;
+}
+
+int fit_prepare(fit_work *work) {
+    const cli_arguments *arguments = work->arguments;
+    const char *names = cli_value(arguments, &cli_flag_fit_parameters);
+    skg_fit_options options;
+    skg_fit_options_init(&options);
+    int exit_status = check_outputs(work);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_fit_method, &options.method);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_fit_evaluations, 1, 1000000000, &options.evaluations);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_integer(arguments, &cli_flag_fit_seed, 0, INT64_MAX, &options.seed);
+    if (exit_status == CLI_DONE)
+        exit_status = fit_load_scene(arguments, arguments->operands[0], 1, &work->setup);
+    if (exit_status != CLI_DONE) return exit_status;
+    skg_status status = skg_setup_scene_get(work->setup, &work->scene);
+    if (status == SKG_OK) status = skg_fit_create(NULL, work->setup, &options, &work->fit);
+    if (status == SKG_OK && names) status = skg_fit_parameters_choose(work->fit, names);
+    if (status != SKG_OK) return cli_fail(status);
+    exit_status = set_bounds(work);
+    return exit_status == CLI_DONE ? add_targets(work) : exit_status;
+}

@@ -1,0 +1,40 @@
+/* What a fit holds. Private. */
+#ifndef SKG_FIT_TYPES_H
+#define SKG_FIT_TYPES_H
+
+#include "core/context.h"
+#include "core/digest.h"
+#include "evolution/search.h"
+#include "fit/body.h"
+
+#include <skiagraph/fit.h>
+
+struct skg_fit {
+    skg_context *context; /* retained */
+    const skg_setup *setup;
+    skg_fit_options options;
+    int32_t chosen[FIT_PARAMETERS];
+    double start[FIT_PARAMETERS], low[FIT_PARAMETERS], high[FIT_PARAMETERS];
+    double bounds[6]; /* of the diaphragm */
+    int64_t goal_count;
+    skg_goal *goals;
+    skg_fit_target *targets; /* [goal_count] */
+    int began;
+    int64_t model_count;
+    skg_fit_body *models; /* one for each thread */
+    skg_search search;
+    int finished;
+    double sigma[FIT_PARAMETERS];
+    double covariance[FIT_PARAMETERS * FIT_PARAMETERS]; /* [chosen][chosen] */
+};
+
+/* Number of chosen parameters. */
+int64_t skg_fit_dimensions(const skg_fit *fit);
+
+/* The parameters at a point of the search; those that are not chosen have their start. */
+void skg_fit_values_at(const skg_fit *fit, const double *point, double *values);
+
+/* Makes models and search, once. SKG_ERR_ARGUMENT: there is no target, or no parameter. */
+skg_status skg_fit_begin(skg_fit *fit);
+
+#endif
