@@ -116,7 +116,9 @@ void skg_tree_free(skg_tree *tree) {
 static double box_distance(const double *bounds, const double p[3]) {
     double away = 0;
     for (int k = 0; k < 3; k++) {
-        const double d = p[k] < bounds[k] ? bounds[k] - p[k] : p[k] > bounds[3 + k] ? p[k] - bounds[3 + k] : 0;
+        const double d = p[k] < bounds[k]       ? bounds[k] - p[k]
+                         : p[k] > bounds[3 + k] ? p[k] - bounds[3 + k]
+                                                : 0;
         away += d * d;
     }
     return away;

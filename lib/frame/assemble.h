@@ -7,8 +7,8 @@
 
 /* Allocates on the device and uploads what does not move. blur: the caller's, read here; NULL: none. The machine must
  * not move afterwards. */
-skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe, const skg_plan_options *options,
-                                skg_machine *machine);
+skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
+                                const skg_plan_options *options, skg_machine *machine);
 
 /* Takes over another recipe's model. After a failure the machine is as it was. */
 skg_status skg_machine_renew(const skg_recipe *recipe, skg_machine *machine);

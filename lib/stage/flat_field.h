@@ -21,7 +21,7 @@ typedef struct {
     skg_attenuator *attenuator;
     const skg_attenuation *attenuation;
     skg_layers *layers; /* and their blurs */
-    cl_mem negative; /* counters, which it leaves as they are */
+    cl_mem negative;    /* counters, which it leaves as they are */
 } skg_flat_field_work;
 
 /* Enqueues the flat field of a view as float or double, if it is not known. */

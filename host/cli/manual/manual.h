@@ -63,8 +63,7 @@ extern const char cli_text_meshes[];                /* a paragraph on them */
 extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
     cli_flag_image_band_weight;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
-extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within,
-    cli_flag_cost_frames;
+extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames;
 extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;
 extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output;
 extern const cli_flag cli_flag_distance_map, cli_flag_distance_output, cli_flag_distance_high,
