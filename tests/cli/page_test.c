@@ -53,6 +53,8 @@ static const char worker[] =
     "  press('ArrowLeft', svg); check('left', chosen === before);\n"
     "  const point = [...svg.querySelectorAll('.point')].find(p => study.settings[p.dataset.index].difference && Number(p.dataset.index) !== chosen);\n"
     "  point.dispatchEvent(new MouseEvent('click', {bubbles: true})); check('click', chosen === Number(point.dataset.index)); await seen();\n"
+    "  const bare = study.settings.findIndex(s => s.rms !== null && !s.difference); if (bare >= 0) choose(bare);\n"
+    "  check('no picture', bare < 0 || (byId('pictures').hidden && !byId('missing').hidden && ring() === bare && text('command') === study.settings[bare].command));\n"
     "  const shown = svg.innerHTML; byId('error').value = 'max'; fire(byId('error'), 'change'); check('largest', svg.innerHTML !== shown);\n"
     "  byId('error').value = 'rms'; fire(byId('error'), 'change'); check('and back', svg.innerHTML === shown);\n"
     "  byId('home').click(); const whole = await seen();\n"

@@ -76,7 +76,7 @@ async function paintDifference(p) {
 function showPictures() {
   const s = study.settings[chosen], p = source >= 0 ? study.sources[source] : s, pictured = study.settings[chosen].image ? s : study.settings[study.here];
   byId("pictures").hidden = !p.difference;
-  byId("caption").textContent = p.difference ? "" : "No picture was kept of this setting.";
+  byId("missing").hidden = Boolean(p.difference);
   if (!p.difference) return;
   byId("image").src = pictured.image;
   byId("ends").innerHTML = [-1, 0, 1].map(v => "<span>" + (v > 0 ? "+" : v < 0 ? "\u2212" : "") + (v ? percent(p.range) : "0") + "</span>").join("");
