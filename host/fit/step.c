@@ -4,7 +4,7 @@
 
 #include <math.h>
 #include <omp.h>
-#include <string.h>
+#include <stdio.h>
 
 void skg_fit_state_init_sized(void *state, int32_t size) {
     const skg_fit_state defaults = {0};
@@ -84,7 +84,7 @@ static skg_status evaluate_all(skg_fit *fit, double *values) {
 #pragma omp critical(skg_fit_status)
         if (one != SKG_OK && status == SKG_OK) {
             status = one;
-            strncpy(sentence, skg_last_error(), sizeof sentence - 1);
+            snprintf(sentence, sizeof sentence, "%s", skg_last_error());
         }
     }
     return status == SKG_OK ? SKG_OK : skg_fail(status, "%s", sentence);
