@@ -39,6 +39,9 @@ static skg_status check_options(const skg_body_options *o) {
             SKG_ERR_BREATHING,
             "body: the diaphragm's links reach %g mm to ribs and %g mm to the liver; the range is 0 to 1000 mm",
             o->diaphragm_ribs_mm, o->diaphragm_liver_mm);
+    if (o->coupling != SKG_COUPLING_ANATOMICAL && o->coupling != SKG_COUPLING_PAPER)
+        return skg_fail(SKG_ERR_BREATHING, "body: coupling is %" PRId32 "; one of SKG_COUPLING_",
+                        o->coupling);
     if (!(o->hysteresis >= 0 && o->hysteresis <= 1))
         return skg_fail(SKG_ERR_BREATHING, "body: hysteresis is %g; the range is 0 to 1", o->hysteresis);
     return SKG_OK;
@@ -74,9 +77,10 @@ static void free_organ(skg_body_organ *o) {
         skg_free(&to);
     }
     skg_tree_free(&o->tree);
-    void *block[] = {&o->label, &o->rest,   &o->corner,      &o->node_of, &o->moved,
-                     &o->link,  &o->anchor, &o->target,      &o->state,   &o->memory,
-                     &o->near,  &o->given,  &o->near_weight, &o->fraction};
+    void *block[] = {&o->label,  &o->rest,   &o->corner,      &o->node_of,    &o->moved,
+                     &o->link,   &o->anchor, &o->target,      &o->state,      &o->memory,
+                     &o->near,   &o->given,  &o->near_weight, &o->fraction,   &o->share,
+                     &o->course, &o->beyond, &o->bone,        &o->bone_weight};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 
@@ -85,6 +89,7 @@ void skg_body_release(skg_body **body) {
     for (int64_t i = 0; i < (*body)->organs; i++) free_organ((*body)->organ + i);
     skg_free(&(*body)->organ);
     skg_free(&(*body)->loop_state);
+    skg_free(&(*body)->bone_motion);
     skg_context_release(&(*body)->context);
     skg_free(body);
 }

@@ -19,6 +19,8 @@ static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
     o->carrier = carrier;
     SKG_TRY(skg_alloc(CARRIERS * o->vertices, sizeof(int32_t), o->label, &o->near));
     SKG_TRY(skg_alloc(CARRIERS * o->vertices, sizeof(double), o->label, &o->near_weight));
+    if (skg_label_begins(c->label, "liver"))
+        SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->beyond));
 #pragma omp parallel for schedule(dynamic, 16)
     for (int64_t i = 0; i < o->vertices; i++) {
         int32_t *near = o->near + CARRIERS * i;

@@ -2,6 +2,7 @@
 
 #include "body/corotate.h"
 #include "body/rules.h"
+#include "body/share.h"
 #include "body/struts.h"
 #include "body/tie.h"
 #include "core/vector.h"
@@ -66,9 +67,19 @@ static skg_status add_hanging(const skg_body *body, skg_body_organ *o, int64_t h
     return SKG_OK;
 }
 
+/* Of an organ that follows ribs and dome together, links only limit how far it deforms; nothing drives it. */
+static skg_status build_coupled(const skg_body *body, skg_body_organ *o, const chain_parts *c) {
+    if (o->tissue_by_label) o->tissue = skg_coupled_tissue_of(o->label);
+    SKG_TRY(
+        skg_chain_create(o->label, o->vertices, o->rest, c->links, c->ends, &o->tissue, 1, NULL, &o->chain));
+    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->state));
+    return skg_share_find(body, o);
+}
+
 static skg_status build_chain(skg_body *body, skg_body_organ *o, chain_parts *c) {
     SKG_TRY(skg_chain_links(o->triangles, o->corner, o->node_of, &c->links, &c->ends));
     if (o->role == ROLE_DIAPHRAGM) SKG_TRY(skg_body_add_struts(o, &c->links, &c->ends));
+    if (o->coupled) return build_coupled(body, o, c);
     SKG_TRY(skg_alloc(o->vertices, sizeof *o->link, o->label, &o->link));
     SKG_TRY(skg_alloc(o->vertices, sizeof *c->how, o->label, &c->how));
     SKG_TRY(add_hanging(body, o, find_drivers(body, o, o->link, c->how), c));
@@ -102,7 +113,8 @@ skg_status skg_body_make_chain(skg_body *body, skg_body_organ *o) {
 
 void skg_body_drop_chain(skg_body_organ *o) {
     skg_chain_free(&o->chain);
-    void *block[] = {&o->link, &o->anchor, &o->target, &o->state, &o->memory};
+    void *block[] = {&o->link,  &o->anchor, &o->target, &o->state,      &o->memory,
+                     &o->share, &o->course, &o->bone,   &o->bone_weight};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
     o->links = 0;
 }

@@ -45,8 +45,16 @@ void skg_body_warn_conflicts(skg_body *body) {
         const char *between[2];
         if (!o->chain || o->warned || !(o->report.conflict_mm > warned_from_mm)) continue;
         skg_conflict_partners(body, o, between);
-        if (!between[0]) continue;
+        if (!between[0] && !o->coupled) continue;
         o->warned = 1;
+        if (o->coupled) {
+            skg_log(
+                body->context, SKG_LOG_WARNING,
+                "%s: ribs and diaphragm deform it along %c by more than its tissue allows; it departs from them by "
+                "up to %.1f mm. Breathe less deeply, or give it a softer tissue.",
+                o->label, "xyz"[o->report.axis], 0.5 * o -> report.conflict_mm);
+            continue;
+        }
         skg_log(
             body->context, SKG_LOG_WARNING,
             "%s: along %c, the displacements of %s and %s%s differ by %.1f mm more than its tissue allows; they "

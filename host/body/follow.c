@@ -24,5 +24,6 @@ void skg_carried_vertex(const skg_body *body, const skg_body_organ *o, int64_t i
     for (int n = 0; o->carrier >= 0 && n < CARRIERS; n++)
         skg_add_scaled(displacement, o->near_weight[CARRIERS * i + n],
                        body->organ[o->carrier].moved + 3 * o->near[CARRIERS * i + n], displacement);
+    if (o->beyond) skg_add_scaled(displacement, body->descended, o->beyond + 3 * i, displacement);
     if (o->fraction) skg_scale_vector(o->fraction[i], displacement, displacement);
 }

@@ -2,14 +2,24 @@
 
 #include "body/carry.h"
 #include "body/chains.h"
+#include "body/liver.h"
 #include "body/ribs.h"
 #include "body/rules.h"
+#include "body/share.h"
 #include "body/tie.h"
 
+/* The diaphragm comes first, since others take its share. */
 static skg_status make_chains(skg_body *body) {
-    for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == ROLE_DIAPHRAGM || body->organ[i].role == ROLE_LINKED)
-            SKG_TRY(skg_body_make_chain(body, body->organ + i));
+    static const skg_role deformable[] = {ROLE_DIAPHRAGM, ROLE_LINKED};
+    for (int64_t i = 0; i < body->organs; i++) body->organ[i].coupled = skg_is_coupled(body, body->organ + i);
+    for (size_t r = 0; r < sizeof deformable / sizeof *deformable; r++)
+        for (int64_t i = 0; i < body->organs; i++)
+            if (body->organ[i].role == deformable[r]) SKG_TRY(skg_body_make_chain(body, body->organ + i));
+    for (int64_t i = 0; i < body->organs; i++) {
+        if (body->organ[i].role == ROLE_SPANNED && body->organ[i].coupled)
+            SKG_TRY(skg_share_find(body, body->organ + i));
+        skg_liver_carries(body, body->organ + i);
+    }
     return SKG_OK;
 }
 
@@ -25,6 +35,7 @@ skg_status skg_body_find_links(skg_body *body) {
         if (o->role == ROLE_STATIC) SKG_TRY(skg_carry_adopt(body, o));
     }
     SKG_TRY(skg_body_check_ties(body));
+    SKG_TRY(skg_alloc(12 * body->organs, sizeof *body->bone_motion, "body", &body->bone_motion));
     return make_chains(body);
 }
 

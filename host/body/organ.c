@@ -103,9 +103,9 @@ skg_status skg_body_fill_organ(const skg_organ *given, skg_body_organ *o) {
     o->role = skg_role_of(o->label, &o->number, &o->side);
     SKG_TRY(take_kind(given, o));
     SKG_TRY(take_links(given, o));
-    const int by_label = given->alpha_min == 0 && given->alpha_max == 0 && given->beta == 0;
-    o->tissue =
-        by_label ? skg_tissue_of(o->label) : (skg_tissue){given->alpha_min, given->alpha_max, given->beta};
+    o->tissue_by_label = given->alpha_min == 0 && given->alpha_max == 0 && given->beta == 0;
+    o->tissue = o->tissue_by_label ? skg_tissue_of(o->label)
+                                   : (skg_tissue){given->alpha_min, given->alpha_max, given->beta};
     SKG_TRY(skg_mesh_count(o->mesh, &o->vertices, &o->triangles));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->rest));
     SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->moved));

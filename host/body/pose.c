@@ -3,6 +3,8 @@
 #include "body/corotate.h"
 #include "body/follow.h"
 #include "body/ribs.h"
+#include "body/share.h"
+#include "body/wall.h"
 #include "core/plain.h"
 #include "core/vector.h"
 
@@ -108,6 +110,18 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
     pose_rigid(o);
 }
 
+static skg_status pose_coupled(const skg_body *body, skg_body_organ *o) {
+    for (int64_t i = 0; i < o->vertices; i++) skg_share_displace(body, o, o->node_of[i], o->moved + 3 * i);
+    if (!o->chain) return SKG_OK;
+    const int64_t nodes = o->chain->nodes;
+    for (int64_t i = 0; i < nodes; i++)
+        for (int k = 0; k < 3; k++) o->state[k * nodes + i] = o->moved[3 * i + k];
+    SKG_TRY(skg_chain_settle(o->chain, o->state, &o->report));
+    for (int64_t i = 0; o->report.conflict_mm > 0 && i < nodes; i++)
+        for (int k = 0; k < 3; k++) o->moved[3 * i + k] = o->state[k * nodes + o->node_of[i]];
+    return SKG_OK;
+}
+
 static skg_status pose_one(skg_body *body, skg_body_organ *o) {
     switch (o->role) {
     case ROLE_ENCLOSED:
@@ -119,9 +133,10 @@ static skg_status pose_one(skg_body *body, skg_body_organ *o) {
         return SKG_OK;
     case ROLE_DIAPHRAGM:
     case ROLE_LINKED:
-        return pose_chain(body, o);
+        return o->coupled ? pose_coupled(body, o) : pose_chain(body, o);
     case ROLE_CARRIED:
     case ROLE_SPANNED:
+        if (o->coupled) return pose_coupled(body, o);
         for (int64_t i = 0; i < o->vertices; i++) skg_carried_vertex(body, o, i, o->moved + 3 * i);
         return SKG_OK;
     case ROLE_NEEDLE:
@@ -192,13 +207,15 @@ static void pose_bones(skg_body *body, double thoracic) {
         o->rigid = sternum;
         pose_rigid(o);
     }
+    skg_wall_prepare(body);
 }
 
 /* Poses all organs, without writing their meshes. */
 static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic) {
     const skg_body_options *options = &body->options;
     int stages = 0;
-    skg_scale_vector(diaphragmatic - options->reference_diaphragmatic, options->tendon_mm, body->tendon);
+    body->descended = diaphragmatic - options->reference_diaphragmatic;
+    skg_scale_vector(body->descended, options->tendon_mm, body->tendon);
     for (int64_t i = 0; i < body->organs; i++)
         stages = body->organ[i].stage > stages ? body->organ[i].stage : stages;
     pose_bones(body, thoracic);
@@ -219,7 +236,7 @@ static void copy_memories(skg_body *body, int step, int out) {
     double *at = body->loop_state + step * body->loop_size;
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
-        if (!o->chain) continue;
+        if (!o->memory) continue;
         size_t size = (size_t)(3 * o->chain->nodes) * sizeof(double);
         memcpy(out ? at : o->memory, out ? o->memory : at, size);
         at += 3 * o->chain->nodes;
@@ -232,7 +249,7 @@ skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
     SKG_TRY(skg_breath_check(breath));
     body->loop = 0, body->loop_size = 0;
     for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].chain) {
+        if (body->organ[i].memory) {
             body->loop_size += 3 * body->organ[i].chain->nodes;
             memset(body->organ[i].memory, 0, (size_t)(3 * body->organ[i].chain->nodes) * sizeof(double));
         }

@@ -90,3 +90,16 @@ skg_tissue skg_tissue_of(const char *label) {
         if (skg_label_begins(label, known[i].word)) return known[i].tissue;
     return (skg_tissue){0.8, 1.2, 0.1};
 }
+
+/* Boxes lie along the axes, while the sheet of the diaphragm turns as it flattens, and the liver below it shears: their
+ * limits are wider. The paper's are for motion along the axes. */
+skg_tissue skg_coupled_tissue_of(const char *label) {
+    static const struct {
+        const char *word;
+        skg_tissue tissue;
+    } known[] = {{"diaphragm", {0.5, 1.3, 0.7}}, {"lung", {0.5, 1.6, 0.7}},  {"liver", {0.8, 1.2, 0.3}},
+                 {"heart", {0.6, 1.7, 0.6}},     {"skin", {0.7, 1.4, 0.45}}, {"muscle", {0.7, 1.4, 0.45}}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (skg_label_begins(label, known[i].word)) return known[i].tissue;
+    return skg_tissue_of(label);
+}

@@ -27,6 +27,9 @@ skg_role skg_role_of(const char *label, int *number, int *side);
 /* The tissue of a deformable organ with this label. */
 skg_tissue skg_tissue_of(const char *label);
 
+/* The same of an organ that follows ribs and dome together. */
+skg_tissue skg_coupled_tissue_of(const char *label);
+
 /* Whether a label begins with a word, without regard to case, and no letter follows. */
 int skg_label_begins(const char *label, const char *word);
 

@@ -1,6 +1,7 @@
 #include "body/rules.h"
 
 #include "body/near.h"
+#include "body/share.h"
 #include "body/tie.h"
 #include "core/vector.h"
 
@@ -68,9 +69,11 @@ static int tendon_rule(const skg_body *body, const skg_body_organ *organ, const 
     const int is_liver = skg_label_begins(organ->label, "liver");
     const double reach = is_liver ? skg_diaphragm_liver_reach(&body->options) : 9;
     if (nearest_of(body, ROLE_DIAPHRAGM, 0, 0, p, reach, link) == HUGE_VAL) return 0;
+    const skg_body_organ *diaphragm = body->organ + link->organ;
     int tendon = 1;
     for (int c = 0; c < 3; c++)
-        tendon &= plane_value(body, body->organ[link->organ].rest + 3 * link->corner[c]) > 0;
+        tendon &= diaphragm->coupled ? diaphragm->share[diaphragm->node_of[link->corner[c]]] >= skg_dome_from
+                                     : plane_value(body, diaphragm->rest + 3 * link->corner[c]) > 0;
     return tendon;
 }
 
@@ -112,7 +115,8 @@ skg_link_rule skg_link_rule_of(const skg_body_organ *organ) {
 void skg_body_set_tendon_plane(skg_body *body) {
     double *plane = body->options.tendon_plane;
     int32_t d = skg_find_organ(body, "diaphragm");
-    if (d < 0 || plane[0] != 0 || plane[1] != 0 || plane[2] != 0) return;
+    body->plane_given = plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+    if (d < 0 || body->plane_given) return;
     const double *b = body->organ[d].bounds;
     /* At the middle of its depth, 0.3 of the diaphragm's height below its top. Tilted by 45 degrees so that the steep
      * front is muscle. The height and the tilt are choices. */

@@ -23,14 +23,15 @@ typedef struct {
 } skg_link;
 
 /* CARRIERS: vertices that together carry a vertex of another organ. LOOP_STEPS: states of a breath that are stored for
- * hysteresis. Both are choices. */
-enum { CARRIERS = 12, LOOP_STEPS = 24 };
+ * hysteresis. BONES: bones that together move a point of the chest wall. All are choices. */
+enum { CARRIERS = 12, LOOP_STEPS = 24, BONES = 4 };
 
 typedef struct {
     skg_mesh *mesh;
     char *label;
     int64_t inside;
     skg_tissue tissue;
+    int tissue_by_label; /* 1: the caller gave none */
     skg_role role;
     int kind;   /* SKG_ORGAN_ of the caller */
     int warned; /* of a conflict */
@@ -65,6 +66,16 @@ typedef struct {
     double *memory; /* the same with hysteresis: the state before, as moved on */
     skg_chain_report report;
 
+    /* Organs that follow ribs and dome together (share.h). */
+    int coupled;
+    double *share;   /* per vertex: of the tendon's displacement */
+    double shear[3]; /* of the liver: growth of the share across the tendon's motion, per mm */
+    double squeeze;  /* and its fall along it, per mm */
+    double *beyond;  /* per vertex of what the liver carries: displacement beyond its carriers', as course */
+    double *course;  /* per vertex: displacement with the tendon at weight 1, mm */
+    int32_t *bone;   /* per vertex: BONES bones; NULL: none */
+    double *bone_weight; /* their weights */
+
     /* Carried organs. Of a cartilage, near holds the two organs that it lies between. */
     int32_t carrier;
     int32_t *near;       /* per vertex: CARRIERS vertices of the carrier */
@@ -84,11 +95,15 @@ struct skg_body {
     skg_body_options options;
     int64_t organs, capacity;
     skg_body_organ *organ;
-    int tried, linked;  /* 1: skg_body_link was called; it succeeded */
-    int large;          /* 1: deformable organs have so many vertices that threads pay */
-    double tendon[3];   /* displacement as posed, mm */
-    double withdrawn;   /* by how much the needle is drawn back, mm */
-    int loop;           /* states stored for hysteresis: 0 or LOOP_STEPS */
+    int tried, linked; /* 1: skg_body_link was called; it succeeded */
+    int plane_given;   /* 1: the options have a plane of the tendon */
+    int large;         /* 1: deformable organs have so many vertices that threads pay */
+    double tendon[3];  /* displacement as posed, mm */
+    double descended;  /* the same over that at weight 1 */
+    double withdrawn;  /* by how much the needle is drawn back, mm */
+    double *
+        bone_motion; /* per organ, of bones: displacement of p is row k times p plus the fourth number, 12 numbers */
+    int loop;        /* states stored for hysteresis: 0 or LOOP_STEPS */
     int64_t loop_size;  /* doubles of one of them */
     double *loop_state; /* every chain's memory after each step */
 };

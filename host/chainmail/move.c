@@ -93,11 +93,22 @@ skg_status skg_chain_move(skg_chain *chain, const double *targets, double *u, sk
     return SKG_OK;
 }
 
-/* One axis of a pass: towards the neighbours' mean, then to the middle of the nearest states above and below that
- * keep every link. scratch: two numbers for each node. */
-static void relax_axis(skg_chain *chain, int axis, double fraction, double *u, double *scratch) {
+/* How far each node goes from a state towards a wish when links are kept: to the middle of the nearest states above
+ * and below the wish that keep them. Leaves these gains in wish. above: scratch, a number for each node. */
+static void keep_links(skg_chain *chain, int axis, const double *u, double *wish, double *above) {
     skg_chain_front *f = chain->front + axis;
-    double *wish = scratch, *above = scratch + chain->nodes;
+    for (int direction = 1; direction >= -1; direction -= 2) {
+        skg_chain_forget(f);
+        for (int64_t i = 0; i < chain->nodes; i++) skg_chain_start(f, (int32_t)i, direction * wish[i]);
+        skg_chain_spread(chain, axis, direction, u, f);
+        if (direction > 0) memcpy(above, f->gain, (size_t)chain->nodes * sizeof *above);
+    }
+    for (int64_t i = 0; i < chain->nodes; i++) wish[i] = 0.5 * (above[i] - f->gain[i]);
+}
+
+/* One axis of a pass: towards the neighbours' mean. scratch: two numbers for each node. */
+static void relax_axis(skg_chain *chain, int axis, double fraction, double *u, double *scratch) {
+    double *wish = scratch;
     for (int64_t i = 0; i < chain->nodes; i++) {
         int64_t degree = chain->first[i + 1] - chain->first[i];
         double sum = 0;
@@ -105,13 +116,8 @@ static void relax_axis(skg_chain *chain, int axis, double fraction, double *u, d
         int moves = degree > 0 && chain->driver_of[i] < 0;
         wish[i] = moves ? fraction * (sum / (double)degree - u[i]) : 0;
     }
-    for (int direction = 1; direction >= -1; direction -= 2) {
-        skg_chain_forget(f);
-        for (int64_t i = 0; i < chain->nodes; i++) skg_chain_start(f, (int32_t)i, direction * wish[i]);
-        skg_chain_spread(chain, axis, direction, u, f);
-        if (direction > 0) memcpy(above, f->gain, (size_t)chain->nodes * sizeof *above);
-    }
-    for (int64_t i = 0; i < chain->nodes; i++) u[i] += 0.5 * (above[i] - f->gain[i]);
+    keep_links(chain, axis, u, wish, scratch + chain->nodes);
+    for (int64_t i = 0; i < chain->nodes; i++) u[i] += wish[i];
 }
 
 skg_status skg_chain_relax(skg_chain *chain, int32_t passes, double fraction, double *u) {
@@ -128,6 +134,52 @@ skg_status skg_chain_relax(skg_chain *chain, int32_t passes, double fraction, do
             relax_axis(chain, axis, fraction, u + axis * chain->nodes, scratch + 2 * axis * chain->nodes);
         skg_chain_report report;
         solve(chain, u, &report);
+    }
+    skg_free(&scratch);
+    return SKG_OK;
+}
+
+/* Whether a state keeps every link along each axis. */
+static void keeps(const skg_chain *chain, const double *u, int kept[3]) {
+    const double *x = u, *y = u + chain->nodes, *z = u + 2 * chain->nodes;
+    double over[3] = {0, 0, 0};
+    for (int64_t i = 0; i < chain->nodes; i++)
+        for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
+            const int32_t j = chain->node[e];
+            const double dx = x[j] - x[i] - chain->rise[0][e], dy = y[j] - y[i] - chain->rise[1][e],
+                         dz = z[j] - z[i] - chain->rise[2][e];
+            over[0] = dx > over[0] ? dx : over[0];
+            over[1] = dy > over[1] ? dy : over[1];
+            over[2] = dz > over[2] ? dz : over[2];
+        }
+    for (int axis = 0; axis < 3; axis++) kept[axis] = over[axis] <= rounding_mm;
+}
+
+/* scratch: three numbers for each node. */
+static void settle_axis(skg_chain *chain, int axis, double *u, double *scratch, skg_chain_report *report) {
+    double *rest = scratch, *above = scratch + chain->nodes, *wish = scratch + 2 * chain->nodes;
+    *report = (skg_chain_report){.axis = -1, .driver = -1};
+    memset(rest, 0, (size_t)chain->nodes * sizeof *rest);
+    memcpy(wish, u, (size_t)chain->nodes * sizeof *wish);
+    keep_links(chain, axis, rest, u, above);
+    for (int64_t i = 0; i < chain->nodes; i++) {
+        const double conflict = 2 * fabs(u[i] - wish[i]);
+        if (conflict > report->conflict_mm) report->conflict_mm = conflict, report->axis = axis;
+    }
+}
+
+skg_status skg_chain_settle(skg_chain *chain, double *u, skg_chain_report *report) {
+    double *scratch = NULL;
+    int kept[3];
+    *report = (skg_chain_report){.axis = -1, .driver = -1};
+    keeps(chain, u, kept);
+    for (int axis = 0; axis < 3; axis++) {
+        skg_chain_report one;
+        double *along = u + axis * chain->nodes;
+        if (kept[axis]) continue;
+        if (!scratch) SKG_TRY(skg_alloc(3 * chain->nodes, sizeof *scratch, chain->name, &scratch));
+        settle_axis(chain, axis, along, scratch, &one);
+        if (one.conflict_mm > report->conflict_mm) *report = one;
     }
     skg_free(&scratch);
     return SKG_OK;

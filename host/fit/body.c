@@ -88,7 +88,8 @@ static skg_status add_with_parents(const skg_setup *setup, skg_fit_body *model, 
 static skg_status fill(skg_context *context, const skg_setup *setup, const skg_goal *goals, int64_t count,
                        skg_fit_body *model) {
     skg_body_options options = setup->breathing.body;
-    options.hysteresis = 0; /* a fit compares states, not histories */
+    options.hysteresis = 0;                /* a fit compares states, not histories */
+    options.coupling = SKG_COUPLING_PAPER; /* whose parameters it finds */
     SKG_TRY(skg_alloc(model->parts, sizeof *model->organ, "fit", &model->organ));
     SKG_TRY(skg_alloc(model->parts, sizeof(skg_mesh *), "fit", &model->meshes));
     for (int64_t p = 0; p < model->parts; p++) model->organ[p] = -1;

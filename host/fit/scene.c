@@ -74,6 +74,7 @@ static int set_parameters(const skg_fit *fit, json_t *scene) {
     skg_fit_values_at(fit, fit->search.best, values);
     skg_fit_plane(fit->bounds, values, plane);
     done = done && set(breathing, "Comment", json_string("fitted by skiagraph fit"));
+    done = done && set(breathing, "Coupling", json_string("Paper"));
     if (any(fit, FIT_TENDON)) done = done && set(breathing, "Tendon", numbers(3, values + FIT_TENDON, "mm"));
     if (any(fit, FIT_AZIMUTH)) done = done && set(breathing, "TendonPlane", numbers(4, plane, NULL));
     if (any(fit, FIT_DIAPHRAGM))

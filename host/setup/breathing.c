@@ -15,6 +15,7 @@ static const skg_json_key breathing_keys[] = {
     {"LungDensity", NULL, SKG_KEY_READ},   {"Organs", NULL, SKG_KEY_READ},
     {"Events", NULL, SKG_KEY_READ},        {"RibAxes", NULL, SKG_KEY_READ},
     {"DiaphragmRibs", NULL, SKG_KEY_READ}, {"DiaphragmLiver", NULL, SKG_KEY_READ},
+    {"Coupling", NULL, SKG_KEY_READ},
 };
 
 static const skg_json_key event_keys[] = {
@@ -100,9 +101,10 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     skg_json_node relaxation = skg_json_member(object, "Relaxation");
     skg_json_node density = skg_json_member(object, "LungDensity");
     skg_json_node reference = skg_json_member(object, "Reference");
-    static const char *const rib_axes[] = {"Literature", "Bones"}; /* as SKG_RIB_AXES_ */
-    skg_json_node axes = skg_json_member(object, "RibAxes");
-    int64_t passes = 0, choice = SKG_RIB_AXES_LITERATURE;
+    static const char *const rib_axes[] = {"Literature", "Bones"};  /* as SKG_RIB_AXES_ */
+    static const char *const couplings[] = {"Anatomical", "Paper"}; /* as SKG_COUPLING_ */
+    skg_json_node axes = skg_json_member(object, "RibAxes"), coupling = skg_json_member(object, "Coupling");
+    int64_t passes = 0, choice = SKG_RIB_AXES_LITERATURE, coupled = SKG_COUPLING_ANATOMICAL;
     double amplitude = 0;
     if (reference.value) SKG_TRY(skg_json_number(&reference, &amplitude));
     if (!(amplitude >= 0 && amplitude <= 1))
@@ -119,6 +121,9 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     body->relaxation = (int32_t)passes;
     if (axes.value) SKG_TRY(skg_json_choice(&axes, "kind of rib axes", rib_axes, 2, &choice));
     body->rib_axes = (int32_t)choice;
+    if (coupling.value)
+        SKG_TRY(skg_json_choice(&coupling, "coupling of ribs and diaphragm", couplings, 2, &coupled));
+    body->coupling = (int32_t)coupled;
     section->lung_density = 1;
     if (density.value) SKG_TRY(skg_json_flag(&density, &section->lung_density));
     return read_number(object, "Hysteresis", &body->hysteresis);

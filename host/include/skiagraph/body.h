@@ -51,6 +51,17 @@ enum skg_rib_axes {
     SKG_RIB_AXES_BONES = 1
 };
 
+/** How ribs and diaphragm together move diaphragm, lungs, liver, muscle and skin. */
+enum skg_coupling {
+    /** As anatomy does: the ribs carry the diaphragm's rim, the muscle shortens evenly from the rim to the
+     * tendon, the chest wall between ribs follows both, and the liver keeps its volume. Hysteresis or
+     * relaxation above 0 selects SKG_COUPLING_PAPER instead, and so do the caller's links for the organ that
+     * has them. */
+    SKG_COUPLING_ANATOMICAL = 0,
+    /** As Vidal and Villard (2016): ribs and tendon drive Chain Mail, each vertex by the nearest of them. */
+    SKG_COUPLING_PAPER = 1
+};
+
 /** Options of a body. Prepare with skg_body_options_init. */
 typedef struct {
     /** Set by skg_body_options_init. */
@@ -70,8 +81,8 @@ typedef struct {
     double hysteresis;
     /** enum skg_rib_axes */
     int32_t rib_axes;
-    /** 0 */
-    int32_t reserved;
+    /** enum skg_coupling */
+    int32_t coupling;
     /** How near to ribs 6 to 12 the diaphragm's rim goes with them, mm, up to 1000; 0, the default, is 16. */
     double diaphragm_ribs_mm;
     /** How near to the tendon the liver goes with it, mm, up to 1000; 0, the default, is 9. */
