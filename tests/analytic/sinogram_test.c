@@ -115,7 +115,7 @@ static double shifted(int ray) {
     const long double column = ray % COLUMNS;
     double most = 0;
     for (int way = 0; way < 4; way++) {
-        const long double by = (way & 1 ? 2 : -2) * last_place;
+        const long double by = (long double)((way & 1 ? 2 : -2) * last_place);
         double sum = 0;
         for (int p = 0; p < polyhedron_count; p++)
             sum += polyhedra[p].per_mm * (double)caster_length(polyhedra[p].rays, view,

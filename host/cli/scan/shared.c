@@ -54,33 +54,48 @@ static int compare_devices(const cli_arguments *arguments, cli_acquisition *a, i
         a->ranks.rank, a->session.device.name);
 }
 
-static skg_status write_group(cli_acquisition *a, const int64_t *list, int64_t count) {
-    skg_scan_run *run = NULL;
+/* The projections that are missing, and how many a rank takes at a time. */
+typedef struct {
+    const int64_t *list;
+    int64_t missing, group, first;
+} groups;
+
+/* Takes the next group and starts it. *run is NULL if there is none left. */
+static skg_status start_group(cli_acquisition *a, groups *g, skg_scan_run **run) {
     skg_scan_run_options options = a->options;
+    *run = NULL;
+    g->first = ranks_take(&a->ranks, g->group);
+    const int64_t left = g->missing - g->first;
+    if (left <= 0) return SKG_OK;
     options.from = options.to = 0;
-    options.only = list;
-    options.only_count = count;
-    skg_status status = skg_scan_run_create(a->plan, a->scan, &options, &run);
-    if (status == SKG_OK) status = write_batches(a, run, 0);
-    skg_scan_run_release(&run);
-    return status;
+    options.only = g->list + g->first;
+    options.only_count = left < g->group ? left : g->group;
+    return skg_scan_run_create(a->plan, a->scan, &options, run);
 }
 
+/* The next group is started before this one is written, so that the device has work meanwhile. */
 static int take_groups(cli_acquisition *a, const int64_t *list, int64_t missing) {
     const int64_t even = missing / ((int64_t)GROUPS_PER_RANK * a->ranks.count);
-    const int64_t group = even < 1 ? 1 : even < GROUP_MOST ? even : GROUP_MOST;
-    int exit_status = CLI_DONE;
+    groups g = {.list = list,
+                .missing = missing,
+                .group = even < 1            ? 1
+                         : even < GROUP_MOST ? even
+                                             : GROUP_MOST};
+    skg_scan_run *run = NULL, *next = NULL;
     if (a->ranks.rank == 0) cli_progress_begin("projections", missing);
-    for (;;) {
-        const int64_t first = ranks_take(&a->ranks, group), left = missing - first;
-        if (left <= 0) break;
-        const skg_status status = write_group(a, list + first, left < group ? left : group);
-        if (status != SKG_OK) exit_status = cli_fail(status);
-        if (status != SKG_OK) break;
-        if (a->ranks.rank == 0) cli_progress_step(first);
+    skg_status status = start_group(a, &g, &run);
+    while (status == SKG_OK && run) {
+        const int64_t first = g.first;
+        status = start_group(a, &g, &next);
+        if (status == SKG_OK) status = write_batches(a, run, 0);
+        skg_scan_run_release(&run);
+        run = next;
+        next = NULL;
+        if (status == SKG_OK && a->ranks.rank == 0) cli_progress_step(first);
     }
+    skg_scan_run_release(&run);
     if (a->ranks.rank == 0) cli_progress_end();
-    return exit_status;
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
 int shared_run(const cli_arguments *arguments, cli_acquisition *a) {
