@@ -21,14 +21,19 @@ int skg_raster_has_squares(const skg_raster *raster) {
     return shape == SKG_TILE_SQUARES || (shape == SKG_TILE_AUTO && raster->context->device->info.is_gpu);
 }
 
-static SKG_INT band_rows(const skg_raster *raster) {
-    const int64_t row = raster->frame.stride * raster->frame.planes * skg_raster_sum_bytes(raster);
-    const int64_t fit = CACHE_BYTES / row, even = raster->frame.rows / (4 * (int64_t)raster->workers);
+int64_t skg_raster_band_rows(int64_t rows_of_detector, int64_t row_bytes, int64_t groups) {
+    const int64_t fit = CACHE_BYTES / row_bytes, even = rows_of_detector / (4 * groups);
     int64_t rows = fit < even ? fit : even; /* some bands for each worker */
     rows = rows < MOST_BAND_ROWS ? rows : MOST_BAND_ROWS;
-    const int64_t least = (raster->frame.rows + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
+    const int64_t least = (rows_of_detector + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
     rows = rows > 8 ? rows : 8;
-    return (SKG_INT)(rows > least ? rows : least);
+    return rows > least ? rows : least;
+}
+
+static SKG_INT band_rows(const skg_raster *raster) {
+    const skg_frame_args *frame = &raster->frame;
+    return (SKG_INT)skg_raster_band_rows(
+        frame->rows, frame->stride * frame->planes * skg_raster_sum_bytes(raster), raster->workers);
 }
 
 static skg_status square_side(const skg_raster *raster, SKG_INT *side) {

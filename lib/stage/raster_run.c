@@ -22,11 +22,9 @@ static skg_status send_extents(skg_raster *raster, const cl_int *extents, skg_st
     return SKG_OK;
 }
 
-/* How many triangles a work-group claims at once: few enough that the last claims even out, and that a thousand
- * triangles still use every worker. */
-static SKG_INT claim_size(int64_t triangles, int32_t workers) {
-    const int64_t claim = triangles / (16 * (int64_t)workers);
-    return (SKG_INT)(claim < 32 ? 32 : claim > 1024 ? 1024 : claim);
+int64_t skg_raster_claim(int64_t triangles, int64_t workers) {
+    const int64_t claim = triangles / (16 * workers);
+    return claim < 32 ? 32 : claim > 1024 ? 1024 : claim;
 }
 
 /* Enqueues a kernel whose arguments are set, with `groups` work-groups of `local` work-items. */
@@ -197,7 +195,7 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, cons
     frame->parts = (SKG_INT)geometry->parts;
     frame->vertices = (SKG_INT)geometry->vertices;
     frame->triangles = (SKG_INT)geometry->triangles;
-    frame->claim = claim_size(geometry->triangles, raster->workers - 1);
+    frame->claim = (SKG_INT)skg_raster_claim(geometry->triangles, raster->workers - 1);
     if (geometry->triangles > raster->options.triangles)
         return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
     SKG_TRY(send_extents(raster, extents, log));
