@@ -1,5 +1,5 @@
 /* Counts what a frame of a scene consists of, by calls of the public interface. */
-#include "scaling/scaling.h"
+#include "scaling/prediction.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Predicts the stages of a frame from counts and prices. */
-#include "scaling/scaling.h"
+#include "scaling/prediction.h"
 
 #include "stage/raster.h"
 

@@ -1,5 +1,5 @@
 /* How frames scale with workers: counts, prices of this device, and predictions beside measured times (docs/scaling.md). */
-#include "scaling/scaling.h"
+#include "scaling/prediction.h"
 #include "common/thorax.h"
 
 #include "affinity/affinity.h"

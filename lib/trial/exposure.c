@@ -76,6 +76,7 @@ skg_status skg_trial_shades_choose(skg_trial_scene *scene) {
     bowtie->path_mm = paths;
     grid->ratio = 8;
     grid->lines_per_cm = 40;
+    grid->strip_mm = 0.05;
     grid->focus_mm = 200;
     scene->view.source[2] = -150;
     scene->view.centre[2] = 100;

@@ -1,7 +1,7 @@
 /* How frames scale with workers: what a frame is made of, what it costs, and what other machines would need.
  * docs/scaling.md explains the model. Times in ns, except where a name says ms; rates in bytes per ns, that is, GB/s. */
-#ifndef SCALING_H
-#define SCALING_H
+#ifndef PREDICTION_H
+#define PREDICTION_H
 
 #include "common/scenes.h"
 
