@@ -163,7 +163,7 @@ static const struct {
     {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [70, 1.5]]}", SKG_ERR_BEAM, "1.5", "DQE"},
     {"Detector.Scintillator={" CSI ", \"DQE\": [[60, 0.5], [70]]}", SKG_ERR_FORMAT, "[energy, DQE]", "DQE"},
     {"Detector.Scintillator={" CSI ", \"Oblique\": 2}", SKG_ERR_FORMAT, "give 0 to 1", "Oblique"},
-    {"Detector.MTF=[[0, 1], [0.001, 0.5]]", SKG_ERR_ARGUMENT, "add rows up to there", "MTF"},
+    {"Detector.MTF=[[0, 1], [0.001, 0.5]]", SKG_ERR_FORMAT, "add rows up to there", "MTF"},
     {"Detector.MTF=[[0, 1], [1]]", SKG_ERR_FORMAT, "line pairs per mm", "MTF"},
     {"Detector.DQE=[[0, 1], [1]]", SKG_ERR_FORMAT, "line pairs per mm", "DQE"},
     {DEPTHS "{}}", SKG_ERR_FORMAT, "\"To\": 0.5", "Depths"},
