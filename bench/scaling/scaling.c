@@ -1,6 +1,6 @@
 /* How frames scale with workers: counts, prices of this device, and predictions beside measured times (docs/scaling.md). */
-#include "scaling/prediction.h"
 #include "common/thorax.h"
+#include "scaling/prediction.h"
 
 #include "affinity/affinity.h"
 #include "plan/choose.h"
@@ -29,7 +29,7 @@ static const scaling_machine machines[] = {{1, 51.2, 32.0 * MIB},  {2, 51.2, 32.
                                            {4, 51.2, 32.0 * MIB},  {8, 51.2, 32.0 * MIB},
                                            {16, 51.2, 64.0 * MIB}, {64, 204.8, 256.0 * MIB}};
 
-/* Neither vendor publishes how many additions to memory a card does in a clock. One for each slice of the level 2 cache is
+/* No figure was found for how many additions to memory a card does in a clock. One for each slice of the level 2 cache is
  * assumed: 80 of the A100 (5120 bytes in a clock, 64 each), 16 of the MI100 (2048 bytes, 128 each). */
 static const scaling_card cards[] = {
     {"NVIDIA A100 40 GB", "NVIDIA A100 Tensor Core GPU Architecture, 2020", 6912, 1.41, 1555, 80},
