@@ -56,7 +56,7 @@ static int64_t part_of(const skg_setup *setup, const char *label) {
     ck_abort_msg("no part %s", label);
 }
 
-static const char *const hidden[] = {"Breathing.Tendon=[3, -4, -21, \"mm\"]",
+static const char *const hidden[] = {"Breathing.Coupling=Paper", "Breathing.Tendon=[3, -4, -21, \"mm\"]",
                                      "Breathing.Organs.diaphragm={\"Tissue\": [0.78, 1.2, 0.15]}",
                                      "Breathing.Organs.liver={\"Tissue\": [0.9, 1.1, 0.06]}"};
 enum { HIDDEN = sizeof hidden / sizeof *hidden };

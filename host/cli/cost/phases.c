@@ -21,11 +21,13 @@ typedef struct {
 
 static skg_status begin(breath *b, const cost_setting *setting) {
     char hysteresis[64], relaxation[64];
-    /* Phases have no events, and an event with Weight excludes hysteresis. */
-    const char *const settings[] = {"Breathing.Events=[]", hysteresis, relaxation};
+    /* Phases have no events, and an event with Weight excludes hysteresis. Both models belong to the paper's coupling, which
+     * they would choose by themselves where they are not 0. */
+    const char *const settings[] = {"Breathing.Events=[]", "Breathing.Coupling=Paper", hysteresis,
+                                    relaxation};
     snprintf(hysteresis, sizeof hysteresis, "Breathing.Hysteresis=%.17g", setting->hysteresis);
     snprintf(relaxation, sizeof relaxation, "Breathing.Relaxation=%d", (int)setting->relaxation);
-    skg_status status = cost_load(b->study, 3, settings, &b->setup);
+    skg_status status = cost_load(b->study, 4, settings, &b->setup);
     if (status == SKG_OK) status = skg_setup_scene_get(b->setup, &b->scene);
     if (status == SKG_OK) status = skg_motion_create(NULL, b->setup, &b->motion);
     if (status == SKG_OK) status = cost_plan(b->study, setting, b->scene, &b->plan);
