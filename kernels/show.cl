@@ -292,7 +292,7 @@ static void skg_show_opaque(skg_show_strip *strip, __global const skg_show_face 
         skg_floatv depth;
         const skg_intv mask =
             skg_show_covered(&rows, (float)r, &depth) &
-            (depth < strip->depth[r] | (depth == strip->depth[r] & triangle < strip->number[r]));
+            ((depth < strip->depth[r]) | ((depth == strip->depth[r]) & (triangle < strip->number[r])));
         strip->depth[r] = select(strip->depth[r], depth, mask);
         strip->number[r] = select(strip->number[r], (skg_intv)(triangle), mask);
     }
@@ -308,10 +308,11 @@ static int skg_show_next(skg_show_strip *strip, __global const skg_show_face *fa
         skg_floatv depth;
         const skg_intv behind =
             skg_show_covered(&rows, (float)r, &depth) & (depth < strip->depth[r]) &
-            (depth > strip->passed[r] | (depth == strip->passed[r] & triangle > strip->passed_number[r]));
+            ((depth > strip->passed[r]) | ((depth == strip->passed[r]) & (triangle > strip->passed_number[r])));
         const skg_intv nearer =
-            behind & (depth < strip->next[r] | (depth == strip->next[r] & triangle < strip->next_number[r]));
-        *more |= behind & strip->next_number[r] != SKG_SHOW_NONE;
+            behind &
+            ((depth < strip->next[r]) | ((depth == strip->next[r]) & (triangle < strip->next_number[r])));
+        *more |= behind & (strip->next_number[r] != SKG_SHOW_NONE);
         strip->next[r] = select(strip->next[r], depth, nearer);
         strip->next_number[r] = select(strip->next_number[r], (skg_intv)(triangle), nearer);
         found |= nearer;

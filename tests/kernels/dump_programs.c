@@ -46,7 +46,8 @@ cl_program clCreateProgramWithSource(cl_context context, cl_uint count, const ch
     create_call *call;
     next_of("clCreateProgramWithSource", &call, sizeof call);
     cl_program program = call(context, count, texts, lengths, code);
-    if (!program || !getenv("SKG_DUMP")) return program;
+    const char *folder = getenv("SKG_DUMP");
+    if (!program || !folder || !folder[0]) return program;
     pthread_mutex_lock(&lock);
     for (int i = 0; i < MOST; i++)
         if (!made[i].program) {

@@ -203,7 +203,7 @@ static const struct {
     {"shades.clh", "fma(at - row, next[g] - here[g], here[g])", "2 * here[g]", SKG_TRIAL_SHADES},
     {"place.cl", "(long)taken[v]", "(long)taken[0]", SKG_TRIAL_PLACE},
     {"place.cl", "to[k] = finite ? at : x;", "to[k] = x;", SKG_TRIAL_PLACE},
-    {"show.cl", "(depth < strip->depth[r] | (depth", "(depth > strip->depth[r] | (depth", SKG_TRIAL_PICTURE},
+    {"show.cl", "((depth < strip->depth[r]) | (", "((depth > strip->depth[r]) | (", SKG_TRIAL_PICTURE},
     {"show.cl", "face->box[2] / SKG_SHOW_TILE + 1", "face->box[2] / SKG_SHOW_TILE", SKG_TRIAL_PICTURE},
     {"show.cl", "skg_show_outside(rows, 1, r) | skg_show_outside(rows, 2, r)", "skg_show_outside(rows, 1, r)",
      SKG_TRIAL_PICTURE},
