@@ -35,7 +35,7 @@ static json_t *parameters_json(const fit_work *work, int64_t *chosen) {
 
 static json_t *covariance_json(const fit_work *work, int64_t size) {
     json_t *rows = json_array();
-    double *values = calloc((size_t)(size * size), sizeof *values);
+    double *values = size > 0 ? calloc((size_t)(size * size), sizeof *values) : NULL;
     if (values && skg_fit_covariance_get(work->fit, size, values) == SKG_OK)
         for (int64_t r = 0; r < size; r++)
             json_array_append_new(rows, cli_json_numbers(values + size * r, (int)size));
