@@ -168,8 +168,8 @@ static void skg_take_off(__global const skg_part_entry *part, __global const skg
         sums[contributions[w].plane * plane] -= (skg_sum)skg_round(length * contributions[w].weight);
 }
 
-/* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their children. sums:
- * the first copy. */
+/* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their
+ * children. sums: the first copy. */
 __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entry *parts,
                               __global const skg_contribution *contributions, __global const int *counts,
                               __global const uint *starts, __global skg_listed *hits, __global const int *table,
