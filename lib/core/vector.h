@@ -21,6 +21,14 @@ static inline double skg_dot_long(int64_t count, const double *a, const double *
     return sum;
 }
 
+/* The dot products of a with four vectors, each added up in rising order: their sums do not wait for one another. */
+static inline void skg_dot_four(int64_t count, const double *a, const double *const b[4], double dots[4]) {
+    double sums[4] = {0};
+    for (int64_t i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++) sums[k] += a[i] * b[k][i];
+    memcpy(dots, sums, sizeof sums);
+}
+
 static inline void skg_cross(const double *a, const double *b, double *product) {
     double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     product[0] = x, product[1] = y, product[2] = z;

@@ -1,5 +1,6 @@
 #include "spectral/basis.h"
 
+#include "core/parallel.h"
 #include "core/vector.h"
 #include "spectral/nnls.h"
 
@@ -17,11 +18,10 @@ void skg_basis_release(skg_basis *basis) {
     basis->planes = 0;
 }
 
-/* Weighs each bin with the root of its mean share of the recorded signal over points and sets, because the error
- * of an exponent counts in proportion to that share. */
-static skg_status weigh_bins(const skg_polychromatic *beam, const skg_lengths *points, double *weight) {
+skg_status skg_basis_weigh(const skg_polychromatic *beam, const skg_lengths *points, double *weight) {
     double *passed = NULL, greatest = 0;
     SKG_TRY(skg_alloc(beam->bins, sizeof *passed, "basis", &passed));
+    memset(weight, 0, (size_t)beam->bins * sizeof *weight);
     for (int64_t p = 0; p < points->count; p++) {
         const double *exact = points->exact + p * beam->sets;
         skg_transmit(beam, beam->mu, points->lengths + p * beam->materials, passed);
@@ -47,14 +47,11 @@ static void take_away(double *column, const double *unit, int32_t count) {
     }
 }
 
-skg_status skg_basis_order(const skg_polychromatic *beam, const skg_lengths *points, int32_t first,
+skg_status skg_basis_order(const skg_polychromatic *beam, const double *weight, int32_t first,
                            int32_t *order) {
     const int32_t bins = beam->bins, materials = beam->materials;
-    double *rest = NULL, *weight = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc((int64_t)materials * bins, sizeof *rest, "basis", &rest));
-    SKG_TRY_CLEANUP(skg_alloc(bins, sizeof *weight, "basis", &weight));
-    SKG_TRY_CLEANUP(weigh_bins(beam, points, weight));
+    double *rest = NULL;
+    SKG_TRY(skg_alloc((int64_t)materials * bins, sizeof *rest, "basis", &rest));
     for (int32_t m = 0; m < materials; m++) {
         order[m] = m;
         for (int32_t b = 0; b < bins; b++)
@@ -75,10 +72,8 @@ skg_status skg_basis_order(const skg_polychromatic *beam, const skg_lengths *poi
         for (int32_t b = 0; b < bins && length > 0; b++) unit[b] /= length;
         for (int32_t j = k + 1; j < materials; j++) take_away(rest + order[j] * bins, unit, bins);
     }
-cleanup:
     skg_free(&rest);
-    skg_free(&weight);
-    return status;
+    return SKG_OK;
 }
 
 /* The mix of every material: 1 of its own plane if it has one, otherwise by weighted least squares. */
@@ -113,34 +108,53 @@ cleanup:
     return status;
 }
 
-/* The greatest error over the points if every bin is used with the attenuation that the planes give. */
-static skg_status find_error(const skg_polychromatic *beam, const skg_lengths *points, skg_basis *basis) {
-    skg_nodes all = {.count = beam->bins, .shares = (double *)beam->shares};
-    SKG_TRY(skg_alloc(beam->bins, sizeof *all.bin, "basis", &all.bin));
-    for (int32_t b = 0; b < beam->bins; b++) all.bin[b] = b;
-    for (int64_t p = 0; p < points->count; p++)
-        basis->error =
-            fmax(basis->error, skg_nodes_error(beam, basis->mu, &all, points->lengths + p * beam->materials,
-                                               points->exact + p * beam->sets));
-    skg_free(&all.bin);
+typedef struct {
+    const skg_polychromatic *beam;
+    const skg_lengths *points;
+    const double *mu;
+    skg_nodes all;  /* every bin */
+    double *errors; /* [points] */
+} measuring;
+
+/* What threads share: points in pieces. */
+enum { PIECE = 32 };
+static skg_status find_errors(void *user, int64_t piece) {
+    const measuring *m = user;
+    for (int64_t p = piece * PIECE; p < (piece + 1) * PIECE && p < m->points->count; p++)
+        m->errors[p] = skg_nodes_error(m->beam, m->mu, &m->all, m->points->lengths + p * m->beam->materials,
+                                       m->points->exact + p * m->beam->sets);
     return SKG_OK;
 }
 
-skg_status skg_basis_make(const skg_polychromatic *beam, const skg_lengths *points, const int32_t *order,
-                          int32_t planes, skg_basis *basis) {
-    double *weight = NULL;
+/* The greatest error over the points if every bin is used with the attenuation that the planes give. */
+static skg_status find_error(const skg_polychromatic *beam, const skg_lengths *points, skg_basis *basis) {
+    measuring m = {.beam = beam,
+                   .points = points,
+                   .mu = basis->mu,
+                   .all = {.count = beam->bins, .shares = (double *)beam->shares}};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(beam->bins, sizeof *m.all.bin, "basis", &m.all.bin));
+    SKG_TRY_CLEANUP(skg_alloc(points->count, sizeof *m.errors, "basis", &m.errors));
+    for (int32_t b = 0; b < beam->bins; b++) m.all.bin[b] = b;
+    SKG_TRY_CLEANUP(skg_parallel((points->count + PIECE - 1) / PIECE, find_errors, &m));
+    for (int64_t p = 0; p < points->count; p++) basis->error = fmax(basis->error, m.errors[p]);
+cleanup:
+    skg_free(&m.all.bin);
+    skg_free(&m.errors);
+    return status;
+}
+
+skg_status skg_basis_make(const skg_polychromatic *beam, const skg_lengths *points, const double *weight,
+                          const int32_t *order, int32_t planes, skg_basis *basis) {
     skg_status status = SKG_OK;
     *basis = (skg_basis){.planes = planes};
-    SKG_TRY_CLEANUP(skg_alloc(beam->bins, sizeof *weight, "basis", &weight));
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *basis->material, "basis", &basis->material));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)beam->materials * planes, sizeof *basis->mix, "basis", &basis->mix));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)beam->materials * beam->bins, sizeof *basis->mu, "basis", &basis->mu));
     memcpy(basis->material, order, (size_t)planes * sizeof *order);
-    SKG_TRY_CLEANUP(weigh_bins(beam, points, weight));
     SKG_TRY_CLEANUP(mix_materials(beam, weight, basis));
     SKG_TRY_CLEANUP(find_error(beam, points, basis));
 cleanup:
-    skg_free(&weight);
     if (status != SKG_OK) skg_basis_release(basis);
     return status;
 }

@@ -19,12 +19,16 @@ typedef struct {
 
 void skg_basis_release(skg_basis *basis);
 
+/* Weighs each bin with the root of its mean share of the recorded signal over points and sets, because the error of an
+ * exponent counts in proportion to that share. weight: [bins]. */
+skg_status skg_basis_weigh(const skg_polychromatic *beam, const skg_lengths *points, double *weight);
+
 /* The order[materials] in which materials become planes. first: a material that has to be a plane, or -1. */
-skg_status skg_basis_order(const skg_polychromatic *beam, const skg_lengths *points, int32_t first,
+skg_status skg_basis_order(const skg_polychromatic *beam, const double *weight, int32_t first,
                            int32_t *order);
 
 /* The basis of the first `planes` materials in that order, and its error at the points. */
-skg_status skg_basis_make(const skg_polychromatic *beam, const skg_lengths *points, const int32_t *order,
-                          int32_t planes, skg_basis *basis);
+skg_status skg_basis_make(const skg_polychromatic *beam, const skg_lengths *points, const double *weight,
+                          const int32_t *order, int32_t planes, skg_basis *basis);
 
 #endif

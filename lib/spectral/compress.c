@@ -15,7 +15,7 @@ static const double LIKELY_NODES = 12;
 static const double SHARE_OF_PLANES = 0.125;
 /* Points by which planes are chosen: corners of the range, random points, and lengths that rays meet. A few hundred
  * points suffice for a choice; the verification uses thousands. */
-enum { CORNERS = 64, DRAWS = 160, GIVEN = 96 };
+static const skg_sampling CHOICE = {.corners = 64, .draws = 160, .rays = 96, .seed = 3};
 
 typedef struct {
     const skg_scene *scene;
@@ -32,21 +32,23 @@ typedef struct {
 /* Errors are relative from this transmission on. A ratio to the flat field in a world that transmits little, or behind a
  * filter, shows small transmissions, so it needs a lower limit. */
 static skg_status find_floor(compressing *c, const skg_model *model) {
-    double *lengths = NULL, *exact = NULL;
+    double *lengths = NULL, *exact = NULL, *exponents = NULL;
     skg_status status = SKG_OK;
     c->beam.floor = SKG_RELATIVE_FROM;
     if (!c->is_ratio || (model->world_plane < 0 && model->shades.count == 0)) return SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(c->beam.materials, sizeof *lengths, "nodes", &lengths));
     SKG_TRY_CLEANUP(skg_alloc(c->beam.sets, sizeof *exact, "nodes", &exact));
+    SKG_TRY_CLEANUP(skg_alloc(c->beam.bins, sizeof *exponents, "nodes", &exponents));
     if (model->world_plane >= 0) lengths[model->world_plane] = c->ranges.way;
     for (int32_t k = 0; k < model->shades.count; k++) lengths[model->planes + k] = model->shades.high[k];
-    skg_transmit_exact(&c->beam, lengths, exact);
+    skg_transmit_exact(&c->beam, lengths, exact, exponents);
     for (int32_t s = 0; s < c->beam.sets; s++)
         if (c->sums[s] > 0)
             c->beam.floor = fmin(c->beam.floor, SKG_RELATIVE_FROM * fmax(exact[s], exp(-SKG_MOST_EXPONENT)));
 cleanup:
     skg_free(&lengths);
     skg_free(&exact);
+    skg_free(&exponents);
     return status;
 }
 
@@ -147,20 +149,18 @@ static skg_status choose_planes(compressing *c, const skg_model *model) {
     skg_lengths points = {0};
     skg_basis trial = {0};
     int32_t *order = NULL;
-    double *weights = NULL, least = HUGE_VAL;
+    const skg_rays rays = {c->ranges.rays, c->ranges.planes, c->ranges.lengths};
+    double *weights = NULL, *bin_weight = NULL, least = HUGE_VAL;
     skg_status status = SKG_OK;
     beam.materials = materials;
     SKG_TRY_CLEANUP(skg_alloc(materials, sizeof *order, "basis", &order));
     SKG_TRY_CLEANUP(skg_alloc(materials, sizeof *weights, "basis", &weights));
-    SKG_TRY_CLEANUP(skg_lengths_fill(&beam, CORNERS, DRAWS, 3, 0, NULL, &points));
-    for (int64_t k = 0; k < GIVEN && k < c->ranges.rays; k++)
-        SKG_TRY_CLEANUP(skg_lengths_add(
-            &beam,
-            c->ranges.lengths + (c->ranges.rays <= GIVEN ? k : k * c->ranges.rays / GIVEN) * c->ranges.planes,
-            &points));
-    SKG_TRY_CLEANUP(skg_basis_order(&beam, &points, (int32_t)model->world_plane, order));
+    SKG_TRY_CLEANUP(skg_alloc(beam.bins, sizeof *bin_weight, "basis", &bin_weight));
+    SKG_TRY_CLEANUP(skg_lengths_fill(&beam, &CHOICE, &rays, &points));
+    SKG_TRY_CLEANUP(skg_basis_weigh(&beam, &points, bin_weight));
+    SKG_TRY_CLEANUP(skg_basis_order(&beam, bin_weight, (int32_t)model->world_plane, order));
     for (int32_t planes = materials; planes >= 1; planes--) {
-        SKG_TRY_CLEANUP(skg_basis_make(&beam, &points, order, planes, &trial));
+        SKG_TRY_CLEANUP(skg_basis_make(&beam, &points, bin_weight, order, planes, &trial));
         if (planes < materials && trial.error > SHARE_OF_PLANES * c->tolerance) break;
         const double cost = cost_of(c, model, &trial, weights);
         if (cost < least) {
@@ -175,6 +175,7 @@ cleanup:
     skg_lengths_release(&points);
     skg_free(&order);
     skg_free(&weights);
+    skg_free(&bin_weight);
     return status;
 }
 

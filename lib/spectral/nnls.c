@@ -27,6 +27,19 @@ void skg_least_squares_release(skg_least_squares *system) {
     skg_free(&system->list);
 }
 
+/* Takes the reflection at v off SOME columns, which are `rows` apart: as many as keep an adder busy. */
+enum { SOME = 4 };
+static void reflect_some(const double *v, int64_t length, double square, int64_t rows, double *columns) {
+    const double *const each[SOME] = {columns, columns + rows, columns + 2 * rows, columns + 3 * rows};
+    double share[SOME];
+    skg_dot_four(length, v, each, share);
+    for (int32_t c = 0; c < SOME; c++) {
+        double *column = columns + c * rows;
+        const double factor = 2 * share[c] / square;
+        for (int64_t i = 0; i < length; i++) column[i] -= factor * v[i];
+    }
+}
+
 /* Makes the first `count` of `all` columns of q ([all][rows]) upper triangular by Householder reflections. */
 static void reflect(double *q, int64_t rows, int32_t count, int32_t all) {
     for (int32_t k = 0; k < count && k + 1 < rows; k++) {
@@ -36,7 +49,9 @@ static void reflect(double *q, int64_t rows, int32_t count, int32_t all) {
         const double diagonal = v[k] > 0 ? -length : length;
         v[k] -= diagonal;
         const double square = skg_dot_long(rows - k, v + k, v + k);
-        for (int32_t j = k + 1; j < all; j++) {
+        int32_t j = k + 1;
+        for (; j + SOME <= all; j += SOME) reflect_some(v + k, rows - k, square, rows, q + j * rows + k);
+        for (; j < all; j++) {
             double *column = q + j * rows;
             const double share = 2 * skg_dot_long(rows - k, v + k, column + k) / square;
             for (int64_t i = k; i < rows; i++) column[i] -= share * v[i];
@@ -110,8 +125,13 @@ static void find_gradient(const skg_least_squares *system, int32_t count, const 
     for (int32_t j = 0; j < count; j++)
         if (x[j] > 0)
             for (int64_t i = 0; i < rows; i++) rest[i] -= x[j] * system->a[in[j] * rows + i];
-    for (int32_t j = 0; j < count; j++)
-        system->gradient[j] = skg_dot_long(rows, system->a + in[j] * rows, rest);
+    int32_t j = 0;
+    for (; j + SOME <= count; j += SOME) {
+        const double *const some[SOME] = {system->a + in[j] * rows, system->a + in[j + 1] * rows,
+                                          system->a + in[j + 2] * rows, system->a + in[j + 3] * rows};
+        skg_dot_four(rows, rest, some, system->gradient + j);
+    }
+    for (; j < count; j++) system->gradient[j] = skg_dot_long(rows, rest, system->a + in[j] * rows);
 }
 
 /* Solves with the columns whose x is positive. A column whose x would become negative stops at 0 and leaves. */

@@ -9,15 +9,14 @@
  * the number of nodes (bench/results/energies.md). They never decide whether the stated bound holds, because the bound
  * is verified on points of its own. */
 
-/* Points that the weights are fitted to, and others on which they are checked. */
-enum { FIT_CORNERS = 64, FIT_DRAWS = 320, FIT_GIVEN = 96, CHECK_CORNERS = 1024, CHECK_DRAWS = 2000 };
+/* Points that the weights are fitted to, and others on which they are checked: all rays. Different seeds, so that no
+ * point is both fitted to and checked. */
+static const skg_sampling FIT = {.corners = 64, .draws = 320, .rays = 96, .seed = 1};
+static const skg_sampling CHECK = {.corners = 1024, .draws = 2000, .rays = INT64_MAX, .seed = 2};
 
 /* Lawson's reweightings of one fit; fits repeated with the points that a check has found; searches with a lower
  * aim; and the largest product of sets and nodes for which nodes are shifted, which takes long. */
 enum { REWEIGHTINGS = 30, REFITS = 3, SEARCHES = 5, SHIFTED = 64 };
-
-/* Different seeds, so that no point is both fitted to and checked. */
-static const uint64_t fit_seed = 1, check_seed = 2;
 
 /* The aim at the fitted points is AIM of the target, because other points have larger errors; after each search that
  * fails the check, it is lowered by LOWER. */
@@ -40,6 +39,8 @@ typedef struct {
     const double *mu;
     double aim; /* the greatest error that is wanted at the fitted points */
     skg_lengths fit, check;
+    double *passed, *unit;   /* of each fitted point: [bins] transmissions, [sets] 1 / the unit of errors */
+    int64_t known, capacity; /* points that have them, and for which there is room */
     skg_least_squares *systems;   /* [sets] over all bins, reduced */
     int32_t *bins, *best, *trial; /* [bins] each */
     int32_t count, best_count;
@@ -47,33 +48,44 @@ typedef struct {
     double *score;             /* [bins] */
     skg_nodes nodes;           /* of the last weights */
     double *row_weight, *rest; /* [fit points] */
-    int64_t row_capacity;
 } search;
 
 /* --- systems over the bins --- */
 
-static double unit_of(const search *s, int64_t point, int32_t set) {
-    return 1 / fmax(s->fit.exact[point * s->beam->sets + set], s->beam->floor);
+/* Finds the transmissions of the points that have joined the fit. */
+static skg_status pass_points(search *s) {
+    const int32_t bins = s->beam->bins, sets = s->beam->sets;
+    const int64_t points = s->fit.count;
+    if (s->capacity < points) {
+        s->capacity = 2 * points;
+        SKG_TRY(skg_realloc(s->capacity * bins, sizeof *s->passed, "nodes", &s->passed));
+        SKG_TRY(skg_realloc(s->capacity * sets, sizeof *s->unit, "nodes", &s->unit));
+        SKG_TRY(skg_realloc(s->capacity, sizeof *s->row_weight, "nodes", &s->row_weight));
+        SKG_TRY(skg_realloc(s->capacity, sizeof *s->rest, "nodes", &s->rest));
+    }
+    for (; s->known < points; s->known++) {
+        skg_transmit(s->beam, s->mu, s->fit.lengths + s->known * s->beam->materials,
+                     s->passed + s->known * bins);
+        for (int32_t set = 0; set < sets; set++)
+            s->unit[s->known * sets + set] = 1 / fmax(s->fit.exact[s->known * sets + set], s->beam->floor);
+    }
+    return SKG_OK;
 }
 
 static skg_status make_system(search *s, int32_t set) {
     const int64_t points = s->fit.count;
     const int32_t bins = s->beam->bins;
     skg_least_squares whole = {0};
-    double *passed = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_least_squares_create(points, bins, &whole));
-    SKG_TRY_CLEANUP(skg_alloc(bins, sizeof *passed, "nodes", &passed));
     for (int64_t p = 0; p < points; p++) {
-        const double unit = unit_of(s, p, set);
-        skg_transmit(s->beam, s->mu, s->fit.lengths + p * s->beam->materials, passed);
-        for (int32_t b = 0; b < bins; b++) whole.a[b * points + p] = passed[b] * unit;
+        const double unit = s->unit[p * s->beam->sets + set];
+        for (int32_t b = 0; b < bins; b++) whole.a[b * points + p] = s->passed[p * bins + b] * unit;
         whole.b[p] = s->fit.exact[p * s->beam->sets + set] * unit;
     }
     SKG_TRY_CLEANUP(skg_least_squares_reduce(&whole, &s->systems[set]));
 cleanup:
     skg_least_squares_release(&whole);
-    skg_free(&passed);
     return status;
 }
 
@@ -159,7 +171,7 @@ static double find_rest(search *s, const double *columns, int32_t set, int32_t u
     const int64_t points = s->fit.count;
     double worst = 0;
     for (int64_t p = 0; p < points; p++) {
-        double sum = -s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
+        double sum = -s->fit.exact[p * s->beam->sets + set] * s->unit[p * s->beam->sets + set];
         for (int32_t j = 0; j < used; j++) sum += s->x[j] * columns[s->trial[j] * points + p];
         s->rest[p] = fabs(sum);
         worst = fmax(worst, s->rest[p]);
@@ -177,16 +189,14 @@ static void keep_weights(search *s, int32_t set, int32_t used) {
 typedef struct {
     skg_least_squares system;
     double *columns; /* [nodes][points], in the unit of the errors of a set */
-    double *passed;  /* [bins] */
 } fitting;
 
-static void find_columns(search *s, int32_t set, fitting *f) {
+static void find_columns(const search *s, int32_t set, fitting *f) {
     const int64_t points = s->fit.count;
-    for (int64_t p = 0; p < points; p++) {
-        skg_transmit(s->beam, s->mu, s->fit.lengths + p * s->beam->materials, f->passed);
-        for (int32_t j = 0; j < s->count; j++)
-            f->columns[j * points + p] = f->passed[s->bins[j]] * unit_of(s, p, set);
-    }
+    for (int32_t j = 0; j < s->count; j++)
+        for (int64_t p = 0; p < points; p++)
+            f->columns[j * points + p] =
+                s->passed[p * s->beam->bins + s->bins[j]] * s->unit[p * s->beam->sets + set];
 }
 
 /* Fits the weights of one set for the nodes in s->trial so that the greatest error becomes small, keeps them in
@@ -202,7 +212,7 @@ static double fit_set(search *s, int32_t set, int32_t used, fitting *f) {
             const double root = sqrt(s->row_weight[p]);
             for (int32_t j = 0; j < s->count; j++)
                 f->system.a[j * points + p] = root * f->columns[j * points + p];
-            f->system.b[p] = root * s->fit.exact[p * s->beam->sets + set] * unit_of(s, p, set);
+            f->system.b[p] = root * s->fit.exact[p * s->beam->sets + set] * s->unit[p * s->beam->sets + set];
         }
         skg_nnls(&f->system, used, s->trial, 0, s->x);
         const double worst = find_rest(s, f->columns, set, used);
@@ -245,14 +255,9 @@ static skg_status fit_weights(search *s, double *error) {
     const int32_t heads = s->beam->paired ? s->beam->sets / 2 : s->beam->sets;
     fitting f = {.columns = NULL};
     skg_status status = SKG_OK;
-    if (s->row_capacity < points) {
-        s->row_capacity = 2 * points;
-        SKG_TRY(skg_realloc(s->row_capacity, sizeof *s->row_weight, "nodes", &s->row_weight));
-        SKG_TRY(skg_realloc(s->row_capacity, sizeof *s->rest, "nodes", &s->rest));
-    }
+    SKG_TRY(pass_points(s));
     SKG_TRY_CLEANUP(skg_least_squares_create(points, s->count, &f.system));
     SKG_TRY_CLEANUP(skg_alloc(points * s->count, sizeof *f.columns, "nodes", &f.columns));
-    SKG_TRY_CLEANUP(skg_alloc(s->beam->bins, sizeof *f.passed, "nodes", &f.passed));
     s->nodes.count = s->count;
     memcpy(s->nodes.bin, s->bins, (size_t)s->count * sizeof *s->bins);
     *error = 0;
@@ -260,7 +265,6 @@ static skg_status fit_weights(search *s, double *error) {
 cleanup:
     skg_least_squares_release(&f.system);
     skg_free(&f.columns);
-    skg_free(&f.passed);
     return status;
 }
 
@@ -269,6 +273,7 @@ cleanup:
 /* Removes bins one by one from the first set. s->best becomes the smallest set that reaches the aim; best_count
  * is 0 if there is none. The search ends after two misses in a row, since a smaller set is seldom better. */
 static skg_status find_fewest(search *s) {
+    SKG_TRY(pass_points(s));
     for (int32_t set = 0; set < s->beam->sets; set++) {
         skg_least_squares_release(&s->systems[set]);
         SKG_TRY(make_system(s, set));
@@ -318,12 +323,9 @@ static skg_status open_search(search *s, int64_t count, const double *given) {
     SKG_TRY(skg_alloc(bins, sizeof *s->score, "nodes", &s->score));
     SKG_TRY(skg_alloc(bins, sizeof *s->nodes.bin, "nodes", &s->nodes.bin));
     SKG_TRY(skg_alloc((int64_t)bins * beam->sets, sizeof *s->nodes.shares, "nodes", &s->nodes.shares));
-    SKG_TRY(skg_lengths_fill(beam, FIT_CORNERS, FIT_DRAWS, fit_seed, 0, NULL, &s->fit));
-    for (int64_t k = 0; k < FIT_GIVEN && k < count; k++) {
-        const int64_t at = count <= FIT_GIVEN ? k : k * count / FIT_GIVEN;
-        SKG_TRY(skg_lengths_add(beam, given + at * beam->materials, &s->fit));
-    }
-    return skg_lengths_fill(beam, CHECK_CORNERS, CHECK_DRAWS, check_seed, count, given, &s->check);
+    const skg_rays rays = {count, beam->materials, given};
+    SKG_TRY(skg_lengths_fill(beam, &FIT, &rays, &s->fit));
+    return skg_lengths_fill(beam, &CHECK, &rays, &s->check);
 }
 
 static void close_search(search *s) {
@@ -336,6 +338,8 @@ static void close_search(search *s) {
     skg_free(&s->x);
     skg_free(&s->spread);
     skg_free(&s->score);
+    skg_free(&s->passed);
+    skg_free(&s->unit);
     skg_free(&s->row_weight);
     skg_free(&s->rest);
     skg_nodes_release(&s->nodes);

@@ -3,6 +3,7 @@
 #define SKG_RANGES_H
 
 #include "spectral/model.h"
+#include "spectral/tracer.h"
 
 typedef struct {
     int32_t planes, reserved; /* planes, then shades, which the caller fills */
@@ -21,9 +22,6 @@ typedef struct {
 skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t more, const skg_view *views,
                            const skg_model *model, skg_ranges *ranges);
 void skg_ranges_release(skg_ranges *ranges);
-
-/* Rays along each side of the detector. */
-enum { SKG_TRACED_SIDE = 64 };
 
 /* Receives the lengths of one part along the rays: [SKG_TRACED_SIDE][SKG_TRACED_SIDE] mm. longest: the longest that was
  * found, with a margin of a quarter. */

@@ -28,63 +28,85 @@ static double exponent_at(const skg_polychromatic *beam, const double *mu, const
     return sum;
 }
 
-/* The exponents of several bins at a time, whose sums have the order of exponent_at and so its bits. */
-enum { SOME = 64 };
-static int32_t find_exponents(const skg_polychromatic *beam, const double *mu, const double *lengths,
-                              int32_t first, double *sums) {
-    const int32_t count = beam->bins - first < SOME ? beam->bins - first : SOME;
-    for (int32_t b = 0; b < count; b++) sums[b] = 0;
-    for (int32_t m = 0; m < beam->materials; m++) {
-        const double length = lengths[m], *row = mu + (int64_t)m * beam->bins + first;
-        for (int32_t b = 0; b < count; b++) sums[b] += length * row[b];
+/* The exponents of all bins. Some bins at a time stay in registers; each sum has the order of exponent_at and so its
+ * bits. */
+enum { SOME = 8 };
+static void find_exponents(const skg_polychromatic *beam, const double *mu, const double *lengths,
+                           double *exponents) {
+    int32_t first = 0;
+    for (; first + SOME <= beam->bins; first += SOME) {
+        double sums[SOME] = {0};
+        for (int32_t m = 0; m < beam->materials; m++) {
+            const double length = lengths[m], *row = mu + (int64_t)m * beam->bins + first;
+            for (int32_t b = 0; b < SOME; b++) sums[b] += length * row[b];
+        }
+        memcpy(exponents + first, sums, sizeof sums);
     }
-    return count;
+    for (; first < beam->bins; first++) exponents[first] = exponent_at(beam, mu, lengths, first);
 }
 
 void skg_transmit(const skg_polychromatic *beam, const double *mu, const double *lengths, double *passed) {
-    double sums[SOME];
-    for (int32_t first = 0; first < beam->bins; first += SOME) {
-        const int32_t count = find_exponents(beam, mu, lengths, first, sums);
-        for (int32_t b = 0; b < count; b++) passed[first + b] = exp(-sums[b]);
-    }
+    find_exponents(beam, mu, lengths, passed);
+    for (int32_t b = 0; b < beam->bins; b++) passed[b] = exp(-passed[b]);
 }
 
-void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact) {
-    double sums[SOME];
+void skg_transmit_exact(const skg_polychromatic *beam, double *lengths, double *exact, double *exponents) {
+    double least = HUGE_VAL;
+    find_exponents(beam, beam->mu, lengths, exponents);
+    for (int32_t b = 0; b < beam->bins; b++) least = exponents[b] < least ? exponents[b] : least;
+    if (least > SKG_MOST_EXPONENT) {
+        for (int32_t m = 0; m < beam->materials; m++) lengths[m] *= SKG_MOST_EXPONENT / least;
+        find_exponents(beam, beam->mu, lengths, exponents);
+    }
     memset(exact, 0, (size_t)beam->sets * sizeof *exact);
-    for (int32_t first = 0; first < beam->bins; first += SOME) {
-        const int32_t count = find_exponents(beam, beam->mu, lengths, first, sums);
-        for (int32_t b = 0; b < count; b++) {
-            const double passed = exp(-sums[b]), *shares = beam->shares + (int64_t)(first + b) * beam->sets;
-            for (int32_t s = 0; s < beam->sets; s++) exact[s] += passed * shares[s];
-        }
+    for (int32_t b = 0; b < beam->bins; b++) {
+        const double passed = exp(-exponents[b]), *shares = beam->shares + (int64_t)b * beam->sets;
+        for (int32_t s = 0; s < beam->sets; s++) exact[s] += passed * shares[s];
     }
 }
 
 /* --- points --- */
 
-/* Scales lengths down until the energy that passes best has at most the largest exponent. */
-static void cap(const skg_polychromatic *beam, double *lengths) {
-    double sums[SOME], least = HUGE_VAL;
-    for (int32_t first = 0; first < beam->bins; first += SOME) {
-        const int32_t count = find_exponents(beam, beam->mu, lengths, first, sums);
-        for (int32_t b = 0; b < count; b++) least = sums[b] < least ? sums[b] : least;
-    }
-    if (least <= SKG_MOST_EXPONENT) return;
-    for (int32_t m = 0; m < beam->materials; m++) lengths[m] *= SKG_MOST_EXPONENT / least;
+/* What threads share: points in pieces. */
+enum { PIECE = 64 };
+static int64_t pieces_of(int64_t points) {
+    return (points + PIECE - 1) / PIECE;
 }
 
-skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths, skg_lengths *points) {
-    if (points->count == points->capacity) {
-        const int64_t capacity = 2 * points->capacity + 64;
-        SKG_TRY(skg_realloc(capacity * beam->materials, sizeof *lengths, "lengths", &points->lengths));
-        SKG_TRY(skg_realloc(capacity * beam->sets, sizeof *lengths, "lengths", &points->exact));
-        points->capacity = capacity;
-    }
-    double *at = points->lengths + points->count * beam->materials;
-    memmove(at, lengths, (size_t)beam->materials * sizeof *at);
-    cap(beam, at);
-    skg_transmit_exact(beam, at, points->exact + points->count * beam->sets);
+typedef struct {
+    const skg_polychromatic *beam;
+    skg_lengths *points;
+    int64_t first; /* the points before have their transmission */
+} filling;
+
+static skg_status fill_piece(void *user, int64_t piece) {
+    const filling *f = user;
+    const int64_t first = f->first + piece * PIECE;
+    double *exponents = NULL;
+    SKG_TRY(skg_alloc(f->beam->bins, sizeof *exponents, "lengths", &exponents));
+    for (int64_t p = first; p < first + PIECE && p < f->points->count; p++)
+        skg_transmit_exact(f->beam, f->points->lengths + p * f->beam->materials,
+                           f->points->exact + p * f->beam->sets, exponents);
+    skg_free(&exponents);
+    return SKG_OK;
+}
+
+static skg_status reserve(const skg_polychromatic *beam, int64_t more, skg_lengths *points) {
+    if (points->count + more <= points->capacity) return SKG_OK;
+    const int64_t capacity = points->count + more;
+    SKG_TRY(skg_realloc(capacity * beam->materials, sizeof *points->lengths, "lengths", &points->lengths));
+    SKG_TRY(skg_realloc(capacity * beam->sets, sizeof *points->exact, "lengths", &points->exact));
+    points->capacity = capacity;
+    return SKG_OK;
+}
+
+/* Adds one point, whose transmission is known. */
+static skg_status add_known(const skg_polychromatic *beam, const double *lengths, const double *exact,
+                            skg_lengths *points) {
+    SKG_TRY(reserve(beam, 1, points));
+    memcpy(points->lengths + points->count * beam->materials, lengths,
+           (size_t)beam->materials * sizeof *lengths);
+    memcpy(points->exact + points->count * beam->sets, exact, (size_t)beam->sets * sizeof *exact);
     points->count++;
     return SKG_OK;
 }
@@ -105,31 +127,47 @@ static void draw_point(const skg_polychromatic *beam, int thin, uint64_t *state,
     }
 }
 
-skg_status skg_lengths_fill(const skg_polychromatic *beam, int64_t most, int64_t draws, uint64_t seed,
-                            int64_t count, const double *given, skg_lengths *points) {
-    uint64_t state = seed;
-    double *lengths = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(beam->materials, sizeof *lengths, "lengths", &lengths));
-    const int all = beam->materials < 30 && (int64_t)1 << beam->materials <= most;
-    const int64_t corners = all ? (int64_t)1 << beam->materials : most;
-    SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points)); /* no matter at all */
-    for (int64_t c = 0; c < corners; c++) {
-        draw_corner(beam, all || c == 0 ? (uint64_t)c : (uint64_t)(skg_draw(&state) * 0x1p53), lengths);
-        SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points));
+skg_status skg_lengths_fill(const skg_polychromatic *beam, const skg_sampling *sampling, const skg_rays *rays,
+                            skg_lengths *points) {
+    const int32_t width = beam->materials;
+    const int all = width < 30 && (int64_t)1 << width <= sampling->corners;
+    const int64_t corners = all ? (int64_t)1 << width : sampling->corners;
+    const int64_t given = rays->count < sampling->rays ? rays->count : sampling->rays;
+    filling f = {.beam = beam, .points = points, .first = points->count};
+    uint64_t state = sampling->seed;
+    SKG_TRY(reserve(beam, 1 + corners + sampling->draws + given, points));
+    double *at = points->lengths + points->count * width;
+    memset(at, 0, (size_t)width * sizeof *at); /* no matter at all */
+    for (int64_t c = 0; c < corners; c++)
+        draw_corner(beam, all || c == 0 ? (uint64_t)c : (uint64_t)(skg_draw(&state) * 0x1p53), at += width);
+    for (int64_t d = 0; d < sampling->draws; d++) draw_point(beam, d % 2 == 1, &state, at += width);
+    for (int64_t g = 0; g < given; g++) {
+        const int64_t ray = given < rays->count ? g * rays->count / given : g;
+        memcpy(at += width, rays->lengths + ray * rays->width, (size_t)width * sizeof *at);
     }
-    for (int64_t d = 0; d < draws; d++) {
-        draw_point(beam, d % 2 == 1, &state, lengths);
-        SKG_TRY_CLEANUP(skg_lengths_add(beam, lengths, points));
-    }
-    for (int64_t g = 0; g < count; g++)
-        SKG_TRY_CLEANUP(skg_lengths_add(beam, given + g * beam->materials, points));
-cleanup:
-    skg_free(&lengths);
-    return status;
+    points->count += 1 + corners + sampling->draws + given;
+    return skg_parallel(pieces_of(points->count - f.first), fill_piece, &f);
 }
 
 /* --- errors --- */
+
+/* The exponents of SOME nodes, or of those that are left, whose number is returned. */
+static int32_t exponents_of_nodes(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
+                                  const double *lengths, int32_t first, double exponents[SOME]) {
+    const int32_t *bin = nodes->bin + first;
+    if (nodes->count - first < SOME) {
+        for (int32_t k = 0; k < nodes->count - first; k++)
+            exponents[k] = exponent_at(beam, mu, lengths, bin[k]);
+        return nodes->count - first;
+    }
+    double sums[SOME] = {0};
+    for (int32_t m = 0; m < beam->materials; m++) {
+        const double length = lengths[m], *row = mu + (int64_t)m * beam->bins;
+        for (int32_t k = 0; k < SOME; k++) sums[k] += length * row[bin[k]];
+    }
+    memcpy(exponents, sums, sizeof sums);
+    return SOME;
+}
 
 double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
                        const double *lengths, const double *exact) {
@@ -137,9 +175,14 @@ double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const sk
     for (int32_t first = 0; first < beam->sets; first += 64) {
         const int32_t sets = beam->sets - first < 64 ? beam->sets - first : 64;
         for (int32_t s = 0; s < sets; s++) found[s] = 0;
-        for (int32_t n = 0; n < nodes->count; n++) {
-            const double passed = exp(-exponent_at(beam, mu, lengths, nodes->bin[n]));
-            for (int32_t s = 0; s < sets; s++) found[s] += passed * nodes->shares[n * beam->sets + first + s];
+        for (int32_t n = 0; n < nodes->count; n += SOME) {
+            double exponents[SOME];
+            const int32_t some = exponents_of_nodes(beam, mu, nodes, lengths, n, exponents);
+            for (int32_t k = 0; k < some; k++) {
+                const double passed = exp(-exponents[k]);
+                const double *shares = nodes->shares + (n + k) * beam->sets + first;
+                for (int32_t s = 0; s < sets; s++) found[s] += passed * shares[s];
+            }
         }
         for (int32_t s = 0; s < sets; s++) {
             const double truth = exact[first + s];
@@ -153,15 +196,22 @@ typedef struct {
     const skg_polychromatic *beam;
     const double *mu;
     const skg_nodes *nodes;
-    double *lengths, *trial, *exact; /* of one point */
-    double error;                    /* at `lengths` */
+    double *lengths, *exact;           /* of one point */
+    double *trial, *tried, *exponents; /* of another: lengths, transmission; [bins] */
+    double error;                      /* at `lengths` */
     int64_t looks;
 } climb;
 
-static double look(climb *c, const double *lengths) {
+/* The error at the lengths in c->trial. */
+static double look(climb *c) {
     c->looks++;
-    skg_transmit_exact(c->beam, lengths, c->exact);
-    return skg_nodes_error(c->beam, c->mu, c->nodes, lengths, c->exact);
+    skg_transmit_exact(c->beam, c->trial, c->tried, c->exponents);
+    return skg_nodes_error(c->beam, c->mu, c->nodes, c->trial, c->tried);
+}
+
+static void keep_trial(climb *c) {
+    memcpy(c->lengths, c->trial, (size_t)c->beam->materials * sizeof *c->trial);
+    memcpy(c->exact, c->tried, (size_t)c->beam->sets * sizeof *c->tried);
 }
 
 /* Climbs along one coordinate after the other, with steps that are halved if none leads up: from a fifth of the
@@ -178,11 +228,10 @@ static double ascend(climb *c, double error) {
                 memcpy(c->trial, c->lengths, (size_t)beam->materials * sizeof *c->trial);
                 c->trial[m] = fmin(fmax(c->trial[m] + way, beam->low[m]), beam->high[m]);
                 if (c->trial[m] == c->lengths[m]) continue;
-                cap(beam, c->trial);
-                const double found = look(c, c->trial);
+                const double found = look(c);
                 if (!(found > error)) continue;
                 error = found, rose = 1;
-                memcpy(c->lengths, c->trial, (size_t)beam->materials * sizeof *c->trial);
+                keep_trial(c);
             }
         }
     }
@@ -200,7 +249,6 @@ static void rank_point(int64_t index, double error, int64_t *worst, double *erro
 }
 
 /* What threads share: the points in pieces, then the climbs. */
-enum { PIECE = 64 };
 typedef struct {
     const skg_lengths *points;
     double *errors; /* [points] */
@@ -235,7 +283,11 @@ static skg_status prepare_climbs(verifying *v, int32_t *starts) {
         SKG_TRY(skg_alloc(materials, sizeof *c->lengths, "lengths", &c->lengths));
         SKG_TRY(skg_alloc(materials, sizeof *c->trial, "lengths", &c->trial));
         SKG_TRY(skg_alloc(c->beam->sets, sizeof *c->exact, "lengths", &c->exact));
+        SKG_TRY(skg_alloc(c->beam->sets, sizeof *c->tried, "lengths", &c->tried));
+        SKG_TRY(skg_alloc(c->beam->bins, sizeof *c->exponents, "lengths", &c->exponents));
         memcpy(c->lengths, v->points->lengths + start[s] * materials, (size_t)materials * sizeof *c->lengths);
+        memcpy(c->exact, v->points->exact + start[s] * c->beam->sets,
+               (size_t)c->beam->sets * sizeof *c->exact);
         c->error = errors[s];
     }
     return SKG_OK;
@@ -248,7 +300,7 @@ skg_status skg_nodes_verify(const skg_polychromatic *beam, const double *mu, con
     skg_status status = SKG_OK;
     for (int32_t s = 0; s < STARTS; s++) v.climbs[s] = (climb){.beam = beam, .mu = mu, .nodes = nodes};
     SKG_TRY_CLEANUP(skg_alloc(points->count, sizeof *v.errors, "lengths", &v.errors));
-    SKG_TRY_CLEANUP(skg_parallel((points->count + PIECE - 1) / PIECE, find_errors, &v));
+    SKG_TRY_CLEANUP(skg_parallel(pieces_of(points->count), find_errors, &v));
     SKG_TRY_CLEANUP(prepare_climbs(&v, &starts));
     *error = starts ? v.climbs[0].error : 0;
     SKG_TRY_CLEANUP(skg_parallel(starts, climb_one, &v));
@@ -256,13 +308,15 @@ skg_status skg_nodes_verify(const skg_polychromatic *beam, const double *mu, con
     for (int32_t s = 0; s < starts; s++) {
         *error = fmax(*error, v.climbs[s].error);
         *checked += v.climbs[s].looks;
-        if (worst) SKG_TRY_CLEANUP(skg_lengths_add(beam, v.climbs[s].lengths, worst));
+        if (worst) SKG_TRY_CLEANUP(add_known(beam, v.climbs[s].lengths, v.climbs[s].exact, worst));
     }
 cleanup:
     for (int32_t s = 0; s < STARTS; s++) {
         skg_free(&v.climbs[s].lengths);
-        skg_free(&v.climbs[s].trial);
         skg_free(&v.climbs[s].exact);
+        skg_free(&v.climbs[s].trial);
+        skg_free(&v.climbs[s].tried);
+        skg_free(&v.climbs[s].exponents);
     }
     skg_free(&v.errors);
     return status;

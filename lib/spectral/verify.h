@@ -37,23 +37,34 @@ typedef struct {
     double *lengths, *exact;
 } skg_lengths;
 
+/* Which points are taken. */
+typedef struct {
+    int64_t corners; /* all corners of the range, or this many */
+    int64_t draws;   /* random points */
+    int64_t rays;    /* at most this many of the rays, evenly spread */
+    uint64_t seed;
+} skg_sampling;
+
+/* Lengths that rays meet, of which the first columns are those of the materials. */
+typedef struct {
+    int64_t count, width;
+    const double *lengths; /* [count][width] mm */
+} skg_rays;
+
 void skg_nodes_release(skg_nodes *nodes);
 void skg_lengths_release(skg_lengths *points);
 
-/* Sets exact [sets] to the transmission of each set through lengths [materials]. */
-void skg_transmit_exact(const skg_polychromatic *beam, const double *lengths, double *exact);
+/* Sets exact [sets] to the transmission of each set through lengths [materials], which are scaled down first until the
+ * energy that passes best has at most the largest exponent. exponents: [bins], for the work. */
+void skg_transmit_exact(const skg_polychromatic *beam, double *lengths, double *exact, double *exponents);
 
 /* Sets passed [bins] to exp(-sum of lengths times mu). mu: [materials][bins] 1/mm. */
 void skg_transmit(const skg_polychromatic *beam, const double *mu, const double *lengths, double *passed);
 
-/* Adds a point with its exact transmission. Its lengths are scaled down to the largest exponent. */
-skg_status skg_lengths_add(const skg_polychromatic *beam, const double *lengths, skg_lengths *points);
-
-/* Adds the corners of the range (all, or `most` of them), `draws` random points of the sequence that `seed`
- * starts, and `count` given points. Half of the random points are even over the range, half have more thin
- * lengths. */
-skg_status skg_lengths_fill(const skg_polychromatic *beam, int64_t most, int64_t draws, uint64_t seed,
-                            int64_t count, const double *given, skg_lengths *points);
+/* Adds points with their transmissions: no matter at all, the corners of the range, random points of the sequence that
+ * `seed` starts, and rays. Half of the random points are even over the range, half have more thin lengths. */
+skg_status skg_lengths_fill(const skg_polychromatic *beam, const skg_sampling *sampling, const skg_rays *rays,
+                            skg_lengths *points);
 
 /* The worst error over the sets, at one point, of nodes whose materials attenuate by mu ([materials][bins]).
  * exact: [sets] at that point. */

@@ -19,17 +19,26 @@ static const char *const names[] = {"Tissue, Soft (ICRU-44)",
                                     "Fe"};
 static const double most[] = {200, 60, 40, 150, 60, 60, 50, 60, 0.5, 1.5};
 
+/* Points of the range, and the weights of the bins over them. */
+static void weigh_points(const subject *s, int64_t corners, int64_t draws, skg_lengths *points,
+                         double weight[SUBJECT_BINS]) {
+    const skg_sampling sampling = {.corners = corners, .draws = draws, .seed = 5};
+    ck_skg(skg_lengths_fill(&s->beam, &sampling, &(skg_rays){0}, points));
+    ck_skg(skg_basis_weigh(&s->beam, points, weight));
+}
+
 /* Errors with 1 to `materials` planes, in error[planes]. */
 static void find_errors(const subject *s, int32_t first, double *error) {
     const int32_t materials = s->beam.materials;
     skg_lengths points = {0};
     int32_t order[SUBJECT_MATERIALS];
-    ck_skg(skg_lengths_fill(&s->beam, 32, 100, 5, 0, NULL, &points));
-    ck_skg(skg_basis_order(&s->beam, &points, first, order));
+    double weight[SUBJECT_BINS];
+    weigh_points(s, 32, 100, &points, weight);
+    ck_skg(skg_basis_order(&s->beam, weight, first, order));
     if (first >= 0) ck_assert_int_eq(order[0], first);
     for (int32_t planes = 1; planes <= materials; planes++) {
         skg_basis basis;
-        ck_skg(skg_basis_make(&s->beam, &points, order, planes, &basis));
+        ck_skg(skg_basis_make(&s->beam, &points, weight, order, planes, &basis));
         for (int32_t k = 0; k < planes; k++) {
             const int32_t own = basis.material[k];
             ck_assert_int_eq(own, order[k]);
@@ -72,12 +81,13 @@ START_TEST(mixture_is_recognised) {
     static subject s;
     skg_lengths points = {0};
     skg_basis basis;
+    double weight[SUBJECT_BINS];
     static const int32_t order[] = {0, 2, 1};
     take_subject(&s, 120, 3, names, most, 1);
     for (int32_t b = 0; b < s.beam.bins; b++)
         s.mu[s.beam.bins + b] = 0.75 * s.mu[b] + 0.125 * s.mu[2 * s.beam.bins + b];
-    ck_skg(skg_lengths_fill(&s.beam, 8, 50, 5, 0, NULL, &points));
-    ck_skg(skg_basis_make(&s.beam, &points, order, 2, &basis));
+    weigh_points(&s, 8, 50, &points, weight);
+    ck_skg(skg_basis_make(&s.beam, &points, weight, order, 2, &basis));
     ck_assert_double_eq_tol(basis.mix[2], 0.75, 256 * DBL_EPSILON);
     ck_assert_double_eq_tol(basis.mix[3], 0.125, 256 * DBL_EPSILON);
     ck_assert_double_lt(basis.error, 1e-11); /* exponents up to 80, 1e-14 each */
