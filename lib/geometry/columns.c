@@ -1,5 +1,6 @@
 #include "geometry/columns.h"
 
+#include "core/parallel.h"
 #include "core/vector.h"
 
 #include <math.h>
@@ -111,39 +112,64 @@ static skg_status add_triangle(search *s, int32_t part, const double *a, const d
     return SKG_OK;
 }
 
-static skg_status add_all(search *s, int64_t count, const skg_solid *solids) {
-    for (int64_t i = 0; i < count; i++)
-        for (int64_t t = 0; t < solids[i].triangles; t++) {
-            const int32_t *corner = solids[i].corners + 3 * t;
-            const double *at = solids[i].positions;
+/* What threads share: the triangles of all solids, in pieces. */
+typedef struct {
+    int64_t count, triangles;
+    const skg_solid *solids;
+    search *pieces; /* [grid->pieces] */
+} gathering;
+
+static skg_status gather_piece(void *user, int64_t piece) {
+    const gathering *g = user;
+    search *s = &g->pieces[piece];
+    int64_t first = piece * g->triangles / s->grid->pieces,
+            end = (piece + 1) * g->triangles / s->grid->pieces;
+    for (int64_t i = 0; i < g->count && end > 0; i++) {
+        const skg_solid *solid = &g->solids[i];
+        const double *at = solid->positions;
+        for (int64_t t = first; t < end && t < solid->triangles; t++) {
+            const int32_t *corner = solid->corners + 3 * t;
             SKG_TRY(add_triangle(s, (int32_t)i, at + 3 * (int64_t)corner[0], at + 3 * (int64_t)corner[1],
                                  at + 3 * (int64_t)corner[2]));
         }
+        first = first > solid->triangles ? first - solid->triangles : 0;
+        end -= solid->triangles;
+    }
     return SKG_OK;
 }
 
 /* Sorts the hits by cell: those of column c are from grid->first[c] to grid->first[c + 1] - 1. */
-static skg_status sort_by_cell(const search *s, skg_columns *grid) {
+static skg_status sort_by_cell(const search *pieces, skg_columns *grid) {
     const int64_t cells = grid->side * grid->side;
+    int64_t count = 0;
+    for (int64_t k = 0; k < grid->pieces; k++) count += pieces[k].count;
     SKG_TRY(skg_alloc(cells + 2, sizeof *grid->first, "overlap columns", &grid->first));
-    SKG_TRY(skg_alloc(s->count, sizeof *grid->hits, "overlap hits", &grid->hits));
+    SKG_TRY(skg_alloc(count, sizeof *grid->hits, "overlap hits", &grid->hits));
     /* Counts are stored two places on, so that first[c + 1] is where cell c begins when the cells are filled. */
-    for (int64_t i = 0; i < s->count; i++) grid->first[s->found[i].cell + 2]++;
+    for (int64_t k = 0; k < grid->pieces; k++)
+        for (int64_t i = 0; i < pieces[k].count; i++) grid->first[pieces[k].found[i].cell + 2]++;
     for (int64_t c = 0; c < cells; c++) grid->first[c + 2] += grid->first[c + 1];
-    for (int64_t i = 0; i < s->count; i++) grid->hits[grid->first[s->found[i].cell + 1]++] = s->found[i].hit;
+    for (int64_t k = 0; k < grid->pieces; k++)
+        for (int64_t i = 0; i < pieces[k].count; i++)
+            grid->hits[grid->first[pieces[k].found[i].cell + 1]++] = pieces[k].found[i].hit;
     return SKG_OK;
 }
 
 skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids) {
+    gathering g = {.count = count, .solids = solids};
     search s = {.grid = grid};
     for (int k = 0; k < 2; k++) {
         s.first[k] = skg_column_place(grid, k, 0);
         s.last[k] = skg_column_place(grid, k, grid->side - 1);
         s.inverse[k] = 1 / grid->step[k];
     }
-    skg_status status = add_all(&s, count, solids);
-    if (status == SKG_OK) status = sort_by_cell(&s, grid);
-    skg_free(&s.found);
+    for (int64_t i = 0; i < count; i++) g.triangles += solids[i].triangles;
+    SKG_TRY(skg_alloc(grid->pieces, sizeof *g.pieces, "overlap hits", &g.pieces));
+    for (int64_t k = 0; k < grid->pieces; k++) g.pieces[k] = s;
+    skg_status status = skg_parallel(grid->pieces, gather_piece, &g);
+    if (status == SKG_OK) status = sort_by_cell(g.pieces, grid);
+    for (int64_t k = 0; k < grid->pieces; k++) skg_free(&g.pieces[k].found);
+    skg_free(&g.pieces);
     return status;
 }
 

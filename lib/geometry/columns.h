@@ -19,6 +19,8 @@ typedef struct {
 
 typedef struct {
     int64_t side; /* columns along x and along y; set by the caller */
+    int64_t
+        pieces; /* in which threads gather hits, for the same hits in the same order; 1: the caller's thread alone */
     double low[3], high[3], step[2];
     int64_t *first; /* [side * side + 1] hits of each column */
     skg_column_hit *hits;

@@ -130,7 +130,7 @@ static int meet(const component *a, const component *b) {
 static skg_status examine(const component *components, int64_t c, int32_t orientation, skg_solid *solids,
                           int32_t *sign, verdict *found) {
     const component *own = &components[c];
-    skg_columns grid = {.side = SIDE};
+    skg_columns grid = {.side = SIDE, .pieces = 1};
     int64_t count = 1;
     *found = (verdict){0};
     solids[0] = own->solid, sign[0] = orientation;

@@ -1,13 +1,13 @@
 #include "geometry/overlap.h"
 
-#include "core/vector.h"
+#include "core/parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns along each side of the grid: 65,536 columns are 1.4 mm apart in a thorax. */
-enum { SIDE = 256 };
+/* Columns along each side of the grid: 65,536 columns are 1.4 mm apart in a thorax. Threads share the rows in bands. */
+enum { SIDE = 256, BANDS = 16, BAND_ROWS = SIDE / BANDS };
 
 typedef struct {
     int64_t slots, used;
@@ -38,18 +38,18 @@ static skg_status grow(pair_table *pairs) {
     return SKG_OK;
 }
 
-static skg_status add_chord(pair_table *pairs, int32_t kind, int64_t part, int64_t other, const double *place,
-                            double length, double area) {
+/* Adds a volume with its longest chord to a pair. */
+static skg_status add_pair(pair_table *pairs, const skg_overlap_pair *found) {
     if (2 * (pairs->used + 1) > pairs->slots) SKG_TRY(grow(pairs));
-    skg_overlap_pair *slot = find_slot(pairs, kind, part, other);
+    skg_overlap_pair *slot = find_slot(pairs, found->kind, found->part, found->other);
     if (slot->part < 0) {
-        *slot = (skg_overlap_pair){.kind = kind, .part = part, .other = other};
+        *slot = (skg_overlap_pair){.kind = found->kind, .part = found->part, .other = found->other};
         pairs->used++;
     }
-    slot->volume += length * area;
-    if (length > slot->longest) {
-        slot->longest = length;
-        memcpy(slot->place, place, sizeof slot->place);
+    slot->volume += found->volume;
+    if (found->longest > slot->longest) {
+        slot->longest = found->longest;
+        memcpy(slot->place, found->place, sizeof slot->place);
     }
     return SKG_OK;
 }
@@ -60,6 +60,7 @@ typedef struct {
     int32_t *depth;  /* [parts] how deep the column is inside each part */
     int32_t *active; /* parts with depth > 0 */
     int64_t count;
+    pair_table pairs;
 } sweep_state;
 
 static void pass(sweep_state *state, const skg_column_hit *hit) {
@@ -76,39 +77,70 @@ static void pass(sweep_state *state, const skg_column_hit *hit) {
 
 /* Compares every active part with its siblings and its parent over the stretch of a column between two hits.
  * Cousins need not be compared: where they overlap, their ancestors overlap or one of them has left its parent. */
-static skg_status judge(const sweep_state *state, const skg_solid *solids, pair_table *pairs,
-                        const double *place, double length, double area) {
+static skg_status judge(sweep_state *state, const skg_solid *solids, const double *place, double length,
+                        double area) {
+    skg_overlap_pair found = {.volume = length * area, .longest = length};
+    memcpy(found.place, place, sizeof found.place);
     for (int64_t i = 0; i < state->count; i++) {
         int64_t part = state->active[i], parent = solids[part].inside;
-        if (parent >= 0 && solids[parent].triangles > 0 && state->depth[parent] <= 0)
-            SKG_TRY(add_chord(pairs, SKG_OVERLAP_PROTRUDES, part, parent, place, length, area));
+        if (parent >= 0 && solids[parent].triangles > 0 && state->depth[parent] <= 0) {
+            found.kind = SKG_OVERLAP_PROTRUDES, found.part = part, found.other = parent;
+            SKG_TRY(add_pair(&state->pairs, &found));
+        }
         for (int64_t k = i + 1; k < state->count; k++) {
             int64_t other = state->active[k];
             if (solids[other].inside != parent) continue;
-            SKG_TRY(add_chord(pairs, SKG_OVERLAP_SIBLINGS, part < other ? part : other,
-                              part < other ? other : part, place, length, area));
+            found.kind = SKG_OVERLAP_SIBLINGS;
+            found.part = part < other ? part : other, found.other = part < other ? other : part;
+            SKG_TRY(add_pair(&state->pairs, &found));
         }
     }
     return SKG_OK;
 }
 
-static skg_status sweep(skg_columns *grid, const skg_solid *solids, sweep_state *state, pair_table *pairs) {
+static skg_status sweep_cell(skg_columns *grid, const skg_solid *solids, sweep_state *state, int64_t cell) {
     const double area = grid->step[0] * grid->step[1];
     /* Touching surfaces differ by rounding, which is far below this share of the depth of the scene. */
     const double least = 1e-9 * (grid->high[2] - grid->low[2]);
-    for (int64_t cell = 0; cell < (int64_t)SIDE * SIDE; cell++) {
-        int64_t first = grid->first[cell], end = grid->first[cell + 1];
-        skg_columns_sort(grid, cell);
-        for (int64_t h = first; h < end; h++) {
-            pass(state, &grid->hits[h]);
-            if (h + 1 == end) break;
-            double from = grid->hits[h].depth, to = grid->hits[h + 1].depth;
-            double place[3] = {skg_column_place(grid, 0, cell % SIDE), skg_column_place(grid, 1, cell / SIDE),
-                               (from + to) / 2};
-            if (to - from > least) SKG_TRY(judge(state, solids, pairs, place, to - from, area));
-        }
-        for (int64_t h = first; h < end; h++) state->depth[grid->hits[h].part] = 0;
-        state->count = 0;
+    const int64_t first = grid->first[cell], end = grid->first[cell + 1];
+    double place[3] = {skg_column_place(grid, 0, cell % SIDE), skg_column_place(grid, 1, cell / SIDE)};
+    skg_columns_sort(grid, cell);
+    for (int64_t h = first; h < end; h++) {
+        pass(state, &grid->hits[h]);
+        if (h + 1 == end) break;
+        const double from = grid->hits[h].depth, to = grid->hits[h + 1].depth;
+        place[2] = (from + to) / 2;
+        if (to - from > least) SKG_TRY(judge(state, solids, place, to - from, area));
+    }
+    for (int64_t h = first; h < end; h++) state->depth[grid->hits[h].part] = 0;
+    state->count = 0;
+    return SKG_OK;
+}
+
+/* What threads share. */
+typedef struct {
+    skg_columns grid;
+    int64_t count;
+    const skg_solid *solids;
+    sweep_state bands[BANDS];
+} sweeping;
+
+static skg_status sweep_band(void *user, int64_t band) {
+    sweeping *s = user;
+    sweep_state *state = &s->bands[band];
+    SKG_TRY(skg_alloc(s->count, sizeof *state->depth, "overlap sweep", &state->depth));
+    SKG_TRY(skg_alloc(s->count, sizeof *state->active, "overlap sweep", &state->active));
+    for (int64_t cell = band * BAND_ROWS * SIDE; cell < (band + 1) * BAND_ROWS * SIDE; cell++)
+        SKG_TRY(sweep_cell(&s->grid, s->solids, state, cell));
+    return SKG_OK;
+}
+
+/* Adds up the bands in their order, so that sums do not depend on the threads. */
+static skg_status add_bands(const sweeping *s, pair_table *found) {
+    for (int band = 0; band < BANDS; band++) {
+        const pair_table *pairs = &s->bands[band].pairs;
+        for (int64_t i = 0; i < pairs->slots; i++)
+            if (pairs->table[i].part >= 0) SKG_TRY(add_pair(found, &pairs->table[i]));
     }
     return SKG_OK;
 }
@@ -122,27 +154,28 @@ static int worst_first(const void *a, const void *b) {
 
 skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pair_count,
                              skg_overlap_pair **pairs) {
-    skg_columns grid = {.side = SIDE};
-    sweep_state state = {0};
+    sweeping s = {.grid = {.side = SIDE, .pieces = 4 * BANDS}, .count = count, .solids = solids};
     pair_table found = {0};
     skg_status status = SKG_OK;
     *pair_count = 0;
     *pairs = NULL;
-    skg_columns_bound(&grid, count, solids);
-    if (!(grid.step[0] > 0 && grid.step[1] > 0)) return SKG_OK; /* no solid has an extent */
-    SKG_TRY_CLEANUP(skg_columns_gather(&grid, count, solids));
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *state.depth, "overlap sweep", &state.depth));
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *state.active, "overlap sweep", &state.active));
-    SKG_TRY_CLEANUP(sweep(&grid, solids, &state, &found));
+    skg_columns_bound(&s.grid, count, solids);
+    if (!(s.grid.step[0] > 0 && s.grid.step[1] > 0)) return SKG_OK; /* no solid has an extent */
+    SKG_TRY_CLEANUP(skg_columns_gather(&s.grid, count, solids));
+    SKG_TRY_CLEANUP(skg_parallel(BANDS, sweep_band, &s));
+    SKG_TRY_CLEANUP(add_bands(&s, &found));
     for (int64_t i = 0; i < found.slots; i++)
         if (found.table[i].part >= 0) found.table[(*pair_count)++] = found.table[i];
     if (*pair_count) qsort(found.table, (size_t)*pair_count, sizeof *found.table, worst_first);
     *pairs = found.table;
     found.table = NULL;
 cleanup:
-    skg_columns_free(&grid);
-    skg_free(&state.depth);
-    skg_free(&state.active);
+    skg_columns_free(&s.grid);
+    for (int band = 0; band < BANDS; band++) {
+        skg_free(&s.bands[band].depth);
+        skg_free(&s.bands[band].active);
+        skg_free(&s.bands[band].pairs.table);
+    }
     skg_free(&found.table);
     return status;
 }

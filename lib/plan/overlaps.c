@@ -50,7 +50,7 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
         worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
 }
 
-/* What threads share: item 0 is the overlaps between parts, and the others are the meshes. */
+/* What threads share. */
 typedef struct {
     const skg_recipe *recipe;
     skg_outcome *outcome;
@@ -67,10 +67,9 @@ static skg_status check_overlaps(checking *c) {
     return skg_overlaps_find(scene->count, c->solids, &c->outcome->overlap_count, &c->outcome->overlaps);
 }
 
-static skg_status check_item(void *user, int64_t item) {
+static skg_status check_mesh(void *user, int64_t mesh) {
     checking *c = user;
-    if (item == 0) return check_overlaps(c);
-    return skg_nesting_find(c->recipe->meshes.meshes[item - 1], &c->nestings[item - 1], NULL);
+    return skg_nesting_find(c->recipe->meshes.meshes[mesh], &c->nestings[mesh], NULL);
 }
 
 skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_context *context, skg_outcome *outcome) {
@@ -82,7 +81,8 @@ skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_context *context
     SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *c.nestings, "overlap check", &c.nestings));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.solids, "overlap check", &c.solids));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.positions, "overlap check", &c.positions));
-    SKG_TRY_CLEANUP(skg_parallel(meshes + 1, check_item, &c));
+    SKG_TRY_CLEANUP(skg_parallel(meshes, check_mesh, &c));
+    SKG_TRY_CLEANUP(check_overlaps(&c));
     SKG_TRY_CLEANUP(skg_plan_meshes_warn(&recipe->meshes, c.nestings, scene, context));
     warn(recipe, context, outcome);
 cleanup:
