@@ -33,43 +33,49 @@ typedef struct {
 
 typedef struct {
     const skg_columns *grid;
-    double first[2], last[2], inverse[2]; /* where the outer columns are; 1 / step */
+    const double *places[2]; /* [side] of each axis: skg_column_place */
+    double inverse[2];       /* 1 / step */
     int64_t count, capacity;
     found_hit *found;
 } search;
 
-static skg_status add_hit(search *s, int64_t cell, skg_column_hit hit) {
-    if (s->count == s->capacity) {
-        const int64_t more = s->capacity < 1024 ? 4096 : 2 * s->capacity;
-        SKG_TRY(skg_realloc(more, sizeof *s->found, "overlap hits", &s->found));
-        s->capacity = more;
-    }
-    s->found[s->count++] = (found_hit){hit, cell};
+/* Makes room for the hits of one row. */
+static skg_status reserve_row(search *s) {
+    if (s->count + s->grid->side <= s->capacity) return SKG_OK;
+    const int64_t more = 2 * s->capacity + 4 * s->grid->side;
+    SKG_TRY(skg_realloc(more, sizeof *s->found, "overlap hits", &s->found));
+    s->capacity = more;
     return SKG_OK;
 }
 
-/* An index at or before the first column at or behind a place. */
-static int64_t index_before(const search *s, int axis, double place) {
+/* The first column at or behind a place; the number of columns if all are before it. */
+static int64_t first_behind(const search *s, int axis, double place) {
     const double index = (place - s->grid->low[axis]) * s->inverse[axis];
-    return index > 1 ? (int64_t)index - 1 : 0;
+    int64_t k = index > 1 ? (index < (double)s->grid->side ? (int64_t)index - 1 : s->grid->side) : 0;
+    while (k < s->grid->side && s->places[axis][k] < place) k++;
+    return k;
 }
 
+/* Where a triangle's plane is: a corner, and how its depth falls along x and y. */
+typedef struct {
+    const double *corner;
+    double fall[2];
+} plane;
+
 /* Adds the hits of a row, which crosses the triangle at x[0] and x[1]. */
-static skg_status add_row(search *s, int32_t part, const double *a, const double normal[3], int64_t row,
-                          double y, const double x[2], const int downward[2]) {
-    const skg_columns *grid = s->grid;
+static skg_status add_row(search *s, int32_t part, const plane *face, int64_t row, const double x[2],
+                          const int downward[2]) {
     const int first = x[0] <= x[1] ? 0 : 1;
-    if (!(x[first] <= s->last[0])) return SKG_OK;
-    for (int64_t column = index_before(s, 0, x[first]); column < grid->side; column++) {
-        const double at = skg_column_place(grid, 0, column);
-        if (at < x[first]) continue;
-        if (at >= x[1 - first]) break;
-        const double depth =
-            normal[2] != 0 ? a[2] - ((at - a[0]) * normal[0] + (y - a[1]) * normal[1]) / normal[2] : a[2];
+    const double *places = s->places[0], *a = face->corner;
+    const double along = (s->places[1][row] - a[1]) * face->fall[1];
+    SKG_TRY(reserve_row(s));
+    for (int64_t column = first_behind(s, 0, x[first]); column < s->grid->side; column++) {
+        if (places[column] >= x[1 - first]) break;
+        const double depth = a[2] - ((places[column] - a[0]) * face->fall[0] + along);
         /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and the ray
          * enters. */
-        SKG_TRY(
-            add_hit(s, row * grid->side + column, (skg_column_hit){depth, part, downward[first] ? -1 : 1}));
+        s->found[s->count++] =
+            (found_hit){{depth, part, downward[first] ? -1 : 1}, row * s->grid->side + column};
     }
     return SKG_OK;
 }
@@ -81,9 +87,10 @@ static double least(double a, double b, double c) {
 
 /* Whether a triangle lies beside all columns. Crossings are rounded, which is far below the step that is allowed for. */
 static int misses(const search *s, const double *a, const double *b, const double *c, double lo, double hi) {
-    if (!(lo <= s->last[1] && hi > s->first[1])) return 1;
+    const int64_t last = s->grid->side - 1;
+    if (!(lo <= s->places[1][last] && hi > s->places[1][0])) return 1;
     const double left = least(a[0], b[0], c[0]), right = -least(-a[0], -b[0], -c[0]);
-    return left > s->last[0] + s->grid->step[0] || right < s->first[0] - s->grid->step[0];
+    return left > s->places[0][last] + s->grid->step[0] || right < s->places[0][0] - s->grid->step[0];
 }
 
 /* Adds the hits of one triangle by the scan-crossing rule of the kernels, in double. */
@@ -95,19 +102,19 @@ static skg_status add_triangle(search *s, int32_t part, const double *a, const d
     skg_add_scaled(b, -1, a, ab);
     skg_add_scaled(c, -1, a, ac);
     skg_cross(ab, ac, normal);
-    for (int64_t row = index_before(s, 1, lo); row < s->grid->side; row++) {
-        const double y = skg_column_place(s->grid, 1, row);
+    const int slanted = normal[2] != 0;
+    const plane face = {a, {slanted ? normal[0] / normal[2] : 0, slanted ? normal[1] / normal[2] : 0}};
+    for (int64_t row = first_behind(s, 1, lo); row < s->grid->side && s->places[1][row] < hi; row++) {
+        const double y = s->places[1][row];
         double x[2];
         int found = 0, downward[2];
-        if (y < lo) continue;
-        if (y >= hi) break;
         for (int e = 0; e < 3 && found < 2; e++) {
             const double *from = p[e], *to = p[(e + 1) % 3];
             if ((from[1] <= y) == (to[1] <= y)) continue;
             downward[found] = from[1] > to[1];
             x[found++] = crossing(from, to, y);
         }
-        if (found == 2) SKG_TRY(add_row(s, part, a, normal, row, y, x, downward));
+        if (found == 2) SKG_TRY(add_row(s, part, &face, row, x, downward));
     }
     return SKG_OK;
 }
@@ -157,19 +164,23 @@ static skg_status sort_by_cell(const search *pieces, skg_columns *grid) {
 
 skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids) {
     gathering g = {.count = count, .solids = solids};
-    search s = {.grid = grid};
-    for (int k = 0; k < 2; k++) {
-        s.first[k] = skg_column_place(grid, k, 0);
-        s.last[k] = skg_column_place(grid, k, grid->side - 1);
-        s.inverse[k] = 1 / grid->step[k];
-    }
+    double *places = NULL;
+    skg_status status = SKG_OK;
     for (int64_t i = 0; i < count; i++) g.triangles += solids[i].triangles;
     SKG_TRY(skg_alloc(grid->pieces, sizeof *g.pieces, "overlap hits", &g.pieces));
-    for (int64_t k = 0; k < grid->pieces; k++) g.pieces[k] = s;
-    skg_status status = skg_parallel(grid->pieces, gather_piece, &g);
-    if (status == SKG_OK) status = sort_by_cell(g.pieces, grid);
+    SKG_TRY_CLEANUP(skg_alloc(2 * grid->side, sizeof *places, "overlap columns", &places));
+    for (int64_t i = 0; i < 2 * grid->side; i++)
+        places[i] = skg_column_place(grid, (int)(i / grid->side), i % grid->side);
+    for (int64_t k = 0; k < grid->pieces; k++)
+        g.pieces[k] = (search){.grid = grid,
+                               .places = {places, places + grid->side},
+                               .inverse = {1 / grid->step[0], 1 / grid->step[1]}};
+    SKG_TRY_CLEANUP(skg_parallel(grid->pieces, gather_piece, &g));
+    SKG_TRY_CLEANUP(sort_by_cell(g.pieces, grid));
+cleanup:
     for (int64_t k = 0; k < grid->pieces; k++) skg_free(&g.pieces[k].found);
     skg_free(&g.pieces);
+    skg_free(&places);
     return status;
 }
 
