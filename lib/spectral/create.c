@@ -43,16 +43,30 @@ static const skg_material *material_of(const making *m, int64_t body) {
     return body < m->scene->count ? m->scene->parts[body].material : m->options->world;
 }
 
+/* Scenes have many parts of few materials: a part takes what one of the last RECENT materials got. */
+enum { RECENT = 32 };
+
+/* The part among the recent ones that has this material, or -1. */
+static int64_t same_material(const making *m, const skg_material *material, const int64_t *recent,
+                             int64_t count) {
+    for (int64_t k = 0; k < count && k < RECENT; k++)
+        if (material_of(m, recent[k]) == material) return recent[k];
+    return -1;
+}
+
 static skg_status look_up(making *m, const skg_model *model) {
+    int64_t recent[RECENT], count = 0;
     SKG_TRY(skg_alloc(m->bodies * model->nodes, sizeof *m->mu, "attenuation of the parts", &m->mu));
     for (int64_t p = 0; p < m->bodies; p++) {
         double *mu = m->mu + p * model->nodes;
         const skg_material *material = material_of(m, p);
-        if (!material) continue;                          /* vacuum */
-        if (p > 0 && material_of(m, p - 1) == material) { /* neighbours often share a material */
-            memcpy(mu, mu - model->nodes, (size_t)model->nodes * sizeof *mu);
+        if (!material) continue; /* vacuum */
+        const int64_t known = same_material(m, material, recent, count);
+        if (known >= 0) {
+            memcpy(mu, m->mu + known * model->nodes, (size_t)model->nodes * sizeof *mu);
             continue;
         }
+        recent[count++ % RECENT] = p;
         for (int32_t n = 0; n < model->nodes; n++) {
             SKG_TRY(skg_material_attenuation_get(material, m->spectrum->energy_kev[m->bins[n]], &mu[n]));
             mu[n] *= 0.1; /* 1/cm to 1/mm */
