@@ -11,41 +11,38 @@
 #define SKG_LN2 0.693147180559945309417f
 #endif
 
-#if SKG_OUTPUT_DOUBLE
-#if !SKG_DOUBLE
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#endif
-typedef double skg_out;
-#define SKG_TO_OUT_V SKG_CAT(convert_double, SKG_WIDE)
-#else
-typedef float skg_out;
-#define SKG_TO_OUT_V SKG_CAT(convert_float, SKG_WIDE)
-#endif
-
 #define SKG_OUT_TO_REAL_V SKG_CAT(SKG_CAT(convert_, SKG_SCALAR), SKG_WIDE)
 
-static void skg_show(skg_realv value, __global skg_out *place, int pixels) {
-#if SKG_HALF
-    /* The image is rounded to binary16, too; energies are in MeV. */
-    float lanes[SKG_WIDE];
-    SKG_STORE_V(value, 0, lanes);
-    for (int k = 0; k < min(pixels, SKG_WIDE); k++) {
-        const float rounded = skg_to_half(lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT;
-        place[k] = (skg_out)rounded + (SKG_ADD ? place[k] : (skg_out)(0));
+/* Rare ways are functions of their own, so that there is little to compile. They take copies of vectors, because an array that
+ * is reached by an address or a variable index stays in memory. */
+
+/* What skg_show does at the end of a row; with SKG_HALF, everywhere. */
+SKG_APART void skg_show_some(const skg_realv *values, __global skg_out *place, int pixels) {
+    for (int r = 0; r * SKG_WIDE < pixels && r < SKG_RUNS; r++) {
+        skg_out lanes[SKG_WIDE];
+        SKG_STORE_V(outv, SKG_TO_OUT_V(values[r]), lanes);
+        for (int k = 0; k < min(pixels - r * SKG_WIDE, SKG_WIDE); k++, place++) {
+#if SKG_HALF /* the image is rounded to binary16, too; energies are in MeV */
+            lanes[k] = (skg_out)(skg_to_half((float)lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT);
+#endif
+            *place = SKG_ADD ? *place + lanes[k] : lanes[k];
+        }
     }
-    return;
-#endif
-    if (pixels >= SKG_WIDE) {
-#if SKG_ADD
-        SKG_STORE_V(SKG_LOAD_V(0, place) + SKG_TO_OUT_V(value), 0, place);
-#else
-        SKG_STORE_V(SKG_TO_OUT_V(value), 0, place);
-#endif
+}
+
+/* Writes the pixels of all runs, as far as there are any. */
+static void skg_show(const skg_realv *values, __global skg_out *place, int pixels) {
+    if (!SKG_HALF && pixels >= SKG_RUNS * SKG_WIDE) {
+        SKG_EACH_RUN {
+            const skg_outv shown = SKG_TO_OUT_V(values[r]);
+            __global skg_out *to = place + r * SKG_WIDE;
+            SKG_STORE_GLOBAL_V(outv, SKG_ADD ? SKG_LOAD_GLOBAL_V(outv, to) + shown : shown, to);
+        }
         return;
     }
-    skg_out rest[SKG_WIDE];
-    SKG_STORE_V(SKG_TO_OUT_V(value), 0, rest);
-    for (int k = 0; k < pixels; k++) place[k] = SKG_ADD ? place[k] + rest[k] : rest[k];
+    skg_realv kept[SKG_RUNS];
+    SKG_EACH_RUN kept[r] = values[r];
+    skg_show_some(kept, place, pixels);
 }
 
 /* The exponent of one node for each run: the sum over planes of coefficient times mm. */
@@ -60,37 +57,50 @@ static void skg_exponents(__constant const skg_real *coefficient, const skg_pixe
 #endif
 }
 
-/* How many of these pixels' lanes exceed the limit. */
-static void skg_count(skg_realv value, skg_real limit, int pixels, __global int *count) {
-    const skg_intv above = SKG_TO_INT_V(value > (skg_realv)(limit));
-    if (!skg_any(above)) return;
-    int lanes[SKG_WIDE], found = 0;
-    SKG_STORE_V(above, 0, lanes);
-    for (int k = 0; k < min(pixels, SKG_WIDE); k++) found -= lanes[k];
+SKG_APART void skg_count_some(const skg_realv *values, skg_real limit, int pixels, __global int *count) {
+    int found = 0;
+    for (int r = 0; r < SKG_RUNS; r++) {
+        int lanes[SKG_WIDE];
+        SKG_STORE_V(intv, SKG_TO_INT_V(values[r] > (skg_realv)(limit)), lanes);
+        for (int k = 0; k < min(pixels - r * SKG_WIDE, SKG_WIDE); k++) found -= lanes[k];
+    }
     if (found) atomic_add(count, found);
 }
 
+/* Counts the pixels of all runs that exceed the limit. */
+static void skg_count(const skg_realv *values, skg_real limit, int pixels, __global int *count) {
+    skg_intv above = (skg_intv)(0);
+    SKG_EACH_RUN above |= SKG_TO_INT_V(values[r] > (skg_realv)(limit));
+    if (!skg_any(above)) return;
+    skg_realv kept[SKG_RUNS];
+    SKG_EACH_RUN kept[r] = values[r];
+    skg_count_some(kept, limit, pixels, count);
+}
+
 /* Counts what is not finite once it is shown: NaN, infinity, and what rounds to infinity in binary16. */
-static void skg_count_infinite(skg_realv shown, int pixels, __global int *count) {
+static void skg_count_infinite(const skg_realv *shown, int pixels, __global int *count) {
     const skg_realv most = (skg_realv)(SKG_HALF ? (skg_real)65520 / (skg_real)SKG_HALF_UNIT : (skg_real)INFINITY);
     const skg_realv zero = (skg_realv)(0), one = (skg_realv)(1);
-    skg_count(fabs(shown) < most ? zero : one, 0, pixels, count);
+    skg_realv infinite[SKG_RUNS];
+    SKG_EACH_RUN infinite[r] = fabs(shown[r]) < most ? zero : one;
+    skg_count(infinite, 0, pixels, count);
 }
 
 #if SKG_RANGED
 /* Pixels that have a plane outside range[plane]. */
-static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels, __constant const skg_real *range,
-                              __global int *outside) {
-    SKG_EACH_RUN {
-        skg_realv most = (skg_realv)(range[0]) - pixels->x[0][r]; /* mm by which a plane is outside */
-        SKG_EACH_PLANE(0) {
+static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels) {
+    __constant const skg_real *range = pass->range;
+    skg_realv most[SKG_RUNS]; /* mm by which a plane is outside */
+    SKG_EACH_RUN most[r] = (skg_realv)(range[0]) - pixels->x[0][r];
+    SKG_EACH_PLANE(0) {
+        SKG_EACH_RUN {
             const skg_realv below = (skg_realv)(range[2 * p]) - pixels->x[p][r];
             const skg_realv above = pixels->x[p][r] - (skg_realv)(range[2 * p + 1]);
-            most = below > most ? below : most;
-            most = above > most ? above : most;
+            most[r] = below > most[r] ? below : most[r];
+            most[r] = above > most[r] ? above : most[r];
         }
-        skg_count(most, 0, pass->frame->columns - pass->column - r * SKG_WIDE, outside);
     }
+    skg_count(most, 0, pass->frame->columns - pass->column, pass->negative + 1);
 }
 #endif
 
@@ -202,7 +212,47 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
 #endif
 }
 
-/* One work-item takes SKG_RUNS runs of SKG_WIDE pixels of a row.
+/* SKG_RUNS runs of SKG_WIDE pixels of a row. */
+static void skg_attenuate_runs(const skg_pass *pass) {
+    skg_pixels pixels;
+    skg_read_planes(pass, &pixels);
+#if SKG_RANGED
+    skg_count_outside(pass, &pixels);
+#endif
+#if SKG_SPARSE
+    skg_list_planes(&pixels);
+#endif
+    skg_exponents(pass->coefficients, &pixels, pixels.highest);
+#if SKG_SHOW == SKG_SHOW_EXPONENT
+    SKG_EACH_RUN {
+        pixels.shown[0][r] = pixels.highest[r];
+        pixels.highest[r] = -pixels.highest[r];
+    }
+#else
+    skg_add_nodes(pass, &pixels);
+    SKG_EACH_RUN skg_finish(pass, &pixels, r);
+#endif
+    const int left = pass->frame->columns - pass->column;
+    __global skg_out *place = pass->output + pass->offset + pass->row * pass->row_stride + pass->column;
+    SKG_EACH_CHANNEL {
+        skg_count_infinite(pixels.shown[c], left, pass->negative + 2);
+        skg_show(pixels.shown[c], place + c * pass->channel_stride, left);
+#if SKG_NOISE_APART
+        skg_count_infinite(pixels.spread[c], left, pass->negative + 2);
+        skg_show(pixels.spread[c], place + (SKG_CHANNELS + c) * pass->channel_stride, left);
+#endif
+    }
+    skg_count(pixels.highest, pass->limit, left, pass->negative);
+}
+
+/* SKG_STRIP times as many pixels, as far as the row reaches. */
+SKG_APART void skg_attenuate_strip(const skg_pass *first) {
+    skg_pass pass = *first; /* a copy that stores cannot alias */
+    const int end = min(pass.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, pass.frame->columns);
+    for (; pass.column < end; pass.column += SKG_RUNS * SKG_WIDE) skg_attenuate_runs(&pass);
+}
+
+/* A work-item takes a strip of a row.
  *
  * coefficients   of -exponent * log2(e), or of the exponent if that is shown
  * factor         of intensities
@@ -260,15 +310,22 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #endif
 ) {
     skg_pass pass;
-    skg_pixels pixels;
     pass.frame = &frame;
     pass.ray = &ray;
     pass.nodes = nodes;
-    pass.column = SKG_WIDE * SKG_RUNS * (int)get_global_id(0);
+    pass.copies = copies;
+    pass.used = used;
+    pass.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
     pass.row = (int)get_global_id(1);
     pass.coefficients = coefficients;
     pass.weights = weights;
     pass.factor = factor;
+    pass.limit = limit;
+    pass.negative = negative;
+    pass.output = output;
+    pass.offset = offset;
+    pass.row_stride = row_stride;
+    pass.channel_stride = channel_stride;
 #if SKG_SUMS
     pass.lists = lists;
 #endif
@@ -284,6 +341,9 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     pass.key = &key;
     pass.photons = photons;
 #endif
+#if SKG_RANGED
+    pass.range = range;
+#endif
 #if SKG_SHADES
     pass.shades = &shades;
     pass.polynomials = 0;
@@ -295,38 +355,7 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
 #if SKG_BOWTIE + SKG_GRID
     pass.tables = tables;
 #endif
-    if (pass.column >= frame.columns || pass.row >= frame.rows) return;
-    skg_read_planes(&pass, copies, used, &pixels);
-#if SKG_RANGED
-    skg_count_outside(&pass, &pixels, range, negative + 1);
-#endif
-#if SKG_SPARSE
-    skg_list_planes(&pixels);
-#endif
-    skg_exponents(coefficients, &pixels, pixels.highest);
-#if SKG_SHOW == SKG_SHOW_EXPONENT
-    SKG_EACH_RUN {
-        pixels.shown[0][r] = pixels.highest[r];
-        pixels.highest[r] = -pixels.highest[r];
-    }
-#else
-    skg_add_nodes(&pass, &pixels);
-    SKG_EACH_RUN skg_finish(&pass, &pixels, r);
-#endif
-    SKG_EACH_RUN {
-        const int at = pass.column + r * SKG_WIDE, left = frame.columns - at;
-        __global skg_out *place = output + offset + pass.row * row_stride + at;
-        if (left <= 0) break;
-        SKG_EACH_CHANNEL {
-            skg_count_infinite(pixels.shown[c][r], left, negative + 2);
-            skg_show(pixels.shown[c][r], place + c * channel_stride, left);
-#if SKG_NOISE_APART
-            skg_count_infinite(pixels.spread[c][r], left, negative + 2);
-            skg_show(pixels.spread[c][r], place + (SKG_CHANNELS + c) * channel_stride, left);
-#endif
-        }
-        skg_count(pixels.highest[r], limit, left, negative);
-    }
+    if (pass.row < frame.rows) skg_attenuate_strip(&pass);
 }
 
 /* Turns means of several passes into attenuations: -ln of the mean, or of the smallest normal float if that is greater. One
@@ -339,10 +368,10 @@ __kernel void skg_logarithm(int columns, int rows, int channels, __global skg_ou
         __global skg_out *place = output + offset + row * row_stride + c * channel_stride + column;
         skg_out mean[SKG_WIDE];
         for (int k = 0; k < SKG_WIDE; k++) mean[k] = place[min(k, columns - column - 1)];
-        const skg_realv value = SKG_OUT_TO_REAL_V(SKG_LOAD_V(0, mean));
+        const skg_realv value = SKG_OUT_TO_REAL_V(SKG_LOAD_V(outv, mean));
         const skg_realv least = (skg_realv)(0x1p-126f);
         const skg_realv result = -skg_log_v(value > least ? value : least);
-        SKG_STORE_V(SKG_TO_OUT_V(result), 0, mean);
+        SKG_STORE_V(outv, SKG_TO_OUT_V(result), mean);
         for (int k = 0; k < min(SKG_WIDE, columns - column); k++) place[k] = mean[k];
     }
 }

@@ -10,10 +10,10 @@
 #define SKG_BLUR_RUN 4
 
 static skg_realv skg_border_v(__global const skg_real *row, int column, int columns) {
-    if (column >= 0 && column + SKG_WIDE <= columns) return SKG_LOAD_V(0, row + column);
+    if (column >= 0 && column + SKG_WIDE <= columns) return SKG_LOAD_GLOBAL_V(realv, row + column);
     skg_real lanes[SKG_WIDE];
     for (int k = 0; k < SKG_WIDE; k++) lanes[k] = row[clamp(column + k, 0, columns - 1)];
-    return SKG_LOAD_V(0, lanes);
+    return SKG_LOAD_V(realv, lanes);
 }
 
 /* First pass. taps: how many weights, odd; weights: [SKG_BLUR_ROWS - 1 + taps + SKG_BLUR_ROWS - 1], with zeros before and
@@ -41,7 +41,7 @@ __kernel void skg_blur_down(__global const skg_real *image, long offset, long ro
     SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++) {
         __global skg_real *place = workspace + ((long)channel * high + row + r) * stride + to;
         if (row + r < high) /* not a break, which would keep the loop from being unrolled; PoCL would warn the user */
-            SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) SKG_STORE_V(sum[r][v], v, place);
+            SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) SKG_STORE_GLOBAL_V(realv, sum[r][v], place + v * SKG_WIDE);
     }
 }
 
@@ -59,18 +59,18 @@ __kernel void skg_blur_across(__global const skg_real *workspace, int stride, in
         __global const skg_real *from = workspace + ((long)channel * high + row + j) * stride + column;
         for (int i = 0; i < across; i++)
             SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++)
-                sum[v] = fma((skg_realv)(weights[j * across + i]), SKG_LOAD_V(v, from + i), sum[v]);
+                sum[v] = fma((skg_realv)(weights[j * across + i]), SKG_LOAD_GLOBAL_V(realv, from + i + v * SKG_WIDE), sum[v]);
     }
     image += offset + channel * channel_stride + row * row_stride + column;
     SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++) {
         const int pixels = columns - column - v * SKG_WIDE;
+        __global skg_real *place = image + v * SKG_WIDE;
         if (pixels >= SKG_WIDE)
-            SKG_STORE_V(add ? SKG_LOAD_V(v, image) + sum[v] : sum[v], v, image);
+            SKG_STORE_GLOBAL_V(realv, add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v], place);
         else {
             skg_real rest[SKG_WIDE];
-            SKG_STORE_V(sum[v], 0, rest);
-            for (int k = 0; k < pixels; k++)
-                image[v * SKG_WIDE + k] = add ? image[v * SKG_WIDE + k] + rest[k] : rest[k];
+            SKG_STORE_V(realv, sum[v], rest);
+            for (int k = 0; k < pixels; k++) place[k] = add ? place[k] + rest[k] : rest[k];
         }
     }
 }

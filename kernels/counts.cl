@@ -19,7 +19,7 @@ __kernel void skg_count_bad_rows(skg_frame_args frame, __global const skg_sum *c
         }
     skg_sum lanes[SKG_WIDE];
     int total = 0;
-    SKG_STORE_V(bad, 0, lanes);
+    SKG_STORE_V(sumv, bad, lanes);
     for (int lane = 0; lane < SKG_WIDE; lane++) total += (int)lanes[lane];
     vstore3((int3)(total, from, to), (size_t)(k * frame.rows + row), rows_bad);
 }

@@ -20,10 +20,10 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     skg_realv value;
     image += offset + channel * channel_stride + row * row_stride + column;
     if (pixels >= SKG_WIDE)
-        value = SKG_LOAD_V(0, image);
+        value = SKG_LOAD_GLOBAL_V(realv, image);
     else {
         for (int k = 0; k < SKG_WIDE; k++) rest[k] = image[min(k, pixels - 1)];
-        value = SKG_LOAD_V(0, rest);
+        value = SKG_LOAD_V(realv, rest);
     }
 #if SKG_ELECTRONIC
     skg_uintv draw[4];
@@ -38,12 +38,12 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     skg_real flat[SKG_WIDE];
     flat_field += ((long)channel * rows + row) * columns + column;
     for (int k = 0; k < SKG_WIDE; k++) flat[k] = flat_field[min(k, pixels - 1)];
-    value /= SKG_LOAD_V(0, flat);
+    value /= SKG_LOAD_V(realv, flat);
 #endif
     if (pixels >= SKG_WIDE) {
-        SKG_STORE_V(value, 0, image);
+        SKG_STORE_GLOBAL_V(realv, value, image);
         return;
     }
-    SKG_STORE_V(value, 0, rest);
+    SKG_STORE_V(realv, value, rest);
     for (int k = 0; k < pixels; k++) image[k] = rest[k];
 }

@@ -37,7 +37,7 @@ __kernel void skg_leaky_add(skg_frame_args frame, __global const skg_sum *copies
                 const skg_sumv sums = skg_extent_sums_v(&frame, copies, used, plane, row, column);
                 if (!skg_any(SKG_TO_INT_V((sums & valid) != (skg_sumv)(0)))) continue; /* true of most of an extent */
                 __global skg_sum *place = shared + skg_place(&frame, table[parts + plane], row, column);
-                SKG_STORE_V(SKG_LOAD_V(0, place) + (sums & valid), 0, place);
+                *(__global skg_loose_sumv *)place += sums & valid;
             }
         }
     }

@@ -1,6 +1,6 @@
 /* Projects every vertex of every part to (x, y, z, t): x, y in pixels relative to the part's pixel, z = r / t, t. A work-item
- * takes SKG_RUN vertices: one on a GPU; on a CPU a run, so that compilers can turn the loop over the vertices of a part into
- * vectors. */
+ * takes one vertex on a GPU; on a CPU a run, so that compilers can turn the loop over the vertices of a part into vectors. */
+#define SKG_RUN (SKG_CPU ? SKG_CPU_RUN : 1)
 
 /* Heights below this are set to 0, so that the slope of no edge overflows. */
 #define SKG_FLAT 0x1p-40f
@@ -23,14 +23,14 @@ static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_p
     return *finite ? (skg_real4)(seen.x, high, seen.z, seen.w) : (skg_real4)(0, 0, 0, 1);
 }
 
-__kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *parts, __global const int *blocks,
-                          __global const skg_real *vertices, __global skg_real4 *projected,
-                          __global int *bad_vertex) {
-    int number = SKG_RUN * (int)get_global_id(0);
-    const int end = min(number + SKG_RUN, frame.vertices);
+/* Vertices from this number on. */
+SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global const skg_part_entry *parts,
+                               __global const int *blocks, __global const skg_real *vertices,
+                               __global skg_real4 *projected, __global int *bad_vertex) {
+    const int end = min(number + SKG_RUN, frame->vertices), all_parts = frame->parts;
     if (number >= end) return;
-    int part = skg_part_of_vertex(parts, frame.parts, blocks, number);
-    while (number < end && part < frame.parts) {
+    int part = skg_part_of_vertex(parts, all_parts, blocks, number);
+    while (number < end && part < all_parts) {
         const skg_part_entry p = parts[part++];
         number = max(number, p.first_vertex);
         const int last = min(end, p.first_vertex + p.vertices);
@@ -50,4 +50,10 @@ __kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *p
         }
         number = max(number, last);
     }
+}
+
+__kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *parts, __global const int *blocks,
+                          __global const skg_real *vertices, __global skg_real4 *projected,
+                          __global int *bad_vertex) {
+    skg_project_run(SKG_RUN * (int)get_global_id(0), &frame, parts, blocks, vertices, projected, bad_vertex);
 }

@@ -4,6 +4,7 @@
 
 typedef SKG_CAT(float, SKG_WIDE) skg_floatv;
 typedef SKG_CAT(uint, SKG_WIDE) skg_uintv;
+typedef skg_uintv skg_loose_uintv __attribute__((aligned(sizeof(uint))));
 #define SKG_AS_INT_V SKG_CAT(as_int, SKG_WIDE)
 #define SKG_TO_UINT_V SKG_CAT(convert_uint, SKG_WIDE)
 #define SKG_TO_FLOAT_V SKG_CAT(convert_float, SKG_WIDE)
@@ -180,10 +181,10 @@ static skg_uintv skg_show_image(skg_show_args args, __global const skg_show_face
                                  (float)args.image_rows - 0.5f);
     int at[SKG_WIDE], covered[SKG_WIDE];
     uint grey[SKG_WIDE];
-    SKG_STORE_V(SKG_TO_INT_V(row) * args.image_columns + SKG_TO_INT_V(column), 0, at);
-    SKG_STORE_V(mask, 0, covered);
+    SKG_STORE_V(intv, SKG_TO_INT_V(row) * args.image_columns + SKG_TO_INT_V(column), at);
+    SKG_STORE_V(intv, mask, covered);
     for (int k = 0; k < SKG_WIDE; k++) grey[k] = covered[k] ? image[at[k]] * 0x010101u | 0xff000000u : 0u;
-    return SKG_LOAD_V(0, grey);
+    return SKG_LOAD_V(uintv, grey);
 }
 
 /* A surface as it looks: lit from beside the eye, darker where it turns away, and there also less translucent. */
@@ -260,7 +261,7 @@ static skg_uintv skg_show_colours(skg_show_args args, __global const skg_show_fa
     int number[SKG_WIDE];
     skg_uintv colours = none;
     if (!skg_any(numbers != SKG_SHOW_NONE)) return none;
-    SKG_STORE_V(numbers, 0, number);
+    SKG_STORE_V(intv, numbers, number);
     for (int k = 0; k < SKG_WIDE; k++) {
         if (number[k] == SKG_SHOW_NONE || (k > 0 && number[k] == number[k - 1])) continue;
         __global const skg_show_face *face = faces + number[k];

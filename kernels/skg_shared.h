@@ -14,6 +14,9 @@
 /* Items (triangles or projected vertices) per entry of a block table. */
 #define SKG_BLOCK 64
 
+/* Vertices that a work-item of a CPU projects; on a GPU it takes one. */
+#define SKG_CPU_RUN 256
+
 /* Triangles with a vertex whose path parameter is not above this are drawn by the kernel for the source's plane. */
 #define SKG_NEAR 0x1p-10f
 

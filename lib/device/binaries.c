@@ -47,16 +47,3 @@ void skg_binary_save(const skg_device *device, const skg_digest *key, cl_program
         skg_store_write(device->store, key, SKG_KEPT_PROGRAM, binary, (int64_t)size);
     skg_free(&binary);
 }
-
-int skg_binary_pays(const skg_device *device, const skg_digest *key) {
-    void *data = NULL;
-    int64_t bytes = 0;
-    if (!device->recompiles) return 1;
-    const int seen = skg_store_read(device->store, key, SKG_KEPT_SEEN, &data, &bytes);
-    skg_free(&data);
-    if (seen)
-        skg_store_remove(device->store, key, SKG_KEPT_SEEN);
-    else
-        skg_store_write(device->store, key, SKG_KEPT_SEEN, "", 0);
-    return seen;
-}

@@ -15,9 +15,4 @@ cl_program skg_binary_load(skg_device *device, const skg_digest *key, const char
 /* Keeps a program. It should have been launched: PoCL adds the machine code of a kernel then. */
 void skg_binary_save(const skg_device *device, const skg_digest *key, cl_program program);
 
-/* Whether it is worth the time to keep this program now. PoCL has a cache of its own, and compiles every kernel a second
- * time when it is asked for the program; so the second process that uses the program keeps it, and one that is used once
- * costs nothing. */
-int skg_binary_pays(const skg_device *device, const skg_digest *key);
-
 #endif

@@ -231,7 +231,6 @@ void skg_context_release(skg_context **context) {
     if (!skg_unref(&last->refs)) return;
     skg_device *device = last->device;
     int ours = last->process == (int64_t)getpid(); /* a child process must not call OpenCL */
-    if (ours) skg_programs_keep(device);
     skg_programs_release(device, ours);
     if (ours && device->queue) clReleaseCommandQueue(device->queue);
     if (ours && device->cl) clReleaseContext(device->cl);

@@ -25,7 +25,7 @@ typedef struct skg_device {
     int64_t loads;         /* programs taken from the user's folder so far */
     skg_digest identity;   /* of the device and its driver */
     char *store;           /* folder in which compiled programs are kept; "": none */
-    int32_t recompiles;    /* 1: the driver compiles again when it is asked for a compiled program */
+    int32_t caches;        /* 1: the driver keeps compiled kernels itself */
     int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
     uint32_t passed;       /* bit n: test n of lib/trial */
     int32_t compile_noted; /* 1: the log has been told that kernels are compiled */

@@ -93,6 +93,12 @@ skg_digest skg_identity_of(cl_platform_id platform, cl_device_id device) {
     return skg_digest_end(&digester);
 }
 
+/* PoCL has a cache of its own, unless it is told to do without. */
+static int has_cache(cl_platform_id platform) {
+    const char *asked = getenv("POCL_KERNEL_CACHE");
+    return skg_platform_is(platform, "Portable Computing Language") && !(asked && strcmp(asked, "0") == 0);
+}
+
 skg_status skg_device_identify(skg_device *device) {
     char path[SKG_STORE_PATH];
     skg_store_find(path);
@@ -100,6 +106,6 @@ skg_status skg_device_identify(skg_device *device) {
     device->simulates = skg_platform_is(device->platform, "Oclgrind");
     if (device->simulates) path[0] = '\0';
     device->identity = skg_identity_of(device->platform, device->id);
-    device->recompiles = skg_platform_is(device->platform, "Portable Computing Language");
+    device->caches = has_cache(device->platform);
     return skg_copy_text(path, &device->store);
 }

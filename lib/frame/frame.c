@@ -52,8 +52,9 @@ static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pas
     cl_int *extents = NULL;
     SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
     SKG_TRY(skg_geometry_update(&machine->geometry, recipe->meshes.meshes, means->staging));
-    SKG_TRY(skg_geometry_project(machine->context, &machine->geometry, &pass->kernels, &pass->camera,
-                                 pass->parts, pass->scale.scale, log));
+    SKG_TRY(skg_geometry_project(machine->context, &machine->geometry,
+                                 skg_raster_projection(pass->main.raster), &pass->camera, pass->parts,
+                                 pass->scale.scale, log));
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
     SKG_TRY(skg_pass_extents(pass, means->staging, &extents));
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));

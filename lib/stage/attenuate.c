@@ -11,9 +11,17 @@
 /* How many kernels an attenuator keeps. */
 enum { MOST_KERNELS = 16 };
 
-/* How many vectors of pixels one work-item computes. One energy at 512 x 512 pixels on two cores takes 0.25 ms with 1 vector
- * and 0.18 ms with 4. */
-enum { RUNS = 4 };
+/* A work-item attenuates `runs` vectors of pixels together, `strip` times. A GPU hides latency by the former; a CPU has less
+ * to compile by the latter. */
+typedef struct {
+    int runs, strip;
+    size_t local[2];
+} work_shape;
+
+static work_shape shape_of(const skg_context *context) {
+    static const work_shape gpu = {4, 1, {8, 16}}, cpu = {4, 8, {1, 16}};
+    return context->device->info.is_gpu ? gpu : cpu;
+}
 
 /* log2 of e, to the precision of a double. */
 static const double LOG2_E = 1.4426950408889634;
@@ -110,6 +118,7 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     const char *files[7] = {"exponential.clh"};
     int count = 1;
+    const work_shape work = shape_of(attenuator->context);
     char more[480];
     if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
     if (key->shades) files[count++] = "shades.clh";
@@ -119,12 +128,12 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_RANGED=%d -D SKG_SUMS=%d "
+        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_STRIP=%d -D SKG_RANGED=%d -D SKG_SUMS=%d "
         "-D SKG_SHADES=%d -D SKG_HEEL=%d -D SKG_OBLIQUE=%d -D SKG_BOWTIE=%d -D SKG_GRID=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add, RUNS,
-        (int)key->ranged, (int)key->mixed, (int)key->shades, (int)key->heel, (int)key->oblique,
-        (int)key->bowtie, (int)key->grid, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+        (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add,
+        work.runs, work.strip, (int)key->ranged, (int)key->mixed, (int)key->shades, (int)key->heel,
+        (int)key->oblique, (int)key->bowtie, (int)key->grid, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
     return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
 }
 
@@ -279,11 +288,12 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, tables, attenuation->tables.memory),
     };
     SKG_TRY(set_arguments(kernel, &key, arguments));
-    const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision) * RUNS;
-    const size_t local[2] = {8, 16}; /* large groups: PoCL takes some 20 ns for each */
-    const size_t global[2] = {(size_t)skg_round_up((raster->frame.columns + lanes - 1) / lanes, 8),
-                              (size_t)skg_round_up(raster->frame.rows, 16)};
-    return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, local, log);
+    const work_shape work = shape_of(raster->context);
+    const int64_t pixels = skg_kernel_lanes(raster->context, key.options.precision) * work.runs * work.strip;
+    const size_t across = (size_t)((raster->frame.columns + pixels - 1) / pixels);
+    const size_t global[2] = {(size_t)skg_round_up((int64_t)across, (int64_t)work.local[0]),
+                              (size_t)skg_round_up(raster->frame.rows, (int64_t)work.local[1])};
+    return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, work.local, log);
 }
 
 skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums,

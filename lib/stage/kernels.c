@@ -25,11 +25,11 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
     for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];
     snprintf(text, sizeof text,
              "-D SKG_DOUBLE=%d -D SKG_BITS=%d -D SKG_WIDE=%d -D SKG_PARALLEL=%d -D SKG_SOURCE_PLANE=%d "
-             "-D SKG_LISTED=%d -D SKG_HALF=%d %s",
+             "-D SKG_LISTED=%d -D SKG_HALF=%d -D SKG_CPU=%d %s",
              options->precision == SKG_PRECISION_DOUBLE, options->bits,
              skg_kernel_lanes(context, options->precision), options->parallel != 0,
              options->source_plane != 0, options->listed != 0, options->half != 0,
-             more_options ? more_options : "");
+             !context->device->info.is_gpu, more_options ? more_options : "");
     return skg_program_get(context, HEADERS + files, all, text, program);
 }
 

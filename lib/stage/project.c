@@ -8,9 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* How many vertices one work-item projects on a CPU. */
-enum { RUN = 256 };
-
 static int is_double(const skg_geometry *geometry) {
     return geometry->precision == SKG_PRECISION_DOUBLE;
 }
@@ -201,8 +198,6 @@ void skg_geometry_release(skg_geometry *geometry) {
         skg_free(&slot->entries);
         skg_free(&slot->contributions);
     }
-    if (geometry->kernel) clReleaseKernel(geometry->kernel);
-    geometry->kernel = NULL;
 }
 
 /* Single precision takes what changes from frame to frame from the double values, rounded once. */
@@ -311,26 +306,10 @@ skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, cons
     return SKG_OK;
 }
 
-static skg_status get_kernel(skg_context *context, skg_geometry *geometry,
-                             const skg_kernel_options *options) {
-    static const char *const files[] = {"project.cl"};
-    cl_program program = NULL;
-    char run[32] = "";
-    if (!context->device->info.is_gpu) snprintf(run, sizeof run, "-D SKG_RUN=%d", RUN);
-    if (geometry->kernel && memcmp(&geometry->kernel_options, options, sizeof *options) == 0) return SKG_OK;
-    if (geometry->kernel) clReleaseKernel(geometry->kernel);
-    geometry->kernel = NULL;
-    SKG_TRY(skg_kernels_get(context, options, 1, files, run, &program));
-    SKG_TRY(skg_kernel_create(program, "skg_project", &geometry->kernel));
-    geometry->kernel_options = *options;
-    return SKG_OK;
-}
-
-skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
-                                const skg_kernel_options *options, const skg_camera *camera,
-                                const skg_geometry_part *part, double scale, skg_stage_log *log) {
+skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
+                                const skg_camera *camera, const skg_geometry_part *part, double scale,
+                                skg_stage_log *log) {
     SKG_TRY(skg_geometry_weigh(context, geometry, camera, part, scale));
-    SKG_TRY(get_kernel(context, geometry, options));
     const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
     const skg_argument arguments[] = {
         SKG_ARGUMENT(PROJECT, frame, frame),
@@ -341,10 +320,10 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
         SKG_ARGUMENT(PROJECT, bad_vertex, geometry->bad.memory),
     };
     const int on_gpu = context->device->info.is_gpu;
-    const size_t local = on_gpu ? 64 : 1, run = on_gpu ? 1 : RUN;
+    const size_t local = on_gpu ? 64 : 1, run = on_gpu ? 1 : SKG_CPU_RUN;
     const size_t global = ((size_t)geometry->vertices + local * run - 1) / (local * run) * local;
-    SKG_TRY(SKG_SET_ARGUMENTS(geometry->kernel, arguments));
-    return skg_kernel_run(context, geometry->kernel, "project", 1, &global, &local, log);
+    SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
+    return skg_kernel_run(context, kernel, "project", 1, &global, &local, log);
 }
 
 int64_t skg_geometry_bytes(const skg_geometry *geometry) {

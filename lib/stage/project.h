@@ -50,8 +50,6 @@ typedef struct {
     int32_t slot;                /* that holds the tables as the device has them */
     int32_t uploaded;            /* 1: the device has tables */
     skg_table_slot slots[SKG_TABLE_SLOTS];
-    cl_kernel kernel;
-    skg_kernel_options kernel_options;
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
     skg_buffer projected; /* x, y, z, t of each vertex over all parts */
     /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
@@ -92,10 +90,11 @@ skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, 
 /* Enqueues that no vertex was bad: frames are independent, so each begins with it. */
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry);
 
-/* Enqueues one frame's part table and projection. part: [parts]; scale: of the accumulators (multiplies weights). */
-skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry,
-                                const skg_kernel_options *options, const skg_camera *camera,
-                                const skg_geometry_part *part, double scale, skg_stage_log *log);
+/* Enqueues one frame's part table and projection. kernel: the raster's (skg_raster_projection); part: [parts]; scale: of the
+ * accumulators (multiplies weights). */
+skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
+                                const skg_camera *camera, const skg_geometry_part *part, double scale,
+                                skg_stage_log *log);
 
 /* Enqueues another part table for a frame that is projected: the same parts with other contributions. */
 skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,

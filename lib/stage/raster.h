@@ -30,6 +30,9 @@ typedef struct skg_raster skg_raster;
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster);
 void skg_raster_release(skg_raster **raster);
 
+/* The kernel that projects vertices for this raster. It is of the same program, because each program takes time to compile. */
+cl_kernel skg_raster_projection(const skg_raster *raster);
+
 /* Gives the rays of the frames to come. Only sums in half precision need them. */
 void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
 

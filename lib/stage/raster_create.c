@@ -132,43 +132,58 @@ static skg_status make_extents(skg_raster *raster) {
     return skg_raster_fill(raster, &raster->used, 1, 0, raster->used.bytes);
 }
 
-static skg_status compile(skg_raster *raster) {
+/* A kernel of a raster, by its name. */
+typedef struct {
+    int which;
+    const char *name;
+} named_kernel;
+
+/* Compiles these files, the projection before them, and makes its kernel and these. */
+static skg_status compile_files(skg_raster *raster, int32_t files, const char *const *names, int kernels,
+                                const named_kernel *kernel) {
+    enum { MOST = 5 };
+    const char *all[MOST] = {"project.cl"};
+    cl_program program = NULL;
+    for (int32_t i = 0; i < files; i++) all[i + 1] = names[i];
+    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 1, all, NULL, &program));
+    SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
+    for (int k = 0; k < kernels; k++)
+        SKG_TRY(skg_kernel_create(program, kernel[k].name, &raster->kernels[kernel[k].which]));
+    return SKG_OK;
+}
+
+static skg_status compile_strategy(skg_raster *raster) {
+    static const char *const half[] = {"pixel.clh", "half.cl"};
     static const char *const copies[] = {"batch.clh", "draw.clh", "raster_copies.cl"};
     static const char *const atomics[] = {"pixel.clh", "raster_atomics.cl"};
+    static const char *const squares[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
     static const char *const bands[] = {"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"};
-    static const char *const square_files[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
+    static const named_kernel of_half[] = {{SKG_RASTER_DRAW, "skg_raster_half"}};
+    static const named_kernel of_copies[] = {{SKG_RASTER_DRAW, "skg_raster_copies"}};
+    static const named_kernel of_atomics[] = {{SKG_RASTER_DRAW, "skg_raster_atomics"},
+                                              {SKG_RASTER_LARGE, "skg_raster_queue"}};
+    static const named_kernel of_squares[] = {{SKG_RASTER_COUNT, "skg_tiles_count"},
+                                              {SKG_RASTER_SCAN, "skg_tiles_scan"},
+                                              {SKG_RASTER_FILL, "skg_tiles_fill"},
+                                              {SKG_RASTER_DRAW, "skg_raster_squares"}};
+    static const named_kernel of_bands[] = {{SKG_RASTER_FILL, "skg_bands_sort"},
+                                            {SKG_RASTER_DRAW, "skg_raster_bands"}};
+    if (raster->options.kernels.half) return compile_files(raster, 2, half, 1, of_half);
+    if (raster->options.strategy == SKG_STRATEGY_COPIES)
+        return compile_files(raster, 3, copies, 1, of_copies);
+    if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
+        return compile_files(raster, 2, atomics, 2, of_atomics);
+    return skg_raster_has_squares(raster) ? compile_files(raster, 3, squares, 4, of_squares)
+                                          : compile_files(raster, 4, bands, 2, of_bands);
+}
+
+static skg_status compile(skg_raster *raster) {
     static const char *const source[] = {"pixel.clh", "source_plane.cl"};
-    static const char *const half[] = {"pixel.clh", "half.cl"};
     const skg_kernel_options *options = &raster->options.kernels;
-    skg_context *context = raster->context;
     cl_program program = NULL;
-    if (options->half) {
-        SKG_TRY(skg_kernels_get(context, options, 2, half, NULL, &program));
-        return skg_kernel_create(program, "skg_raster_half", &raster->kernels[SKG_RASTER_DRAW]);
-    }
-    if (raster->options.strategy == SKG_STRATEGY_COPIES) {
-        SKG_TRY(skg_kernels_get(context, options, 3, copies, NULL, &program));
-        SKG_TRY(skg_kernel_create(program, "skg_raster_copies", &raster->kernels[SKG_RASTER_DRAW]));
-    } else if (raster->options.strategy == SKG_STRATEGY_ATOMICS) {
-        SKG_TRY(skg_kernels_get(context, options, 2, atomics, NULL, &program));
-        SKG_TRY(skg_kernel_create(program, "skg_raster_atomics", &raster->kernels[SKG_RASTER_DRAW]));
-        SKG_TRY(skg_kernel_create(program, "skg_raster_queue", &raster->kernels[SKG_RASTER_LARGE]));
-    } else {
-        SKG_TRY(skg_kernels_get(context, options, skg_raster_has_squares(raster) ? 3 : 4,
-                                skg_raster_has_squares(raster) ? square_files : bands, NULL, &program));
-        if (skg_raster_has_squares(raster)) {
-            SKG_TRY(skg_kernel_create(program, "skg_tiles_count", &raster->kernels[SKG_RASTER_COUNT]));
-            SKG_TRY(skg_kernel_create(program, "skg_tiles_scan", &raster->kernels[SKG_RASTER_SCAN]));
-        }
-        SKG_TRY(skg_kernel_create(program,
-                                  skg_raster_has_squares(raster) ? "skg_tiles_fill" : "skg_bands_sort",
-                                  &raster->kernels[SKG_RASTER_FILL]));
-        SKG_TRY(skg_kernel_create(program,
-                                  skg_raster_has_squares(raster) ? "skg_raster_squares" : "skg_raster_bands",
-                                  &raster->kernels[SKG_RASTER_DRAW]));
-    }
-    if (!options->source_plane || options->parallel) return SKG_OK;
-    SKG_TRY(skg_kernels_get(context, options, 2, source, NULL, &program));
+    SKG_TRY(compile_strategy(raster));
+    if (!options->source_plane || options->parallel || options->half) return SKG_OK;
+    SKG_TRY(skg_kernels_get(raster->context, options, 2, source, NULL, &program));
     return skg_kernel_create(program, "skg_source_plane", &raster->kernels[SKG_RASTER_SOURCE]);
 }
 
@@ -205,6 +220,10 @@ void skg_raster_release(skg_raster **raster) {
     release_kernel(r->bad_rows);
     release_kernel(r->bad);
     skg_free(raster);
+}
+
+cl_kernel skg_raster_projection(const skg_raster *raster) {
+    return raster->kernels[SKG_RASTER_PROJECT];
 }
 
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles) {

@@ -5,6 +5,7 @@
 #include "stage/raster.h"
 
 enum {
+    SKG_RASTER_PROJECT,
     SKG_RASTER_COUNT,
     SKG_RASTER_SCAN,
     SKG_RASTER_FILL,

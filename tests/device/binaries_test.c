@@ -3,6 +3,7 @@
 #include "device/binaries.h"
 #include "device/cache_folder.h"
 #include "device/device.h"
+#include "device/identity.h"
 #include "device/program.h"
 #include "device/store.h"
 #include "suite.h"
@@ -40,8 +41,8 @@ typedef struct {
     int value;
 } outcome;
 
-/* What a process does: makes the program and runs it. slow: as drivers are that compile again when asked for it. */
-static outcome run(const char *options, int slow) {
+/* What a process does: makes the program and runs it. caches: as drivers do that keep kernels themselves. */
+static outcome run(const char *options, int caches) {
     const char *names[] = {"set.cl"};
     char config[96];
     skg_context *context = NULL;
@@ -52,7 +53,7 @@ static outcome run(const char *options, int slow) {
     snprintf(config, sizeof config, "device=0:0 kernels=%s", kernels);
     ck_skg(skg_context_create(config, &context));
     skg_device *device = context->device;
-    device->recompiles = slow;
+    device->caches = caches;
     const int64_t builds = device->builds, loads = device->loads;
     ck_skg(skg_program_get(context, 1, names, options, &program));
     ck_skg(skg_kernel_create(program, "set", &kernel));
@@ -108,15 +109,25 @@ START_TEST(a_folder_that_cannot_be_written_does_no_harm) {
 }
 END_TEST
 
-/* A driver that compiles again for it is asked by the second process. */
-START_TEST(a_slow_driver_is_asked_the_second_time) {
+/* A driver that keeps kernels itself is not asked for them. */
+START_TEST(what_a_driver_keeps_is_not_kept_twice) {
     ck_outcome(run("", 1), 1, 0, 7);
-    ck_assert_int_eq(count_kept(".program", NULL), 0);
-    ck_assert_int_eq(count_kept(".seen", NULL), 1);
     ck_outcome(run("", 1), 1, 0, 7);
-    ck_assert_int_eq(count_kept(".program", NULL), 1);
-    ck_assert_int_eq(count_kept(".seen", NULL), 0);
-    ck_outcome(run("", 1), 0, 1, 7);
+    ck_assert_int_eq(count_kept("", NULL), 0);
+}
+END_TEST
+
+/* PoCL's cache is on unless the user says otherwise. */
+START_TEST(pocl_keeps_kernels_itself) {
+    static const char *const asked[] = {NULL, "1", "0"};
+    for (int k = 0; k < 3; k++) {
+        skg_context *context = NULL;
+        if (asked[k]) setenv("POCL_KERNEL_CACHE", asked[k], 1);
+        ck_skg(skg_context_create("device=0:0", &context));
+        const int pocl = skg_platform_is(context->device->platform, "Portable Computing Language");
+        ck_assert_int_eq(context->device->caches, pocl && k < 2);
+        skg_context_release(&context);
+    }
 }
 END_TEST
 
@@ -177,7 +188,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_program_is_compiled_once);
     tcase_add_test(tests, none_keeps_nothing);
     tcase_add_test(tests, a_folder_that_cannot_be_written_does_no_harm);
-    tcase_add_test(tests, a_slow_driver_is_asked_the_second_time);
+    tcase_add_test(tests, what_a_driver_keeps_is_not_kept_twice);
+    tcase_add_test(tests, pocl_keeps_kernels_itself);
     tcase_add_test(tests, what_the_driver_rejects_is_compiled);
     tcase_add_test(tests, processes_beside_each_other_share_the_folder);
     tcase_add_test(tests, the_environment_is_part_of_the_key);

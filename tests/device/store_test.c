@@ -121,15 +121,15 @@ START_TEST(the_folder_is_made_private) {
     struct stat status;
     const skg_digest key = key_of("a");
     snprintf(path, sizeof path, "%s/x/skiagraph", cache_folder);
-    ck_assert_int_eq(skg_store_write(path, &key, SKG_KEPT_SEEN, "", 0), 1);
+    ck_assert_int_eq(skg_store_write(path, &key, SKG_KEPT_PROGRAM, "", 0), 1);
     ck_assert_int_eq(stat(path, &status), 0);
     ck_assert_uint_eq(status.st_mode & 0777, 0700);
-    skg_store_remove(path, &key, SKG_KEPT_SEEN);
+    skg_store_remove(path, &key, SKG_KEPT_PROGRAM);
     ck_assert_int_eq(rmdir(path), 0);
     snprintf(path, sizeof path, "%s/x", cache_folder);
     ck_assert_int_eq(rmdir(path), 0);
-    ck_assert_int_eq(skg_store_write("/dev/null/cache", &key, SKG_KEPT_SEEN, "", 0), 0);
-    ck_assert_int_eq(skg_store_write("", &key, SKG_KEPT_SEEN, "", 0), 0);
+    ck_assert_int_eq(skg_store_write("/dev/null/cache", &key, SKG_KEPT_PROGRAM, "", 0), 0);
+    ck_assert_int_eq(skg_store_write("", &key, SKG_KEPT_PROGRAM, "", 0), 0);
 }
 END_TEST
 

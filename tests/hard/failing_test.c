@@ -225,7 +225,7 @@ static skg_status prepare(run *r) {
         TRY(skg_context_create_cl(r->shared.context, r->shared.device, r->shared.queue, &r->context));
     else
         TRY(skg_context_create(r->with->device, &r->context));
-    if (r->with->fresh) r->context->device->recompiles = 0; /* as if the driver gave a program at once */
+    if (r->with->fresh) r->context->device->caches = 0; /* as if the driver had no cache */
     TRY(skg_setup_load(r->context, path, settings, r->with->settings, &r->setup));
     if (r->with->breathes) TRY(skg_motion_create(r->context, r->setup, &r->motion));
     return plan_it(r);

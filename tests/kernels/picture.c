@@ -193,7 +193,7 @@ static double middle_depth(const skg_camera *camera, const body *of) {
     return isfinite(low) ? 0.5 * (low + high) : 1;
 }
 
-static skg_status project(skg_context *context, skg_geometry *geometry, const skg_raster_options *options,
+static skg_status project(skg_context *context, skg_geometry *geometry, const skg_raster *raster,
                           const skg_camera *camera, int bodies, const body *of, double scale) {
     static const double origin[3] = {0, 0, 0};
     skg_geometry_part *parts = calloc((size_t)bodies, sizeof *parts);
@@ -209,7 +209,7 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
                                 .contribution = &weights[b]};
     }
     skg_status status =
-        skg_geometry_project(context, geometry, &options->kernels, camera, parts, scale, NULL);
+        skg_geometry_project(context, geometry, skg_raster_projection(raster), camera, parts, scale, NULL);
     free(parts);
     free(weights);
     return status;
@@ -322,7 +322,7 @@ skg_status picture_take(skg_context *context, const skg_raster_options *options,
     with_size.triangles = geometry.triangles;
     SKG_TRY_CLEANUP(skg_camera_make(view, NULL, 0, 0, &camera));
     SKG_TRY_CLEANUP(skg_raster_create(context, &with_size, &raster));
-    SKG_TRY_CLEANUP(project(context, &geometry, &with_size, &camera, bodies, of, scale));
+    SKG_TRY_CLEANUP(project(context, &geometry, raster, &camera, bodies, of, scale));
     SKG_TRY_CLEANUP(skg_raster_run(raster, &geometry, NULL, NULL));
     SKG_TRY_CLEANUP(read_lengths(context, raster, &camera, scale, result));
     SKG_TRY_CLEANUP(read_bad_pixels(context, raster, result));
