@@ -103,6 +103,8 @@ static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_bod
     }
     int64_t broken;
     double worst;
+    for (int64_t i = 0; o->coupled && i < o->vertices; i++) /* of others it is what the chain was moved to */
+        for (int k = 0; k < 3; k++) o->state[k * o->vertices + i] = o->moved[3 * i + k];
     skg_chain_check(o->chain, o->state, broken_mm, &broken, &worst);
     m->broken_links += broken;
 }

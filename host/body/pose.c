@@ -4,6 +4,7 @@
 #include "body/follow.h"
 #include "body/ribs.h"
 #include "body/share.h"
+#include "body/thin.h"
 #include "body/wall.h"
 #include "core/plain.h"
 #include "core/vector.h"
@@ -110,15 +111,21 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
     pose_rigid(o);
 }
 
+/* Links are kept last. Where that folds a thin facet again, both are done once more. */
 static skg_status pose_coupled(const skg_body *body, skg_body_organ *o) {
-    for (int64_t i = 0; i < o->vertices; i++) skg_share_displace(body, o, o->node_of[i], o->moved + 3 * i);
-    if (!o->chain) return SKG_OK;
-    const int64_t nodes = o->chain->nodes;
-    for (int64_t i = 0; i < nodes; i++)
-        for (int k = 0; k < 3; k++) o->state[k * nodes + i] = o->moved[3 * i + k];
-    SKG_TRY(skg_chain_settle(o->chain, o->state, &o->report));
-    for (int64_t i = 0; o->report.conflict_mm > 0 && i < nodes; i++)
-        for (int k = 0; k < 3; k++) o->moved[3 * i + k] = o->state[k * nodes + o->node_of[i]];
+    enum { ROUNDS = 8 };
+    skg_chain_report last;
+    skg_share_displace(body, o);
+    skg_thin_open(o);
+    if (o->chain) SKG_TRY(skg_chain_settle(o->chain, o->moved, &o->report));
+    last = o->report;
+    for (int round = 1; round < ROUNDS && last.conflict_mm > 0 && skg_thin_open(o); round++) {
+        SKG_TRY(skg_chain_settle(o->chain, o->moved, &last));
+        if (last.conflict_mm > o->report.conflict_mm) o->report = last;
+    }
+    for (int64_t i = 0; i < o->vertices; i++)
+        if (o->node_of[i] != i)
+            memcpy(o->moved + 3 * i, o->moved + 3 * (int64_t)o->node_of[i], 3 * sizeof(double));
     return SKG_OK;
 }
 

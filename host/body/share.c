@@ -3,6 +3,7 @@
 #include "body/liver.h"
 #include "body/near.h"
 #include "body/rim.h"
+#include "body/thin.h"
 #include "body/wall.h"
 #include "core/vector.h"
 
@@ -132,15 +133,18 @@ skg_status skg_share_find(const skg_body *body, skg_body_organ *o) {
     else if (!skg_label_is_wall(o->label))
         share_over_diaphragm(body, o, away);
     SKG_TRY_CLEANUP(find_courses(body, o, away));
+    SKG_TRY_CLEANUP(skg_thin_find(o));
 cleanup:
     skg_free(&away);
     return status;
 }
 
-void skg_share_displace(const skg_body *body, const skg_body_organ *o, int64_t i, double displacement[3]) {
-    memset(displacement, 0, 3 * sizeof *displacement);
-    if (o->bone)
-        skg_wall_displace(body, o->bone + BONES * i, o->bone_weight + BONES * i, o->rest + 3 * i,
-                          displacement);
-    skg_add_scaled(displacement, body->descended, o->course + 3 * i, displacement);
+void skg_share_displace(const skg_body *body, skg_body_organ *o) {
+    if (o->bone && body->bones_move)
+        skg_wall_displace(body, o);
+    else
+        memset(o->moved, 0, (size_t)(3 * o->vertices) * sizeof *o->moved);
+    for (int64_t i = 0; i < o->vertices && body->descended != 0; i++)
+        skg_add_scaled(o->moved + 3 * i, body->descended, o->course + 3 * (int64_t)o->node_of[i],
+                       o->moved + 3 * i);
 }

@@ -18,8 +18,7 @@ int skg_is_coupled(const skg_body *body, const skg_body_organ *organ);
 /* Finds shares and bones. The diaphragm's come first. */
 skg_status skg_share_find(const skg_body *body, skg_body_organ *organ);
 
-/* The displacement that a vertex of such an organ shall have. */
-void skg_share_displace(const skg_body *body, const skg_body_organ *organ, int64_t vertex,
-                        double displacement[3]);
+/* The displacements that the vertices of such an organ shall have: into moved. */
+void skg_share_displace(const skg_body *body, skg_body_organ *organ);
 
 #endif

@@ -26,6 +26,13 @@ typedef struct {
  * hysteresis. BONES: bones that together move a point of the chest wall. All are choices. */
 enum { CARRIERS = 12, LOOP_STEPS = 24, BONES = 4 };
 
+/* A thin facet. corner[0] lies opposite its longest edge. If that corner has to move away from the edge, each corner
+ * takes the part `by` of the way: the two others backwards. */
+typedef struct {
+    int32_t corner[3], reserved;
+    double by[3], normal[3]; /* at rest, twice the area long */
+} skg_thin;
+
 typedef struct {
     skg_mesh *mesh;
     char *label;
@@ -75,6 +82,8 @@ typedef struct {
     double *course;  /* per vertex: displacement with the tendon at weight 1, mm */
     int32_t *bone;   /* per vertex: BONES bones; NULL: none */
     double *bone_weight; /* their weights */
+    int64_t thins;
+    skg_thin *thin; /* facets that fold easily (thin.h) */
 
     /* Carried organs. Of a cartilage, near holds the two organs that it lies between. */
     int32_t carrier;
@@ -103,7 +112,8 @@ struct skg_body {
     double withdrawn;  /* by how much the needle is drawn back, mm */
     double *
         bone_motion; /* per organ, of bones: displacement of p is row k times p plus the fourth number, 12 numbers */
-    int loop;        /* states stored for hysteresis: 0 or LOOP_STEPS */
+    int bones_move;     /* 1: one of them is not at rest */
+    int loop;           /* states stored for hysteresis: 0 or LOOP_STEPS */
     int64_t loop_size;  /* doubles of one of them */
     double *loop_state; /* every chain's memory after each step */
 };

@@ -47,6 +47,7 @@ double skg_wall_bones(const skg_body *body, int spine, const double p[3], int32_
 }
 
 void skg_wall_prepare(skg_body *body) {
+    body->bones_move = 0;
     for (int64_t i = 0; i < body->organs; i++) {
         const skg_body_organ *o = body->organ + i;
         double *m = body->bone_motion + 12 * i;
@@ -55,15 +56,22 @@ void skg_wall_prepare(skg_body *body) {
             for (int j = 0; j < 3; j++) m[4 * k + j] = o->rigid.rotation[3 * k + j] - (j == k);
             m[4 * k + 3] = o->rigid.shift[k] - skg_dot(m + 4 * k, o->rigid.centre);
         }
+        for (int k = 0; k < 12; k++) body->bones_move |= m[k] != 0;
     }
 }
 
-void skg_wall_displace(const skg_body *body, const int32_t bone[BONES], const double weight[BONES],
-                       const double p[3], double displacement[3]) {
-    double sum[12] = {0};
-    for (int b = 0; b < BONES && weight[b] > 0; b++) {
-        const double *m = body->bone_motion + 12 * (int64_t)bone[b], w = weight[b];
-        for (int k = 0; k < 12; k++) sum[k] += w * m[k];
+void skg_wall_displace(const skg_body *body, skg_body_organ *o) {
+    for (int64_t i = 0; i < o->vertices; i++) {
+        const int64_t n = o->node_of[i];
+        const int32_t *bone = o->bone + BONES * n;
+        const double *weight = o->bone_weight + BONES * n, *p = o->rest + 3 * n;
+        for (int k = 0; k < 3; k++) { /* the sums of a row stay in registers */
+            double x = 0, y = 0, z = 0, shift = 0;
+            for (int b = 0; b < BONES && weight[b] > 0; b++) {
+                const double *row = body->bone_motion + 12 * (int64_t)bone[b] + 4 * k, w = weight[b];
+                x += w * row[0], y += w * row[1], z += w * row[2], shift += w * row[3];
+            }
+            o->moved[3 * i + k] = x * p[0] + y * p[1] + z * p[2] + shift;
+        }
     }
-    for (int k = 0; k < 3; k++) displacement[k] = skg_dot(sum + 4 * k, p) + sum[4 * k + 3];
 }

@@ -13,8 +13,7 @@ double skg_wall_bones(const skg_body *body, int spine, const double p[3], int32_
 /* Takes over the motions of the bones as they are posed. */
 void skg_wall_prepare(skg_body *body);
 
-/* The displacement of a point with these bones and weights, as they are posed. */
-void skg_wall_displace(const skg_body *body, const int32_t bone[BONES], const double weight[BONES],
-                       const double p[3], double displacement[3]);
+/* The displacements of an organ's vertices by their bones as posed: into moved. */
+void skg_wall_displace(const skg_body *body, skg_body_organ *organ);
 
 #endif

@@ -79,9 +79,9 @@ skg_status skg_chain_drive(skg_chain *chain, int64_t drivers, const int32_t *nod
  * NULL. SKG_ERR_BREATHING: a target is not finite; u is unchanged. */
 skg_status skg_chain_move(skg_chain *chain, const double *targets, double *u, skg_chain_report *report);
 
-/* Keeps the links of a wished state. u: in, the wish, displacements in mm, axis by axis; out, the wish itself where it
- * keeps every link along an axis, or else the middle of the nearest states above and below that keep them. The
- * report's conflict is twice the largest departure from the wish, as drivers that meet halfway depart. */
+/* Keeps the links of a wished state. u: in, the wish, rows of x, y, z in mm; out, the wish itself where it keeps every
+ * link along an axis, or else the middle of the nearest states above and below that keep them. The report's conflict is
+ * twice the largest departure from the wish, as drivers that meet halfway depart. */
 skg_status skg_chain_settle(skg_chain *chain, double *u, skg_chain_report *report);
 
 /* Elastic relaxation. In each of the passes, every node goes a fraction (0 to 1) of the way to the mean of its

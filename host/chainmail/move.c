@@ -139,48 +139,47 @@ skg_status skg_chain_relax(skg_chain *chain, int32_t passes, double fraction, do
     return SKG_OK;
 }
 
-/* Whether a state keeps every link along each axis. */
-static void keeps(const skg_chain *chain, const double *u, int kept[3]) {
-    const double *x = u, *y = u + chain->nodes, *z = u + 2 * chain->nodes;
+/* Whether a state keeps every link along each axis. rows: displacements of the nodes, x, y, z. */
+static void keeps(const skg_chain *chain, const double *rows, int kept[3]) {
+    const double *rise[3] = {chain->rise[0], chain->rise[1], chain->rise[2]};
     double over[3] = {0, 0, 0};
-    for (int64_t i = 0; i < chain->nodes; i++)
+    for (int64_t i = 0; i < chain->nodes; i++) {
+        const double x = rows[3 * i], y = rows[3 * i + 1], z = rows[3 * i + 2];
         for (int64_t e = chain->first[i]; e < chain->first[i + 1]; e++) {
-            const int32_t j = chain->node[e];
-            const double dx = x[j] - x[i] - chain->rise[0][e], dy = y[j] - y[i] - chain->rise[1][e],
-                         dz = z[j] - z[i] - chain->rise[2][e];
+            const double *other = rows + 3 * (int64_t)chain->node[e];
+            const double dx = other[0] - x - rise[0][e], dy = other[1] - y - rise[1][e],
+                         dz = other[2] - z - rise[2][e];
             over[0] = dx > over[0] ? dx : over[0];
             over[1] = dy > over[1] ? dy : over[1];
             over[2] = dz > over[2] ? dz : over[2];
         }
+    }
     for (int axis = 0; axis < 3; axis++) kept[axis] = over[axis] <= rounding_mm;
 }
 
 /* scratch: three numbers for each node. */
-static void settle_axis(skg_chain *chain, int axis, double *u, double *scratch, skg_chain_report *report) {
-    double *rest = scratch, *above = scratch + chain->nodes, *wish = scratch + 2 * chain->nodes;
-    *report = (skg_chain_report){.axis = -1, .driver = -1};
-    memset(rest, 0, (size_t)chain->nodes * sizeof *rest);
-    memcpy(wish, u, (size_t)chain->nodes * sizeof *wish);
+static void settle_axis(skg_chain *chain, int axis, double *rows, double *scratch, skg_chain_report *report) {
+    const int64_t n = chain->nodes;
+    double *rest = scratch, *above = scratch + n, *u = scratch + 2 * n;
+    memset(rest, 0, (size_t)n * sizeof *rest);
+    for (int64_t i = 0; i < n; i++) u[i] = rows[3 * i + axis];
     keep_links(chain, axis, rest, u, above);
-    for (int64_t i = 0; i < chain->nodes; i++) {
-        const double conflict = 2 * fabs(u[i] - wish[i]);
+    for (int64_t i = 0; i < n; i++) {
+        const double conflict = 2 * fabs(u[i] - rows[3 * i + axis]);
         if (conflict > report->conflict_mm) report->conflict_mm = conflict, report->axis = axis;
+        rows[3 * i + axis] = u[i];
     }
 }
 
-skg_status skg_chain_settle(skg_chain *chain, double *u, skg_chain_report *report) {
+skg_status skg_chain_settle(skg_chain *chain, double *rows, skg_chain_report *report) {
     double *scratch = NULL;
     int kept[3];
     *report = (skg_chain_report){.axis = -1, .driver = -1};
-    keeps(chain, u, kept);
-    for (int axis = 0; axis < 3; axis++) {
-        skg_chain_report one;
-        double *along = u + axis * chain->nodes;
-        if (kept[axis]) continue;
-        if (!scratch) SKG_TRY(skg_alloc(3 * chain->nodes, sizeof *scratch, chain->name, &scratch));
-        settle_axis(chain, axis, along, scratch, &one);
-        if (one.conflict_mm > report->conflict_mm) *report = one;
-    }
+    keeps(chain, rows, kept);
+    if (kept[0] && kept[1] && kept[2]) return SKG_OK;
+    SKG_TRY(skg_alloc(3 * chain->nodes, sizeof *scratch, chain->name, &scratch));
+    for (int axis = 0; axis < 3; axis++)
+        if (!kept[axis]) settle_axis(chain, axis, rows, scratch, report);
     skg_free(&scratch);
     return SKG_OK;
 }

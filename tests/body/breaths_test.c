@@ -1,6 +1,9 @@
 /* Every named breath of the generated thorax: ribs and diaphragm agree, nothing folds, the liver keeps its volume. */
+#include "breather.h"
+
 #include "body/surface.h"
-#include "body/types.h"
+#include "body/thin.h"
+#include "core/vector.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -8,82 +11,30 @@
 #include <float.h>
 #include <math.h>
 
-static const char *const patterns[] = {"quiet",   "diaphragmatic", "thoracic",
-                                       "shallow", "deep",          "hyperventilation"};
-static skg_thorax *thorax;
-static skg_body *body;
-
-static void make(int64_t triangles, int simple, const skg_body_options *options) {
-    skg_thorax_options kind;
-    int64_t parts;
-    skg_thorax_options_init(&kind);
-    kind.triangles = triangles, kind.simple = simple;
-    ck_skg(skg_thorax_create(&kind, &thorax));
-    ck_skg(skg_thorax_part_count(thorax, &parts));
-    ck_skg(skg_body_create(NULL, options, &body));
-    for (int64_t i = 0; i < parts; i++) {
-        skg_thorax_part part;
-        skg_organ organ;
-        skg_thorax_part_init(&part);
-        skg_organ_init(&organ);
-        ck_skg(skg_thorax_part_get(thorax, i, &part));
-        organ.mesh = part.mesh, organ.label = part.label, organ.inside = part.inside;
-        ck_skg(skg_body_add(body, &organ, NULL));
-    }
-    ck_skg(skg_body_link(body));
-}
-
-static void drop(void) {
-    skg_body_release(&body);
-    skg_thorax_release(&thorax);
-}
-
-static skg_body_measure pose(double thoracic, double diaphragmatic) {
-    skg_breath_state state;
-    skg_body_measure m;
-    skg_breath_state_init(&state);
-    skg_body_measure_init(&m);
-    state.thoracic = thoracic, state.diaphragmatic = diaphragmatic;
-    ck_skg(skg_body_pose(body, &state));
-    ck_skg(skg_body_measure_get(body, &m));
-    return m;
-}
+static breather thorax;
 
 static const skg_body_organ *organ_of(skg_role role, const char *label) {
-    for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].role == role && (!label || skg_label_begins(body->organ[i].label, label)))
-            return body->organ + i;
+    for (int64_t i = 0; i < thorax.body->organs; i++)
+        if (thorax.body->organ[i].role == role &&
+            (!label || skg_label_begins(thorax.body->organ[i].label, label)))
+            return thorax.body->organ + i;
     ck_abort_msg("no %s", label ? label : "such organ");
     return NULL;
 }
 
 START_TEST(named_breaths) {
-    static const int64_t triangles[] = {10000, 42000};
-    make(triangles[_i / 2], _i % 2, NULL);
-    for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++)
-        for (int phase = 0; phase < 6; phase++) {
-            skg_breath breath;
-            skg_breath_state s;
-            skg_breath_init(&breath);
-            skg_breath_state_init(&s);
-            ck_skg(skg_breath_pattern_get(patterns[p], &breath));
-            ck_skg(skg_breath_state_at_phase(&breath, phase / 6.0, &s));
-            const skg_body_measure m = pose(s.thoracic, s.diaphragmatic);
-            ck_assert_int_eq(m.broken_links, 0);
-            ck_assert_msg(m.flipped_triangles == 0, "%s: %d folded", patterns[p], (int)m.flipped_triangles);
-            /* mm, as parts may overlap in body_test; the paper's model contradicts itself by 10 and more. */
-            ck_assert_msg(m.conflict_mm <= 0.5, "%s: %g mm in %s", patterns[p], m.conflict_mm, m.conflict[0]);
-            /* 1 %: what the issue of this breath asks for. Squeezed by q = 0.06 it is 3/4 q^2 = 0.3 %. */
-            ck_assert_msg(fabs(m.liver_volume_ratio - 1) <= 0.01, "%s: %g", patterns[p],
-                          m.liver_volume_ratio);
-        }
-    drop();
+    static const int64_t triangles[] = {10000, 42000, 336000};
+    breather_make(&thorax, triangles[_i / 2], _i % 2, NULL);
+    /* mm, as parts may overlap in body_test; the paper's model contradicts itself by 10 and more. In small facets the
+     * motion bends more than their links allow: by less than the 1 mm from which on a body warns. */
+    breather_check(&thorax, 6, triangles[_i / 2] <= 42000 ? 0.5 : 1);
+    breather_drop(&thorax);
 }
 END_TEST
 
 START_TEST(ribs_carry_the_rim) { /* and the tendon goes as it is told */
-    make(42000, _i, NULL);
-    pose(2.5, 2.5);
+    breather_make(&thorax, 42000, _i, NULL);
+    breather_pose(&thorax, 2.5, 2.5);
     const skg_body_organ *d = organ_of(ROLE_DIAPHRAGM, NULL), *rib = organ_of(ROLE_RIB, NULL);
     int64_t rim = 0, tendon = 0;
     double lifted = 0, lowest = HUGE_VAL;
@@ -103,7 +54,7 @@ START_TEST(ribs_carry_the_rim) { /* and the tendon goes as it is told */
     ck_assert(rim > 20 && tendon > 20);
     ck_assert_double_gt(lifted, 8);  /* mm: the front rises with the sternum, by about 14 */
     ck_assert_double_ge(lowest, -1); /* mm: 0.02 of 37.5, beside the spine */
-    drop();
+    breather_drop(&thorax);
 }
 END_TEST
 
@@ -112,11 +63,11 @@ START_TEST(distances_over_a_sphere) {
     skg_mesh *mesh;
     skg_organ organ;
     ck_skg(skg_mesh_create_sphere(100, 128, &mesh));
-    ck_skg(skg_body_create(NULL, NULL, &body));
+    ck_skg(skg_body_create(NULL, NULL, &thorax.body));
     skg_organ_init(&organ);
     organ.mesh = mesh, organ.label = "liver";
-    ck_skg(skg_body_add(body, &organ, NULL));
-    const skg_body_organ *o = body->organ;
+    ck_skg(skg_body_add(thorax.body, &organ, NULL));
+    const skg_body_organ *o = thorax.body->organ;
     unsigned char *given = calloc((size_t)o->vertices, 1);
     double *distance = calloc((size_t)o->vertices, sizeof *distance);
     const double edge = 0.9; /* rad */
@@ -133,7 +84,61 @@ START_TEST(distances_over_a_sphere) {
     free(given);
     free(distance);
     skg_mesh_release(&mesh);
-    skg_body_release(&body);
+    skg_body_release(&thorax.body);
+}
+END_TEST
+
+/* A strip of two facets beside a long edge: corner 2 lies 0.2 mm from the middle of the edge from 0 to 1, 20 mm long. */
+static void make_strip(skg_body_organ *o, double share) {
+    static double rest[] = {0, 0, 0, 20, 0, 0, 10, 0.2, 0, 10, -8, 0}, moved[12], shares[4];
+    static int32_t corners[] = {0, 1, 2, 1, 0, 3}, nodes[] = {0, 1, 2, 3};
+    memset(moved, 0, sizeof moved);
+    for (int i = 0; i < 4; i++) shares[i] = i < 2 ? 0 : share;
+    *o = (skg_body_organ){.label = "strip", .role = ROLE_DIAPHRAGM, .vertices = 4, .triangles = 2};
+    o->rest = rest, o->moved = moved, o->share = shares, o->corner = corners, o->node_of = nodes;
+    ck_skg(skg_thin_find(o));
+    ck_assert_int_eq(o->thins, 1);
+}
+
+/* The product of a facet's normals at rest and as moved, over that at rest. */
+static double opening(const skg_body_organ *o) {
+    double n[2][3];
+    for (int now = 0; now < 2; now++) {
+        double p[3][3], a[3], b[3];
+        for (int c = 0; c < 3; c++)
+            skg_add_scaled(o->rest + 3 * o->corner[c], now, o->moved + 3 * o->corner[c], p[c]);
+        skg_add_scaled(p[1], -1, p[0], a);
+        skg_add_scaled(p[2], -1, p[0], b);
+        skg_cross(a, b, n[now]);
+    }
+    return skg_dot(n[0], n[1]) / skg_dot(n[0], n[0]);
+}
+
+START_TEST(thin_facets_open) {
+    skg_body_organ o;
+    for (int tendon = 0; tendon < 2; tendon++) {
+        make_strip(&o, tendon);
+        double before[12];
+        o.moved[7] = -0.15; /* a quarter of the height is left */
+        memcpy(before, o.moved, sizeof before);
+        ck_assert(!skg_thin_open(&o));
+        ck_assert_mem_eq(o.moved, before, sizeof before);
+        o.moved[7] = -0.5, o.moved[6] = 1, o.moved[8] = 0.3;
+        ck_assert_double_lt(opening(&o), 0);
+        ck_assert(skg_thin_open(&o));
+        /* A tenth of the height, to the rounding of 20 mm over 0.2 mm. */
+        ck_assert_double_eq_tol(opening(&o), 0.1, 4096 * DBL_EPSILON);
+        if (tendon) ck_assert_double_eq(o.moved[7], -0.5); /* it goes as it is told; the others give way */
+        for (int i = 0; i < 3;
+             i++) /* 0.32 mm are lacking: of the three corners the first gives 2/3, the others 1/3 */
+            ck_assert_double_eq_tol(
+                o.moved[3 * i + 1] - (i == 2 ? -0.5 : 0),
+                tendon   ? (i < 2 ? -0.32 : 0)
+                : i == 2 ? 0.64 / 3
+                         : -0.32 / 3,
+                0.004); /* mm: the corner moved along the edge, and the edge turns a little */
+        skg_free(&o.thin);
+    }
 }
 END_TEST
 
@@ -144,18 +149,19 @@ START_TEST(the_papers_model_stays) { /* on request, and with its hysteresis and 
         if (way == 0) options.coupling = SKG_COUPLING_PAPER;
         if (way == 1) options.hysteresis = 0.5;
         if (way == 2) options.relaxation = 1;
-        make(10000, 1, &options);
-        for (int64_t i = 0; i < body->organs; i++) ck_assert_int_eq(body->organ[i].coupled, 0);
+        breather_make(&thorax, 10000, 1, &options);
+        for (int64_t i = 0; i < thorax.body->organs; i++) ck_assert_int_eq(thorax.body->organ[i].coupled, 0);
         ck_assert_int_gt(organ_of(ROLE_DIAPHRAGM, NULL)->links, 20);
-        drop();
+        breather_drop(&thorax);
     }
     skg_body_options_init(&options);
     options.coupling = 2;
-    ck_skg_fails(skg_body_create(NULL, &options, &body), SKG_ERR_BREATHING, "coupling is 2");
+    ck_skg_fails(skg_body_create(NULL, &options, &thorax.body), SKG_ERR_BREATHING, "coupling is 2");
     options.coupling = SKG_COUPLING_PAPER;
-    make(10000, 1, &options);
-    ck_assert_double_gt(pose(2.5, 2.5).conflict_mm, 10); /* as the anatomical coupling avoids */
-    drop();
+    breather_make(&thorax, 10000, 1, &options);
+    ck_assert_double_gt(breather_pose(&thorax, 2.5, 2.5).conflict_mm,
+                        10); /* as the anatomical coupling avoids */
+    breather_drop(&thorax);
 }
 END_TEST
 
@@ -163,18 +169,19 @@ START_TEST(a_plane_of_the_caller) { /* says where the tendon is */
     skg_body_options options;
     skg_body_options_init(&options);
     options.tendon_plane[2] = 1, options.tendon_plane[3] = 15; /* above z = -15 mm */
-    make(10000, 1, &options);
-    pose(0, 1);
+    breather_make(&thorax, 10000, 1, &options);
+    breather_pose(&thorax, 0, 1);
     const skg_body_organ *d = organ_of(ROLE_DIAPHRAGM, NULL);
     for (int64_t i = 0; i < d->vertices; i++)
         if (d->rest[3 * i + 2] > -15) ck_assert_double_eq(d->share[d->node_of[i]], 1);
-    drop();
+    breather_drop(&thorax);
 }
 END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, distances_over_a_sphere);
-    tcase_add_loop_test(tests, named_breaths, 0, 4);
+    tcase_add_test(tests, thin_facets_open);
+    tcase_add_loop_test(tests, named_breaths, 0, 6);
     tcase_add_loop_test(tests, ribs_carry_the_rim, 0, 2);
     tcase_add_test(tests, the_papers_model_stays);
     tcase_add_test(tests, a_plane_of_the_caller);
