@@ -41,7 +41,7 @@ skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part) {
         const int64_t index = part->first + k;
         double phase = (double)NAN;
         if (part->done[k] != 1 || file->done[index - file->first] == 1) continue;
-        status = read_at(part, image, part->bytes, part->data_at + k * part->data_step);
+        status = read_at(part, image, part->bytes, part->data_at + k * part->bytes);
         if (status == SKG_OK && part->phase_at)
             status = read_at(part, &phase, sizeof phase, part->phase_at + k * (int64_t)sizeof phase);
         if (status == SKG_OK) status = skg_scan_file_write(file, 1, &index, image, &phase);
@@ -92,7 +92,7 @@ skg_status skg_scan_file_copy(skg_scan_file *file, const skg_scan_file *from, in
     SKG_TRY_CLEANUP(copy_fields(file, file->dark_at, file->options.darks, from, from->dark_at,
                                 from->options.darks, image));
     for (int64_t k = 0; k < count; k++) {
-        const int64_t at = from->data_at + (indices[k] - from->first) * from->data_step;
+        const int64_t at = from->data_at + (indices[k] - from->first) * from->bytes;
         SKG_TRY_CLEANUP(read_at(from, image, from->bytes, at));
         SKG_TRY_CLEANUP(skg_scan_file_write(file, 1, &k, image, phases ? phases + k : NULL));
     }

@@ -139,6 +139,7 @@ static skg_status open_laid_out(skg_scan_file *file) {
     SKG_TRY(file->format->locate(file));
     file->data = open(file->path, O_RDWR | O_CLOEXEC);
     if (file->data < 0) return skg_output_fail(file->path, errno, "");
+    skg_scan_open_direct(file);
     if (!file->format->has_progress_inside) return open_progress(file);
     file->progress = dup(file->data);
     return file->progress < 0 ? skg_output_fail(file->path, errno, "") : read_done(file);
@@ -233,7 +234,7 @@ skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *opt
     SKG_TRY(skg_alloc(1, sizeof *file, "file of projections", &file));
     file->options = o;
     file->options.hash = file->options.name = file->options.unit = file->options.stem = NULL;
-    file->lock = file->data = file->progress = -1;
+    file->lock = file->data = file->progress = file->direct = -1;
     skg_scan_retain(o.scan);
     SKG_TRY_CLEANUP(prepare(file, path, &o));
     SKG_TRY_CLEANUP(open_file(file));
@@ -248,6 +249,7 @@ void skg_scan_file_release(skg_scan_file **file) {
     if (!file || !*file) return;
     skg_scan_file *f = *file;
     if (f->data >= 0) close(f->data);
+    if (f->direct >= 0) close(f->direct);
     if (f->progress >= 0) close(f->progress);
     skg_scan_unlock(f->lock_path, &f->lock);
     skg_scan_release(&f->options.scan);
@@ -259,6 +261,7 @@ void skg_scan_file_release(skg_scan_file **file) {
     skg_free(&f->lock_path);
     skg_free(&f->progress_path);
     skg_free(&f->done);
+    skg_free(&f->copies_block);
     skg_free(file);
 }
 
@@ -318,24 +321,34 @@ static skg_status mark(skg_scan_file *file, int64_t count, const int64_t *indice
     return SKG_OK;
 }
 
+/* Writes projections that follow each other in the file. */
+static skg_status write_row(skg_scan_file *file, int64_t first, int64_t count, const void *images,
+                            const double *phases) {
+    const double none = (double)NAN;
+    const int64_t at = first - file->first;
+    SKG_TRY(skg_scan_write_large(file, images, count * file->bytes, file->data_at + at * file->bytes));
+    for (int64_t i = 0; i < count && file->phase_at; i++)
+        SKG_TRY(skg_scan_write_at(file->path, file->data, phases ? phases + i : &none, sizeof none,
+                                  file->phase_at + (at + i) * (int64_t)sizeof none));
+    return SKG_OK;
+}
+
 skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t *indices, const void *images,
                                const double *phases) {
     SKG_PLAIN;
-    const double none = (double)NAN;
     SKG_NEEDS(file);
     SKG_NEEDS(indices);
     SKG_NEEDS(images);
     for (int64_t i = 0; i < count; i++) SKG_TRY(skg_scan_file_check_index(file, indices[i]));
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = 0, row = 0; i < count; i += row) {
         const char *image = (const char *)images + i * file->bytes;
-        if (file->format->write)
+        row = 1;
+        if (file->format->write) {
             SKG_TRY(file->format->write(file, indices[i], image, phases ? phases[i] : 0));
-        else
-            SKG_TRY(skg_scan_write_at(file->path, file->data, image, file->bytes,
-                                      file->data_at + (indices[i] - file->first) * file->data_step));
-        if (file->phase_at)
-            SKG_TRY(skg_scan_write_at(file->path, file->data, phases ? phases + i : &none, sizeof none,
-                                      file->phase_at + (indices[i] - file->first) * (int64_t)sizeof none));
+            continue;
+        }
+        while (i + row < count && indices[i + row] == indices[i] + row) row++;
+        SKG_TRY(write_row(file, indices[i], row, image, phases ? phases + i : NULL));
     }
     return mark(file, count, indices);
 }

@@ -21,12 +21,14 @@ struct skg_scan_file {
     int64_t projections;           /* of the file */
     int64_t bytes;                 /* of a projection */
     char *path, *lock_path, *progress_path;
-    int lock, data, progress;   /* descriptors; -1: none */
-    int64_t data_at, data_step; /* place of projection 0, and from one to the next */
-    int64_t done_at;            /* place of the byte of projection 0 in `progress` */
-    int64_t phase_at;           /* place of the phases, which are doubles; 0: none */
-    int64_t white_at, dark_at;  /* place of flat and dark fields; 0: none */
-    char *done;                 /* [projections] */
+    int lock, data, progress;    /* descriptors; -1: none */
+    int direct;                  /* of the data past the page cache; -1: none */
+    void *copies_block, *copies; /* for memory that is not aligned; NULL: not needed yet */
+    int64_t data_at;             /* place of projection 0; the others follow without gaps */
+    int64_t done_at;             /* place of the byte of projection 0 in `progress` */
+    int64_t phase_at;            /* place of the phases, which are doubles; 0: none */
+    int64_t white_at, dark_at;   /* place of flat and dark fields; 0: none */
+    char *done;                  /* [projections] */
     int64_t done_count;
 };
 
@@ -75,6 +77,10 @@ skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index);
 
 /* Writes all bytes at a place. */
 skg_status skg_scan_write_at(const char *path, int descriptor, const void *bytes, int64_t count, int64_t at);
+
+/* Opens `direct` where the file system allows it, and writes projections by it. */
+void skg_scan_open_direct(skg_scan_file *file);
+skg_status skg_scan_write_large(skg_scan_file *file, const void *bytes, int64_t count, int64_t at);
 
 /* Makes a file of `total` bytes that begins with a header, and sees to it that the disk has room. */
 skg_status skg_scan_lay_out(const char *path, const void *header, int64_t count, int64_t total);

@@ -217,7 +217,6 @@ static skg_status locate(skg_scan_file *file) {
         file->dark_at = place_of(root, "exchange/data_dark");
         file->phase_at = place_of(root, "geometry/phase");
         file->done_at = place_of(root, "process/done");
-        file->data_step = file->bytes;
         H5Fclose(root);
     }
     skg_hdf5_be_as_before(&before);

@@ -1,6 +1,8 @@
 #include "scan/slot.h"
 
 #include "core/core.h"
+#include "scan/block.h"
+#include "scan/format.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,6 +22,14 @@ skg_status skg_scan_work_init(skg_scan_work *work) {
     return SKG_OK;
 }
 
+/* By how much the images of a batch begin behind a whole block, if those of the file all do so alike: then the disk takes
+ * them without a copy (direct.c). */
+static int64_t shift_of(const skg_scan_file *file, int64_t image_bytes) {
+    enum { CACHE_LINE = 64 }; /* OpenCL copies well to such places only */
+    if (!file || image_bytes % SKG_SCAN_BLOCK != 0 || file->data_at % CACHE_LINE != 0) return 0;
+    return file->data_at % SKG_SCAN_BLOCK;
+}
+
 skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, int64_t batch) {
     const int64_t subframes = work->options.subframes, frames = batch * subframes;
     SKG_TRY(skg_alloc(batch, sizeof *slot->indices, "batch of projections", &slot->indices));
@@ -28,8 +38,9 @@ skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, in
     SKG_TRY(skg_alloc(frames, sizeof *slot->jobs, "batch of projections", &slot->jobs));
     SKG_TRY(skg_alloc(frames, sizeof *slot->frames, "batch of projections", &slot->frames));
     SKG_TRY(skg_alloc(frames, sizeof *slot->views, "batch of projections", &slot->views));
-    return skg_alloc(frames * work->image_elements, (size_t)skg_element_bytes(work->options.type),
-                     "batch of projections", &slot->images);
+    const int64_t image = work->image_elements * skg_element_bytes(work->options.type);
+    return skg_scan_block_make(frames * image, shift_of(work->options.file, image), &slot->block,
+                               &slot->images);
 }
 
 static skg_status wait_for_jobs(skg_scan_slot *slot) {
@@ -50,7 +61,7 @@ void skg_scan_slot_free(skg_scan_slot *slot) {
     skg_free(&slot->jobs);
     skg_free(&slot->frames);
     skg_free(&slot->views);
-    skg_free(&slot->images);
+    skg_free(&slot->block);
 }
 
 /* The moment of a sub-frame: its position in the scan, in projections, and its time. */

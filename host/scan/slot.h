@@ -20,6 +20,7 @@ typedef struct {
     int64_t count; /* projections; 0: nothing is in flight and nothing is finished */
     int64_t *indices;
     double *phases, *amplitudes;
+    void *block;  /* the memory of the images */
     void *images; /* [batch][sub-frames] images; the means come to stand at the beginning */
     skg_job **jobs;
     int64_t job_count;

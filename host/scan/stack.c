@@ -30,8 +30,11 @@ static void title(const skg_scan_file *file, char *text, size_t size) {
     skg_picture_title(&picture, text, size);
 }
 
+/* The length of a header is a multiple of this, so that memory can be aligned like the projections (slot.c). */
+enum { HEADER_UNIT = 64 };
+
 /* The header of MetaImage. Slices are the projections; the origin is the middle of the detector, as RTK expects it. */
-static int metaimage_header(const skg_scan_file *file, const char *data, char *text) {
+static int metaimage_header(const skg_scan_file *file, const char *data, int blanks, char *text) {
     char heading[200], identity[160], spacing[80], offset[80];
     const skg_view *view = &file->view;
     const double steps[3] = {skg_length(view->column_step), skg_length(view->row_step), 1};
@@ -43,24 +46,29 @@ static int metaimage_header(const skg_scan_file *file, const char *data, char *t
     skg_picture_numbers(first, 3, offset, sizeof offset);
     return snprintf(
         text, HEADER_LENGTH,
-        "ObjectType = Image\nNDims = 3\nComment = %s\n%sFlatField = %.17g\nBinaryData = True\n"
+        "ObjectType = Image\nNDims = 3\nComment = %s%*s\n%sFlatField = %.17g\nBinaryData = True\n"
         "BinaryDataByteOrderMSB = %s\nCompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n"
         "Offset = %s\nCenterOfRotation = 0 0 0\nElementSpacing = %s\nDimSize = %" PRId64 " %" PRId64
         " %" PRId64 "\nElementType = %s\nElementDataFile = %s\n",
-        heading, identity, file->options.flat_field, skg_host_is_big_endian() ? "True" : "False", offset,
-        spacing, view->columns, view->rows, file->projections, metaimage_type(file), data);
+        heading, blanks, "", identity, file->options.flat_field, skg_host_is_big_endian() ? "True" : "False",
+        offset, spacing, view->columns, view->rows, file->projections, metaimage_type(file), data);
+}
+
+/* Blanks behind the comment fill it up to a multiple of HEADER_UNIT. */
+static int header_inside(const skg_scan_file *file, char *text) {
+    const int length = metaimage_header(file, "LOCAL", 0, text);
+    return metaimage_header(file, "LOCAL", (HEADER_UNIT - length % HEADER_UNIT) % HEADER_UNIT, text);
 }
 
 static skg_status lay_out_mha(skg_scan_file *file, const char *temporary) {
     char header[HEADER_LENGTH];
-    const int length = metaimage_header(file, "LOCAL", header);
+    const int length = header_inside(file, header);
     return skg_scan_lay_out(temporary, header, length, length + file->projections * file->bytes);
 }
 
 static skg_status locate_mha(skg_scan_file *file) {
     char header[HEADER_LENGTH];
-    file->data_at = metaimage_header(file, "LOCAL", header);
-    file->data_step = file->bytes;
+    file->data_at = header_inside(file, header);
     return skg_scan_check_length(file->path, file->data_at + file->projections * file->bytes);
 }
 
@@ -75,7 +83,7 @@ static skg_status lay_out_raw(skg_scan_file *file, const char *temporary) {
     char header[HEADER_LENGTH], *path = NULL;
     skg_output_file beside = {0};
     const char *slash = strrchr(file->path, '/');
-    const int length = metaimage_header(file, slash ? slash + 1 : file->path, header);
+    const int length = metaimage_header(file, slash ? slash + 1 : file->path, 0, header);
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(header_path(file->path, &path));
     SKG_TRY_CLEANUP(skg_output_open(path, &beside));
@@ -90,7 +98,6 @@ cleanup:
 
 static skg_status locate_raw(skg_scan_file *file) {
     file->data_at = 0;
-    file->data_step = file->bytes;
     return skg_scan_check_length(file->path, file->projections * file->bytes);
 }
 
@@ -177,7 +184,6 @@ static skg_status lay_out_tiff(skg_scan_file *file, const char *temporary) {
 
 static skg_status locate_tiff(skg_scan_file *file) {
     file->data_at = tiff_data(file);
-    file->data_step = file->bytes;
     return skg_scan_check_length(file->path, file->data_at + file->projections * file->bytes);
 }
 

@@ -224,8 +224,51 @@ START_TEST(what_is_missing_is_refused) {
 }
 END_TEST
 
+/* Projections that are large enough for the way past the page cache: of whole blocks of the disk or not, from aligned
+ * memory or not, several at a time or one. The bytes are what was written, whatever way they took. */
+START_TEST(large_projections_arrive_whole) {
+    enum { COLUMNS_LARGE = 256, PAGE = 4096, FIRST = 5, LATER = COUNT - FIRST };
+    static const int64_t order[COUNT] = {2, 3, 4, 5, 6, 8, 0, 1, 7};
+    static const char *const kinds[] = {"scan.mha", "scan.raw", "scan.tif"};
+    const int64_t rows = _i % 2 ? 250 : 256, pixels = COLUMNS_LARGE * rows;
+    const size_t bytes = (size_t)(COUNT * pixels) * sizeof(float), offset = _i / 2 % 2 ? 12 : 0;
+    char *memory = aligned_alloc(PAGE, bytes / PAGE * PAGE + 2 * PAGE), *read = malloc(bytes);
+    skg_scan_options geometry;
+    skg_view view;
+    ck_assert(memory && read);
+    skg_view_init(&view);
+    ck_skg(skg_scan_view_get(scan, 0, &view));
+    view.columns = COLUMNS_LARGE;
+    view.rows = rows;
+    skg_scan_options_init(&geometry);
+    geometry.projections = COUNT;
+    skg_scan_release(&scan);
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+    options.scan = scan;
+    float *values = (float *)(void *)(memory + offset);
+    for (int k = 0; k < COUNT; k++)
+        for (int64_t i = 0; i < pixels; i++) values[k * pixels + i] = (float)(order[k] * pixels + i);
+    const char *name = kinds[_i / 4];
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_skg(skg_scan_file_write(file, FIRST, order, values, NULL));
+    ck_skg(skg_scan_file_write(file, LATER, order + FIRST, values + FIRST * pixels, NULL));
+    ck_skg(skg_scan_file_finish(file));
+    FILE *stream = fopen(in_folder(name), "rb");
+    ck_assert_ptr_nonnull(stream);
+    ck_assert_int_eq(fseek(stream, -(long)bytes, SEEK_END), 0);
+    ck_assert_uint_eq(fread(read, 1, bytes, stream), bytes);
+    fclose(stream);
+    int64_t wrong = 0;
+    for (int64_t i = 0; i < COUNT * pixels; i++) wrong += ((float *)(void *)read)[i] != (float)i;
+    ck_assert_int_eq(wrong, 0);
+    free(memory);
+    free(read);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_loop_test(tests, large_projections_arrive_whole, 0, 12);
     tcase_add_loop_test(tests, what_is_written_is_found_again, 0, KINDS);
     tcase_add_loop_test(tests, another_scan_is_refused_or_replaced, 0, KINDS);
     tcase_add_test(tests, what_is_no_scan_is_refused);
