@@ -5,6 +5,7 @@
 
 #include "evolution/draw.h"
 #include "evolution/eigen.h"
+#include "evolution/model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,13 +19,13 @@ static const double FIRST_SIGMA = 0.3;
 /* Values of the last generations that tell whether the search still gains. */
 enum { HISTORY = 64 };
 
-/* What `own` holds. scalars: step size, then the number of generations in the history. */
+/* What `own` holds. memory: of the model. */
 typedef struct {
-    double *mean, *path_c, *path_sigma, *covariance, *axes, *lengths, *history, *sigma;
+    double *mean, *path_c, *path_sigma, *covariance, *axes, *lengths, *history, *sigma, *memory;
 } state;
 
 int64_t skg_cma_numbers(int64_t n) {
-    return 4 * n + 2 * n * n + HISTORY + 1;
+    return 4 * n + 2 * n * n + HISTORY + 1 + skg_model_numbers(n);
 }
 
 static state state_of(const skg_search *s) {
@@ -38,6 +39,7 @@ static state state_of(const skg_search *s) {
     c.axes = c.covariance + n * n;
     c.history = c.axes + n * n;
     c.sigma = c.history + HISTORY;
+    c.memory = c.sigma + 1;
     return c;
 }
 
@@ -53,7 +55,7 @@ static void reset(skg_search *s, const double *mean) {
     memcpy(c.mean, mean, (size_t)n * sizeof *mean);
     for (int64_t k = 0; k < n; k++) c.covariance[(n + 1) * k] = c.axes[(n + 1) * k] = c.lengths[k] = 1;
     *c.sigma = FIRST_SIGMA;
-    s->counters[SEARCH_SINCE] = 0;
+    s->counters[SEARCH_SINCE] = s->counters[SEARCH_KEPT] = 0;
 }
 
 void skg_cma_begin(skg_search *s) {
@@ -71,21 +73,37 @@ static void restart(skg_search *s) {
     reset(s, mean);
 }
 
+/* A normal deviate for each axis. The first point of a search is its start. */
+static void draw_step(const skg_search *s, int64_t i, double *z) {
+    const skg_draw_key key = {s->seed, s->counters[SEARCH_GENERATION], (int32_t)i, PURPOSE_STEP};
+    const int is_start = s->counters[SEARCH_GENERATION] == 0 && i == 0;
+    for (int64_t k = 0; k < s->dimensions; k++) z[k] = is_start ? 0 : skg_draw_normal(&key, k);
+}
+
+/* The greatest step of a point that was not drawn, in standard deviations (Hansen 2011). */
+static double greatest_step(int64_t n) {
+    return sqrt((double)n) + 2 * (double)n / (double)(n + 2);
+}
+
 skg_status skg_cma_ask(skg_search *s) {
     const int64_t n = s->dimensions;
     const state c = state_of(s);
+    const skg_model_frame frame = {c.mean, c.axes, c.lengths, *c.sigma};
+    double best[SKG_SEARCH_MOST];
+    int has_model;
+    SKG_TRY(skg_model_minimum(s, c.memory, &frame, greatest_step(n), best, &has_model));
     for (int64_t i = 0; i < s->counters[SEARCH_POPULATION]; i++) {
-        const skg_draw_key key = {s->seed, s->counters[SEARCH_GENERATION], (int32_t)i, PURPOSE_STEP};
-        double *point = s->free_points + n * i, z[SKG_SEARCH_MOST];
-        const int is_start =
-            s->counters[SEARCH_GENERATION] == 0 && i == 0; /* the start itself is one point */
-        for (int64_t k = 0; k < n; k++) z[k] = is_start ? 0 : c.lengths[k] * skg_draw_normal(&key, k);
+        double *point = s->free_points + n * i, *inside = s->points + n * i, z[SKG_SEARCH_MOST];
+        const int is_model = has_model && i == 0;
+        draw_step(s, i, z);
         for (int64_t row = 0; row < n; row++) {
             double sum = 0;
-            for (int64_t k = 0; k < n; k++) sum += c.axes[n * row + k] * z[k];
+            for (int64_t k = 0; k < n; k++)
+                sum += c.axes[n * row + k] * c.lengths[k] * (is_model ? best : z)[k];
             point[row] = c.mean[row] + *c.sigma * sum;
-            s->points[n * i + row] = fmin(fmax(point[row], 0), 1);
+            inside[row] = fmin(fmax(point[row], 0), 1);
         }
+        if (is_model) memcpy(point, inside, (size_t)n * sizeof *point); /* it was not drawn outside */
     }
     return SKG_OK;
 }
@@ -254,6 +272,7 @@ skg_status skg_cma_tell(skg_search *s, const double *values) {
     ranked *order = NULL;
     double *weights = NULL, mean[SKG_SEARCH_MOST], step[SKG_SEARCH_MOST];
     int is_sound = 0;
+    skg_model_add(s, c.memory, values);
     skg_status status = skg_alloc(points, sizeof *order, "search", &order);
     if (status == SKG_OK) status = skg_alloc(points, sizeof *weights, "search", &weights);
     if (status == SKG_OK) {

@@ -115,7 +115,7 @@ static skg_status find_slopes(const skg_fit *fit, skg_fit_body *model, const skg
 static skg_status add_information(const skg_fit *fit, skg_fit_body *model, const skg_goal *goal,
                                   double *matrix) {
     const int64_t n = fit->search.dimensions;
-    const double resolution = fmax(*fit->search.best_value, RESOLUTION);
+    const double resolution = fmax(skg_fit_error(fit), RESOLUTION);
     slopes_of s = {0};
     skg_status status;
     SKG_TRY_CLEANUP(skg_alloc(3 * goal->count, sizeof(double), "fit", &s.places));

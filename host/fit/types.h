@@ -34,6 +34,9 @@ int64_t skg_fit_dimensions(const skg_fit *fit);
 /* The parameters at a point of the search; those that are not chosen have their start. */
 void skg_fit_values_at(const skg_fit *fit, const double *point, double *values);
 
+/* The least root mean square error so far, mm. */
+double skg_fit_error(const skg_fit *fit);
+
 /* Makes models and search, once. SKG_ERR_ARGUMENT: there is no target, or no parameter. */
 skg_status skg_fit_begin(skg_fit *fit);
 
