@@ -43,8 +43,8 @@ static skg_status refuse(const char *name, int with_groups) {
     }
     const char *nearest = skg_nearest_name(name, known, with_groups ? 2 * BODY_PARAMETERS : BODY_PARAMETERS);
     list_names(with_groups, list, sizeof list);
-    return skg_fail(SKG_ERR_ARGUMENT, "there is no parameter \"%s\"%s%s%s. Known are %s", name,
-                    nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "", list);
+    return skg_fail(SKG_ERR_ARGUMENT, "there is no parameter \"%s\"%s%s%s Known are %s", name,
+                    nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : ".", list);
 }
 
 skg_status skg_parameters_choose(const char *word, int32_t *chosen) {
