@@ -15,6 +15,7 @@ enum {
     SEARCH_RESTARTS,
     SEARCH_SINCE, /* generations since the start or the last restart */
     SEARCH_POPULATION,
+    SEARCH_KEPT, /* points that a model of CMA-ES has taken since then */
     SEARCH_COUNTERS
 };
 

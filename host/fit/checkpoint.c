@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char first_line[] = "skiagraph fit checkpoint 1";
+static const char first_line[] = "skiagraph fit checkpoint 2";
 
 static skg_status add_mesh(const skg_mesh *mesh, skg_digester *sum) {
     int64_t vertices, triangles;

@@ -42,11 +42,9 @@ static skg_status measure_all(skg_fit *fit, skg_fit_body *model, int after) {
     return SKG_OK;
 }
 
-/* Where the samples of a goal are with the parameters at a point of the search, rows of x, y, z. */
-static skg_status place(const skg_fit *fit, skg_fit_body *model, const skg_goal *goal, const double *point,
+/* Where the samples of a goal are with some parameters, rows of x, y, z. */
+static skg_status place(const skg_fit *fit, skg_fit_body *model, const skg_goal *goal, const double *values,
                         double *places) {
-    double values[FIT_PARAMETERS];
-    skg_fit_values_at(fit, point, values);
     SKG_TRY(skg_fit_values_set(model->body, fit->chosen, values));
     SKG_TRY(skg_fit_body_pose(model, goal));
     const skg_body_organ *organ = model->body->organ + model->organ[goal->part];
@@ -91,21 +89,27 @@ typedef struct {
 
 static skg_status find_slopes(const skg_fit *fit, skg_fit_body *model, const skg_goal *goal, slopes_of *s) {
     const int64_t n = fit->search.dimensions;
-    double point[FIT_PARAMETERS];
-    SKG_TRY(place(fit, model, goal, fit->search.best, s->places));
+    double best[BODY_PARAMETERS], values[BODY_PARAMETERS];
+    int64_t k = 0;
+    skg_fit_values_at(fit, fit->search.best, best);
+    SKG_TRY(place(fit, model, goal, best, s->places));
     SKG_TRY(find_normals(goal, s->places, s->normals));
-    for (int64_t k = 0; k < n; k++) {
-        memcpy(point, fit->search.best, (size_t)n * sizeof *point);
-        const double low = fmax(point[k] - CHANGE, 0), high = fmin(point[k] + CHANGE, 1);
-        point[k] = low;
-        SKG_TRY(place(fit, model, goal, point, s->places));
-        point[k] = high;
-        SKG_TRY(place(fit, model, goal, point, s->other));
+    for (int p = 0; p < BODY_PARAMETERS; p++) {
+        if (!fit->chosen[p]) continue;
+        const double range = fit->high[p] - fit->low[p];
+        const double low = fmax(best[p] - CHANGE * range, fit->low[p]),
+                     high = fmin(best[p] + CHANGE * range, fit->high[p]);
+        memcpy(values, best, sizeof values);
+        values[p] = low;
+        SKG_TRY(place(fit, model, goal, values, s->places));
+        values[p] = high;
+        SKG_TRY(place(fit, model, goal, values, s->other));
         for (int64_t i = 0; i < goal->count; i++) {
             double moved[3];
             skg_add_scaled(s->other + 3 * i, -1, s->places + 3 * i, moved);
-            s->slopes[n * i + k] = skg_dot(moved, s->normals + 3 * i) / (high - low);
+            s->slopes[n * i + k] = skg_dot(moved, s->normals + 3 * i) * range / (high - low);
         }
+        k++;
     }
     return SKG_OK;
 }
@@ -115,7 +119,7 @@ static skg_status find_slopes(const skg_fit *fit, skg_fit_body *model, const skg
 static skg_status add_information(const skg_fit *fit, skg_fit_body *model, const skg_goal *goal,
                                   double *matrix) {
     const int64_t n = fit->search.dimensions;
-    const double resolution = fmax(*fit->search.best_value, RESOLUTION);
+    const double resolution = fmax(skg_fit_error(fit), RESOLUTION);
     slopes_of s = {0};
     skg_status status;
     SKG_TRY_CLEANUP(skg_alloc(3 * goal->count, sizeof(double), "fit", &s.places));
@@ -154,14 +158,14 @@ static void invert(int64_t n, double *a) {
  * square is the variance of a uniform distribution. */
 static skg_status find_covariance(skg_fit *fit, skg_fit_body *model) {
     const int64_t n = fit->search.dimensions;
-    double ranges[FIT_PARAMETERS], *matrix = fit->covariance;
+    double ranges[BODY_PARAMETERS], *matrix = fit->covariance;
     int64_t k = 0;
     memset(matrix, 0, sizeof fit->covariance);
     for (int64_t g = 0; g < fit->goal_count; g++)
         SKG_TRY(add_information(fit, model, fit->goals + g, matrix));
     for (int64_t d = 0; d < n; d++) matrix[(n + 1) * d] += 12;
     invert(n, matrix);
-    for (int p = 0; p < FIT_PARAMETERS; p++) {
+    for (int p = 0; p < BODY_PARAMETERS; p++) {
         fit->sigma[p] = 0;
         if (!fit->chosen[p]) continue;
         ranges[k] = fit->high[p] - fit->low[p];
@@ -173,7 +177,7 @@ static skg_status find_covariance(skg_fit *fit, skg_fit_body *model) {
 }
 
 static skg_status finish(skg_fit *fit, skg_fit_body *model) {
-    double values[FIT_PARAMETERS];
+    double values[BODY_PARAMETERS];
     SKG_TRY(measure_all(fit, model, 0));
     skg_fit_values_at(fit, fit->search.best, values);
     SKG_TRY(skg_fit_values_set(model->body, fit->chosen, values));

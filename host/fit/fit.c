@@ -1,5 +1,4 @@
 /* A fit as a handle. */
-#include "core/names.h"
 #include "core/plain.h"
 #include "evolution/eigen.h"
 #include "fit/types.h"
@@ -42,20 +41,29 @@ static skg_status check_options(const skg_fit_options *o) {
     return SKG_OK;
 }
 
-/* Starts and ranges. A range is widened to hold the start. */
+/* What the scene's key Fit says. */
+static void take_section(skg_fit *fit) {
+    const skg_body_fit_section *said = &fit->setup->breathing.fit;
+    for (int p = 0; p < BODY_PARAMETERS; p++) {
+        fit->chosen[p] = !said->chooses || said->chosen[p];
+        if (said->has_range[p]) fit->low[p] = said->low[p], fit->high[p] = said->high[p];
+    }
+}
+
+/* Starts and ranges. A range that nobody gave is widened to hold the start. */
 static skg_status find_ranges(skg_fit *fit, const skg_body *body) {
     for (int64_t o = 0; o < body->organs; o++) {
         const skg_body_organ *organ = body->organ + o;
         if (organ->role != ROLE_DIAPHRAGM) continue;
         memcpy(fit->bounds, organ->bounds, sizeof fit->bounds);
         skg_fit_values_get(body, fit->start);
-        for (int p = 0; p < FIT_PARAMETERS; p++) {
-            const skg_fit_kind *kind = skg_fit_kinds + p;
-            const double unit = p == FIT_OFFSET ? fit->bounds[5] - fit->bounds[2] : 1;
-            fit->chosen[p] = 1;
+        for (int p = 0; p < BODY_PARAMETERS; p++) {
+            const skg_parameter_kind *kind = skg_parameter_kinds + p;
+            const double unit = p == BODY_OFFSET ? fit->bounds[5] - fit->bounds[2] : 1;
             fit->low[p] = fmin(unit * kind->low, fit->start[p]);
             fit->high[p] = fmax(unit * kind->high, fit->start[p]);
         }
+        take_section(fit);
         return SKG_OK;
     }
     return skg_fail(SKG_ERR_BREATHING, "fit: the scene has no diaphragm, whose motion is fitted");
@@ -145,21 +153,6 @@ skg_status skg_fit_target_add(skg_fit *fit, int64_t part, double phase, skg_mesh
     return status;
 }
 
-/* Chooses what has this name or belongs to this group. */
-static skg_status choose(skg_fit *fit, const char *word) {
-    const char *known[2 * FIT_PARAMETERS];
-    int found = 0;
-    for (int p = 0; p < FIT_PARAMETERS; p++) {
-        const skg_fit_kind *kind = skg_fit_kinds + p;
-        known[p] = kind->name, known[FIT_PARAMETERS + p] = kind->group;
-        if (strcmp(word, kind->name) != 0 && strcmp(word, kind->group) != 0) continue;
-        fit->chosen[p] = found = 1;
-    }
-    if (found) return SKG_OK;
-    return skg_fail(SKG_ERR_ARGUMENT, "fit: there is no parameter \"%s\"; did you mean %s?", word,
-                    skg_nearest_name(word, known, 2 * FIT_PARAMETERS));
-}
-
 skg_status skg_fit_parameters_choose(skg_fit *fit, const char *names) {
     char *copy = NULL, *rest = NULL;
     SKG_NEEDS(fit);
@@ -170,7 +163,7 @@ skg_status skg_fit_parameters_choose(skg_fit *fit, const char *names) {
     memset(fit->chosen, 0, sizeof fit->chosen);
     for (char *word = strtok_r(copy, ", ", &rest); word && status == SKG_OK;
          word = strtok_r(NULL, ", ", &rest))
-        status = choose(fit, word);
+        status = skg_parameters_choose(word, fit->chosen);
     skg_free(&copy);
     if (status == SKG_OK && skg_fit_dimensions(fit) == 0)
         return skg_fail(SKG_ERR_ARGUMENT, "fit: no parameter is chosen");
@@ -178,55 +171,35 @@ skg_status skg_fit_parameters_choose(skg_fit *fit, const char *names) {
 }
 
 skg_status skg_fit_bounds_set(skg_fit *fit, const char *name, double low, double high) {
-    const char *known[FIT_PARAMETERS];
+    int p;
     SKG_NEEDS(fit);
     SKG_NEEDS(name);
     SKG_TRY(check_not_begun(fit));
-    for (int p = 0; p < FIT_PARAMETERS; p++) {
-        const skg_fit_kind *kind = skg_fit_kinds + p;
-        known[p] = kind->name;
-        if (strcmp(name, kind->name) != 0) continue;
-        if (!(low >= kind->least && high <= kind->greatest && low < high))
-            return skg_fail(SKG_ERR_ARGUMENT,
-                            "fit: %s from %g to %g; a range rises, and lies within %g to %g", name, low, high,
-                            kind->least, kind->greatest);
-        fit->low[p] = low, fit->high[p] = high;
-        return SKG_OK;
-    }
-    return skg_fail(SKG_ERR_ARGUMENT, "fit: there is no parameter \"%s\"; did you mean %s?", name,
-                    skg_nearest_name(name, known, FIT_PARAMETERS));
-}
-
-int64_t skg_fit_dimensions(const skg_fit *fit) {
-    int64_t count = 0;
-    for (int p = 0; p < FIT_PARAMETERS; p++) count += fit->chosen[p];
-    return count;
-}
-
-void skg_fit_values_at(const skg_fit *fit, const double *point, double *values) {
-    for (int p = 0; p < FIT_PARAMETERS; p++)
-        values[p] = fit->chosen[p] ? fit->low[p] + *point++ * (fit->high[p] - fit->low[p]) : fit->start[p];
+    SKG_TRY(skg_parameter_find(name, &p));
+    SKG_TRY(skg_parameter_check_range(p, low, high));
+    fit->low[p] = low, fit->high[p] = high;
+    return SKG_OK;
 }
 
 skg_status skg_fit_parameter_count(const skg_fit *fit, int64_t *count) {
     SKG_NEEDS(fit);
     SKG_NEEDS(count);
-    *count = FIT_PARAMETERS;
+    *count = BODY_PARAMETERS;
     return SKG_OK;
 }
 
 skg_status skg_fit_parameter_get(const skg_fit *fit, int64_t index, skg_fit_parameter *parameter) {
-    double values[FIT_PARAMETERS];
+    double values[BODY_PARAMETERS];
     SKG_NEEDS(fit);
     SKG_NEEDS(parameter);
-    if (index < 0 || index >= FIT_PARAMETERS)
+    if (index < 0 || index >= BODY_PARAMETERS)
         return skg_fail(SKG_ERR_ARGUMENT, "fit: no parameter %" PRId64 "; they are 0 to %d", index,
-                        FIT_PARAMETERS - 1);
+                        BODY_PARAMETERS - 1);
     memcpy(values, fit->start, sizeof values);
     if (fit->began) skg_fit_values_at(fit, fit->search.best, values);
     skg_fit_parameter ours = {.is_chosen = fit->chosen[index],
-                              .name = skg_fit_kinds[index].name,
-                              .unit = skg_fit_kinds[index].unit,
+                              .name = skg_parameter_kinds[index].name,
+                              .unit = skg_parameter_kinds[index].unit,
                               .start = fit->start[index],
                               .low = fit->low[index],
                               .high = fit->high[index],

@@ -1,28 +1,9 @@
-/* The parameters of a body that can be fitted. Private. */
+/* Reading and setting the parameters of a body. Private. */
 #ifndef SKG_FIT_PARAMETERS_H
 #define SKG_FIT_PARAMETERS_H
 
+#include "body/parameters.h"
 #include "body/types.h"
-
-enum {
-    FIT_TENDON, /* x, y, z */
-    FIT_AZIMUTH = 3,
-    FIT_ELEVATION,
-    FIT_OFFSET,
-    FIT_DIAPHRAGM, /* alpha_min, alpha_max, beta */
-    FIT_LIVER = 9, /* the same */
-    FIT_RIBS = 12,
-    FIT_REACH,
-    FIT_PARAMETERS
-};
-
-typedef struct {
-    const char *name, *group, *unit;
-    double low, high; /* the range that is searched; of plane-offset: shares of the diaphragm's height */
-    double least, greatest; /* what a body accepts */
-} skg_fit_kind;
-
-extern const skg_fit_kind skg_fit_kinds[FIT_PARAMETERS];
 
 /* The parameters that a linked body has. The plane of its tendon is set. */
 void skg_fit_values_get(const skg_body *body, double *values);

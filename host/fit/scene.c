@@ -68,24 +68,25 @@ static int set_tissue(const skg_fit *fit, json_t *breathing, const char *label, 
 }
 
 static int set_parameters(const skg_fit *fit, json_t *scene) {
-    double values[FIT_PARAMETERS], plane[4];
+    double values[BODY_PARAMETERS], plane[4];
     json_t *breathing = object_in(scene, "Breathing");
     int done = breathing != NULL;
     skg_fit_values_at(fit, fit->search.best, values);
     skg_fit_plane(fit->bounds, values, plane);
     done = done && set(breathing, "Comment", json_string("fitted by skiagraph fit"));
     done = done && set(breathing, "Coupling", json_string("Paper"));
-    if (any(fit, FIT_TENDON)) done = done && set(breathing, "Tendon", numbers(3, values + FIT_TENDON, "mm"));
-    if (any(fit, FIT_AZIMUTH)) done = done && set(breathing, "TendonPlane", numbers(4, plane, NULL));
-    if (any(fit, FIT_DIAPHRAGM))
+    if (any(fit, BODY_TENDON))
+        done = done && set(breathing, "Tendon", numbers(3, values + BODY_TENDON, "mm"));
+    if (any(fit, BODY_AZIMUTH)) done = done && set(breathing, "TendonPlane", numbers(4, plane, NULL));
+    if (any(fit, BODY_DIAPHRAGM))
         done = done &&
-               set_tissue(fit, breathing, label_of(fit, fit->models, "diaphragm"), values + FIT_DIAPHRAGM);
-    if (any(fit, FIT_LIVER))
-        done = done && set_tissue(fit, breathing, label_of(fit, fit->models, "liver"), values + FIT_LIVER);
-    if (fit->chosen[FIT_RIBS])
-        done = done && set(breathing, "DiaphragmRibs", numbers(1, values + FIT_RIBS, "mm"));
-    if (fit->chosen[FIT_REACH])
-        done = done && set(breathing, "DiaphragmLiver", numbers(1, values + FIT_REACH, "mm"));
+               set_tissue(fit, breathing, label_of(fit, fit->models, "diaphragm"), values + BODY_DIAPHRAGM);
+    if (any(fit, BODY_LIVER))
+        done = done && set_tissue(fit, breathing, label_of(fit, fit->models, "liver"), values + BODY_LIVER);
+    if (fit->chosen[BODY_RIBS])
+        done = done && set(breathing, "DiaphragmRibs", numbers(1, values + BODY_RIBS, "mm"));
+    if (fit->chosen[BODY_REACH])
+        done = done && set(breathing, "DiaphragmLiver", numbers(1, values + BODY_REACH, "mm"));
     return done;
 }
 

@@ -35,17 +35,13 @@ static skg_status check_goals(const skg_fit *fit) {
 }
 
 static skg_status begin(skg_fit *fit) {
-    double point[FIT_PARAMETERS];
-    int64_t n = 0;
+    double point[BODY_PARAMETERS];
     if (fit->goal_count == 0) return skg_fail(SKG_ERR_ARGUMENT, "fit: there is no target");
     if (fit->model_count == 0) SKG_TRY(make_models(fit));
     SKG_TRY(check_goals(fit));
-    for (int p = 0; p < FIT_PARAMETERS; p++) {
-        if (!fit->chosen[p]) continue;
-        point[n++] = fmin(fmax((fit->start[p] - fit->low[p]) / (fit->high[p] - fit->low[p]), 0), 1);
-    }
+    skg_fit_point_of(fit, fit->start, point);
     const int method = fit->options.method == SKG_FIT_METHOD_CMA ? SKG_SEARCH_CMA : SKG_SEARCH_DE;
-    return skg_search_create(method, n, point, fit->options.seed, &fit->search);
+    return skg_search_create(method, skg_fit_dimensions(fit), point, fit->options.seed, &fit->search);
 }
 
 skg_status skg_fit_begin(skg_fit *fit) {
@@ -60,14 +56,14 @@ skg_status skg_fit_begin(skg_fit *fit) {
     return status;
 }
 
-/* The root mean square error at a point. */
+/* The mean square error at a point: it is nearly a quadratic function, which the search can model, and its root is not. */
 static skg_status evaluate(const skg_fit *fit, skg_fit_body *model, const double *point, double *value) {
     SKG_PLAIN; /* of this thread */
-    double values[FIT_PARAMETERS], square = 0;
+    double values[BODY_PARAMETERS], square = 0;
     skg_fit_values_at(fit, point, values);
     SKG_TRY(skg_fit_values_set(model->body, fit->chosen, values));
     SKG_TRY(skg_fit_body_error(model, fit->goals, fit->goal_count, &square));
-    *value = isfinite(square) ? sqrt(square) : HUGE_VAL;
+    *value = isfinite(square) ? square : HUGE_VAL;
     return SKG_OK;
 }
 
@@ -90,10 +86,14 @@ static skg_status evaluate_all(skg_fit *fit, double *values) {
     return status == SKG_OK ? SKG_OK : skg_fail(status, "%s", sentence);
 }
 
+double skg_fit_error(const skg_fit *fit) {
+    return sqrt(*fit->search.best_value);
+}
+
 static int is_done(const skg_fit *fit) {
     const skg_search *search = &fit->search;
     const int64_t next = search->counters[SEARCH_EVALUATIONS] + search->counters[SEARCH_POPULATION];
-    return next > fit->options.evaluations || *search->best_value <= fit->options.enough_mm;
+    return next > fit->options.evaluations || skg_fit_error(fit) <= fit->options.enough_mm;
 }
 
 static skg_status step(skg_fit *fit) {
@@ -116,7 +116,7 @@ skg_status skg_fit_step(skg_fit *fit, skg_fit_state *state) {
                                 .evaluations = counters[SEARCH_EVALUATIONS],
                                 .generation = counters[SEARCH_GENERATION],
                                 .restarts = counters[SEARCH_RESTARTS],
-                                .best_mm = *fit->search.best_value};
+                                .best_mm = skg_fit_error(fit)};
     fit->finished = 0;
     return state ? skg_struct_write(&ours, sizeof ours, "skg_fit_state", state) : SKG_OK;
 }

@@ -228,7 +228,7 @@ static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *bea
     filter_list list = {.count = 0};
     skg_status status = SKG_OK;
     skg_tube_init(&tube);
-    tube.context = reader->context;
+    tube.log = reader->log.call, tube.log_user = reader->log.user;
     SKG_TRY(skg_json_number(kvp, &tube.kvp));
     SKG_TRY(read_mas(beam, &tube.mas, &reader->setup->absolute));
     skg_heel *heel = &reader->setup->heel;

@@ -15,7 +15,7 @@ static const skg_json_key breathing_keys[] = {
     {"LungDensity", NULL, SKG_KEY_READ},   {"Organs", NULL, SKG_KEY_READ},
     {"Events", NULL, SKG_KEY_READ},        {"RibAxes", NULL, SKG_KEY_READ},
     {"DiaphragmRibs", NULL, SKG_KEY_READ}, {"DiaphragmLiver", NULL, SKG_KEY_READ},
-    {"Coupling", NULL, SKG_KEY_READ},
+    {"Coupling", NULL, SKG_KEY_READ},      {"Fit", NULL, SKG_KEY_READ},
 };
 
 static const skg_json_key event_keys[] = {
@@ -216,6 +216,8 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     skg_json_node organs = skg_json_member(&object, "Organs"), events = skg_json_member(&object, "Events");
     if (organs.value) SKG_TRY(skg_setup_read_organs(reader, &organs));
     if (events.value) SKG_TRY(read_events(reader, &events));
+    skg_json_node fit = skg_json_member(&object, "Fit");
+    if (fit.value) SKG_TRY(skg_setup_read_body_fit(&fit, &section->fit));
     skg_status status = skg_breath_check(&section->breath);
     return skg_json_at(node, status);
 }

@@ -180,9 +180,9 @@ skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *d
     skg_add_scaled(frame.origin, frame.plane, frame.axis, view->centre);
     skg_scale_vector(pixel, frame.right, view->column_step);
     skg_scale_vector(pixel, frame.up, view->row_step);
-    skg_log(reader->context, SKG_LOG_NOTE,
-            "the detector is fitted to the parts: %" PRId64 " x %" PRId64
-            " pixels of %.4g mm, centre at (%.4g, %.4g, %.4g) mm",
-            view->columns, view->rows, pixel, view->centre[0], view->centre[1], view->centre[2]);
+    skg_logger_say(&reader->log, SKG_LOG_NOTE,
+                   "the detector is fitted to the parts: %" PRId64 " x %" PRId64
+                   " pixels of %.4g mm, centre at (%.4g, %.4g, %.4g) mm",
+                   view->columns, view->rows, pixel, view->centre[0], view->centre[1], view->centre[2]);
     return SKG_OK;
 }

@@ -61,7 +61,7 @@ static skg_status tell_note(skg_setup_reader *reader, const skg_json_node *node,
     SKG_TRY(skg_material_note_get(material, &note));
     if (!*note) return SKG_OK;
     skg_json_place(node, place, sizeof place);
-    skg_log(reader->context, SKG_LOG_NOTE, "%s: %s", place, note);
+    skg_logger_say(&reader->log, SKG_LOG_NOTE, "%s: %s", place, note);
     return SKG_OK;
 }
 

@@ -2,12 +2,14 @@
 #ifndef SKG_READER_H
 #define SKG_READER_H
 
+#include "core/log.h"
 #include "scene/scene.h"
 #include "setup/types.h"
 #include "json/json.h"
 
 typedef struct {
     skg_context *context;
+    skg_logger log; /* the context's, or the source's */
     skg_json_file file;
     char *folder; /* of the scene file, with its last slash; "" for the current folder */
     skg_setup *setup;

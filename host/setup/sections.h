@@ -41,6 +41,7 @@ skg_status skg_setup_keep_text(skg_setup_reader *reader);
 
 /* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node);
+skg_status skg_setup_read_body_fit(const skg_json_node *node, skg_body_fit_section *fit);
 void skg_breathing_section_free(skg_breathing_section *section);
 
 /* The key Organs of that section. */

@@ -163,8 +163,8 @@ static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
     if (reader->setup->absolute && !noise.value)
-        skg_log(
-            reader->context, SKG_LOG_NOTE,
+        skg_logger_say(
+            &reader->log, SKG_LOG_NOTE,
             "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
             "given");
     skg_json_node scan = skg_json_member(&top, "Scan");
@@ -182,8 +182,8 @@ static skg_status read_all(skg_setup_reader *reader) {
 /* Gives what was kept while reading to the log. */
 static void say_remarks(const skg_setup_reader *reader) {
     for (size_t i = 0; i < json_array_size(reader->file.remarks); i++)
-        skg_log(reader->context, SKG_LOG_WARNING, "%s",
-                json_string_value(json_array_get(reader->file.remarks, i)));
+        skg_logger_say(&reader->log, SKG_LOG_WARNING, "%s",
+                       json_string_value(json_array_get(reader->file.remarks, i)));
 }
 
 void skg_setup_source_init_sized(void *source, int32_t size) {
@@ -243,6 +243,7 @@ static skg_status load(skg_context *context, const char *path, int64_t count, co
     *setup = NULL;
     SKG_NEEDS_OF("skg_setup_load", path);
     skg_setup_reader reader = {.context = context};
+    if (context) reader.log = context->log;
     reader.source.path = path;
     reader.source.settings = settings;
     reader.source.setting_count = count;
@@ -264,6 +265,8 @@ static skg_status create(skg_context *context, const skg_setup_source *source, s
     if (!reader.source.text && !reader.source.path)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_setup_source: both text and path are NULL; give one of them");
     if (!reader.source.path) reader.source.path = "scene";
+    reader.log =
+        context ? context->log : (skg_logger){.call = reader.source.log, .user = reader.source.log_user};
     return make(&reader, setup);
 }
 

@@ -39,8 +39,9 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
     if (health.closed) {
         char place[256];
         skg_json_place(node, place, sizeof place);
-        skg_log(reader->context, SKG_LOG_NOTE,
-                "%s: FlipNormals has no effect on a closed mesh, whose normals point outward anyway", place);
+        skg_logger_say(&reader->log, SKG_LOG_NOTE,
+                       "%s: FlipNormals has no effect on a closed mesh, whose normals point outward anyway",
+                       place);
         return SKG_OK;
     }
     const char *name = NULL;
@@ -80,8 +81,8 @@ static skg_status orient(const skg_setup_reader *reader, const skg_json_node *no
     skg_mesh_release(mesh);
     *mesh = oriented;
     skg_json_place(node, place, sizeof place);
-    skg_log(reader->context, SKG_LOG_NOTE, "%s: %" PRId64 " of %" PRId64 " components turned", place,
-            nesting.inverted, nesting.components);
+    skg_logger_say(&reader->log, SKG_LOG_NOTE, "%s: %" PRId64 " of %" PRId64 " components turned", place,
+                   nesting.inverted, nesting.components);
     return SKG_OK;
 }
 

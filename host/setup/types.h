@@ -2,6 +2,7 @@
 #ifndef SKG_SETUP_TYPES_H
 #define SKG_SETUP_TYPES_H
 
+#include "body/parameters.h"
 #include "core/core.h"
 
 #include <skiagraph/breathing.h>
@@ -40,6 +41,14 @@ typedef struct {
     int64_t count;  /* 0: not given */
 } skg_curve;
 
+/* The key Fit of Breathing: what the verb fit searches. */
+typedef struct {
+    int32_t chooses; /* 1: chosen is given; otherwise all are fitted */
+    int32_t chosen[BODY_PARAMETERS];
+    int32_t has_range[BODY_PARAMETERS];
+    double low[BODY_PARAMETERS], high[BODY_PARAMETERS];
+} skg_body_fit_section;
+
 /* The section Breathing; without it the defaults. */
 typedef struct {
     skg_breath breath; /* its samples and holds point to those below */
@@ -56,6 +65,7 @@ typedef struct {
         char **to;       /* labels to which the links point */
         skg_organ_link *links;
     } * organs;
+    skg_body_fit_section fit;
     skg_curve weight; /* factor on the weights of both channels */
     skg_curve needle; /* depth below the skin, mm */
     int64_t contrast_count;

@@ -110,11 +110,61 @@ START_TEST(mistakes_are_named) {
 }
 END_TEST
 
+/* Names that a scene has wrong are refused; what --lenient passes over is said; flags change what the scene says. */
+START_TEST(the_scene_chooses) {
+#define TARGET "--method de --evaluations 12 --target liver=diaphragm.ply --phase 0 -o f.json "
+    ck_run(
+        0,
+        "fit thorax.json " TARGET
+        "--set 'Breathing.Fit={\"Parameters\": [\"tendon\"], \"Bounds\": {\"tendon-z\": [-30, -5, \"mm\"]}}' "
+        "--json");
+    json_t *object = said_json(), *list = member(object, "parameters");
+    ck_assert_uint_eq(json_array_size(list), 3);
+    ck_assert_double_eq(json_number_value(json_object_get(json_array_get(list, 2), "low")), -30);
+    json_decref(object);
+    ck_run(0, "fit thorax.json " TARGET
+              "--set 'Breathing.Fit={\"Parameters\": [\"tendon\"]}' --parameters links "
+              "--bounds diaphragm-ribs=5:20 --lenient --set Breathing.Moon=1 --json");
+    object = said_json(), list = member(object, "parameters");
+    ck_assert_uint_eq(json_array_size(list), 2);
+    ck_assert_double_eq(json_number_value(json_object_get(json_array_get(list, 0), "high")), 20);
+    json_decref(object);
+    ck_assert_ptr_nonnull(strstr(complained, "Moon"));
+    ck_run_fails(3, "Known are tendon-x",
+                 "fit thorax.json " TARGET
+                 "--set 'Breathing.Fit={\"Bounds\": {\"tendon-w\": [0, 1, \"mm\"]}}'");
+    ck_run_fails(2, "has no part \"zzzzzzzzzz\"",
+                 "fit thorax.json --target zzzzzzzzzz=liver.ply --phase 0 -o fitted.json");
+}
+END_TEST
+
+/* A report for each part and phase. */
+START_TEST(several_phases) {
+    ck_run(0,
+           FIT "--phase 0.25 --target liver=diaphragm.ply --target diaphragm=diaphragm.ply --evaluations 24 "
+               "-o fitted.json --json");
+    json_t *object = said_json(), *parts = member(object, "parts");
+    static const struct {
+        const char *label;
+        double phase;
+    } expected[] = {{"liver", 0}, {"liver", 0.25}, {"diaphragm", 0.25}};
+    ck_assert_uint_eq(json_array_size(parts), 3);
+    for (size_t t = 0; t < 3; t++) {
+        json_t *part = json_array_get(parts, t);
+        ck_assert_str_eq(json_string_value(member(part, "label")), expected[t].label);
+        ck_assert_double_eq(json_number_value(member(part, "phase")), expected[t].phase);
+    }
+    json_decref(object);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_thorax, tear_down);
     tcase_add_test(tests, outputs_are_written_and_read);
     tcase_add_test(tests, a_checkpoint_continues);
     tcase_add_test(tests, killed_searches_continue);
+    tcase_add_test(tests, the_scene_chooses);
+    tcase_add_test(tests, several_phases);
     tcase_add_test(tests, mistakes_are_named);
 }
 

@@ -22,6 +22,7 @@ int fit_load_scene(const cli_arguments *arguments, const char *path, int with_se
     source.settings = settings;
     source.setting_count = count;
     source.lenient = cli_given(arguments, &cli_flag_lenient);
+    if (with_settings) source.log = cli_log; /* the fitted scene would repeat them */
     const skg_status status = skg_setup_create(NULL, &source, setup);
     free(settings);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -53,7 +54,7 @@ static int check_outputs(const fit_work *work) {
 /* The number of the part that the word before "=" names. */
 static int find_part(const fit_work *work, const char *word, size_t length, int64_t *part) {
     int64_t count = 0;
-    const char *labels[512];
+    const char *labels[512], *nearest;
     char name[256];
     skg_status status = skg_scene_part_count(work->scene, &count);
     snprintf(name, sizeof name, "%.*s", (int)length, word);
@@ -68,8 +69,9 @@ static int find_part(const fit_work *work, const char *word, size_t length, int6
         return CLI_DONE;
     }
     if (status != SKG_OK) return cli_fail(status);
-    return cli_error(CLI_USAGE, "--target %s: the scene has no part \"%s\"; did you mean %s?", word, name,
-                     skg_nearest_name(name, labels, (int)(count < 512 ? count : 512)));
+    nearest = skg_nearest_name(name, labels, count < 512 ? count : 512);
+    return cli_error(CLI_USAGE, "--target %s: the scene has no part \"%s\"%s%s%s", word, name,
+                     nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
 }
 
 static int add_target(fit_work *work, const char *word, double phase, double unit_mm) {

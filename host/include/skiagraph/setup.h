@@ -61,6 +61,10 @@ typedef struct {
     const char *const *file_paths;
     /** Number of such files. */
     int64_t file_count;
+    /** Receives warnings and notes if the context is NULL; may be NULL. */
+    skg_log_function log;
+    /** Passed to log. */
+    void *log_user;
 } skg_setup_source;
 
 /** Prepares a skg_setup_source of `size` bytes (export.h). */
