@@ -9,5 +9,6 @@ typedef struct {
 
 extern const skg_kernel_source skg_kernel_sources[];
 extern const int skg_kernel_source_count;
+extern const char skg_kernel_sources_digest[]; /* SHA-256 of names and contents, in hexadecimal */
 
 #endif

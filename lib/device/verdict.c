@@ -10,8 +10,7 @@ static skg_digest key_of(const skg_digest *identity, const char *test) {
     skg_digest_start(&digester);
     skg_digest_add(&digester, identity->bytes, sizeof identity->bytes);
     skg_digest_add_text(&digester, test);
-    for (int i = 0; i < skg_kernel_source_count; i++)
-        skg_digest_add_text(&digester, skg_kernel_sources[i].text);
+    skg_digest_add_text(&digester, skg_kernel_sources_digest);
     return skg_digest_end(&digester);
 }
 

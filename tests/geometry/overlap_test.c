@@ -76,6 +76,27 @@ START_TEST(touching_boxes_do_not_overlap) {
 }
 END_TEST
 
+/* Pieces begin and end inside solids, and some have no triangle at all. */
+START_TEST(pieces_find_the_same_hits_in_the_same_order) {
+    static const int64_t pieces[] = {1, 5, 100};
+    box store[3];
+    skg_solid solids[3];
+    skg_columns grids[3] = {0};
+    solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 100, -1);
+    solids[1] = make_box(&store[1], 20, 80, 20, 80, 50, 130, 0);
+    solids[2] = make_box(&store[2], 25, 75, 25, 75, 60, 90, 1);
+    for (int k = 0; k < 3; k++) {
+        grids[k].side = 40, grids[k].pieces = pieces[k];
+        skg_columns_bound(&grids[k], 3, solids);
+        ck_skg(skg_columns_gather(&grids[k], 3, solids));
+        ck_assert_int_gt(grids[k].first[1600], 0);
+        ck_assert_mem_eq(grids[k].first, grids[0].first, 1601 * sizeof *grids[0].first);
+        ck_assert_mem_eq(grids[k].hits, grids[0].hits, (size_t)grids[0].first[1600] * sizeof *grids[0].hits);
+    }
+    for (int k = 0; k < 3; k++) skg_columns_free(&grids[k]);
+}
+END_TEST
+
 START_TEST(nothing_is_no_failure) {
     int64_t count = 7;
     skg_overlap_pair *pairs = NULL;
@@ -90,6 +111,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, overlapping_boxes_are_measured);
     tcase_add_test(tests, a_child_that_leaves_its_parent_is_reported);
     tcase_add_test(tests, touching_boxes_do_not_overlap);
+    tcase_add_test(tests, pieces_find_the_same_hits_in_the_same_order);
     tcase_add_test(tests, nothing_is_no_failure);
 }
 
