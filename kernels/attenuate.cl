@@ -13,6 +13,32 @@
 
 #define SKG_OUT_TO_REAL_V SKG_CAT(SKG_CAT(convert_, SKG_SCALAR), SKG_WIDE)
 
+/* Values as the image has them: of its type; with half precision rounded to binary16, energies in MeV. */
+static void skg_of_image(skg_realv value, skg_out *lanes) {
+    SKG_STORE_V(outv, SKG_TO_OUT_V(value), lanes);
+#if SKG_HALF
+    for (int k = 0; k < SKG_WIDE; k++)
+        lanes[k] = (skg_out)(skg_to_half((float)lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT);
+#endif
+}
+
+#if SKG_FINE > 1
+/* Pixels of the image that the runs show. */
+#define SKG_SHOWN (SKG_RUNS * SKG_WIDE / SKG_FINE)
+
+/* Adds one row of rays to the pixels of the image from `place` on, in the order of passes: along the row, then down.
+ * row: of the pixels' rows of rays; pixels: how many the image has from there on. */
+static void skg_show_rays(const skg_realv *values, __global skg_out *place, int row, int pixels) {
+    skg_out rays[SKG_RUNS * SKG_WIDE], sums[SKG_SHOWN];
+    const int count = min(pixels, SKG_SHOWN);
+    SKG_EACH_RUN skg_of_image(values[r], rays + r * SKG_WIDE);
+    for (int k = 0; k < SKG_SHOWN; k++) sums[k] = (SKG_ADD || row > 0) && k < count ? place[k] : (skg_out)(0);
+    for (int k = 0; k < SKG_SHOWN; k++)
+        for (int a = 0; a < SKG_FINE; a++) sums[k] += rays[k * SKG_FINE + a];
+    for (int k = 0; k < count; k++) place[k] = sums[k];
+}
+#endif
+
 /* Rare ways are functions of their own, so that there is little to compile. They take copies of vectors, because an array that
  * is reached by an address or a variable index stays in memory. */
 
@@ -20,13 +46,9 @@
 SKG_APART void skg_show_some(const skg_realv *values, __global skg_out *place, int pixels) {
     for (int r = 0; r * SKG_WIDE < pixels && r < SKG_RUNS; r++) {
         skg_out lanes[SKG_WIDE];
-        SKG_STORE_V(outv, SKG_TO_OUT_V(values[r]), lanes);
-        for (int k = 0; k < min(pixels - r * SKG_WIDE, SKG_WIDE); k++, place++) {
-#if SKG_HALF /* the image is rounded to binary16, too; energies are in MeV */
-            lanes[k] = (skg_out)(skg_to_half((float)lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT);
-#endif
+        skg_of_image(values[r], lanes);
+        for (int k = 0; k < min(pixels - r * SKG_WIDE, SKG_WIDE); k++, place++)
             *place = SKG_ADD ? *place + lanes[k] : lanes[k];
-        }
     }
 }
 
@@ -212,6 +234,36 @@ static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
 #endif
 }
 
+/* Writes the values of a channel of the runs. */
+static void skg_show_channel(const skg_pass *pass, const skg_realv *values, int channel) {
+    __global skg_out *place = pass->output + pass->offset + channel * pass->channel_stride +
+                              pass->row / SKG_FINE * pass->row_stride + pass->column / SKG_FINE;
+    const int left = pass->frame->columns - pass->column;
+    skg_count_infinite(values, left, pass->negative + 2);
+#if SKG_FINE > 1
+    skg_show_rays(values, place, pass->row % SKG_FINE, left / SKG_FINE);
+#else
+    skg_show(values, place, left);
+#endif
+}
+
+/* Counts negative exponents. Of the rays of a pixel the last one counts, as the last of several passes does. */
+static void skg_count_negative(const skg_pass *pass, const skg_pixels *pixels) {
+    const int left = pass->frame->columns - pass->column;
+#if SKG_FINE > 1
+    skg_realv last[SKG_RUNS];
+    if (pass->row % SKG_FINE < SKG_FINE - 1) return;
+    SKG_EACH_RUN {
+        const skg_intv column = pass->column + r * SKG_WIDE + SKG_TO_INT_V(SKG_LANES);
+        const skg_intv counts = column % SKG_FINE == SKG_FINE - 1;
+        last[r] = SKG_TO_MASK_V(counts) ? pixels->highest[r] : (skg_realv)(pass->limit);
+    }
+    skg_count(last, pass->limit, left, pass->negative);
+#else
+    skg_count(pixels->highest, pass->limit, left, pass->negative);
+#endif
+}
+
 /* SKG_RUNS runs of SKG_WIDE pixels of a row. */
 static void skg_attenuate_runs(const skg_pass *pass) {
     skg_pixels pixels;
@@ -232,27 +284,26 @@ static void skg_attenuate_runs(const skg_pass *pass) {
     skg_add_nodes(pass, &pixels);
     SKG_EACH_RUN skg_finish(pass, &pixels, r);
 #endif
-    const int left = pass->frame->columns - pass->column;
-    __global skg_out *place = pass->output + pass->offset + pass->row * pass->row_stride + pass->column;
     SKG_EACH_CHANNEL {
-        skg_count_infinite(pixels.shown[c], left, pass->negative + 2);
-        skg_show(pixels.shown[c], place + c * pass->channel_stride, left);
+        skg_show_channel(pass, pixels.shown[c], c);
 #if SKG_NOISE_APART
-        skg_count_infinite(pixels.spread[c], left, pass->negative + 2);
-        skg_show(pixels.spread[c], place + (SKG_CHANNELS + c) * pass->channel_stride, left);
+        skg_show_channel(pass, pixels.spread[c], SKG_CHANNELS + c);
 #endif
     }
-    skg_count(pixels.highest, pass->limit, left, pass->negative);
+    skg_count_negative(pass, &pixels);
 }
 
-/* SKG_STRIP times as many pixels, as far as the row reaches. */
+/* SKG_STRIP times as many pixels, as far as the row reaches; of all rows of rays that make a row of the image. */
 SKG_APART void skg_attenuate_strip(const skg_pass *first) {
     skg_pass pass = *first; /* a copy that stores cannot alias */
     const int end = min(pass.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, pass.frame->columns);
-    for (; pass.column < end; pass.column += SKG_RUNS * SKG_WIDE) skg_attenuate_runs(&pass);
+    for (int row = 0; row < SKG_FINE; row++, pass.row++)
+        for (pass.column = first->column; pass.column < end; pass.column += SKG_RUNS * SKG_WIDE)
+            skg_attenuate_runs(&pass);
 }
 
-/* A work-item takes a strip of a row.
+/* A work-item takes a strip of a row of the image. If SKG_FINE x SKG_FINE rays make a pixel of it, the pixels of `frame` and of
+ * this comment are those of the rays.
  *
  * coefficients   of -exponent * log2(e), or of the exponent if that is shown
  * factor         of intensities
@@ -316,7 +367,7 @@ __kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global con
     pass.copies = copies;
     pass.used = used;
     pass.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
-    pass.row = (int)get_global_id(1);
+    pass.row = SKG_FINE * (int)get_global_id(1);
     pass.coefficients = coefficients;
     pass.weights = weights;
     pass.factor = factor;

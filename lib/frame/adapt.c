@@ -39,7 +39,7 @@ static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_out
     SKG_TRY(skg_recipe_copy(recipe, &linear));
     linear->linear = 1;
     linear->samples.spot_count = samples;
-    linear->samples.shifts = 1;
+    linear->samples.shifts = linear->samples.fine = 1;
     skg_submission s = {
         .recipe = linear, .machine = machine, .outcome = outcome, .count = 1, .lengths_of = -1};
     SKG_TRY_CLEANUP(skg_submission_check(&s, &output));

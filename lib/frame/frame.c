@@ -4,6 +4,13 @@
 #include "plan/unseen.h"
 #include "spectral/quantity.h"
 
+/* The tile that is asked for, in pixels of a pass. Of a finer detector, bands may have to be higher. */
+static int32_t tile_of(const skg_recipe *recipe, const skg_pass *pass) {
+    const int32_t tile = recipe->strategy == SKG_STRATEGY_TILES ? recipe->options.tile : 0;
+    const int64_t least = (pass->camera.rows + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
+    return tile && pass->fine > 1 && tile < least ? (int32_t)least : tile;
+}
+
 /* Pins the raster that a pass calls for, and reports its layout. */
 static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg_pass *pass,
                              skg_outcome *outcome) {
@@ -11,10 +18,10 @@ static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg
     const skg_raster_options options = {
         .kernels = pass->kernels,
         .strategy = recipe->strategy,
-        .tile = recipe->strategy == SKG_STRATEGY_TILES ? recipe->options.tile : 0,
+        .tile = tile_of(recipe, pass),
         .more_sums = recipe->leaky_count > 0 || recipe->priority_possible,
-        .columns = recipe->view.columns,
-        .rows = recipe->view.rows,
+        .columns = pass->camera.columns,
+        .rows = pass->camera.rows,
         .planes = pass->planes,
         .triangles = machine->geometry.triangles,
     };
@@ -27,16 +34,30 @@ static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome) {
     const skg_frame_work work = {.view = &recipe->view, .lengths_of = -1};
     skg_pass pass;
-    skg_status status = skg_pass_fill(recipe, &work, -1, &machine->pass, &pass);
+    const int64_t first = skg_recipe_averages(recipe) ? 0 : -1;
+    skg_status status = skg_pass_fill(recipe, &work, first, &machine->pass, &pass);
     if (status == SKG_OK) status = pin_raster(recipe, machine, &pass, outcome);
     skg_pass_release(&pass);
     return status;
 }
 
-/* The sums of a raster, as the attenuation reads them. mixed: 0 or the accumulators that planes are mixed from. */
-static skg_sums sums_of(const skg_machine *machine, const skg_raster_pin *pin, double scale, int32_t mixed) {
-    return (skg_sums){
-        .raster = pin->raster, .scale = scale, .mixed = mixed, .lists = machine->mix_lists.memory.memory};
+/* The sums of a pass, as the attenuation reads them. */
+static skg_sums sums_of(const skg_machine *machine, const skg_recipe *recipe, const skg_pass *pass) {
+    return (skg_sums){.raster = pass->main.raster,
+                      .scale = pass->scale.scale,
+                      .mixed = pass->mix.sums ? recipe->mixed : 0,
+                      .fine = pass->fine,
+                      .lists = machine->mix_lists.memory.memory};
+}
+
+/* The layout of the sums of a frame's last pass. They are not read. */
+static skg_sums layout_of(const skg_machine *machine, const skg_recipe *recipe, const skg_raster_pin *pin) {
+    const int64_t accumulators = skg_raster_plane_count(pin->raster);
+    return (skg_sums){.raster = pin->raster,
+                      .scale = 1,
+                      .mixed = accumulators == recipe->model.planes ? 0 : (int32_t)accumulators,
+                      .fine = (int32_t)recipe->samples.fine,
+                      .lists = machine->mix_lists.memory.memory};
 }
 
 /* Enqueues the raster of all parts, and what priorities and leaky parts change in its sums. */
@@ -64,8 +85,8 @@ static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pas
                          &means->results->leaky, means->staging);
 }
 
-/* Enqueues the image of one sample from the sums. */
-static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_work *work, int64_t sample,
+/* Enqueues the image of one pass from the sums. */
+static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_work *work, int64_t number,
                                 const skg_pass *pass) {
     const skg_recipe *recipe = means->recipe;
     skg_machine *machine = means->machine;
@@ -73,7 +94,8 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
     /* Noise is that of photons in a pixel; its area is divided by later. */
     const int areas =
         recipe->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&recipe->options);
-    const double area = areas ? skg_camera_pixel_area(&pass->camera) : 1;
+    const double rays = (double)pass->fine * pass->fine;
+    const double area = areas ? skg_camera_pixel_area(&pass->camera) * rays : 1;
     const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&recipe->samples));
     /* A length may be wrong by some of the scale's bound if a face lies nearly along the ray (docs/numerics.md). Below a
      * ten-thousandth of the bound it does not show that more was subtracted than there is. */
@@ -82,34 +104,33 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
     skg_attenuation attenuation = lengths ? machine->lengths : machine->images;
     skg_image_place place = work->place;
     skg_noise_args noise = work->noise;
-    place.add = sample > 0;
-    noise.sample = sample > 0 ? (cl_int)sample : 0;
+    place.add = number > 0;
+    noise.sample = number > 0 ? (cl_int)number * pass->fine * pass->fine : 0;
     if (recipe->linear) attenuation.noise = 0;
-    if (sample < 0 ||
-        sample + 1 == skg_samples_count(&recipe->samples)) /* the last sample's count is reported */
+    if (number < 0 ||
+        number + 1 == skg_samples_passes(&recipe->samples)) /* the last pass's count is reported */
         SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
                                        sizeof none, 0, sizeof none, 0, NULL, NULL));
     if (pass->mix.sums)
         SKG_TRY(skg_mix_lists_send(&machine->mix_lists, pass->mix.lists,
                                    (int64_t)recipe->mixed * recipe->model.planes,
                                    recipe->options.precision == SKG_PRECISION_DOUBLE, means->staging));
-    const skg_sums sums =
-        sums_of(machine, &pass->main, pass->scale.scale, pass->mix.sums ? recipe->mixed : 0);
+    const skg_sums sums = sums_of(machine, recipe, pass);
     return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, least,
                          machine->negative.memory, &noise, &place, &means->staging->log);
 }
 
-/* One pass: from the vertices to the image of one sample. */
-static skg_status enqueue_pass(const skg_frame_means *means, const skg_frame_work *work, int64_t sample) {
+/* One pass: from the vertices to its share of the image. */
+static skg_status enqueue_pass(const skg_frame_means *means, const skg_frame_work *work, int64_t number) {
     skg_machine *machine = means->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_pass_fill(means->recipe, work, sample, &machine->pass, &pass));
+    SKG_TRY_CLEANUP(skg_pass_fill(means->recipe, work, number, &machine->pass, &pass));
     SKG_TRY_CLEANUP(pin_raster(means->recipe, machine, &pass, means->outcome));
     skg_raster_pin_copy(&pass.main, means->main);
-    skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, means->outcome);
+    skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, means->outcome);
     SKG_TRY_CLEANUP(enqueue_sums(means, &pass));
-    status = enqueue_image(means, work, sample, &pass);
+    status = enqueue_image(means, work, number, &pass);
 cleanup:
     skg_pass_release(&pass);
     return status;
@@ -119,9 +140,7 @@ cleanup:
 static skg_status find_flat_field(const skg_frame_means *means, const skg_frame_work *work) {
     const skg_recipe *recipe = means->recipe;
     skg_machine *machine = means->machine;
-    const int64_t accumulators = skg_raster_plane_count(means->main->raster);
-    const int32_t mixed = accumulators == recipe->model.planes ? 0 : (int32_t)accumulators;
-    const skg_sums sums = sums_of(machine, means->main, 1, mixed);
+    const skg_sums sums = layout_of(machine, recipe, means->main);
     const skg_flat_field_work flat = {.samples = skg_recipe_averages(recipe) ? &recipe->samples : NULL,
                                       .sums = &sums,
                                       .attenuator = machine->attenuator,
@@ -161,14 +180,15 @@ skg_status skg_frame_enqueue(const skg_frame_means *means, const skg_frame_work 
     const skg_recipe *recipe = means->recipe;
     if (work->lengths_of >= 0) return enqueue_pass(means, work, -1);
     const int64_t first = skg_recipe_averages(recipe) ? 0 : -1;
-    const int64_t end = first < 0 ? 0 : skg_samples_count(&recipe->samples);
+    const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
     skg_frame_work layered = *work;
     SKG_TRY(skg_layers_place(means->machine->context, &means->machine->layers, layers_of(means), &work->place,
                              recipe->view.columns, recipe->view.rows, recipe->model.channels,
                              &layered.place));
-    for (int64_t s = first; s < end; s++) SKG_TRY(enqueue_pass(means, &layered, s));
+    for (int64_t p = first; p < end; p++) SKG_TRY(enqueue_pass(means, &layered, p));
     SKG_TRY(detect(means, work, &layered.place));
     if (!skg_decide_late_logarithm(recipe)) return SKG_OK;
-    return skg_attenuate_logarithm(means->machine->attenuator, means->main->raster, &means->machine->images,
-                                   &work->place, &means->staging->log);
+    const skg_sums sums = layout_of(means->machine, recipe, means->main);
+    return skg_attenuate_logarithm(means->machine->attenuator, &sums, &means->machine->images, &work->place,
+                                   &means->staging->log);
 }

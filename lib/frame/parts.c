@@ -61,6 +61,7 @@ static double largest_weight(const skg_pass *pass, int64_t part) {
 static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
                         skg_pass *pass) {
     const skg_scene *scene = recipe->scene;
+    const skg_scale_grid grid = skg_scale_grid_of(&memory->grid, pass->camera.columns, pass->camera.rows);
     int64_t contributing = 0;
     pass->parts = memory->parts;
     pass->extents = memory->extents;
@@ -87,7 +88,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
         memory->scales[contributing++] = extent->scale;
         pass->kernels.source_plane |= extent->near_source && extent->on_detector;
     }
-    skg_scale_find(&memory->grid, contributing, memory->scales,
+    skg_scale_find(&grid, contributing, memory->scales,
                    recipe->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32, &pass->scale);
 }
 
@@ -102,13 +103,14 @@ static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work
     return SKG_OK;
 }
 
-skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t sample,
+skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t number,
                          const skg_pass_memory *memory, skg_pass *pass) {
     skg_kernel_options *kernels = &pass->kernels;
-    double source[3], shift[2] = {0, 0};
-    *pass = (skg_pass){.scene = recipe->scene};
-    if (sample >= 0) skg_samples_at(&recipe->samples, work->view, sample, source, shift);
-    SKG_TRY(skg_camera_make(work->view, sample >= 0 ? source : NULL, shift[0], shift[1], &pass->camera));
+    *pass = (skg_pass){.scene = recipe->scene, .fine = number < 0 ? 1 : (int32_t)recipe->samples.fine};
+    if (number < 0)
+        SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &pass->camera));
+    else
+        SKG_TRY(skg_samples_camera(&recipe->samples, work->view, number, &pass->camera));
     SKG_TRY(list_contributions(recipe, work, pass));
     SKG_TRY(mix_planes(recipe, work, pass));
     place_parts(recipe, work, memory, pass);

@@ -6,9 +6,9 @@
 #include "plan/recipe.h"
 #include "stage/pass.h"
 
-/* Fills a pass, but for its raster. sample: of source and pixel; below 0: the point source and the pixels' centres. The
- * pass borrows memory; release it with skg_pass_release, also after a failure. */
-skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t sample,
+/* Fills a pass, but for its raster. number: of the passes that samples of source and pixel need; below 0: the point source and
+ * the pixels' centres. The pass borrows memory; release it with skg_pass_release, also after a failure. */
+skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t number,
                          const skg_pass_memory *memory, skg_pass *pass);
 
 /* The extents of the raster's planes: what those of their parts cover. Staged, [planes][4]. */

@@ -55,7 +55,7 @@ static skg_status check_spot(const skg_spot *spot) {
 }
 
 skg_status skg_samples_make(const skg_spot *spot, int32_t supersampling, skg_samples *samples) {
-    *samples = (skg_samples){.spot_count = 1, .shifts = supersampling};
+    *samples = (skg_samples){.spot_count = 1, .shifts = supersampling, .fine = 1};
     skg_spot_init(&samples->spot);
     if (spot) SKG_TRY(skg_struct_read(spot, "skg_spot", &samples->spot, sizeof samples->spot));
     SKG_TRY(check_spot(&samples->spot));
@@ -71,6 +71,10 @@ skg_status skg_samples_make(const skg_spot *spot, int32_t supersampling, skg_sam
 
 int64_t skg_samples_count(const skg_samples *samples) {
     return samples->spot_count * samples->shifts * samples->shifts;
+}
+
+int64_t skg_samples_passes(const skg_samples *samples) {
+    return skg_samples_count(samples) / (samples->fine * samples->fine);
 }
 
 /* --- Sobol's sequence in three dimensions --- */
@@ -163,4 +167,24 @@ void skg_samples_at(const skg_samples *samples, const skg_view *view, int64_t in
     place_in_spot(&samples->spot, x, local);
     find_axes(&samples->spot, view, axes);
     for (int k = 0; k < 3; k++) skg_add_scaled(source, local[k], axes[k], source);
+}
+
+void skg_samples_view(const skg_samples *samples, const skg_view *view, skg_view *fine) {
+    *fine = *view;
+    fine->columns *= samples->fine;
+    fine->rows *= samples->fine;
+    for (int k = 0; k < 3; k++) {
+        fine->column_step[k] /= (double)samples->fine;
+        fine->row_step[k] /= (double)samples->fine;
+    }
+}
+
+skg_status skg_samples_camera(const skg_samples *samples, const skg_view *view, int64_t pass,
+                              skg_camera *camera) {
+    double source[3], shift[2];
+    skg_view fine;
+    skg_samples_at(samples, view, pass * samples->fine * samples->fine, source, shift);
+    if (samples->fine == 1) return skg_camera_make(view, source, shift[0], shift[1], camera);
+    skg_samples_view(samples, view, &fine); /* the centres of its pixels are the samples of the pixel */
+    return skg_camera_make(&fine, source, 0, 0, camera);
 }

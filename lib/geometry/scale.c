@@ -9,6 +9,12 @@ skg_status skg_scale_grid_create(int64_t columns, int64_t rows, skg_scale_grid *
     return skg_alloc((grid->columns + 1) * (grid->rows + 1), sizeof *grid->sums, "scale grid", &grid->sums);
 }
 
+skg_scale_grid skg_scale_grid_of(const skg_scale_grid *grid, int64_t columns, int64_t rows) {
+    return (skg_scale_grid){.columns = (columns + SKG_SCALE_CELL - 1) / SKG_SCALE_CELL,
+                            .rows = (rows + SKG_SCALE_CELL - 1) / SKG_SCALE_CELL,
+                            .sums = grid->sums};
+}
+
 void skg_scale_grid_release(skg_scale_grid *grid) {
     skg_free(&grid->sums);
 }

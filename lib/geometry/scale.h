@@ -27,6 +27,9 @@ typedef struct {
 } skg_scale_grid;
 
 skg_status skg_scale_grid_create(int64_t columns, int64_t rows, skg_scale_grid *grid);
+
+/* The part of a grid that a smaller detector takes. It borrows the memory. */
+skg_scale_grid skg_scale_grid_of(const skg_scale_grid *grid, int64_t columns, int64_t rows);
 void skg_scale_grid_release(skg_scale_grid *grid);
 
 typedef struct {

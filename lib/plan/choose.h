@@ -1,4 +1,4 @@
-/* Which strategy rasters a scene. Private. */
+/* Which strategy rasters a scene, and how the rays of a pixel are made. Private. */
 #ifndef SKG_CHOOSE_H
 #define SKG_CHOOSE_H
 
@@ -15,6 +15,9 @@ typedef struct {
     double triangle_pixels; /* mean number of pixels of a triangle's box */
 } skg_strategy_facts;
 
+/* Triangles of a frame. */
+int64_t skg_scene_triangles(const skg_scene *scene);
+
 /* The strategy for these facts, and why in a few words (static storage). */
 int32_t skg_strategy_choose(const skg_strategy_facts *facts, const char **why);
 
@@ -30,5 +33,20 @@ typedef struct {
 
 /* The strategy that is asked for, that the precision needs, or that the facts call for. */
 skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *strategy, const char **why);
+
+/* What decides how the rays of a pixel are made: not the device and not the strategy, because images have the same bits on
+ * every one of them. */
+typedef struct {
+    int64_t shifts;        /* rays along each side of a pixel */
+    int64_t columns, rows; /* of the image */
+    int64_t accumulators;  /* planes of the raster */
+    int64_t triangles;     /* of a frame */
+    int32_t precision;     /* SKG_PRECISION_... */
+    int32_t leaky;         /* 1: some mesh is leaky */
+} skg_fine_request;
+
+/* How many pixels the passes have along each side of a pixel of the image: `shifts`, so that one pass makes all rays of a
+ * point of the source, or 1, with a pass for each ray. why: in a few words (static storage). */
+int64_t skg_fine_choose(const skg_fine_request *request, const char **why);
 
 #endif

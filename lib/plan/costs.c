@@ -19,7 +19,8 @@ typedef struct {
     double pixels;
     double hits;   /* of a pass, per pixel */
     double listed; /* of these, hits that are listed for priorities */
-    double passes;
+    double passes; /* rays of a pixel */
+    double set_up; /* of triangles, in a pass */
 } counts;
 
 /* Hits per pixel of the detector: a closed part covers about its rectangle, front and back. */
@@ -91,7 +92,7 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
     case SKG_EFFECT_SOURCE:
         return (c->passes / shifts - 1) * pass;
     case SKG_EFFECT_SUPERSAMPLING:
-        return (c->passes - c->passes / shifts) * pass;
+        return (c->passes - c->passes / shifts) * (recipe->samples.fine > 1 ? pass - c->set_up : pass);
     case SKG_EFFECT_WORLD:
         return c->passes * (RAY + (shape.ratio ? nodes * (1 + EXPONENTIAL) : 0));
     case SKG_EFFECT_FALLOFF:
@@ -129,8 +130,9 @@ static double cost_of(const counts *c, int effect, double plain, double pass) {
 void skg_costs_estimate(const skg_recipe *recipe, const skg_layers *layers, const skg_extent *extents,
                         const skg_priority *priority, skg_outcome *outcome) {
     const skg_model *model = &recipe->model;
-    const counts c = count(recipe, layers, extents, priority);
+    counts c = count(recipe, layers, extents, priority);
     const double set_up = TRIANGLE * (double)outcome->report.triangles / c.pixels;
+    c.set_up = set_up;
     const double plain = set_up + c.hits * SKG_COST_OF_CONTRIBUTION + attenuation(model, 1, 1);
     const double pass =
         set_up + c.hits * SKG_COST_OF_CONTRIBUTION * contributions_per_part(model, recipe->scene->count) +

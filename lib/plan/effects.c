@@ -152,8 +152,8 @@ static void find_samples(const finding *f) {
         skg_effect_set(f->outcome, SKG_EFFECT_SOURCE, 1, "%s: %" PRId64 " samples, as asked for", shape,
                        samples->spot_count);
     if (samples->shifts > 1)
-        skg_effect_set(f->outcome, SKG_EFFECT_SUPERSAMPLING, 1, "%" PRId64 " x %" PRId64 " rays a pixel",
-                       samples->shifts, samples->shifts);
+        skg_effect_set(f->outcome, SKG_EFFECT_SUPERSAMPLING, 1, "%" PRId64 " x %" PRId64 " rays a pixel, %s",
+                       samples->shifts, samples->shifts, f->recipe->fine_reason);
     else
         skg_effect_set(f->outcome, SKG_EFFECT_SUPERSAMPLING, 0, "one ray a pixel, at its centre");
 }

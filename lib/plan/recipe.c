@@ -120,11 +120,37 @@ static skg_status choose_mix(skg_recipe *recipe) {
                           model->first_contribution, &recipe->mixed);
 }
 
+static skg_fine_request fine_request(const skg_recipe *recipe, int64_t accumulators) {
+    return (skg_fine_request){
+        .shifts = recipe->samples.shifts,
+        .columns = recipe->view.columns,
+        .rows = recipe->view.rows,
+        .accumulators = accumulators,
+        .triangles = skg_scene_triangles(recipe->scene),
+        .precision = recipe->options.precision,
+        .leaky = recipe->leaky_count > 0,
+    };
+}
+
+int64_t skg_recipe_most_fine(const skg_recipe *recipe) {
+    const skg_fine_request request = fine_request(recipe, 1);
+    const char *why = NULL;
+    return skg_fine_choose(&request, &why);
+}
+
+/* Decides whether one pass makes all rays of a pixel. Like the mix, this depends neither on the device nor on the past. */
+static void choose_fine(skg_recipe *recipe) {
+    const skg_fine_request request = fine_request(recipe, skg_recipe_accumulators(recipe));
+    recipe->samples.fine = skg_fine_choose(&request, &recipe->fine_reason);
+}
+
 static skg_status choose_strategy(skg_recipe *recipe, const skg_device_info *device) {
+    skg_view view;
+    skg_samples_view(&recipe->samples, &recipe->view, &view);
     const skg_strategy_request request = {
         .device = device,
         .scene = recipe->scene,
-        .view = &recipe->view,
+        .view = &view,
         .precision = recipe->options.precision,
         .wanted = recipe->options.strategy,
         .accumulators = skg_recipe_accumulators(recipe),
@@ -155,6 +181,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     recipe->priority_possible = skg_priority_possible(recipe->scene, options->clip);
     SKG_TRY(check_half(recipe));
     SKG_TRY(choose_mix(recipe));
+    choose_fine(recipe);
     return choose_strategy(recipe, device);
 }
 
@@ -255,6 +282,7 @@ skg_status skg_recipe_renew(const skg_recipe *recipe, skg_recipe **renewed) {
     made->model = (skg_model){0};
     SKG_TRY_CLEANUP(make_model(made));
     SKG_TRY_CLEANUP(choose_mix(made));
+    choose_fine(made);
     *renewed = made;
     return SKG_OK;
 cleanup:

@@ -41,6 +41,7 @@ struct skg_recipe {
     int32_t leaky_strategy;    /* of the rasters of leaky parts */
     int32_t reserved;
     const char *strategy_reason; /* static storage */
+    const char *fine_reason;     /* of samples.fine; static storage */
     int64_t leaky_count;
     int64_t *leaky; /* [leaky_count] numbers of the parts whose meshes are not closed */
 };
@@ -60,6 +61,9 @@ skg_status skg_recipe_renew(const skg_recipe *recipe, skg_recipe **renewed);
 
 /* Whether images are means over several passes: of samples of the source, or of a pixel. */
 int skg_recipe_averages(const skg_recipe *recipe);
+
+/* The most pixels that passes have along each side of a pixel of the image, for any materials of the parts. */
+int64_t skg_recipe_most_fine(const skg_recipe *recipe);
 
 /* How many accumulator planes the raster of an image has. */
 int64_t skg_recipe_accumulators(const skg_recipe *recipe);

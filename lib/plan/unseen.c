@@ -15,7 +15,7 @@ static const char *direction(double across, double down) {
 }
 
 void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const skg_camera *camera,
-                     const skg_extent *extents, skg_outcome *outcome) {
+                     const skg_extent *extents, int32_t fine, skg_outcome *outcome) {
     double nearest = HUGE_VAL, across = 0, down = 0;
     int64_t part = -1;
     if (outcome->warned_unseen) return;
@@ -40,6 +40,6 @@ void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const s
         context, SKG_LOG_WARNING,
         "nothing falls on the detector: the shadow of %s, which comes nearest, lies %.4g pixels (%.4g mm on the "
         "detector) %s",
-        scene->parts[part].label, pixels,
+        scene->parts[part].label, pixels / fine,
         pixels * sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]), direction(across, down));
 }

@@ -12,15 +12,17 @@
 enum { MOST_KERNELS = 16 };
 
 /* A work-item attenuates `runs` vectors of pixels together, `strip` times. A GPU hides latency by the former; a CPU has less
- * to compile by the latter. */
+ * to compile by the latter. The rays of a pixel of the image belong to the same runs. */
 typedef struct {
     int runs, strip;
     size_t local[2];
 } work_shape;
 
-static work_shape shape_of(const skg_context *context) {
+static work_shape shape_of(const skg_context *context, int32_t fine) {
     static const work_shape gpu = {4, 1, {8, 16}}, cpu = {4, 8, {1, 16}};
-    return context->device->info.is_gpu ? gpu : cpu;
+    work_shape shape = context->device->info.is_gpu ? gpu : cpu;
+    if (fine > 2) shape.runs = fine;
+    return shape;
 }
 
 /* log2 of e, to the precision of a double. */
@@ -29,7 +31,7 @@ static const double LOG2_E = 1.4426950408889634;
 typedef struct {
     skg_kernel_options options;
     int32_t planes, channels, shown, world, ratio, falloff, noise, apart, output_double, add, ranged,
-        energies, mixed, shades, heel, oblique, bowtie, grid;
+        energies, mixed, fine, shades, heel, oblique, bowtie, grid;
 } kernel_key;
 
 struct skg_attenuator {
@@ -118,7 +120,7 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     const char *files[7] = {"exponential.clh"};
     int count = 1;
-    const work_shape work = shape_of(attenuator->context);
+    const work_shape work = shape_of(attenuator->context, key->fine);
     char more[480];
     if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
     if (key->shades) files[count++] = "shades.clh";
@@ -128,12 +130,13 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
     snprintf(
         more, sizeof more,
         "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_STRIP=%d -D SKG_RANGED=%d -D SKG_SUMS=%d "
+        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_STRIP=%d -D SKG_RANGED=%d -D SKG_SUMS=%d -D SKG_FINE=%d "
         "-D SKG_SHADES=%d -D SKG_HEEL=%d -D SKG_OBLIQUE=%d -D SKG_BOWTIE=%d -D SKG_GRID=%d%s",
         (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
         (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add,
-        work.runs, work.strip, (int)key->ranged, (int)key->mixed, (int)key->shades, (int)key->heel,
-        (int)key->oblique, (int)key->bowtie, (int)key->grid, key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+        work.runs, work.strip, (int)key->ranged, (int)key->mixed, (int)key->fine, (int)key->shades,
+        (int)key->heel, (int)key->oblique, (int)key->bowtie, (int)key->grid,
+        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
     return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
 }
 
@@ -202,12 +205,13 @@ static void find_world(const skg_camera *camera, const skg_attenuation *attenuat
     for (int k = 0; k < 4; k++) single[k] = (float)twice[k];
 }
 
-static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
-                         const skg_attenuation *attenuation, const skg_image_place *place, int32_t mixed) {
+static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const skg_attenuation *attenuation,
+                         const skg_image_place *place) {
     /* Of the raster's options only the type of its sums changes this kernel; the others stay 0, so that rasters which differ
  * elsewhere share a kernel. */
     static const skg_shades none = {0};
     const skg_shades *shades = attenuation->shades ? attenuation->shades : &none;
+    const skg_raster *raster = sums->raster;
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
                                     .half = raster->options.kernels.half},
@@ -222,7 +226,8 @@ static kernel_key key_of(const skg_raster *raster, const skg_camera *camera,
                         .output_double = place->output_double,
                         .energies = raster->options.kernels.half && attenuation->energies,
                         .add = place->add,
-                        .mixed = mixed,
+                        .mixed = sums->mixed,
+                        .fine = sums->fine,
                         .shades = shades->count,
                         .heel = shades->heel,
                         .oblique = shades->oblique,
@@ -235,7 +240,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
-    const kernel_key key = key_of(raster, camera, attenuation, place, sums->mixed);
+    const kernel_key key = key_of(sums, camera, attenuation, place);
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
     /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
     const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
@@ -288,11 +293,11 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, tables, attenuation->tables.memory),
     };
     SKG_TRY(set_arguments(kernel, &key, arguments));
-    const work_shape work = shape_of(raster->context);
+    const work_shape work = shape_of(raster->context, sums->fine);
     const int64_t pixels = skg_kernel_lanes(raster->context, key.options.precision) * work.runs * work.strip;
     const size_t across = (size_t)((raster->frame.columns + pixels - 1) / pixels);
     const size_t global[2] = {(size_t)skg_round_up((int64_t)across, (int64_t)work.local[0]),
-                              (size_t)skg_round_up(raster->frame.rows, (int64_t)work.local[1])};
+                              (size_t)skg_round_up(raster->frame.rows / sums->fine, (int64_t)work.local[1])};
     return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, work.local, log);
 }
 
@@ -310,13 +315,15 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
     return skg_attenuate(attenuator, &no_sums, camera, &quiet, factor, -HUGE_VAL, negative, NULL, place, log);
 }
 
-skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
+skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
     const cl_int channels = attenuation->channels / attenuation->layers;
+    const cl_int columns = sums->raster->frame.columns / sums->fine,
+                 rows = sums->raster->frame.rows / sums->fine;
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(LOGARITHM, columns, raster->frame.columns),
-        SKG_ARGUMENT(LOGARITHM, rows, raster->frame.rows),
+        SKG_ARGUMENT(LOGARITHM, columns, columns),
+        SKG_ARGUMENT(LOGARITHM, rows, rows),
         SKG_ARGUMENT(LOGARITHM, channels, channels),
         SKG_ARGUMENT(LOGARITHM, output, place->memory),
         SKG_ARGUMENT(LOGARITHM, offset, place->offset),
@@ -324,18 +331,19 @@ skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster 
         SKG_ARGUMENT(LOGARITHM, channel_stride, place->channel_stride),
     };
     const skg_camera no_camera = {0};
-    const kernel_key key = key_of(raster, &no_camera, attenuation, place, 0);
+    const skg_sums plain = {.raster = sums->raster, .fine = 1}; /* the image is finished */
+    const kernel_key key = key_of(&plain, &no_camera, attenuation, place);
     cl_program program = NULL;
     cl_kernel kernel = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(get_program(attenuator, &key, &program));
     SKG_TRY(skg_kernel_create(program, "skg_logarithm", &kernel));
     SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    const int64_t lanes = skg_kernel_lanes(raster->context, key.options.precision);
+    const int64_t lanes = skg_kernel_lanes(attenuator->context, key.options.precision);
     const size_t local[2] = {8, 16};
-    const size_t global[2] = {(size_t)skg_round_up((raster->frame.columns + lanes - 1) / lanes, 8),
-                              (size_t)skg_round_up(raster->frame.rows, 16)};
-    status = skg_kernel_run(raster->context, kernel, "logarithm", 2, global, local, log);
+    const size_t global[2] = {(size_t)skg_round_up((columns + lanes - 1) / lanes, 8),
+                              (size_t)skg_round_up(rows, 16)};
+    status = skg_kernel_run(attenuator->context, kernel, "logarithm", 2, global, local, log);
 cleanup:
     clReleaseKernel(kernel);
     return status;

@@ -62,7 +62,7 @@ typedef struct {
     const skg_raster *raster;
     double scale;  /* of the sums */
     int32_t mixed; /* accumulators that planes are mixed from (spectral/mix.h); 0: accumulators are planes */
-    int32_t reserved;
+    int32_t fine;  /* pixels of the raster along each side of a pixel of the image, which shows their sum */
     cl_mem lists; /* [mixed][planes] in the precision of the raster */
 } skg_sums;
 
@@ -71,11 +71,11 @@ typedef struct {
 
 /* Enqueues one image.
  *
- * factor    of intensities; with noise, of photons: the share of one sample of the source. The draws of all samples
+ * factor    of intensities; with noise, of photons: the share of one ray. The draws of all samples
  *           add up to one draw of all photons.
  * least     exponents below it are counted in negative[0]; pixels outside the attenuation's range in negative[1],
  *           values that are not finite in negative[2]
- * noise     the key of the noise; NULL without noise */
+ * noise     the key of the noise, of the first of the rays of a pixel; NULL without noise */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
@@ -87,8 +87,8 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
                                     double factor, cl_mem negative, const skg_image_place *place,
                                     skg_stage_log *log);
 
-/* Enqueues -ln of a finished mean, in place. */
-skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_raster *raster,
+/* Enqueues -ln of a finished mean, in place. sums: of the frame; they are not read. */
+skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log);
 

@@ -9,18 +9,20 @@ static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view,
     /* There is no layer of noise. */
     const int32_t used =
         work->layers->count < attenuation->layers ? work->layers->count : attenuation->layers;
-    const int64_t passes = work->samples ? skg_samples_count(work->samples) : 1;
+    const int64_t passes = work->samples ? skg_samples_passes(work->samples) : 1;
+    const int64_t rays = work->samples ? skg_samples_count(work->samples) : 1;
     skg_image_place place;
     SKG_TRY(skg_layers_place(staging->context, work->layers, used, image, view->columns, view->rows, channels,
                              &place));
     for (int64_t s = 0; s < passes; s++) {
         skg_camera camera;
-        double source[3], shift[2] = {0, 0};
-        if (work->samples) skg_samples_at(work->samples, view, s, source, shift);
-        SKG_TRY(skg_camera_make(view, work->samples ? source : NULL, shift[0], shift[1], &camera));
+        if (work->samples)
+            SKG_TRY(skg_samples_camera(work->samples, view, s, &camera));
+        else
+            SKG_TRY(skg_camera_make(view, NULL, 0, 0, &camera));
         place.add = s > 0;
-        SKG_TRY(skg_attenuate_flat_field(work->attenuator, work->sums, &camera, attenuation,
-                                         1 / (double)passes, work->negative, &place, &staging->log));
+        SKG_TRY(skg_attenuate_flat_field(work->attenuator, work->sums, &camera, attenuation, 1 / (double)rays,
+                                         work->negative, &place, &staging->log));
     }
     return skg_layers_blur(work->layers, used, &place, image, view->columns, view->rows, channels,
                            &staging->log);

@@ -1,4 +1,4 @@
-/* One pass of a frame: from the vertices to the sums of one sample of source and pixel. What the stages need to know of
+/* One pass of a frame: from the vertices to the sums of one sample of the source, and of one sample or all of the pixel. What the stages need to know of
  * it, filled by lib/frame. Private. */
 #ifndef SKG_PASS_H
 #define SKG_PASS_H
@@ -39,7 +39,7 @@ typedef struct {
     skg_scale scale;
     skg_priority priority; /* closed parts that compete for intervals */
     int32_t clip;          /* 1: children are clipped to their parents */
-    int32_t reserved;
+    int32_t fine;          /* pixels of the camera along each side of a pixel of the image */
     skg_raster_pin main; /* the raster of the closed parts */
 } skg_pass;
 

@@ -39,6 +39,7 @@ static int shows_lengths(skg_trial_number number) {
     case SKG_TRIAL_ATOMICS:
     case SKG_TRIAL_DETECTOR:
     case SKG_TRIAL_SHADES:
+    case SKG_TRIAL_RAYS:
         return 0;
     default:
         return 1;
@@ -80,13 +81,24 @@ static double blurred(const trial_run *run, int row, int column) {
     return sum;
 }
 
+/* The mean over the rays of a pixel. */
+static double mean_intensity(trial_run *run, int row, int column) {
+    const int side = run->scene.options.supersampling;
+    double net[2], sum = 0;
+    for (int k = 0; k < side * side; k++) {
+        const double down = (k / side + 0.5) / side - 0.5, right = (k % side + 0.5) / side - 0.5;
+        skg_trial_lengths(&run->scene, row + down, column + right, &run->surface[row * N + column], net);
+        sum += skg_trial_intensity(&run->scene, net, &run->open);
+    }
+    return sum / (side * side);
+}
+
 static skg_status expect(trial_run *run) {
-    double net[2], share = 1;
+    double share = 1;
     for (int p = 0; p < PIXELS; p++) {
-        skg_trial_lengths(&run->scene, p / N, p % N, &run->surface[p], net);
         if (run->scene.number == SKG_TRIAL_SHADES)
             SKG_TRY(skg_trial_shade(&run->scene, p / N, p % N, &share));
-        run->shown[p] = share * skg_trial_intensity(&run->scene, net, &run->open);
+        run->shown[p] = share * mean_intensity(run, p / N, p % N);
         run->longest = fmax(run->longest, run->surface[p]);
     }
     return SKG_OK;

@@ -18,7 +18,8 @@ static uint32_t tests_of(const skg_plan *plan, const skg_view *view) {
         {SKG_EFFECT_NOISE, SKG_TRIAL_NOISE},         {SKG_EFFECT_BLUR, SKG_TRIAL_BLUR},
         {SKG_EFFECT_ELECTRONIC, SKG_TRIAL_DETECTOR}, {SKG_EFFECT_QUANTISATION, SKG_TRIAL_DETECTOR},
         {SKG_EFFECT_HEEL, SKG_TRIAL_SHADES},         {SKG_EFFECT_BOWTIE, SKG_TRIAL_SHADES},
-        {SKG_EFFECT_GRID, SKG_TRIAL_SHADES},         {SKG_EFFECT_OBLIQUE, SKG_TRIAL_SHADES}};
+        {SKG_EFFECT_GRID, SKG_TRIAL_SHADES},         {SKG_EFFECT_OBLIQUE, SKG_TRIAL_SHADES},
+        {SKG_EFFECT_SUPERSAMPLING, SKG_TRIAL_RAYS}};
     static const skg_trial_number of_strategies[] = {[SKG_STRATEGY_AUTO] = SKG_TRIAL_CORE,
                                                      [SKG_STRATEGY_COPIES] = SKG_TRIAL_COPIES,
                                                      [SKG_STRATEGY_TILES] = SKG_TRIAL_TILES,

@@ -32,6 +32,7 @@ static const skg_trial trials[SKG_TRIALS] = {
     [SKG_TRIAL_SHADES] = {"shades", 1e-4, 1e-3}, /* the tables of a grid are linear between points */
     [SKG_TRIAL_PLACE] = {"positions on the device", 1e-4, 1e-4},
     [SKG_TRIAL_PICTURE] = {"3D view", 0, 0},
+    [SKG_TRIAL_RAYS] = {"supersampling", 1e-4, 1e-4},
 };
 
 const skg_trial *skg_trial_get(skg_trial_number number) {
@@ -121,6 +122,9 @@ static void choose_options(skg_trial_scene *scene) {
     case SKG_TRIAL_BLUR:
         options->blur = &scene->blur;
         break;
+    case SKG_TRIAL_RAYS:
+        options->supersampling = 2;
+        break;
     default:
         break;
     }
@@ -164,12 +168,11 @@ void skg_trial_scene_release(skg_trial_scene *scene) {
     skg_material_release(&scene->filter);
 }
 
-void skg_trial_lengths(const skg_trial_scene *scene, int64_t row, int64_t column, double *surface,
+void skg_trial_lengths(const skg_trial_scene *scene, double row, double column, double *surface,
                        double *net) {
     const skg_view *view = &scene->view;
     double pixel[3], enters = 0, leaves = 0, distance = 0, from = 0, to = 0;
-    const double i = (double)column - (double)(view->columns - 1) / 2,
-                 j = (double)row - (double)(view->rows - 1) / 2;
+    const double i = column - (double)(view->columns - 1) / 2, j = row - (double)(view->rows - 1) / 2;
     for (int k = 0; k < 3; k++) {
         pixel[k] = view->centre[k] + i * view->column_step[k] + j * view->row_step[k];
         distance += (pixel[k] - view->source[k]) * (pixel[k] - view->source[k]);

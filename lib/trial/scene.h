@@ -30,6 +30,7 @@ typedef enum {
     SKG_TRIAL_SHADES,   /* bow-tie filter, grid, oblique scintillator: exposure.h */
     SKG_TRIAL_PLACE,    /* positions in memory of the device: place.h */
     SKG_TRIAL_PICTURE,  /* the 3D view: picture.h */
+    SKG_TRIAL_RAYS,     /* several rays of a pixel in one pass */
     SKG_TRIALS
 } skg_trial_number;
 
@@ -67,10 +68,9 @@ skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number,
                                   skg_trial_scene *scene);
 void skg_trial_scene_release(skg_trial_scene *scene);
 
-/* The path lengths in mm that pixel (row, column) has to have: of part 0 within its surface, and what each part adds to
- * the image. */
-void skg_trial_lengths(const skg_trial_scene *scene, int64_t row, int64_t column, double *surface,
-                       double *net);
+/* The path lengths in mm of the ray to a place on the detector, in pixels: of part 0 within its surface, and what each part
+ * adds to the image. */
+void skg_trial_lengths(const skg_trial_scene *scene, double row, double column, double *surface, double *net);
 
 /* What the image has to show, keV per pixel, without blur and noise. open: of the open beam. */
 double skg_trial_intensity(const skg_trial_scene *scene, const double *net, double *open);

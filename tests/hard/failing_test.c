@@ -156,9 +156,9 @@ static const effects runs[] = {
      .bands = 2,
      .clip = 1,
      .strided = 1},
-    /* half, which knows closed meshes only */
+    /* half, which knows closed meshes only; four rays of a pixel in one pass */
     {.file = "scene.json",
-     .settings = {"Precision=half", "World=Vacuum", "Samples.sheet.Path=bone.obj",
+     .settings = {"Precision=half", "World=Vacuum", "Samples.sheet.Path=bone.obj", "Detector.Oversampling=2",
                   "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"}},
     /* samples of the source as their tolerance asks for, a table of attenuation, the caller's OpenCL objects */
     {.file = "scene.json",

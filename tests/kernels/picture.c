@@ -270,7 +270,7 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
         status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
                                         &attenuation);
         if (status == SKG_OK)
-            status = skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale}, camera,
+            status = skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale, .fine = 1}, camera,
                                    &attenuation, 1, -HUGE_VAL, negative.memory, NULL, &place, NULL);
         skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;

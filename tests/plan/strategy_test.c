@@ -2,6 +2,8 @@
 #include "plan/choose.h"
 #include "suite.h"
 
+#include <string.h>
+
 START_TEST(strategy_follows_from_the_facts) {
     const char *why = NULL;
     skg_strategy_facts facts = {
@@ -20,7 +22,32 @@ START_TEST(strategy_follows_from_the_facts) {
 }
 END_TEST
 
+/* Whether one pass makes all rays of a pixel: the cases that were measured (choose.c), and the limits. */
+START_TEST(rays_of_a_pixel_share_a_pass_where_it_pays) {
+    const char *why = NULL;
+    skg_fine_request request = {
+        .shifts = 1, .columns = 512, .rows = 512, .accumulators = 3, .triangles = 41896};
+    ck_assert_int_eq(skg_fine_choose(&request, &why), 1);
+    for (int64_t n = 2; n <= 8; n++) {
+        request.shifts = n;
+        ck_assert_int_eq(skg_fine_choose(&request, &why), n);
+    }
+    request.shifts = 16; /* 768 MiB */
+    ck_assert_int_eq(skg_fine_choose(&request, &why), 1);
+    ck_assert_ptr_nonnull(strstr(why, "256 MiB"));
+    request.shifts = 2, request.columns = request.rows = 1024;
+    ck_assert_int_eq(skg_fine_choose(&request, &why), 1);
+    ck_assert_ptr_nonnull(strstr(why, "large"));
+    request.triangles = 1000000;
+    ck_assert_int_eq(skg_fine_choose(&request, &why), 2);
+    request.leaky = 1;
+    ck_assert_int_eq(skg_fine_choose(&request, &why), 1);
+    ck_assert_ptr_nonnull(strstr(why, "leaky"));
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, rays_of_a_pixel_share_a_pass_where_it_pays);
     tcase_add_test(tests, strategy_follows_from_the_facts);
 }
 

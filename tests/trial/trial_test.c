@@ -199,6 +199,8 @@ static const struct {
      SKG_TRIAL_DETECTOR},
     {"detect.cl", "row * columns + column, SKG_DRAW", "column, SKG_DRAW", SKG_TRIAL_DETECTOR},
     {"detect.cl", "((long)channel * rows + row) * columns + column", "column", SKG_TRIAL_DETECTOR},
+    {"attenuate.cl", "sums[k] += rays[k * SKG_FINE + a]", "sums[k] += rays[k * SKG_FINE]", SKG_TRIAL_RAYS},
+    {"attenuate.cl", "(SKG_ADD || row > 0)", "SKG_ADD", SKG_TRIAL_RAYS},
     {"shades.clh", "fma(share, (skg_realv)(tangents[rows + row + 1] - first), (skg_realv)(first))",
      "(skg_realv)(first)", SKG_TRIAL_SHADES},
     {"shades.clh", "* (length / sqrt(fma(x, x, y * y)))", "", SKG_TRIAL_SHADES},

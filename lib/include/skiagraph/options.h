@@ -353,7 +353,8 @@ typedef struct {
     int64_t bands;
     /** The focal spot; NULL: a point. Without effect in a parallel beam. */
     const skg_spot *spot;
-    /** n x n rays per pixel, at the middles of its n x n pieces; 1 (default) to 16. */
+    /** n x n rays per pixel, at the middles of its n x n pieces; 1 (default) to 16. The reason of the effect
+     * "supersampling" says whether one pass makes all of them or each has a pass of its own. */
     int32_t supersampling;
     /** 1: quantum noise of the photons that each pixel detects; exact where they are few. */
     int32_t noise;
