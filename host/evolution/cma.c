@@ -16,6 +16,9 @@ enum { PURPOSE_STEP = 1, PURPOSE_RESTART };
 /* The first standard deviation, as a share of the box; Hansen advises 0.3. */
 static const double FIRST_SIGMA = 0.3;
 
+/* The same of a restart near the best point: a few degrees of a plane (a choice). */
+static const double NEAR_SIGMA = 0.05;
+
 /* Values of the last generations that tell whether the search still gains. */
 enum { HISTORY = 64 };
 
@@ -48,30 +51,35 @@ int64_t skg_cma_population(int64_t n, int64_t restarts) {
     return (4 + (int64_t)floor(3 * log((double)n))) << restarts;
 }
 
-/* The distribution at a start: round, and as wide as FIRST_SIGMA. */
-static void reset(skg_search *s, const double *mean) {
+/* The distribution at a start: round. */
+static void reset(skg_search *s, const double *mean, double sigma) {
     const int64_t n = s->dimensions;
     const state c = state_of(s);
     memset(s->own, 0, (size_t)skg_cma_numbers(n) * sizeof *s->own);
     memcpy(c.mean, mean, (size_t)n * sizeof *mean);
     for (int64_t k = 0; k < n; k++) c.covariance[(n + 1) * k] = c.axes[(n + 1) * k] = c.lengths[k] = 1;
-    *c.sigma = FIRST_SIGMA;
+    *c.sigma = sigma;
     s->counters[SEARCH_SINCE] = s->counters[SEARCH_KEPT] = 0;
 }
 
 void skg_cma_begin(skg_search *s) {
     s->counters[SEARCH_POPULATION] = skg_cma_population(s->dimensions, 0);
-    reset(s, s->start);
+    reset(s, s->start, FIRST_SIGMA);
 }
 
-/* From a random point, with a population that doubles as long as there is room. */
+/* Alternately near the best point, because a function with steps holds a search beside its minimum, and from a random point,
+ * with a population that doubles as long as there is room. */
 static void restart(skg_search *s) {
     double mean[SKG_SEARCH_MOST];
     const skg_draw_key key = {s->seed, s->counters[SEARCH_GENERATION], 0, PURPOSE_RESTART};
-    for (int64_t k = 0; k < s->dimensions; k++) mean[k] = skg_draw_uniform(&key, k);
-    s->counters[SEARCH_RESTARTS]++;
-    if (2 * s->counters[SEARCH_POPULATION] <= s->most_points) s->counters[SEARCH_POPULATION] *= 2;
-    reset(s, mean);
+    const int64_t doublings = s->counters[SEARCH_RESTARTS]++ / 2 + 1;
+    const int is_near = s->counters[SEARCH_RESTARTS] % 2 == 1;
+    for (int64_t k = 0; k < s->dimensions; k++) mean[k] = is_near ? s->best[k] : skg_draw_uniform(&key, k);
+    s->counters[SEARCH_POPULATION] = skg_cma_population(s->dimensions, 0);
+    for (int64_t d = 0; d < doublings && !is_near && 2 * s->counters[SEARCH_POPULATION] <= s->most_points;
+         d++)
+        s->counters[SEARCH_POPULATION] *= 2;
+    reset(s, mean, is_near ? NEAR_SIGMA : FIRST_SIGMA);
 }
 
 /* A normal deviate for each axis. The first point of a search is its start. */

@@ -4,16 +4,13 @@
 
 #include <unistd.h>
 
-/* 14 parameters. Each column is a patient. */
-static const char *const patients[][6] = {
-    {"Breathing.Coupling=Paper", "Breathing.Tendon=[3, -4, -21, \"mm\"]",
-     "Breathing.Organs.diaphragm={\"Tissue\": [0.78, 1.2, 0.15]}",
-     "Breathing.Organs.liver={\"Tissue\": [0.9, 1.1, 0.06]}", "Breathing.DiaphragmRibs=[12, \"mm\"]",
-     "Breathing.DiaphragmLiver=[11, \"mm\"]"},
-    {"Breathing.Coupling=Paper", "Breathing.Tendon=[-5, 2, -17, \"mm\"]",
-     "Breathing.Organs.diaphragm={\"Tissue\": [0.86, 1.06, 0.08]}",
-     "Breathing.Organs.liver={\"Tissue\": [0.75, 1.04, 0.12]}", "Breathing.DiaphragmRibs=[19, \"mm\"]",
-     "Breathing.DiaphragmLiver=[7, \"mm\"]"}};
+/* 14 parameters; the plane is that of the scene. */
+static const char *const patient[] = {"Breathing.Coupling=Paper",
+                                      "Breathing.Tendon=[3, -4, -21, \"mm\"]",
+                                      "Breathing.Organs.diaphragm={\"Tissue\": [0.78, 1.2, 0.15]}",
+                                      "Breathing.Organs.liver={\"Tissue\": [0.9, 1.1, 0.06]}",
+                                      "Breathing.DiaphragmRibs=[12, \"mm\"]",
+                                      "Breathing.DiaphragmLiver=[11, \"mm\"]"};
 enum { SETTINGS = 6 };
 
 static skg_fit *begin(const skg_setup *setup, int64_t evaluations, double enough_mm, const char *parameters) {
@@ -52,8 +49,7 @@ START_TEST(all_parameters_are_found) {
     skg_setup *setup = load(0, NULL);
     skg_fit *fit = begin(setup, 8000, 0.04, NULL);
     for (int o = 0; o < 2; o++)
-        add_target(fit, setup,
-                   &(surface_of){.label = organs[o], .count = SETTINGS, .settings = patients[_i]});
+        add_target(fit, setup, &(surface_of){.label = organs[o], .count = SETTINGS, .settings = patient});
     const skg_fit_state state = run(fit);
     ck_assert_int_le(state.evaluations, 8000);
     check_found(fit);
@@ -71,7 +67,7 @@ START_TEST(two_phases) {
         for (int o = 0; o < 2; o++)
             add_target(
                 fit, setup,
-                &(surface_of){.label = organs[o], .phase = phases[p], .count = 3, .settings = patients[0]});
+                &(surface_of){.label = organs[o], .phase = phases[p], .count = 3, .settings = patient});
     run(fit);
     check_found(fit);
     for (int64_t t = 0; t < 4; t++) {
@@ -93,7 +89,7 @@ START_TEST(noise_and_another_mesh) {
     skg_fit *fit = begin(setup, 800, 0.001, "tendon,diaphragm,liver");
     double noise[2];
     for (int o = 0; o < 2; o++) {
-        surface_of from = {.label = organs[o], .count = 4, .settings = patients[0]};
+        surface_of from = {.label = organs[o], .count = 4, .settings = patient};
         skg_distance d;
         skg_mesh *true_surface = surface(&from), *seen;
         from.noise = 1, from.divided = 1;
@@ -163,7 +159,7 @@ START_TEST(real_organs) {
     skg_fit *fit = begin(setup, 400, 0.02, "tendon");
     for (int o = 0; o < 2; o++)
         add_target(fit, setup,
-                   &(surface_of){.scene = path, .label = organs[o], .count = 2, .settings = patients[0]});
+                   &(surface_of){.scene = path, .label = organs[o], .count = 2, .settings = patient});
     run(fit);
     check_found(fit);
     skg_fit_release(&fit);
@@ -173,7 +169,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
-    tcase_add_loop_test(tests, all_parameters_are_found, 0, 2);
+    tcase_add_test(tests, all_parameters_are_found);
     tcase_add_test(tests, two_phases);
     tcase_add_test(tests, noise_and_another_mesh);
     tcase_add_test(tests, real_organs);

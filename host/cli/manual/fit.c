@@ -18,7 +18,7 @@ const cli_flag cli_flag_fit_parameters = {
     "--parameters", "NAMES",
     "What is fitted, separated by commas: tendon-x, tendon-y, tendon-z, plane-azimuth, plane-elevation, plane-offset, "
     "diaphragm-alpha-min, diaphragm-alpha-max, diaphragm-beta, liver-alpha-min, liver-alpha-max, liver-beta, diaphragm-ribs, "
-    "diaphragm-liver, or the groups tendon, plane, diaphragm, liver and links. If it is not given, all.",
+    "diaphragm-liver, or the groups tendon, plane, diaphragm, liver and links. If it is not given: what Breathing.Fit of the scene says, or all.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_fit_bounds = {"--bounds", "NAME=LOW:HIGH",
                                       "The range of a parameter. May be given several times.", NULL,
