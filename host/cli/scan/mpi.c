@@ -18,7 +18,7 @@ static int launched_ranks(void) {
     return 1;
 }
 
-enum { TAG_REQUEST = 1, TAG_ANSWER, PARTS_PER_RANK = 4, PART_MOST = 32 };
+enum { TAG_REQUEST = 1, TAG_ANSWER, PARTS_PER_RANK = 8, PART_LEAST = 16, PART_MOST = 64 };
 
 /* An answer of rank 0 that is on its way. */
 typedef struct {
@@ -90,10 +90,14 @@ int64_t ranks_sum(const cli_ranks *ranks, int64_t number) {
     return sum;
 }
 
-/* Rank 0 alone: the next numbers. */
+static int64_t clamp(int64_t value, int64_t low, int64_t high) {
+    return value < low ? low : value > high ? high : value;
+}
+
+/* Rank 0 alone: the next numbers. Not fewer than a batch, unless the whole is small: answers would come too late. */
 static void share_out(cli_ranks *ranks, int64_t numbers[2]) {
-    const int64_t left = ranks->total - ranks->next, even = left / ((int64_t)PARTS_PER_RANK * ranks->count);
-    const int64_t part = even < 1 ? 1 : even < PART_MOST ? even : PART_MOST;
+    const int64_t parts = (int64_t)PARTS_PER_RANK * ranks->count, left = ranks->total - ranks->next;
+    const int64_t part = clamp(left / parts, clamp(ranks->total / parts, 1, PART_LEAST), PART_MOST);
     numbers[0] = ranks->next;
     numbers[1] = left < part ? left : part;
     ranks->next += numbers[1];

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WINDOWS_PER_RANK = 4, WINDOW_MOST = 96 }; /* 96: a run's three batches of at most 32 */
+enum { WINDOWS_PER_RANK = 8, WINDOW_MOST = 64 }; /* several batches: rank 0 answers after each of its own */
 
 /* What this rank computes. */
 typedef struct {
