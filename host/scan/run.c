@@ -74,6 +74,21 @@ static skg_status list_projections(skg_scan_run *run, const skg_scan_run_options
     return SKG_OK;
 }
 
+skg_status skg_scan_run_add(skg_scan_run *run, int64_t count, const int64_t *indices) {
+    int64_t projections = 0;
+    SKG_NEEDS(run);
+    SKG_NEEDS(indices);
+    SKG_TRY(skg_scan_projection_count(run->work.scan, &projections));
+    for (int64_t i = 0; i < count; i++)
+        if (indices[i] < 0 || indices[i] >= projections)
+            return skg_fail(SKG_ERR_ARGUMENT, "run: projection %" PRId64 "; numbers are 0 to %" PRId64,
+                            indices[i], projections - 1);
+    if (count < 1) return SKG_OK;
+    SKG_TRY(skg_realloc(run->count + count, sizeof *run->indices, "list of projections", &run->indices));
+    for (int64_t i = 0; i < count; i++) SKG_TRY(consider(run, &run->work.options, indices[i]));
+    return SKG_OK;
+}
+
 static skg_status submit(skg_scan_run *run, skg_scan_slot *slot) {
     const int64_t left = run->count - run->submitted, count = left < run->batch ? left : run->batch;
     if (count == 0) return SKG_OK;
@@ -146,7 +161,10 @@ skg_status skg_scan_run_next(skg_scan_run *run, skg_scan_batch *batch) {
     /* The caller has finished with the slot before the next one: it becomes the last of the queue. */
     skg_scan_slot *slot = &run->slots[run->next], *returned = &run->slots[(run->next + SLOTS - 1) % SLOTS];
     returned->count = 0;
-    SKG_TRY(submit(run, returned));
+    for (int s = 0; s < SLOTS; s++) { /* those that found nothing to do before skg_scan_run_add, too */
+        skg_scan_slot *idle = &run->slots[(run->next + s) % SLOTS];
+        if (idle->count == 0) SKG_TRY(submit(run, idle));
+    }
     const skg_status status = skg_scan_slot_wait(&run->work, slot);
     if (status != SKG_OK && status != SKG_RANGE) return status;
     const skg_scan_batch ours = {.type = run->work.options.type,

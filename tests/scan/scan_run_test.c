@@ -109,6 +109,35 @@ START_TEST(shards_are_the_whole) {
 }
 END_TEST
 
+/* Projections that come one by one, two or more before they are needed or after the run has finished those before. */
+START_TEST(projections_are_added) {
+    static const int64_t late[] = {3, 4, 5, 6, 7, 8, 9, 10}, beyond = COUNT;
+    skg_scan_run *run = NULL;
+    skg_scan_batch batch;
+    int64_t count = 0;
+    expect_all();
+    options.only = (const int64_t[]){0, 1, 2};
+    options.only_count = 3;
+    ck_skg(skg_scan_run_create(plan, scan, &options, &run));
+    ck_skg_fails(skg_scan_run_add(run, 1, &beyond), SKG_ERR_ARGUMENT, "projection 11");
+    skg_scan_batch_init(&batch);
+    for (int k = 0; arrived < COUNT; k++) {
+        if (_i == 0 && k == 0) ck_skg(skg_scan_run_add(run, 8, late));
+        ck_skg(skg_scan_run_next(run, &batch));
+        ck_skg(take(&batch, NULL));
+        if (_i == 1 && batch.count == 0) ck_skg(skg_scan_run_add(run, 1, late + (arrived - 3)));
+        if (_i == 2 && k < 4) ck_skg(skg_scan_run_add(run, 2, late + 2 * k));
+    }
+    ck_skg(skg_scan_run_next(run, &batch));
+    ck_assert_int_eq(batch.count, 0);
+    ck_skg(skg_scan_run_projection_count(run, &count));
+    ck_assert_int_eq(count, COUNT);
+    skg_scan_run_release(&run);
+    for (int64_t i = 0; i < COUNT; i++) ck_assert_int_eq(order[i], i);
+    ck_assert_mem_eq(got, expected, sizeof got);
+}
+END_TEST
+
 START_TEST(some_projections) {
     static const int64_t only[] = {1, 4, 5, 10};
     expect_all();
@@ -325,6 +354,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_test(tests, a_run_is_one_image_for_each_view);
     tcase_add_test(tests, shards_are_the_whole);
+    tcase_add_loop_test(tests, projections_are_added, 0, 3);
     tcase_add_test(tests, some_projections);
     tcase_add_test(tests, subframes_are_averaged);
     tcase_add_loop_test(tests, subframes_have_the_noise_of_one_exposure, 0, 4);

@@ -199,7 +199,7 @@ int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
 static int run_alone(cli_acquisition *a) {
     skg_scan_run *run = NULL;
     skg_status status = skg_scan_run_create(a->plan, a->scan, &a->options, &run);
-    if (status == SKG_OK) status = write_batches(a, run, 1);
+    if (status == SKG_OK) status = write_batches(a, run);
     skg_scan_run_release(&run);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }

@@ -4,25 +4,34 @@
 #include "scan/grey.h"
 #include "session/frames.h"
 
-skg_status write_batches(cli_acquisition *a, skg_scan_run *run, int shows_progress) {
+skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count) {
+    const void *images = NULL;
+    skg_scan_batch batch;
+    skg_scan_batch_init(&batch);
+    *count = 0;
+    skg_status status = skg_scan_run_next(run, &batch);
+    if (status == SKG_RANGE) cli_end_image(status, &a->range_warned);
+    if (status < SKG_OK) return status;
+    if (batch.count == 0) return SKG_OK;
+    status = grey_batch(a, &batch, &images);
+    if (status == SKG_OK)
+        status = skg_scan_file_write(a->file, batch.count, batch.indices, images, batch.phases);
+    if (status != SKG_OK) return status;
+    *count = batch.count;
+    a->computed += batch.count;
+    return SKG_OK;
+}
+
+skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
     const double start = cli_now_ms();
-    int64_t all = 0;
+    int64_t all = 0, count = 1;
     skg_status status = skg_scan_run_projection_count(run, &all);
-    if (shows_progress) cli_progress_begin("projections", all);
-    while (status >= SKG_OK) {
-        skg_scan_batch batch;
-        skg_scan_batch_init(&batch);
-        status = skg_scan_run_next(run, &batch);
-        if (status == SKG_RANGE) cli_end_image(status, &a->range_warned);
-        if (status < SKG_OK || batch.count == 0) break;
-        const void *images = NULL;
-        status = grey_batch(a, &batch, &images);
-        if (status == SKG_OK)
-            status = skg_scan_file_write(a->file, batch.count, batch.indices, images, batch.phases);
-        a->computed += batch.count;
-        if (shows_progress) cli_progress_step(a->computed);
+    cli_progress_begin("projections", all);
+    while (status == SKG_OK && count > 0) {
+        status = write_batch(a, run, &count);
+        cli_progress_step(a->computed);
     }
-    if (shows_progress) cli_progress_end();
+    cli_progress_end();
     a->seconds = 1e-3 * (cli_now_ms() - start);
-    return status == SKG_RANGE ? SKG_OK : status;
+    return status;
 }

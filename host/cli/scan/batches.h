@@ -4,7 +4,10 @@
 
 #include "scan/state.h"
 
+/* Computes and writes the next batch of a run. count: its projections; 0: the run is finished */
+skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count);
+
 /* Computes and writes a run, batch after batch. */
-skg_status write_batches(cli_acquisition *a, skg_scan_run *run, int shows_progress);
+skg_status write_batches(cli_acquisition *a, skg_scan_run *run);
 
 #endif

@@ -39,9 +39,17 @@ int64_t ranks_sum(const cli_ranks *ranks, int64_t number) {
     return number;
 }
 
-int64_t ranks_take(cli_ranks *ranks, int64_t count) {
+int ranks_take(cli_ranks *ranks, int waits, int64_t *first, int64_t *count) {
+    (void)waits;
+    *first = ranks->next;
+    *count = ranks->total - ranks->next;
+    ranks->next = ranks->total;
+    return 1;
+}
+
+void ranks_serve(cli_ranks *ranks, int until_end) {
     (void)ranks;
-    return count;
+    (void)until_end;
 }
 
 void ranks_abort(const cli_ranks *ranks, int exit_status) {

@@ -7,6 +7,8 @@
 typedef struct {
     int rank, count;
     void *state; /* of MPI; NULL: one process */
+    int64_t total,
+        next; /* numbers that are shared out, and how many of them were; next is known to rank 0 only */
 } cli_ranks;
 
 /* Starts MPI in a process that mpirun or srun started as one of several. Returns an exit status: a build without MPI
@@ -23,8 +25,16 @@ void ranks_share(const cli_ranks *ranks, void *bytes, int count);
 /* The sum over ranks, for all of them. */
 int64_t ranks_sum(const cli_ranks *ranks, int64_t number);
 
-/* Takes the next `count` numbers, counted from 0 over all ranks, and returns the first. */
-int64_t ranks_take(cli_ranks *ranks, int64_t count);
+/* Takes the next of the numbers 0 to total - 1, which all ranks share: many at first, fewer towards the end. The next ones are
+ * requested at once, so that they are here when they are needed.
+ *
+ *     waits    1: waits for them; 0: returns 0 if they are not here yet
+ *     count    result: how many; 0: none are left */
+int ranks_take(cli_ranks *ranks, int waits, int64_t *first, int64_t *count);
+
+/* Rank 0 answers the requests of the others, which compute meanwhile: between batches, and when it has finished until all know
+ * that nothing is left. Others return at once. */
+void ranks_serve(cli_ranks *ranks, int until_end);
 
 /* Ends the processes of all ranks. */
 void ranks_abort(const cli_ranks *ranks, int exit_status);

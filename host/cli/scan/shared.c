@@ -7,7 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { GROUPS_PER_RANK = 8, GROUP_MOST = 64 };
+enum { WINDOWS_PER_RANK = 8, WINDOW_MOST = 64 }; /* several batches: rank 0 answers after each of its own */
+
+/* What this rank computes. */
+typedef struct {
+    skg_scan_run *run;
+    int64_t taken, window; /* projections that it took; how many at least are on the way */
+    int is_exhausted;
+} share;
 
 /* The projections that the output lacks; the same on every rank, because nobody writes yet. */
 static int64_t *list_missing(const cli_acquisition *a, int64_t *count) {
@@ -54,46 +61,40 @@ static int compare_devices(const cli_arguments *arguments, cli_acquisition *a, i
         a->ranks.rank, a->session.device.name);
 }
 
-/* The projections that are missing, and how many a rank takes at a time. */
-typedef struct {
-    const int64_t *list;
-    int64_t missing, group, first;
-} groups;
-
-/* Takes the next group and starts it. *run is NULL if there is none left. */
-static skg_status start_group(cli_acquisition *a, groups *g, skg_scan_run **run) {
+/* Takes numbers until `window` projections are on the way, and hands them to the run, which begins with the first. */
+static skg_status fill(cli_acquisition *a, const int64_t *list, share *s) {
     skg_scan_run_options options = a->options;
-    *run = NULL;
-    g->first = ranks_take(&a->ranks, g->group);
-    const int64_t left = g->missing - g->first;
-    if (left <= 0) return SKG_OK;
-    options.from = options.to = 0;
-    options.only = g->list + g->first;
-    options.only_count = left < g->group ? left : g->group;
-    return skg_scan_run_create(a->plan, a->scan, &options, run);
+    while (!s->is_exhausted && s->taken - a->computed < s->window) {
+        int64_t first = 0, count = 0;
+        if (!ranks_take(&a->ranks, s->taken == a->computed, &first, &count)) return SKG_OK;
+        s->is_exhausted = count == 0;
+        s->taken += count;
+        if (count == 0) return SKG_OK;
+        options.from = options.to = 0;
+        options.only = list + first;
+        options.only_count = count;
+        const skg_status status = s->run ? skg_scan_run_add(s->run, count, list + first)
+                                         : skg_scan_run_create(a->plan, a->scan, &options, &s->run);
+        if (status != SKG_OK) return status;
+    }
+    return SKG_OK;
 }
 
-/* The next group is started before this one is written, so that the device has work meanwhile. */
-static int take_groups(cli_acquisition *a, const int64_t *list, int64_t missing) {
-    const int64_t even = missing / ((int64_t)GROUPS_PER_RANK * a->ranks.count);
-    groups g = {.list = list,
-                .missing = missing,
-                .group = even < 1            ? 1
-                         : even < GROUP_MOST ? even
-                                             : GROUP_MOST};
-    skg_scan_run *run = NULL, *next = NULL;
+static int take_share(cli_acquisition *a, const int64_t *list, int64_t missing) {
+    const int64_t even = missing / ((int64_t)WINDOWS_PER_RANK * a->ranks.count);
+    share s = {.window = even < 1 ? 1 : even < WINDOW_MOST ? even : WINDOW_MOST};
+    int64_t count = 1;
+    a->ranks.total = missing;
     if (a->ranks.rank == 0) cli_progress_begin("projections", missing);
-    skg_status status = start_group(a, &g, &run);
-    while (status == SKG_OK && run) {
-        const int64_t first = g.first;
-        status = start_group(a, &g, &next);
-        if (status == SKG_OK) status = write_batches(a, run, 0);
-        skg_scan_run_release(&run);
-        run = next;
-        next = NULL;
-        if (status == SKG_OK && a->ranks.rank == 0) cli_progress_step(first);
+    skg_status status = fill(a, list, &s);
+    while (status == SKG_OK && s.run && count > 0) {
+        status = write_batch(a, s.run, &count);
+        ranks_serve(&a->ranks, 0);
+        if (status == SKG_OK) status = fill(a, list, &s);
+        if (a->ranks.rank == 0) cli_progress_step(a->ranks.next - (s.taken - a->computed));
     }
-    skg_scan_run_release(&run);
+    skg_scan_run_release(&s.run);
+    if (status == SKG_OK) ranks_serve(&a->ranks, 1);
     if (a->ranks.rank == 0) cli_progress_end();
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -107,7 +108,7 @@ int shared_run(const cli_arguments *arguments, cli_acquisition *a) {
     exit_status = ranks_agree(&a->ranks, exit_status);
     const double start = cli_now_ms();
     if (exit_status == CLI_DONE) {
-        exit_status = take_groups(a, list, missing);
+        exit_status = take_share(a, list, missing);
         if (exit_status != CLI_DONE) ranks_abort(&a->ranks, exit_status);
         exit_status = ranks_agree(&a->ranks, exit_status);
     }

@@ -74,8 +74,17 @@ SKG_API skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg
 /** Waits for the batches that are being computed and frees a run. */
 SKG_API void skg_scan_run_release(skg_scan_run **run);
 
-/** Number of projections that a run computes. */
+/** Number of projections that a run computes, with those that were added. */
 SKG_API skg_status skg_scan_run_projection_count(const skg_scan_run *run, int64_t *count);
+
+/** Adds projections to a run, also to one that is finished, for instance a share of a scan that several processes compute. Those
+ * outside of `from` to `to`, and those that the file of the options has, are left out. The size of a batch stays that of the
+ * beginning, which is at most the number of the first projections.
+ *
+ *     count     number of projections
+ *     indices   [count] their numbers in the scan; copied
+ *     errors    SKG_ERR_ARGUMENT (a number), SKG_ERR_MEMORY */
+SKG_API skg_status skg_scan_run_add(skg_scan_run *run, int64_t count, const int64_t *indices);
 
 /** Projections that are finished. The library fills it; prepare with skg_scan_batch_init. Its pointers are valid
  * until the next call with the run. */
