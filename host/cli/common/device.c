@@ -3,6 +3,15 @@
 #include "common/environment.h"
 #include "common/say.h"
 
+#include <stdlib.h>
+
+/* Holds the context until the process ends, because PoCL takes 70 ms to free its compiler. If the user has said whether PoCL
+ * keeps kernels, it may have files to remove when the context is released. */
+static void keep_to_the_end(skg_context *context) {
+    static skg_context *kept;
+    if (!kept && !getenv("POCL_KERNEL_CACHE") && skg_context_retain(context) == SKG_OK) kept = context;
+}
+
 int cli_open_context(const cli_arguments *arguments, skg_context **context, skg_device_info *device) {
     cli_prepare_environment();
     skg_status status = skg_context_create(cli_value(arguments, &cli_flag_device), context);
@@ -10,6 +19,7 @@ int cli_open_context(const cli_arguments *arguments, skg_context **context, skg_
     skg_device_info_init(device);
     skg_context_device_get(*context, device);
     skg_context_log_set(*context, cli_log, NULL);
+    keep_to_the_end(*context);
     cli_warn_of_cache(device);
     return CLI_DONE;
 }
