@@ -111,15 +111,16 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
     pose_rigid(o);
 }
 
-/* Links are kept last. Where that folds a thin facet again, both are done once more. */
+/* Links are kept last. Where the wish breaks some, facets that are not thin may fold too: then both are done again, as
+ * long as facets fold. */
 static skg_status pose_coupled(const skg_body *body, skg_body_organ *o) {
     enum { ROUNDS = 8 };
     skg_chain_report last;
     skg_share_displace(body, o);
-    skg_thin_open(o);
+    skg_thin_open(o, 0);
     if (o->chain) SKG_TRY(skg_chain_settle(o->chain, o->moved, &o->report));
     last = o->report;
-    for (int round = 1; round < ROUNDS && last.conflict_mm > 0 && skg_thin_open(o); round++) {
+    for (int round = 1; round < ROUNDS && last.conflict_mm > 0 && skg_thin_open(o, 1); round++) {
         SKG_TRY(skg_chain_settle(o->chain, o->moved, &last));
         if (last.conflict_mm > o->report.conflict_mm) o->report = last;
     }

@@ -1,4 +1,4 @@
-/* Facets so thin that a little of the motion's curvature would fold them. Private. */
+/* Keeping facets from folding. Most that would are so thin that a little bend of the motion does it. Private. */
 #ifndef SKG_THIN_H
 #define SKG_THIN_H
 
@@ -7,8 +7,8 @@
 /* Finds the thin facets of an organ that follows ribs and dome together, after its shares. */
 skg_status skg_thin_find(skg_body_organ *organ);
 
-/* Moves the corners of those that would fold, by as little as keeps a tenth of their height: a continuous function of
- * the displacements. Returns whether there were any. */
-int skg_thin_open(skg_body_organ *organ);
+/* Moves the corners of facets that would fold, by as little as keeps a tenth of their height: a continuous function of
+ * the displacements. all: of every facet, instead of the thin ones. Returns whether there were any. */
+int skg_thin_open(skg_body_organ *organ, int all);
 
 #endif

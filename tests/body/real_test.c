@@ -66,6 +66,17 @@ START_TEST(real_organs_breathe) {
         if (step == 2) ck_assert_msg(m.tidal_ml > 200 && m.tidal_ml < 1000, "tidal volume %g ml", m.tidal_ml);
         if (step == 2) ck_assert_msg(m.liver_mm[2] < -7, "liver %g mm", m.liver_mm[2]);
     }
+    skg_breath_state deep;
+    skg_breath_state_init(&deep);
+    deep.thoracic = deep.diaphragmatic = 2.5;
+    ck_skg(skg_body_pose(body, &deep));
+    skg_body_measure m;
+    skg_body_measure_init(&m);
+    ck_skg(skg_body_measure_get(body, &m));
+    ck_assert_int_eq(m.broken_links, 0);
+    ck_assert_int_le(m.flipped_triangles,
+                     1); /* of a cartilage, which does not follow ribs and dome together */
+    ck_assert_double_eq_tol(m.liver_volume_ratio, 1, 0.01); /* as in breaths_test */
     int ribs = 0;
     for (int64_t i = 0; i < body->organs; i++) { /* the same head on both sides, near the spine */
         const skg_body_organ *o = body->organ + i;
