@@ -47,3 +47,19 @@ void skg_binary_save(const skg_device *device, const skg_digest *key, cl_program
         skg_store_write(device->store, key, SKG_KEPT_PROGRAM, binary, (int64_t)size);
     skg_free(&binary);
 }
+
+int skg_binary_pays(const skg_device *device, const skg_digest *key) {
+    void *data = NULL;
+    int64_t bytes = 0;
+    int32_t uses = 0;
+    if (!device->caches) return 1;
+    if (skg_store_read(device->store, key, SKG_KEPT_USES, &data, &bytes) && bytes == (int64_t)sizeof uses)
+        memcpy(&uses, data, sizeof uses);
+    skg_free(&data);
+    if (++uses >= SKG_USES_THAT_PAY) {
+        skg_store_remove(device->store, key, SKG_KEPT_USES);
+        return 1;
+    }
+    skg_store_write(device->store, key, SKG_KEPT_USES, &uses, sizeof uses);
+    return 0;
+}

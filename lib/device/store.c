@@ -26,7 +26,7 @@ _Static_assert(sizeof(header) == 88, "the header of a file has no padding");
 enum { FORMAT = 1, MOST_BYTES = 64 << 20, MOST_NAME = SKG_DIGEST_TEXT + 16 };
 
 static const char magic[8] = "skgkept";
-static const char *const endings[] = {"program", "verdict"};
+static const char *const endings[] = {"program", "uses", "verdict"};
 
 void skg_store_find(char path[SKG_STORE_PATH]) {
     const char *own = getenv("SKG_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");

@@ -9,7 +9,7 @@
 #include "core/digest.h"
 
 /* What a file of the folder holds; part of its name and of its header. */
-typedef enum { SKG_KEPT_PROGRAM, SKG_KEPT_VERDICT } skg_kept;
+typedef enum { SKG_KEPT_PROGRAM, SKG_KEPT_USES, SKG_KEPT_VERDICT } skg_kept;
 
 enum { SKG_STORE_PATH = 1024 };
 

@@ -109,11 +109,17 @@ START_TEST(a_folder_that_cannot_be_written_does_no_harm) {
 }
 END_TEST
 
-/* A driver that keeps kernels itself is not asked for them. */
-START_TEST(what_a_driver_keeps_is_not_kept_twice) {
+/* A driver that keeps kernels itself is asked for them once it pays. */
+START_TEST(what_a_driver_keeps_is_kept_by_a_later_process) {
+    for (int k = 1; k < SKG_USES_THAT_PAY; k++) {
+        ck_outcome(run("", 1), 1, 0, 7);
+        ck_assert_int_eq(count_kept(".program", NULL), 0);
+        ck_assert_int_eq(count_kept(".uses", NULL), 1);
+    }
     ck_outcome(run("", 1), 1, 0, 7);
-    ck_outcome(run("", 1), 1, 0, 7);
-    ck_assert_int_eq(count_kept("", NULL), 0);
+    ck_assert_int_eq(count_kept(".program", NULL), 1);
+    ck_assert_int_eq(count_kept(".uses", NULL), 0);
+    ck_outcome(run("", 1), 0, 1, 7);
 }
 END_TEST
 
@@ -188,7 +194,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_program_is_compiled_once);
     tcase_add_test(tests, none_keeps_nothing);
     tcase_add_test(tests, a_folder_that_cannot_be_written_does_no_harm);
-    tcase_add_test(tests, what_a_driver_keeps_is_not_kept_twice);
+    tcase_add_test(tests, what_a_driver_keeps_is_kept_by_a_later_process);
     tcase_add_test(tests, pocl_keeps_kernels_itself);
     tcase_add_test(tests, what_the_driver_rejects_is_compiled);
     tcase_add_test(tests, processes_beside_each_other_share_the_folder);
