@@ -54,13 +54,24 @@ static void tear_down_scenario(void) {
     ck_assert_int_eq(system(line), 0);
 }
 
-/* Writes the scenario with a piece of its text replaced. */
-static void edit(const char *from, const char *to) {
+/* Writes a text with a piece of it replaced. */
+static void write_edited(const char *whole, const char *from, const char *to) {
     static char text[sizeof scenario + 1024];
-    const char *at = strstr(scenario, from);
+    const char *at = strstr(whole, from);
     ck_assert_msg(at != NULL, "no %s", from);
-    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - scenario), scenario, to, at + strlen(from));
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - whole), whole, to, at + strlen(from));
     write_text("box.json", text);
+}
+
+static void edit(const char *from, const char *to) {
+    write_edited(scenario, from, to);
+}
+
+/* Replaces another piece. */
+static void rewrite(const char *from, const char *to) {
+    static char text[sizeof scenario + 1024];
+    read_back("box.json", text, sizeof text);
+    write_edited(text, from, to);
 }
 
 /* The last `count` elements of 16 bits of a file: pixels without compression end a stack. */
@@ -229,8 +240,31 @@ START_TEST(scenarios_are_scenes) {
 }
 END_TEST
 
+/* Format 1.0 has a formula for a composition, and the file of bad pixels as its value. */
+START_TEST(format_1_0_as_it_is) {
+    uint16_t now[4 * PIXELS], then[4 * PIXELS], map[PIXELS];
+    memset(map, 0xff, sizeof map); /* -1: not bad */
+    map[2] = 77;
+    write_bytes("bad.raw", map, sizeof map);
+    ck_run(0, "scan box.json -o now.mha");
+    edit("\"minor\": 2", "\"minor\": 0");
+    rewrite("[{\"formula\": {\"value\": \"H 2 O\"}, \"mass_fraction\": {\"value\": 2}}]",
+            "{\"value\": \"H 2 O\"}");
+    rewrite("\"imin\": {\"value\": 100}}",
+            "\"imin\": {\"value\": 100}}, \"bad_pixel_map\": {\"value\": \"bad.raw\", \"type\": \"int16\", "
+            "\"endian\": \"little\", \"headersize\": 0, \"drifts\": null}");
+    ck_run(0, "scan box.json -o then.mha");
+    ck_assert_str_eq(complained, "");
+    read_pixels("now.mha", 4 * PIXELS, now);
+    read_pixels("then.mha", 4 * PIXELS, then);
+    for (int k = 0; k < 4; k++) now[k * PIXELS + 2] = 77;
+    ck_assert_mem_eq(now, then, sizeof now);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scenario, tear_down_scenario);
+    tcase_add_test(tests, format_1_0_as_it_is);
     tcase_add_test(tests, grey_values_are_those_of_the_law);
     tcase_add_test(tests, a_folder_has_the_layout_of_the_format);
     tcase_add_test(tests, current_bad_pixels_and_other_quantities);
