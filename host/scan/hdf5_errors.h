@@ -1,10 +1,13 @@
-/* HDF5 prints its errors unless it is told not to. Private. */
+/* Errors of HDF5, which prints them unless it is told not to. Private. */
 #ifndef SKG_HDF5_ERRORS_H
 #define SKG_HDF5_ERRORS_H
 
 #include "core/core.h"
 
+#include <errno.h>
 #include <hdf5.h>
+#include <string.h>
+#include <unistd.h>
 
 typedef struct {
     H5E_auto2_t print;
@@ -18,6 +21,13 @@ static inline void skg_hdf5_be_silent(skg_hdf5_errors *before) {
 
 static inline void skg_hdf5_be_as_before(const skg_hdf5_errors *before) {
     H5Eset_auto2(H5E_DEFAULT, before->print, before->data);
+}
+
+/* Of a file that H5Fopen refused. */
+static inline skg_status skg_hdf5_fail(const char *path) {
+    return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path,
+                    access(path, R_OK) != 0 ? strerror(errno)
+                                            : "it is no HDF5 file; give the .h5 that a scan wrote");
 }
 
 #endif

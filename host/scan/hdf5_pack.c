@@ -277,7 +277,7 @@ static skg_status run(packing *p) {
     if (snprintf(temporary, sizeof temporary, "%s.part-%ld", p->to, (long)getpid()) >= (int)sizeof temporary)
         return skg_output_fail(p->to, ENAMETOOLONG, "");
     p->source = H5Fopen(p->from, H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (p->source < 0) return skg_fail(SKG_ERR_FILE, "%s: cannot be read, or is no HDF5 file", p->from);
+    if (p->source < 0) return skg_hdf5_fail(p->from);
     skg_status status = pack_to(p, temporary);
     H5Fclose(p->source);
     if (status == SKG_OK && rename(temporary, p->to) != 0) status = skg_output_fail(p->to, errno, "");

@@ -141,8 +141,7 @@ static skg_status open_reader(skg_scan_reader *reader) {
     hsize_t size[3];
     char quantity[64] = "";
     reader->root = H5Fopen(reader->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (reader->root < 0)
-        return skg_fail(SKG_ERR_FILE, "%s: cannot be read, or is no HDF5 file", reader->path);
+    if (reader->root < 0) return skg_hdf5_fail(reader->path);
     reader->data = H5Dopen2(reader->root, "exchange/data", H5P_DEFAULT);
     if (reader->data < 0 || !size_of(reader->data, size))
         return refuse(reader, "it has no dataset /exchange/data");

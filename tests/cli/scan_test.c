@@ -204,7 +204,7 @@ START_TEST(a_volume_has_the_coefficients) {
             else if (ball > 8 + 2.4 && from < 27)
                 ck_assert_double_eq_tol((double)value, 0.2, 0.002); /* 1 %, the bar */
         }
-    ck_run_fails(2, "-o FILE.mha", "reconstruct scan.h5 -o volume.png");
+    ck_run_fails(2, "volume.png is no .mha; give -o FILE.mha", "reconstruct scan.h5 -o volume.png");
     ck_run(0, "scan body.json -o scan.h5 --packed packed.h5 --packed-grey16 --quiet");
     ck_run(0, "reconstruct packed.h5 -o grey.mha --size 48 --voxel 1.2 --filter hann --json");
     object = said_json();
@@ -213,7 +213,8 @@ START_TEST(a_volume_has_the_coefficients) {
     ck_run_fails(5, "packed copy", "scan body.json -o packed.h5");
     ck_run_fails(2, "to another .h5", "scan body.json -o scan.mha --packed packed.h5");
     ck_run_fails(2, "add it", "scan body.json -o scan.h5 --packed-grey16");
-    ck_run_fails(3, "cannot be read", "reconstruct body.json -o volume.mha");
+    ck_run_fails(3, "is no HDF5 file", "reconstruct body.json -o volume.mha");
+    ck_run_fails(3, "none.h5: cannot be read: No such file", "reconstruct none.h5 -o volume.mha");
     ck_run(0, "scan body.json --set Scan.FinalAngle=90 -o part.h5 --quiet");
     ck_run_fails(3, "180 degrees plus the fan", "reconstruct part.h5 -o volume.mha");
 }

@@ -25,8 +25,9 @@ typedef struct {
 
 static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t *size) {
     r->place = cli_value(arguments, &cli_flag_reconstruct_output);
-    if (!r->place || !cli_has_extension(r->place, ".mha"))
-        return cli_error(CLI_USAGE, "reconstruct: no volume is named; add -o FILE.mha");
+    if (!r->place) return cli_error(CLI_USAGE, "reconstruct: no volume is named; add -o FILE.mha");
+    if (!cli_has_extension(r->place, ".mha"))
+        return cli_error(CLI_USAGE, "reconstruct: %s is no .mha; give -o FILE.mha", r->place);
     int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, MOST_VOXELS, size);
     if (exit_status == CLI_DONE)
         exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
