@@ -112,7 +112,11 @@ START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(3, "no key Scan", "scan scene.json -o a.mha");
     ck_run_fails(3, "number of projections", "scan scene.json -o a.mha --set Scan='{\"StartAngle\":3}'");
     ck_run_fails(2, "--only", "scan scene.json %s -o a.mha --only 3,x", SCAN);
-    ck_run_fails(2, "the scan has 12", "scan scene.json %s -o a.mha --to 12", SCAN);
+    ck_run_fails(2, "the scan has 0 to 11", "scan scene.json %s -o a.mha --to 12", SCAN);
+    ck_run_fails(2, "from 12 to 11", "scan scene.json %s -o a.mha --from 12", SCAN);
+    ck_run_fails(2, "projection 12; the scan has 0 to 11", "scan scene.json %s -o a.mha --only 3,12", SCAN);
+    ck_run_fails(2, "the numbers rise", "scan scene.json %s -o a.mha --only 3,2", SCAN);
+    ck_assert(!has_file("a.mha"));
     ck_run_fails(5, "parallel", "scan scene.json %s -o a.mha --geometry a.xml", SCAN);
     ck_run_fails(3, "a short scan",
                  "scan scene.json -o a.mha --set Scan='{\"NumberOfProjections\":3,\"Short\":true}'");

@@ -161,6 +161,24 @@ static int write_geometry(const cli_arguments *arguments, const cli_acquisition 
     return CLI_DONE;
 }
 
+/* Whether the scan has the projections that were asked for: before anything is laid out for them. */
+static int check_chosen(const cli_acquisition *a) {
+    const skg_scan_run_options *o = &a->options;
+    const int64_t last = a->projections - 1, to = o->to > 0 ? o->to - 1 : last;
+    if (o->from > to || to > last)
+        return cli_error(CLI_USAGE,
+                         "projections from %" PRId64 " to %" PRId64
+                         " are asked for; the scan has 0 to %" PRId64,
+                         o->from, to, last);
+    for (int64_t i = 0; i < o->only_count; i++)
+        if (o->only[i] > last || (i > 0 && o->only[i] <= o->only[i - 1]))
+            return cli_error(CLI_USAGE,
+                             "--only: projection %" PRId64 "; the scan has 0 to %" PRId64
+                             ", and the numbers rise",
+                             o->only[i], last);
+    return CLI_DONE;
+}
+
 /* Scene, scan, motion and plan: of every rank its own. */
 static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     int32_t quantity = SKG_QUANTITY_ENERGY;
@@ -180,7 +198,8 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
             skg_scan_hash_get(a->session.setup, &a->session.options, &a->options, a->hash, sizeof a->hash);
     if (status != SKG_OK) return cli_fail(status);
     a->whole_projections = a->projections;
-    exit_status = grey_decide(arguments, a);
+    exit_status = check_chosen(a);
+    if (exit_status == CLI_DONE) exit_status = grey_decide(arguments, a);
     if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(a);
