@@ -77,9 +77,9 @@ static void free_organ(skg_body_organ *o) {
         skg_free(&to);
     }
     skg_tree_free(&o->tree);
-    void *block[] = {&o->label,  &o->rest,   &o->corner,      &o->node_of,    &o->moved,
-                     &o->link,   &o->anchor, &o->target,      &o->state,      &o->memory,
-                     &o->near,   &o->given,  &o->near_weight, &o->fraction,   &o->share,
+    void *block[] = {&o->label,  &o->rest,   &o->corner,      &o->node_of,     &o->moved,
+                     &o->link,   &o->anchor, &o->target,      &o->state,       &o->memory,
+                     &o->near,   &o->given,  &o->near_weight, &o->fraction,    &o->share,
                      &o->course, &o->beyond, &o->bone,        &o->bone_weight, &o->thin};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }

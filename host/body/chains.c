@@ -113,7 +113,7 @@ skg_status skg_body_make_chain(skg_body *body, skg_body_organ *o) {
 
 void skg_body_drop_chain(skg_body_organ *o) {
     skg_chain_free(&o->chain);
-    void *block[] = {&o->link,  &o->anchor, &o->target, &o->state,      &o->memory,
+    void *block[] = {&o->link,  &o->anchor, &o->target, &o->state,       &o->memory,
                      &o->share, &o->course, &o->bone,   &o->bone_weight, &o->thin};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
     o->links = 0;

@@ -40,7 +40,7 @@ typedef struct {
     skg_priority priority; /* closed parts that compete for intervals */
     int32_t clip;          /* 1: children are clipped to their parents */
     int32_t fine;          /* pixels of the camera along each side of a pixel of the image */
-    skg_raster_pin main; /* the raster of the closed parts */
+    skg_raster_pin main;   /* the raster of the closed parts */
 } skg_pass;
 
 /* Releases what the pass owns, and its pin. */

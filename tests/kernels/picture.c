@@ -270,8 +270,8 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
         status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
                                         &attenuation);
         if (status == SKG_OK)
-            status = skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale, .fine = 1}, camera,
-                                   &attenuation, 1, -HUGE_VAL, negative.memory, NULL, &place, NULL);
+            status = skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale, .fine = 1},
+                                   camera, &attenuation, 1, -HUGE_VAL, negative.memory, NULL, &place, NULL);
         skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;
         SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, output.memory, CL_TRUE, 0,
