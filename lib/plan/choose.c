@@ -88,7 +88,7 @@ skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *str
 
 /* clang-format off */
 /* One pass on a finer detector sets up each triangle once instead of n^2 times, but its sums leave the caches earlier. A
- * frame of the generated thorax (41,896 triangles, 3 planes) on two cores (Zen 3, AVX-512, PoCL 3.1), one pass over n^2 passes:
+ * frame of the generated thorax (41,896 triangles, 3 planes) on two cores (EPYC, AVX-512, PoCL 3.1), one pass over n^2 passes:
  *
  *     image     n = 2    n = 3    n = 4    n = 8
  *      512^2     0.84     0.77     0.73     0.61

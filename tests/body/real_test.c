@@ -44,6 +44,18 @@ static skg_body *load(const skg_body_options *options, char folder[DATA_PATH]) {
     return body;
 }
 
+/* Poses a breath of chest and diaphragm alike. */
+static skg_body_measure measure_breath(skg_body *body, double weight) {
+    skg_breath_state state;
+    skg_body_measure m;
+    skg_breath_state_init(&state);
+    skg_body_measure_init(&m);
+    state.thoracic = state.diaphragmatic = weight;
+    ck_skg(skg_body_pose(body, &state));
+    ck_skg(skg_body_measure_get(body, &m));
+    return m;
+}
+
 START_TEST(real_organs_breathe) {
     char folder[DATA_PATH];
     skg_body *body = load(NULL, folder);
@@ -66,16 +78,10 @@ START_TEST(real_organs_breathe) {
         if (step == 2) ck_assert_msg(m.tidal_ml > 200 && m.tidal_ml < 1000, "tidal volume %g ml", m.tidal_ml);
         if (step == 2) ck_assert_msg(m.liver_mm[2] < -7, "liver %g mm", m.liver_mm[2]);
     }
-    skg_breath_state deep;
-    skg_breath_state_init(&deep);
-    deep.thoracic = deep.diaphragmatic = 2.5;
-    ck_skg(skg_body_pose(body, &deep));
-    skg_body_measure m;
-    skg_body_measure_init(&m);
-    ck_skg(skg_body_measure_get(body, &m));
+    const skg_body_measure m = measure_breath(body, 2.5);
     ck_assert_int_eq(m.broken_links, 0);
-    ck_assert_int_le(m.flipped_triangles,
-                     1); /* of a cartilage, which does not follow ribs and dome together */
+    /* One of a cartilage, which does not follow ribs and dome together. */
+    ck_assert_int_le(m.flipped_triangles, 1);
     ck_assert_double_eq_tol(m.liver_volume_ratio, 1, 0.01); /* as in breaths_test */
     int ribs = 0;
     for (int64_t i = 0; i < body->organs; i++) { /* the same head on both sides, near the spine */
@@ -118,13 +124,7 @@ START_TEST(axes_from_bones) {
         ck_assert_msg(turn >= 25 && turn <= 60, "%s: %g degrees from the midplane", o->label, turn);
     }
     ck_assert_int_eq(ribs, 16);
-    skg_breath_state state;
-    skg_breath_state_init(&state);
-    state.thoracic = state.diaphragmatic = 1;
-    ck_skg(skg_body_pose(body, &state));
-    skg_body_measure m;
-    skg_body_measure_init(&m);
-    ck_skg(skg_body_measure_get(body, &m));
+    const skg_body_measure m = measure_breath(body, 1);
     ck_assert_int_eq(m.broken_links, 0);
     ck_assert_msg(m.tidal_ml > 200 && m.tidal_ml < 1000, "tidal volume %g ml", m.tidal_ml);
     skg_body_release(&body);

@@ -8,7 +8,8 @@
  * belong to the user, and nobody else may write to it. It is made if need be, and holds at most 256 MiB. A folder that
  * cannot be used is no failure: kernels are compiled then. Kernels are kept when the first job that used them is done.
  * PoCL keeps kernels itself, in the folder that POCL_CACHE_DIR names, and would have to compile them a second time for ours;
- * there, the 20th process that uses a kernel keeps it, or the first if POCL_KERNEL_CACHE=0 turns PoCL's folder off. When compiling takes longer than a second, the log gets a line of level SKG_LOG_PROGRESS.
+ * there, the 20th process that uses a kernel keeps it, or the first if POCL_KERNEL_CACHE=0 turns PoCL's folder off. When
+ * compiling takes longer than a second, the log gets a line of level SKG_LOG_PROGRESS.
  *
  * Threads: a context, and the plans and jobs made on it, are used by one thread at a time. Different contexts
  * may be used by different threads at the same time. Materials, spectra and responses never change and may be

@@ -61,7 +61,8 @@ typedef struct {
     int64_t planes;
     /** Bits of an accumulator: 32 or 64. */
     int64_t plane_bits;
-    /** Columns of a tile in pixels (of the finer detector, if one pass makes all rays of a pixel); all of them for SKG_STRATEGY_COPIES and SKG_STRATEGY_ATOMICS. */
+    /** Columns of a tile in pixels, or in rays if one pass makes all rays of a pixel; all of them for
+     * SKG_STRATEGY_COPIES and SKG_STRATEGY_ATOMICS. */
     int64_t tile_columns;
     /** Rows of a tile in pixels; likewise. */
     int64_t tile_rows;
