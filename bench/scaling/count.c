@@ -53,21 +53,35 @@ static void count_triangle(const double *a, const double *b, const double *c, in
         *warp = fmax(*warp, t->box);
 }
 
-/* Planes that a part adds to: one if planes are made afterwards or all share one, else its own and its parent's. */
-static int planes_of(const skg_scene *scene, const skg_part *part, int each, const void **materials,
-                     int *where) {
+/* What accumulators stand for. */
+typedef enum { ALL, MATERIALS, KINDS } meaning;
+
+/* Materials of an accumulator's parts, and of their parents. */
+typedef struct {
+    const void *own, *parent;
+} kind;
+
+static int accumulator_of(kind wanted, kind *kinds) {
+    int k = 0;
+    while (kinds[k].own && (kinds[k].own != wanted.own || kinds[k].parent != wanted.parent) && k < PLANES - 1)
+        k++;
+    kinds[k] = wanted;
+    return k;
+}
+
+/* Accumulators that a part adds to: one if there is no other; that of its kind, if planes are mixed from them; else that of its
+ * own material and of its parent's. */
+static int accumulators_of(const skg_scene *scene, const skg_part *part, meaning of, kind *kinds,
+                           int *where) {
     skg_part parent;
     int count = 0;
     skg_part_init(&parent);
     if (part->inside >= 0) bench_try(skg_scene_part_get(scene, part->inside, &parent), "parent");
-    if (!each) return where[0] = 0, 1;
+    if (of == ALL) return where[0] = 0, 1;
     if (part->inside >= 0 && parent.material == part->material) return 0;
-    const void *const wanted[2] = {part->material, parent.material};
-    for (int k = 0; k < (part->inside >= 0 ? 2 : 1); k++) {
-        int m = 0;
-        while (materials[m] && materials[m] != wanted[k] && m < PLANES - 1) m++;
-        materials[m] = wanted[k], where[count++] = m;
-    }
+    if (of == KINDS) return where[0] = accumulator_of((kind){part->material, parent.material}, kinds), 1;
+    where[count++] = accumulator_of((kind){part->material, NULL}, kinds);
+    if (part->inside >= 0) where[count++] = accumulator_of((kind){parent.material, NULL}, kinds);
     return count;
 }
 
@@ -106,8 +120,10 @@ static void count_part(const skg_part *part, const skg_view *v, const int *where
 
 scaling_counts scaling_count(const bench_scene *scene, const skg_plan_report *report) {
     const skg_view *v = &scene->view;
-    const int each = report->accumulators == report->planes && report->planes > 1 && report->planes <= PLANES;
-    const void *materials[PLANES] = {NULL};
+    const meaning of = report->accumulators == 1 || report->accumulators > PLANES ? ALL
+                       : report->accumulators == report->planes                   ? MATERIALS
+                                                                                  : KINDS;
+    kind kinds[PLANES] = {{NULL, NULL}};
     double extents[PLANES][4];
     int64_t parts = 0;
     scaling_counts c = {
@@ -126,13 +142,13 @@ scaling_counts scaling_count(const bench_scene *scene, const skg_plan_report *re
         int where[2] = {0, 0};
         skg_part_init(&part);
         bench_try(skg_scene_part_get(scene->scene, k, &part), "part");
-        const int planes = planes_of(scene->scene, &part, each, materials, where);
+        const int planes = accumulators_of(scene->scene, &part, of, kinds, where);
         count_part(&part, v, where, planes, extents, &c);
     }
-    for (int p = 0; p < (each ? PLANES : 1); p++) {
+    for (int p = 0; p < (of == ALL ? 1 : PLANES); p++) {
         const double width = fmin(extents[p][1], (double)v->columns) - fmax(extents[p][0], 0);
         const double height = fmin(extents[p][3], (double)v->rows) - fmax(extents[p][2], 0);
-        if (width > 0 && height > 0) c.sums += width * height * (each ? 1 : c.accumulators);
+        if (width > 0 && height > 0) c.sums += width * height * (of == ALL ? c.accumulators : 1);
     }
     return c;
 }

@@ -169,7 +169,7 @@ static void predict_machines(const settings *s, const char *name, const scaling_
     for (size_t m = 0; m < sizeof machines / sizeof *machines; m++) {
         const char *why = NULL;
         const skg_strategy_facts facts = {.workers = machines[m].workers,
-                                          .image_bytes = (int64_t)(c->pixels * c->accumulators * 4),
+                                          .image_bytes = (int64_t)(c->sums * 4),
                                           .triangles = (int64_t)c->triangles,
                                           .triangle_pixels = 4 * c->rectangles / c->triangles};
         snprintf(machine, sizeof machine, "%d workers", machines[m].workers);

@@ -128,14 +128,8 @@ skg_status skg_pass_extents(const skg_pass *pass, skg_staging *staging, cl_int *
     for (int64_t p = 0; p < pass->scene->count; p++) {
         cl_int own[4];
         skg_extent_pixels(&pass->camera, &pass->extents[p], own);
-        for (int64_t c = pass->first[p]; c < pass->first[p + 1]; c++) {
-            cl_int *extent = *extents + 4 * pass->contributions[c].plane;
-            const int known = extent[1] > 0;
-            for (int k = 0; k < 4; k += 2) {
-                extent[k] = known && extent[k] < own[k] ? extent[k] : own[k];
-                extent[k + 1] = known && extent[k + 1] > own[k + 1] ? extent[k + 1] : own[k + 1];
-            }
-        }
+        for (int64_t c = pass->first[p]; c < pass->first[p + 1]; c++)
+            skg_extent_join(*extents + 4 * pass->contributions[c].plane, own);
     }
     return SKG_OK;
 }

@@ -93,3 +93,11 @@ void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32
     pixels[3] = ((int32_t)fmin(fmax(at->high_column + 3, 0), columns - 1) / SKG_EXTENT_COLUMNS + 1) *
                 SKG_EXTENT_COLUMNS;
 }
+
+void skg_extent_join(int32_t pixels[4], const int32_t more[4]) {
+    const int known = pixels[1] > 0;
+    for (int k = 0; k < 4; k += 2) {
+        pixels[k] = known && pixels[k] < more[k] ? pixels[k] : more[k];
+        pixels[k + 1] = known && pixels[k + 1] > more[k + 1] ? pixels[k + 1] : more[k + 1];
+    }
+}

@@ -25,4 +25,7 @@ void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, cons
  * outward as skg_shared.h wants them. The last row may lie beyond the detector. */
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);
 
+/* Widens pixels by those of another extent. All 0: there are none so far. */
+void skg_extent_join(int32_t pixels[4], const int32_t more[4]);
+
 #endif

@@ -3,6 +3,7 @@
 #define SKG_CHOOSE_H
 
 #include "scene/scene.h"
+#include "spectral/contribution.h"
 
 #include <skiagraph/plan.h>
 
@@ -10,7 +11,7 @@
 typedef struct {
     int32_t is_gpu;
     int32_t workers;        /* compute units */
-    int64_t image_bytes;    /* of all accumulator planes */
+    int64_t image_bytes;    /* of all accumulators, within the rectangles that their parts reach */
     int64_t triangles;      /* of a frame */
     double triangle_pixels; /* mean number of pixels of a triangle's box */
 } skg_strategy_facts;
@@ -28,7 +29,9 @@ typedef struct {
     const skg_view *view;
     int32_t precision;    /* SKG_PRECISION_... */
     int32_t wanted;       /* SKG_STRATEGY_... */
-    int64_t accumulators; /* planes of the raster */
+    int64_t accumulators; /* planes of the raster; what the parts add to them */
+    const skg_contribution *contributions;
+    const int64_t *first_contribution; /* [parts + 1] */
 } skg_strategy_request;
 
 /* The strategy that is asked for, that the precision needs, or that the facts call for. */
@@ -48,5 +51,8 @@ typedef struct {
 /* How many pixels the passes have along each side of a pixel of the image: `shifts`, so that one pass makes all rays of a
  * point of the source, or 1, with a pass for each ray. why: in a few words (static storage). */
 int64_t skg_fine_choose(const skg_fine_request *request, const char **why);
+
+/* The most accumulators that so many planes are mixed from (spectral/mix.h). The request's own number does not count. */
+int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes);
 
 #endif

@@ -110,16 +110,6 @@ static skg_status check_half(const skg_recipe *recipe) {
     return SKG_OK;
 }
 
-/* Decides whether planes are mixed. This depends on the model alone, so that frames of a renewed recipe have the bits
- * of a new one's. */
-static skg_status choose_mix(skg_recipe *recipe) {
-    const skg_model *model = &recipe->model;
-    recipe->mixed = 0;
-    if (recipe->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* a plane per material */
-    return skg_mix_choose(recipe->scene->count, model->planes, model->contributions,
-                          model->first_contribution, &recipe->mixed);
-}
-
 static skg_fine_request fine_request(const skg_recipe *recipe, int64_t accumulators) {
     return (skg_fine_request){
         .shifts = recipe->samples.shifts,
@@ -130,6 +120,17 @@ static skg_fine_request fine_request(const skg_recipe *recipe, int64_t accumulat
         .precision = recipe->options.precision,
         .leaky = recipe->leaky_count > 0,
     };
+}
+
+/* Decides whether planes are mixed. This depends on the model and the view alone, so that frames of a renewed recipe have the
+ * bits of a new one's. */
+static skg_status choose_mix(skg_recipe *recipe) {
+    const skg_model *model = &recipe->model;
+    const skg_fine_request request = fine_request(recipe, 0);
+    recipe->mixed = 0;
+    if (recipe->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* a plane per material */
+    return skg_mix_choose(recipe->scene->count, model->planes, model->contributions,
+                          model->first_contribution, skg_most_mixed(&request, model->planes), &recipe->mixed);
 }
 
 int64_t skg_recipe_most_fine(const skg_recipe *recipe) {
@@ -145,8 +146,13 @@ static void choose_fine(skg_recipe *recipe) {
 }
 
 static skg_status choose_strategy(skg_recipe *recipe, const skg_device_info *device) {
+    const skg_model *model = &recipe->model;
     skg_view view;
+    skg_mix mix = {0};
     skg_samples_view(&recipe->samples, &recipe->view, &view);
+    if (recipe->mixed)
+        SKG_TRY(skg_mix_find(recipe->scene->count, model->planes, model->contributions,
+                             model->first_contribution, recipe->mixed, &mix));
     const skg_strategy_request request = {
         .device = device,
         .scene = recipe->scene,
@@ -154,12 +160,15 @@ static skg_status choose_strategy(skg_recipe *recipe, const skg_device_info *dev
         .precision = recipe->options.precision,
         .wanted = recipe->options.strategy,
         .accumulators = skg_recipe_accumulators(recipe),
+        .contributions = recipe->mixed ? mix.contributions : model->contributions,
+        .first_contribution = recipe->mixed ? mix.first_contribution : model->first_contribution,
     };
-    SKG_TRY(skg_strategy_decide(&request, &recipe->strategy, &recipe->strategy_reason));
+    const skg_status status = skg_strategy_decide(&request, &recipe->strategy, &recipe->strategy_reason);
+    skg_mix_release(&mix);
     /* Bands write only the few rows that a leaky part meets. Copies clear whole rectangles and are added up twice. */
     const int bands = request.wanted == SKG_STRATEGY_AUTO && recipe->strategy == SKG_STRATEGY_COPIES;
     recipe->leaky_strategy = bands ? SKG_STRATEGY_TILES : recipe->strategy;
-    return SKG_OK;
+    return status;
 }
 
 static skg_status make_model(skg_recipe *recipe) {

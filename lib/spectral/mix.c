@@ -71,14 +71,14 @@ cleanup:
 }
 
 skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution *contributions,
-                          const int64_t *first_contribution, int32_t *sums) {
+                          const int64_t *first_contribution, int32_t most, int32_t *sums) {
     skg_mix mix;
     int nested = 0;
     for (int64_t p = 0; p < parts && !nested; p++)
         nested = first_contribution[p + 1] - first_contribution[p] > 1;
     *sums = 0;
     if (!nested) return SKG_OK;
-    SKG_TRY(skg_mix_find(parts, planes, contributions, first_contribution, planes + planes / 2, &mix));
+    SKG_TRY(skg_mix_find(parts, planes, contributions, first_contribution, most, &mix));
     *sums = mix.sums;
     skg_mix_release(&mix);
     return SKG_OK;

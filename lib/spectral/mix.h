@@ -23,10 +23,8 @@ skg_status skg_mix_find(int64_t parts, int32_t planes, const skg_contribution *c
                         const int64_t *first_contribution, int32_t most, skg_mix *mix);
 void skg_mix_release(skg_mix *mix);
 
-/* The number of accumulators that is worth while; 0 if it is none, or if no part adds to more than one plane. An
- * accumulator is zeroed and read for each pixel, so up to one and a half times the number of planes are worth while
- * (measured with the generated thorax: 42,000 triangles, 512 x 512 pixels, 5 materials). */
+/* The number of accumulators that these lists need; 0 if it is more than `most`, or if no part adds to more than one plane. */
 skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution *contributions,
-                          const int64_t *first_contribution, int32_t *sums);
+                          const int64_t *first_contribution, int32_t most, int32_t *sums);
 
 #endif

@@ -52,12 +52,14 @@ END_TEST
 START_TEST(only_lists_are_mixed) {
     int32_t sums = -1;
     static const int64_t single[3] = {0, 1, 2};
-    ck_skg(skg_mix_choose(PARTS, PLANES, writes, firsts, &sums));
+    ck_skg(skg_mix_choose(PARTS, PLANES, writes, firsts, 3, &sums));
     ck_assert_int_eq(sums, 3);
-    ck_skg(skg_mix_choose(2, PLANES, writes, single, &sums));
+    ck_skg(skg_mix_choose(PARTS, PLANES, writes, firsts, 2, &sums));
+    ck_assert_int_eq(sums, 0);
+    ck_skg(skg_mix_choose(2, PLANES, writes, single, 3, &sums));
     ck_assert_int_eq(sums, 0);
     ck_skg(skg_mix_choose(PARTS, 1, (const skg_contribution[]){{0, 1, 0}},
-                          (const int64_t[PARTS + 1]){0, 1, 1, 1, 1, 1, 1, 1}, &sums));
+                          (const int64_t[PARTS + 1]){0, 1, 1, 1, 1, 1, 1, 1}, 3, &sums));
     ck_assert_int_eq(sums, 0);
 }
 END_TEST
