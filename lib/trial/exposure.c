@@ -1,4 +1,5 @@
 #include "trial/exposure.h"
+#include "beam/spectrum.h"
 #include "core/maths.h"
 
 #include <math.h>
@@ -101,5 +102,33 @@ skg_status skg_trial_shade(const skg_trial_scene *scene, int64_t row, int64_t co
     SKG_TRY(skg_material_attenuation_get(scene->filter, energy, &filter));
     SKG_TRY(skg_material_attenuation_get(scene->crystal, energy, &crystal));
     *share = passed * exp(-0.1 * filter * mm) * (1 - exp(-0.1 * crystal * layer * oblique));
+    return SKG_OK;
+}
+
+void skg_trial_heel_choose(skg_trial_scene *scene) {
+    skg_heel *heel = &scene->heel;
+    skg_heel_init(heel);
+    heel->kvp = 100;
+    heel->angle_deg = 20;
+    heel->bin_kev = 10; /* fewer bins are computed sooner */
+    heel->direction[0] = 3, heel->direction[1] = -4;
+    scene->view.source[2] = -150;
+    scene->view.centre[2] = 100;
+    scene->options.heel = heel;
+}
+
+/* The anode's face is turned by its angle from the central ray, which is along z, to the direction of the anode. */
+skg_status skg_trial_heel(const skg_trial_scene *scene, int64_t row, int64_t column, double *shares) {
+    const skg_heel *heel = &scene->heel;
+    const skg_heel_tube tube = {
+        .anode = heel->anode, .kvp = heel->kvp, .angle_deg = heel->angle_deg, .bin_kev = heel->bin_kev};
+    const double face = heel->angle_deg * SKG_PI / 180, down = scene->view.centre[2] - scene->view.source[2];
+    double x, y, losses[SKG_TRIAL_ENERGIES_MAX];
+    const double length = place_of(&scene->view, row, column, &x, &y);
+    const double toward =
+        (x * heel->direction[0] + y * heel->direction[1]) / hypot(heel->direction[0], heel->direction[1]);
+    const double angle = asin((sin(face) * down - cos(face) * toward) / length) * 180 / SKG_PI;
+    SKG_TRY(skg_heel_losses(&tube, angle, scene->beam, losses));
+    for (int e = 0; e < SKG_TRIAL_ENERGIES_MAX; e++) shares[e] = exp(-losses[e]);
     return SKG_OK;
 }

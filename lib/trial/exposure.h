@@ -20,4 +20,11 @@ skg_status skg_trial_shades_choose(skg_trial_scene *scene);
  * skg_response_create_scintillator. */
 skg_status skg_trial_shade(const skg_trial_scene *scene, int64_t row, int64_t column, double *share);
 
+/* A tube whose anode is beside the beam, oblique to the detector's rows. */
+void skg_trial_heel_choose(skg_trial_scene *scene);
+
+/* What the heel effect leaves of each energy of the beam in a pixel, from the tube's spectrum at the angle at which the pixel's ray
+ * leaves the anode. shares: [SKG_TRIAL_ENERGIES_MAX] */
+skg_status skg_trial_heel(const skg_trial_scene *scene, int64_t row, int64_t column, double *shares);
+
 #endif

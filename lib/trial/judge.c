@@ -1,5 +1,6 @@
 #include "trial/judge.h"
 #include "frame/plan.h"
+#include "trial/blurs.h"
 #include "trial/exposure.h"
 #include "trial/place.h"
 
@@ -21,13 +22,15 @@ typedef struct {
     double surface[PIXELS], shown[PIXELS]; /* what it should give */
     double blurred[PIXELS];
     double longest, open;
+    int32_t pixels; /* that the image has */
+    int32_t reserved;
     int64_t bad_pixels; /* as the image's report has them */
 } trial_run;
 
-static void read_floats(const skg_trial_scene *scene, const void *from, double *to) {
-    for (int p = 0; p < PIXELS; p++)
-        to[p] =
-            scene->number == SKG_TRIAL_DOUBLE ? ((const double *)from)[p] : (double)((const float *)from)[p];
+static void read_floats(const trial_run *run, const void *from, double *to) {
+    for (int p = 0; p < run->pixels; p++)
+        to[p] = run->scene.number == SKG_TRIAL_DOUBLE ? ((const double *)from)[p]
+                                                      : (double)((const float *)from)[p];
 }
 
 /* Path lengths are shown by kernels of their own, which have a test of their own: a first start need not compile them. */
@@ -40,10 +43,17 @@ static int shows_lengths(skg_trial_number number) {
     case SKG_TRIAL_DETECTOR:
     case SKG_TRIAL_SHADES:
     case SKG_TRIAL_RAYS:
+    case SKG_TRIAL_HEEL:
+    case SKG_TRIAL_DEPTHS:
+    case SKG_TRIAL_APART:
         return 0;
     default:
         return 1;
     }
+}
+
+static int is_blurred(skg_trial_number number) {
+    return number == SKG_TRIAL_BLUR || number == SKG_TRIAL_DEPTHS;
 }
 
 /* Renders the image, and the lengths of part 0. */
@@ -57,83 +67,58 @@ static skg_status render(trial_run *run) {
     output.type = run->scene.number == SKG_TRIAL_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     skg_status status = skg_plan_image(run->plan, &output);
     if (status < 0) return status;
-    read_floats(&run->scene, memory, run->image);
+    read_floats(run, memory, run->image);
     skg_plan_report_init(&report);
     SKG_TRY(skg_plan_report_get(run->plan, &report));
     run->bad_pixels = report.bad_pixels;
     if (!shows_lengths(run->scene.number)) return SKG_OK;
     SKG_TRY(skg_plan_lengths_enqueue(run->plan, 0, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
     status = skg_job_wait(&job);
-    read_floats(&run->scene, memory, run->lengths);
+    read_floats(run, memory, run->lengths);
     return status < 0 ? status : SKG_OK;
 }
 
-/* A pixel beyond the edge has the value of the nearest one. */
-static double blurred(const trial_run *run, int row, int column) {
-    const int half = SKG_TRIAL_BLUR_SAMPLES / 2;
-    double sum = 0;
-    for (int j = 0; j < SKG_TRIAL_BLUR_SAMPLES; j++)
-        for (int i = 0; i < SKG_TRIAL_BLUR_SAMPLES; i++) {
-            const int r = (int)fmin(fmax(row - (j - half), 0), N - 1);
-            const int c = (int)fmin(fmax(column - (i - half), 0), N - 1);
-            sum += run->scene.along_column[j] * run->scene.along_row[i] * run->shown[r * N + c];
-        }
-    return sum;
-}
-
 /* The mean over the rays of a pixel. */
-static double mean_intensity(trial_run *run, int row, int column) {
+static double mean_intensity(trial_run *run, int row, int column, const double *shares) {
+    const int p = row * (int)run->scene.view.columns + column;
     const int side = run->scene.options.supersampling;
     double net[2], sum = 0;
     for (int k = 0; k < side * side; k++) {
         const double down = (k / side + 0.5) / side - 0.5, right = (k % side + 0.5) / side - 0.5;
-        skg_trial_lengths(&run->scene, row + down, column + right, &run->surface[row * N + column], net);
-        sum += skg_trial_intensity(&run->scene, net, &run->open);
+        skg_trial_lengths(&run->scene, row + down, column + right, &run->surface[p], net);
+        sum += skg_trial_intensity(&run->scene, shares, net, &run->open);
     }
     return sum / (side * side);
 }
 
 static skg_status expect(trial_run *run) {
-    double share = 1;
-    for (int p = 0; p < PIXELS; p++) {
-        if (run->scene.number == SKG_TRIAL_SHADES)
-            SKG_TRY(skg_trial_shade(&run->scene, p / N, p % N, &share));
-        run->shown[p] = share * mean_intensity(run, p / N, p % N);
+    const skg_trial_number number = run->scene.number;
+    const int columns = (int)run->scene.view.columns;
+    double shares[SKG_TRIAL_ENERGIES_MAX] = {1, 1, 1};
+    for (int p = 0; p < run->pixels; p++) {
+        const int row = p / columns, column = p % columns;
+        if (number == SKG_TRIAL_SHADES) SKG_TRY(skg_trial_shade(&run->scene, row, column, shares));
+        if (number == SKG_TRIAL_HEEL) SKG_TRY(skg_trial_heel(&run->scene, row, column, shares));
+        run->shown[p] = mean_intensity(run, row, column, shares);
         run->longest = fmax(run->longest, run->surface[p]);
     }
-    return SKG_OK;
+    return is_blurred(number) ? skg_trial_blur(&run->scene, run->shown, run->blurred) : SKG_OK;
 }
 
 /* Compares `got` with `wanted`: at most `most` pixels may differ by more than `bar`. */
-static int compare(const double *got, const double *wanted, double bar, int most, const char *what,
-                   skg_finding *finding) {
+static int compare(const trial_run *run, const double *got, const double *wanted, double bar, int most,
+                   const char *what, skg_finding *finding) {
+    const int columns = (int)run->scene.view.columns;
     int outside = 0, first = -1;
-    for (int p = 0; p < PIXELS; p++)
+    for (int p = 0; p < run->pixels; p++)
         if (!(fabs(got[p] - wanted[p]) <= bar)) {
             if (first < 0) first = p;
             outside++;
         }
     if (outside <= most) return 1;
     snprintf(finding->reason, sizeof finding->reason,
-             "%d of %d pixels are wrong; pixel (%d, %d) has %s of %.6g instead of %.6g", outside, PIXELS,
-             first / N, first % N, what, got[first], wanted[first]);
-    return 0;
-}
-
-/* Noise: with the expected mean and variance, normal deviates have the sum 0 and the sum of squares n, with standard
- * deviations sqrt(n) and sqrt(2 n). Six of them. */
-static int compare_noise(const trial_run *run, skg_finding *finding) {
-    double sum = 0, squares = 0;
-    const double kev = run->open / 1000; /* 1000 photons reach a pixel of the open beam */
-    for (int p = 0; p < PIXELS; p++) {
-        const double deviate = (run->image[p] - run->shown[p]) / sqrt(kev * run->shown[p]);
-        sum += deviate, squares += deviate * deviate;
-    }
-    if (fabs(sum) <= 6 * sqrt(PIXELS) && fabs(squares - PIXELS) <= 6 * sqrt(2 * PIXELS)) return 1;
-    snprintf(
-        finding->reason, sizeof finding->reason,
-        "over %d pixels the noise has a mean of %.3g standard deviations and a variance of %.3g instead of 1",
-        PIXELS, sum / PIXELS, squares / PIXELS);
+             "%d of %d pixels are wrong; pixel (%d, %d) has %s of %.6g instead of %.6g", outside, run->pixels,
+             first / columns, first % columns, what, got[first], wanted[first]);
     return 0;
 }
 
@@ -142,8 +127,8 @@ static void compare_count(const trial_run *run, skg_finding *finding) {
     finding->good = run->bad_pixels >= 0 && run->bad_pixels <= REPAIRED;
     if (!finding->good)
         snprintf(finding->reason, sizeof finding->reason,
-                 "%" PRId64 " of %d pixels are counted as bad instead of at most %d", run->bad_pixels, PIXELS,
-                 REPAIRED);
+                 "%" PRId64 " of %d pixels are counted as bad instead of at most %d", run->bad_pixels,
+                 run->pixels, REPAIRED);
 }
 
 static double now(void) {
@@ -186,25 +171,18 @@ static void compare_all(trial_run *run, skg_finding *finding) {
     const skg_trial *trial = skg_trial_get(number);
     const int most = number == SKG_TRIAL_LEAKY ? REPAIRED : 0;
     finding->good =
-        !shows_lengths(number) || compare(run->lengths, run->surface, trial->length_error * run->longest,
+        !shows_lengths(number) || compare(run, run->lengths, run->surface, trial->length_error * run->longest,
                                           most, "a path length in mm", finding);
     if (!finding->good) return;
     if (number == SKG_TRIAL_DETECTOR) {
         finding->good = 0;
         skg_trial_detector_compare(&run->scene.view, run->image, run->shown, run->open, finding);
-        return;
+    } else if (number == SKG_TRIAL_NOISE || number == SKG_TRIAL_APART) {
+        skg_trial_noise_compare(&run->scene, run->image, run->shown, run->open, finding);
+    } else {
+        finding->good = compare(run, run->image, is_blurred(number) ? run->blurred : run->shown,
+                                trial->image_error * run->open, most, "an energy in keV", finding);
     }
-    if (number == SKG_TRIAL_NOISE) {
-        finding->good = compare_noise(run, finding);
-        return;
-    }
-    double *wanted = run->shown;
-    if (number == SKG_TRIAL_BLUR) {
-        for (int p = 0; p < PIXELS; p++) run->blurred[p] = blurred(run, p / N, p % N);
-        wanted = run->blurred;
-    }
-    finding->good =
-        compare(run->image, wanted, trial->image_error * run->open, most, "an energy in keV", finding);
 }
 
 skg_status skg_trial_judge(skg_context *context, skg_trial_number number, skg_finding *finding) {
@@ -214,8 +192,11 @@ skg_status skg_trial_judge(skg_context *context, skg_trial_number number, skg_fi
     *finding = (skg_finding){0};
     SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
     SKG_TRY_CLEANUP(skg_trial_scene_create(context, number, N, &run->scene));
+    run->pixels = (int32_t)(run->scene.view.rows * run->scene.view.columns);
     if (number == SKG_TRIAL_DETECTOR) skg_trial_detector_choose(&run->scene.options);
     if (number == SKG_TRIAL_SHADES) SKG_TRY_CLEANUP(skg_trial_shades_choose(&run->scene));
+    if (number == SKG_TRIAL_HEEL) skg_trial_heel_choose(&run->scene);
+    SKG_TRY_CLEANUP(skg_trial_blurs_choose(&run->scene));
     SKG_TRY_CLEANUP(skg_plan_make(context, run->scene.scene, &run->scene.view, run->scene.beam,
                                   &run->scene.options, &run->plan));
     if (number == SKG_TRIAL_PLACE)

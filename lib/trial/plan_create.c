@@ -12,14 +12,21 @@ static uint32_t tests_of(const skg_plan *plan, const skg_view *view) {
     static const struct {
         int effect;
         skg_trial_number test;
-    } of_effects[] = {
-        {SKG_EFFECT_ENERGIES, SKG_TRIAL_ENERGIES},   {SKG_EFFECT_SOURCE_PLANE, SKG_TRIAL_SOURCE_PLANE},
-        {SKG_EFFECT_LEAKY, SKG_TRIAL_LEAKY},         {SKG_EFFECT_PRIORITY, SKG_TRIAL_PRIORITY},
-        {SKG_EFFECT_NOISE, SKG_TRIAL_NOISE},         {SKG_EFFECT_BLUR, SKG_TRIAL_BLUR},
-        {SKG_EFFECT_ELECTRONIC, SKG_TRIAL_DETECTOR}, {SKG_EFFECT_QUANTISATION, SKG_TRIAL_DETECTOR},
-        {SKG_EFFECT_HEEL, SKG_TRIAL_SHADES},         {SKG_EFFECT_BOWTIE, SKG_TRIAL_SHADES},
-        {SKG_EFFECT_GRID, SKG_TRIAL_SHADES},         {SKG_EFFECT_OBLIQUE, SKG_TRIAL_SHADES},
-        {SKG_EFFECT_SUPERSAMPLING, SKG_TRIAL_RAYS}};
+    } of_effects[] = {{SKG_EFFECT_ENERGIES, SKG_TRIAL_ENERGIES},
+                      {SKG_EFFECT_SOURCE_PLANE, SKG_TRIAL_SOURCE_PLANE},
+                      {SKG_EFFECT_LEAKY, SKG_TRIAL_LEAKY},
+                      {SKG_EFFECT_PRIORITY, SKG_TRIAL_PRIORITY},
+                      {SKG_EFFECT_NOISE, SKG_TRIAL_NOISE},
+                      {SKG_EFFECT_BLUR, SKG_TRIAL_BLUR},
+                      {SKG_EFFECT_ELECTRONIC, SKG_TRIAL_DETECTOR},
+                      {SKG_EFFECT_QUANTISATION, SKG_TRIAL_DETECTOR},
+                      {SKG_EFFECT_HEEL, SKG_TRIAL_HEEL},
+                      {SKG_EFFECT_BOWTIE, SKG_TRIAL_SHADES},
+                      {SKG_EFFECT_GRID, SKG_TRIAL_SHADES},
+                      {SKG_EFFECT_OBLIQUE, SKG_TRIAL_SHADES},
+                      {SKG_EFFECT_SUPERSAMPLING, SKG_TRIAL_RAYS},
+                      {SKG_EFFECT_DEPTHS, SKG_TRIAL_DEPTHS},
+                      {SKG_EFFECT_DQE, SKG_TRIAL_APART}};
     static const skg_trial_number of_strategies[] = {[SKG_STRATEGY_AUTO] = SKG_TRIAL_CORE,
                                                      [SKG_STRATEGY_COPIES] = SKG_TRIAL_COPIES,
                                                      [SKG_STRATEGY_TILES] = SKG_TRIAL_TILES,

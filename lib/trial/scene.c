@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 /* Attenuation of the two parts in 1/cm at the energies of the beam, in keV. */
-enum { ENERGIES = 3 };
+enum { ENERGIES = SKG_TRIAL_ENERGIES_MAX };
 static const double energies[ENERGIES] = {40, 60, 90}, photons[ENERGIES] = {1000, 2000, 500};
 static const double attenuation[2][ENERGIES] = {{0.27, 0.2, 0.17}, {1.28, 0.6, 0.34}};
 
@@ -33,6 +33,9 @@ static const skg_trial trials[SKG_TRIALS] = {
     [SKG_TRIAL_PLACE] = {"positions on the device", 1e-4, 1e-4},
     [SKG_TRIAL_PICTURE] = {"3D view", 0, 0},
     [SKG_TRIAL_RAYS] = {"supersampling", 1e-4, 1e-4},
+    [SKG_TRIAL_HEEL] = {"heel effect", 1e-4, 1e-4},
+    [SKG_TRIAL_DEPTHS] = {"blur by depths", 1e-4, 1e-4},
+    [SKG_TRIAL_APART] = {"noise power", 1e-4, 1e-4},
 };
 
 const skg_trial *skg_trial_get(skg_trial_number number) {
@@ -41,6 +44,15 @@ const skg_trial *skg_trial_get(skg_trial_number number) {
 
 static int has_two_parts(const skg_trial_scene *scene) {
     return scene->number == SKG_TRIAL_ENERGIES || scene->number == SKG_TRIAL_PRIORITY;
+}
+
+static int has_energies(const skg_trial_scene *scene) {
+    return scene->number == SKG_TRIAL_ENERGIES || scene->number == SKG_TRIAL_HEEL;
+}
+
+/* The kernels of blur and detector have a way of their own for the last pixels of a row that fill no vector. */
+static int has_odd_rows(skg_trial_number number) {
+    return number == SKG_TRIAL_BLUR || number == SKG_TRIAL_DETECTOR || number == SKG_TRIAL_DEPTHS;
 }
 
 /* One large box, smaller ones of all sizes on a spiral around it, and one that pierces the large one. Their places and
@@ -119,9 +131,6 @@ static void choose_options(skg_trial_scene *scene) {
     case SKG_TRIAL_NOISE:
         options->noise = 1;
         break;
-    case SKG_TRIAL_BLUR:
-        options->blur = &scene->blur;
-        break;
     case SKG_TRIAL_RAYS:
         options->supersampling = 2;
         break;
@@ -130,33 +139,22 @@ static void choose_options(skg_trial_scene *scene) {
     }
 }
 
-static void choose_blur(skg_trial_scene *scene) {
-    static const double row[] = {0.05, 0.2, 0.5, 0.15, 0.1}, column[] = {0.1, 0.3, 0.4, 0.2, 0};
-    skg_detector_blur_init(&scene->blur);
-    for (int k = 0; k < SKG_TRIAL_BLUR_SAMPLES; k++)
-        scene->along_row[k] = row[k], scene->along_column[k] = column[k];
-    scene->blur.columns = scene->blur.rows = SKG_TRIAL_BLUR_SAMPLES;
-    scene->blur.along_row = scene->along_row;
-    scene->blur.along_column = scene->along_column;
-}
-
 skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number, int64_t pixels,
                                   skg_trial_scene *scene) {
     *scene = (skg_trial_scene){.number = number};
     skg_view *view = &scene->view;
     skg_view_init(view);
-    view->columns = view->rows = pixels;
+    view->columns = has_odd_rows(number) ? pixels - 3 : pixels;
+    view->rows = pixels;
     view->source[2] = -1000;
     view->centre[2] = 200;
     view->column_step[0] = view->row_step[1] = 100.0 / (double)pixels;
     place_boxes(scene);
-    choose_blur(scene);
     choose_options(scene);
     SKG_TRY(skg_scene_create(context, &scene->scene));
     SKG_TRY(add_part(context, scene, 0));
     if (has_two_parts(scene)) SKG_TRY(add_part(context, scene, 1));
-    if (number == SKG_TRIAL_ENERGIES)
-        return skg_spectrum_create_bins(ENERGIES, energies, photons, &scene->beam);
+    if (has_energies(scene)) return skg_spectrum_create_bins(ENERGIES, energies, photons, &scene->beam);
     return skg_spectrum_create_mono(energies[0], photons[0], &scene->beam);
 }
 
@@ -191,14 +189,15 @@ void skg_trial_lengths(const skg_trial_scene *scene, double row, double column, 
     }
 }
 
-double skg_trial_intensity(const skg_trial_scene *scene, const double *net, double *open) {
-    const int bins = scene->number == SKG_TRIAL_ENERGIES ? ENERGIES : 1;
+double skg_trial_intensity(const skg_trial_scene *scene, const double *shares, const double *net,
+                           double *open) {
+    const int bins = has_energies(scene) ? ENERGIES : 1;
     double shown = 0;
     *open = 0;
     for (int e = 0; e < bins; e++) {
         *open += photons[e] * energies[e];
-        shown +=
-            photons[e] * energies[e] * exp(-0.1 * (attenuation[0][e] * net[0] + attenuation[1][e] * net[1]));
+        shown += shares[e] * photons[e] * energies[e] *
+                 exp(-0.1 * (attenuation[0][e] * net[0] + attenuation[1][e] * net[1]));
     }
     return shown;
 }

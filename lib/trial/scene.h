@@ -31,10 +31,20 @@ typedef enum {
     SKG_TRIAL_PLACE,    /* positions in memory of the device: place.h */
     SKG_TRIAL_PICTURE,  /* the 3D view: picture.h */
     SKG_TRIAL_RAYS,     /* several rays of a pixel in one pass */
+    SKG_TRIAL_HEEL,     /* heel effect: exposure.h */
+    SKG_TRIAL_DEPTHS,   /* several blurs, added: blurs.h */
+    SKG_TRIAL_APART,    /* noise with a blur of its own, added: blurs.h */
     SKG_TRIALS
 } skg_trial_number;
 
-enum { SKG_TRIAL_BOXES = 25, SKG_TRIAL_PIXELS = 96, SKG_TRIAL_BLUR_SAMPLES = 5, SKG_TRIAL_BOWTIE_ROWS = 4 };
+enum {
+    SKG_TRIAL_BOXES = 25,
+    SKG_TRIAL_PIXELS = 96,
+    SKG_TRIAL_ENERGIES_MAX = 3,
+    SKG_TRIAL_BOWTIE_ROWS = 4,
+    SKG_TRIAL_DEPTH_COUNT = 3,
+    SKG_TRIAL_FREQUENCIES = 65
+};
 
 typedef struct {
     const char *name;    /* of the kernels: "strategy tiles" */
@@ -48,12 +58,16 @@ const skg_trial *skg_trial_get(skg_trial_number number);
 typedef struct {
     skg_trial_number number;
     skg_box boxes[SKG_TRIAL_BOXES + 1]; /* the last one is a part of its own, if there are two */
-    double along_row[SKG_TRIAL_BLUR_SAMPLES];
-    double along_column[SKG_TRIAL_BLUR_SAMPLES];
     skg_detector_blur blur;
     skg_bowtie bowtie;
     double angles[SKG_TRIAL_BOWTIE_ROWS]; /* of the bow-tie, degrees */
     skg_grid grid;
+    skg_heel heel;
+    skg_depth_blur depths;
+    skg_detector_blur depth_blurs[SKG_TRIAL_DEPTH_COUNT];
+    skg_dqe dqe;
+    double per_mm[SKG_TRIAL_FREQUENCIES]; /* of the DQE */
+    double dqe_values[SKG_TRIAL_FREQUENCIES];
     skg_material *filter;   /* of the bow-tie */
     skg_material *crystal;  /* of the scintillator */
     skg_response *response; /* of the same */
@@ -63,7 +77,7 @@ typedef struct {
     skg_spectrum *beam;
 } skg_trial_scene;
 
-/* Makes the scene of a test, with a detector of `pixels` x `pixels`. Release it whatever this returns. */
+/* Makes the scene of a test, with a detector of `pixels` rows and up to as many columns. Release it whatever this returns. */
 skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number, int64_t pixels,
                                   skg_trial_scene *scene);
 void skg_trial_scene_release(skg_trial_scene *scene);
@@ -72,7 +86,9 @@ void skg_trial_scene_release(skg_trial_scene *scene);
  * adds to the image. */
 void skg_trial_lengths(const skg_trial_scene *scene, double row, double column, double *surface, double *net);
 
-/* What the image has to show, keV per pixel, without blur and noise. open: of the open beam. */
-double skg_trial_intensity(const skg_trial_scene *scene, const double *net, double *open);
+/* What the image has to show, keV per pixel, without blur and noise. shares: [SKG_TRIAL_ENERGIES_MAX] what is left of each energy
+ * of the beam before it meets a part; open: of the beam that meets nothing. */
+double skg_trial_intensity(const skg_trial_scene *scene, const double *shares, const double *net,
+                           double *open);
 
 #endif

@@ -208,8 +208,8 @@ SKG_API skg_status skg_device_test_count(int64_t *count);
  *     device   number of the device, as for skg_device_get
  *     test     0 <= test < count. The first one covers what every plan needs
  *     result   also filled if the device computes wrongly or the driver fails, which is no error of this call
- *     method   a scene of boxes whose path lengths are known from a formula, on a detector of 96 x 96 pixels; of the
- *              3D view, a picture of two boxes
+ *     method   a scene of boxes whose path lengths are known from a formula, on a detector of 96 rows and 93 or 96
+ *              columns; of the 3D view, a picture of two boxes
  *     errors   SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *result);
 
