@@ -3,7 +3,7 @@
 
 # shellcheck disable=SC2034
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
-libassimp-dev libcglm-dev libjansson-dev libpng-dev libtiff-dev libcairo2-dev"
+libassimp-dev libcglm-dev libjansson-dev libpng-dev zlib1g-dev libtiff-dev libcairo2-dev"
 
 # Without these something is left out: HDF5 files of scans, scans under MPI, films as .gif, films as .mp4 and .webm, pages
 # of large scenes with fewer triangles, fits by CMA-ES.

@@ -3,13 +3,15 @@
 
 #include <string.h>
 
-skg_digest skg_binary_key(const skg_device *device, int32_t count, char *const *sources,
-                          const char *options) {
+skg_digest skg_binary_key(const skg_device *device, const skg_program_text *text) {
     skg_digester digester;
     skg_digest_start(&digester);
     skg_digest_add(&digester, device->identity.bytes, sizeof device->identity.bytes);
-    skg_digest_add_text(&digester, options);
-    for (int32_t i = 0; i < count; i++) skg_digest_add_text(&digester, sources[i]);
+    skg_digest_add_text(&digester, text->options);
+    for (int32_t i = 0; i < text->files; i++) {
+        skg_digest_add_text(&digester, text->names[i]);
+        skg_digest_add_text(&digester, text->digests[i]);
+    }
     return skg_digest_end(&digester);
 }
 

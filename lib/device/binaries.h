@@ -3,10 +3,10 @@
 #ifndef SKG_BINARIES_H
 #define SKG_BINARIES_H
 
-#include "device/device.h"
+#include "device/program_text.h"
 
-/* The key of a program: its sources, its options and the device. */
-skg_digest skg_binary_key(const skg_device *device, int32_t count, char *const *sources, const char *options);
+/* The key of a program: its text, its options and the device. */
+skg_digest skg_binary_key(const skg_device *device, const skg_program_text *text);
 
 /* The program that was kept under this key, ready for use. NULL: there is none, or the driver rejects it, in which case
  * it is removed. */

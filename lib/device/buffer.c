@@ -1,4 +1,5 @@
 #include "device/device.h"
+#include "device/pages.h"
 
 #include <inttypes.h>
 
@@ -13,7 +14,8 @@ static skg_status create(const skg_device *device, int64_t bytes, cl_mem_flags f
     skg_buffer_release(buffer);
     cl_int code = CL_SUCCESS;
     /* OpenCL copies the data, and takes no pointer to const. */
-    cl_mem memory = clCreateBuffer(device->cl, flags, (size_t)bytes, (void *)(uintptr_t)data, &code);
+    cl_mem memory = data ? NULL : skg_pages_buffer(device, bytes, flags);
+    if (!memory) memory = clCreateBuffer(device->cl, flags, (size_t)bytes, (void *)(uintptr_t)data, &code);
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clCreateBuffer", __FILE__, __LINE__);
         return skg_fail(SKG_ERR_DEVICE_MEMORY, "%s: %s has no room for %" PRId64 " bytes (%s)", what,

@@ -26,6 +26,7 @@ typedef struct skg_device {
     skg_digest identity;   /* of the device and its driver */
     char *store;           /* folder in which compiled programs are kept; "": none */
     int32_t caches;        /* 1: the driver keeps compiled kernels itself */
+    int32_t is_cpu;        /* 1: a CPU, whose buffers lie in the memory of the host */
     int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
     uint32_t passed;       /* bit n: test n of lib/trial */
     int32_t compile_noted; /* 1: the log has been told that kernels are compiled */

@@ -1,10 +1,9 @@
 #include "device/program.h"
 #include "device/binaries.h"
+#include "device/program_text.h"
 #include "device/signals.h"
-#include "device/sources.h"
 #include "device/watch.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,8 +16,6 @@ struct skg_program {
     int32_t kept;      /* 1: it is in the user's folder, or this process has been counted there */
 };
 
-enum { MOST_FILES = 16 };
-
 static skg_status make_key(int32_t files, const char *const *names, const char *options, char **key) {
     size_t length = strlen(options) + 1;
     for (int32_t i = 0; i < files; i++) length += strlen(names[i]) + 1;
@@ -29,56 +26,6 @@ static skg_status make_key(int32_t files, const char *const *names, const char *
     }
     strcat(*key, options);
     return SKG_OK;
-}
-
-static const char *built_in(const char *name) {
-    for (int i = 0; i < skg_kernel_source_count; i++)
-        if (strcmp(skg_kernel_sources[i].name, name) == 0) return skg_kernel_sources[i].text;
-    return NULL;
-}
-
-static skg_status read_file(const char *dir, const char *name, char **text) {
-    char path[2048];
-    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
-        return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, name);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return skg_fail(SKG_ERR_FILE, "%s: %s (kernels are read from here on demand)", path, strerror(errno));
-    skg_status status = SKG_OK;
-    size_t used = 0, got = 0;
-    int64_t capacity = 0;
-    do {
-        if ((int64_t)used + 4096 > capacity) {
-            capacity = capacity * 2 + 16384;
-            SKG_TRY_CLEANUP(skg_realloc(capacity, 1, path, text));
-        }
-        got = fread(*text + used, 1, 4095, file);
-        used += got;
-        (*text)[used] = '\0';
-    } while (got > 0);
-    if (ferror(file)) status = skg_fail(SKG_ERR_FILE, "%s: cannot be read", path);
-cleanup:
-    fclose(file);
-    return status;
-}
-
-/* The source of one kernel file, after a #line directive that makes build logs name the file. */
-static skg_status load_source(const skg_device *device, const char *name, char **source) {
-    char *text = NULL;
-    *source = NULL;
-    skg_status status = SKG_OK;
-    if (device->kernel_dir) SKG_TRY_CLEANUP(read_file(device->kernel_dir, name, &text));
-    const char *body = device->kernel_dir ? text : built_in(name);
-    if (!body) {
-        status = skg_fail(SKG_ERR_INTERNAL, "no kernel file %s is built in", name);
-        goto cleanup;
-    }
-    size_t length = strlen(body) + strlen(name) + 32;
-    SKG_TRY_CLEANUP(skg_alloc((int64_t)length, 1, name, source));
-    snprintf(*source, length, "#line 1 \"%s\"\n%s\n", name, body);
-cleanup:
-    skg_free(&text);
-    return status;
 }
 
 static skg_status build_failed(const skg_device *device, cl_program program, cl_int code, const char *key) {
@@ -110,13 +57,11 @@ static void compile(void *data) {
     work->code = clBuildProgram(work->program, 1, &work->id, work->options, NULL, NULL);
 }
 
-static skg_status build_sources(skg_context *context, int32_t files, char *const *sources,
-                                const char *options, const char *key, cl_program *program) {
+static skg_status build_text(skg_context *context, const skg_program_text *text, const char *key,
+                             cl_program *program) {
     skg_device *device = context->device;
-    cl_int code = CL_SUCCESS;
-    *program = clCreateProgramWithSource(device->cl, (cl_uint)files, (const char **)sources, NULL, &code);
-    if (code != CL_SUCCESS) return skg_cl_fail(code, "clCreateProgramWithSource", __FILE__, __LINE__);
-    compilation work = {*program, device->id, options, CL_SUCCESS};
+    SKG_TRY(skg_program_text_create(device, text, program));
+    compilation work = {*program, device->id, text->options, CL_SUCCESS};
     skg_signals_keep();
     skg_watch(context, compile, &work);
     skg_signals_restore();
@@ -127,33 +72,24 @@ static skg_status build_sources(skg_context *context, int32_t files, char *const
     return status;
 }
 
-/* Makes the program of an entry from what was kept, or from its sources. */
+/* Makes the program of an entry from what was kept, or from its text. */
 static skg_status build(skg_context *context, int32_t files, const char *const *names, const char *options,
                         const char *key, struct skg_program *entry) {
     skg_device *device = context->device;
-    char *sources[MOST_FILES] = {0};
-    char full[2048];
+    skg_program_text text;
     skg_status status = SKG_OK;
-    if (files > MOST_FILES) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", key);
-    for (int32_t i = 0; i < files; i++) SKG_TRY_CLEANUP(load_source(device, names[i], &sources[i]));
-    /* With correctly rounded division, images are equal bit for bit on different devices. */
-    if (snprintf(full, sizeof full, "-cl-std=CL1.2%s %s",
-                 device->info.correct_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
-                 options) >= (int)sizeof full) {
-        status = skg_fail(SKG_ERR_INTERNAL, "%s: the options are too long", key);
-        goto cleanup;
-    }
-    entry->digest = skg_binary_key(device, files, sources, full);
-    entry->program = skg_binary_load(device, &entry->digest, full);
+    SKG_TRY_CLEANUP(skg_program_text_find(device, files, names, options, key, &text));
+    entry->digest = skg_binary_key(device, &text);
+    entry->program = skg_binary_load(device, &entry->digest, text.options);
     entry->kept = entry->program != NULL;
     if (entry->kept) {
         device->loads++;
     } else {
-        SKG_TRY_CLEANUP(build_sources(context, files, sources, full, key, &entry->program));
+        SKG_TRY_CLEANUP(build_text(context, &text, key, &entry->program));
         device->builds++;
     }
 cleanup:
-    for (int32_t i = 0; i < files && i < MOST_FILES; i++) skg_free(&sources[i]);
+    skg_program_text_release(&text);
     return status;
 }
 

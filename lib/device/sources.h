@@ -5,6 +5,7 @@
 typedef struct {
     const char *name; /* "raster.cl" */
     const char *text;
+    const char *digest; /* SHA-256 of the text, in hexadecimal */
 } skg_kernel_source;
 
 extern const skg_kernel_source skg_kernel_sources[];

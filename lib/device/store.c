@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 /* The header of a file. It is followed by `bytes` bytes. A shared folder may meet machines of another byte order;
  * their files fail the comparison of `format`. */
@@ -18,12 +19,13 @@ typedef struct {
     uint32_t format, kind;
     skg_digest key;
     uint64_t bytes;
-    skg_digest content;
+    uint32_t checksum; /* CRC-32 of the header with 0 here, and of what follows */
+    uint32_t reserved;
 } header;
 
-_Static_assert(sizeof(header) == 88, "the header of a file has no padding");
+_Static_assert(sizeof(header) == 64, "the header of a file has no padding");
 
-enum { FORMAT = 1, MOST_BYTES = 64 << 20, MOST_NAME = SKG_DIGEST_TEXT + 16 };
+enum { FORMAT = 2, MOST_BYTES = 64 << 20, MOST_NAME = SKG_DIGEST_TEXT + 16 };
 
 static const char magic[8] = "skgkept";
 static const char *const endings[] = {"program", "uses", "verdict"};
@@ -98,6 +100,14 @@ static int write_whole(int file, const void *data, size_t bytes) {
     return 1;
 }
 
+/* It finds damage. No one else may write to the folder, so that it need not resist intent. */
+static uint32_t checksum_of(const header *head, const void *data) {
+    header bare = *head;
+    bare.checksum = 0;
+    const uLong start = crc32_z(0, (const Bytef *)&bare, sizeof bare);
+    return (uint32_t)crc32_z(start, data, (size_t)head->bytes);
+}
+
 static int read_content(int file, const skg_digest *key, skg_kept kind, void **data, int64_t *bytes) {
     struct stat status;
     header head;
@@ -109,10 +119,7 @@ static int read_content(int file, const skg_digest *key, skg_kept kind, void **d
     if (head.bytes > MOST_BYTES || (uint64_t)status.st_size != sizeof head + head.bytes) return 0;
     if (skg_alloc((int64_t)head.bytes + 1, 1, "kept kernels", data) != SKG_OK) return 0;
     *bytes = (int64_t)head.bytes;
-    if (read_whole(file, *data, (size_t)head.bytes)) {
-        const skg_digest content = skg_digest_of(*data, (size_t)head.bytes);
-        if (skg_digest_same(&head.content, &content)) return 1;
-    }
+    if (read_whole(file, *data, (size_t)head.bytes) && head.checksum == checksum_of(&head, *data)) return 1;
     skg_free(data);
     return 0;
 }
@@ -143,7 +150,7 @@ int skg_store_write(const char *path, const skg_digest *key, skg_kept kind, cons
     const int folder = open_folder(path, 1);
     if (folder < 0) return 0;
     memcpy(head.magic, magic, sizeof magic);
-    head.content = skg_digest_of(data, (size_t)bytes);
+    head.checksum = checksum_of(&head, data);
     name_of(key, kind, name);
     snprintf(temporary, sizeof temporary, "%s.%ld.%d%s", name, (long)getpid(), atomic_fetch_add(&number, 1),
              SKG_TEMPORARY);

@@ -139,6 +139,50 @@ START_TEST(buffers_that_cannot_be_are_refused) {
 }
 END_TEST
 
+static int64_t address_space_pages(void) {
+    long long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_eq(fscanf(file, "%lld", &pages), 1);
+    fclose(file);
+    return pages;
+}
+
+/* Buffers below, at and above the size from which a CPU's lie in memory of our own. */
+START_TEST(large_buffers_hold_what_is_written_and_are_given_back) {
+    static const int64_t sizes[] = {1 << 19, 1 << 20, (1 << 21) + 4, 5 << 20};
+    skg_context *context = NULL;
+    skg_buffer buffer = {0};
+    int32_t *values = NULL, *back = NULL;
+    ck_skg(skg_context_create(NULL, &context));
+    ck_skg(skg_alloc(5 << 20, 1, "values", &values));
+    ck_skg(skg_alloc(5 << 20, 1, "values", &back));
+    for (int32_t i = 0; i < 5 << 18; i++) values[i] = i ^ 0x5a5a5a;
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        const size_t bytes = (size_t)sizes[k];
+        ck_skg(skg_buffer_reserve(context, &buffer, sizes[k], CL_MEM_READ_WRITE, "values"));
+        ck_assert_int_eq(buffer.bytes, sizes[k]);
+        ck_skg(skg_buffer_write(context, &buffer, sizes[k], values, "values"));
+        memset(back, 0, bytes);
+        ck_assert_int_eq(clEnqueueReadBuffer(context->device->queue, buffer.memory, CL_TRUE, 0, bytes, back,
+                                             0, NULL, NULL),
+                         CL_SUCCESS);
+        ck_assert_int_eq(memcmp(values, back, bytes), 0);
+    }
+    skg_buffer_release(&buffer);
+    const int64_t before = address_space_pages();
+    for (int k = 0; k < 100; k++) {
+        ck_skg(skg_buffer_reserve(context, &buffer, 64 << 20, CL_MEM_READ_WRITE, "values"));
+        skg_buffer_release(&buffer);
+    }
+    /* A hundred that stayed would be 6.4 GB of addresses; threads and allocators may take some. */
+    ck_assert_int_lt(address_space_pages() - before, (1 << 30) / sysconf(_SC_PAGESIZE));
+    skg_free(&values);
+    skg_free(&back);
+    skg_context_release(&context);
+}
+END_TEST
+
 START_TEST(a_callers_queue_is_checked_and_retained) {
     skg_context *ours = NULL, *theirs = NULL;
     ck_skg(skg_context_create("device=0:0", &ours));
@@ -232,6 +276,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, build_errors_name_file_and_line);
     tcase_add_test(tests, buffers_that_cannot_be_are_refused);
     tcase_add_test(tests, a_callers_queue_is_checked_and_retained);
+    tcase_add_test(tests, large_buffers_hold_what_is_written_and_are_given_back);
     tcase_add_test(tests, every_code_of_opencl_has_a_name);
     tcase_add_test(tests, the_drivers_words_wait_for_the_contexts_thread);
 }

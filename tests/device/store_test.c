@@ -47,32 +47,31 @@ START_TEST(what_is_written_is_read) {
 }
 END_TEST
 
-/* Changes byte `at` of the only file, from the end if negative. */
+/* Changes byte `at` of the only file. */
 static void damage(long at) {
     char path[512];
     ck_assert_int_eq(count_kept(".program", path), 1);
     FILE *file = fopen(path, "r+b");
     ck_assert_ptr_nonnull(file);
-    ck_assert_int_eq(fseek(file, at, at < 0 ? SEEK_END : SEEK_SET), 0);
+    ck_assert_int_eq(fseek(file, at, SEEK_SET), 0);
     const int byte = fgetc(file);
-    ck_assert_int_eq(fseek(file, at, at < 0 ? SEEK_END : SEEK_SET), 0);
+    ck_assert_int_eq(fseek(file, at, SEEK_SET), 0);
     fputc(byte ^ 1, file);
     fclose(file);
 }
 
 /* The driver runs what is read, so that a changed byte, a lost end and a wrong name must all be found. */
 START_TEST(damaged_files_are_removed) {
+    enum { HEADER = 64, CONTENT = 7 };
     char path[512], other[512];
-    const long places[] = {0,  8,  12, 16, 47,
-                           48, 56, 87, 88, -1}; /* in each field of the header, and in the content */
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    for (long at = 0; at < HEADER + CONTENT; at++) {
         keep("a", "content");
         ck_assert_int_eq(is_kept("a", "content"), 1);
-        damage(places[i]);
-        ck_assert_msg(!is_kept("a", "content"), "byte %ld", places[i]);
+        damage(at);
+        ck_assert_msg(!is_kept("a", "content"), "byte %ld", at);
         ck_assert_int_eq(count_kept("", NULL), 0);
     }
-    for (int bytes = 0; bytes < 95; bytes += 47) {
+    for (int bytes = 0; bytes < HEADER + CONTENT; bytes++) {
         keep("a", "content");
         count_kept(".program", path);
         ck_assert_int_eq(truncate(path, bytes), 0);

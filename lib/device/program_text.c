@@ -1,0 +1,96 @@
+#include "device/program_text.h"
+#include "device/sources.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+static skg_status read_file(const char *dir, const char *name, char **text) {
+    char path[2048];
+    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
+        return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, name);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return skg_fail(SKG_ERR_FILE, "%s: %s (kernels are read from here on demand)", path, strerror(errno));
+    skg_status status = SKG_OK;
+    size_t used = 0, got = 0;
+    int64_t capacity = 0;
+    do {
+        if ((int64_t)used + 4096 > capacity) {
+            capacity = capacity * 2 + 16384;
+            SKG_TRY_CLEANUP(skg_realloc(capacity, 1, path, text));
+        }
+        got = fread(*text + used, 1, 4095, file);
+        used += got;
+        (*text)[used] = '\0';
+    } while (got > 0);
+    if (ferror(file)) status = skg_fail(SKG_ERR_FILE, "%s: cannot be read", path);
+cleanup:
+    fclose(file);
+    return status;
+}
+
+static skg_status find_built_in(const char *name, const skg_kernel_source **source) {
+    for (int i = 0; i < skg_kernel_source_count; i++)
+        if (strcmp(skg_kernel_sources[i].name, name) == 0) {
+            *source = &skg_kernel_sources[i];
+            return SKG_OK;
+        }
+    return skg_fail(SKG_ERR_INTERNAL, "no kernel file %s is built in", name);
+}
+
+static skg_status find_file(const skg_device *device, int32_t file, skg_program_text *text) {
+    const char *name = text->names[file];
+    const skg_kernel_source *source = NULL;
+    if (!device->kernel_dir) {
+        SKG_TRY(find_built_in(name, &source));
+        text->texts[file] = source->text;
+        memcpy(text->digests[file], source->digest, SKG_DIGEST_TEXT);
+        return SKG_OK;
+    }
+    SKG_TRY(read_file(device->kernel_dir, name, &text->read[file]));
+    const skg_digest digest = skg_digest_of(text->read[file], strlen(text->read[file]));
+    text->texts[file] = text->read[file];
+    skg_digest_text(&digest, text->digests[file]);
+    return SKG_OK;
+}
+
+skg_status skg_program_text_find(const skg_device *device, int32_t files, const char *const *names,
+                                 const char *options, const char *what, skg_program_text *text) {
+    text->files = 0;
+    if (files > SKG_PROGRAM_FILES) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", what);
+    text->files = files;
+    text->names = names;
+    memset(text->read, 0, sizeof text->read);
+    for (int32_t i = 0; i < files; i++) SKG_TRY(find_file(device, i, text));
+    /* With correctly rounded division, images are equal bit for bit on different devices. */
+    if (snprintf(text->options, sizeof text->options, "-cl-std=CL1.2%s %s",
+                 device->info.correct_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
+                 options) >= (int)sizeof text->options)
+        return skg_fail(SKG_ERR_INTERNAL, "%s: the options are too long", what);
+    return SKG_OK;
+}
+
+void skg_program_text_release(skg_program_text *text) {
+    for (int32_t i = 0; i < text->files; i++) skg_free(&text->read[i]);
+}
+
+skg_status skg_program_text_create(const skg_device *device, const skg_program_text *text,
+                                   cl_program *program) {
+    enum {
+        STRINGS = 3
+    }; /* of a file: a #line directive, which makes build logs name it; its text; a new line */
+    char lines[SKG_PROGRAM_FILES][128];
+    const char *strings[STRINGS * SKG_PROGRAM_FILES];
+    cl_int code = CL_SUCCESS;
+    for (int32_t i = 0; i < text->files; i++) {
+        snprintf(lines[i], sizeof lines[i], "#line 1 \"%s\"\n", text->names[i]);
+        strings[STRINGS * i] = lines[i];
+        strings[STRINGS * i + 1] = text->texts[i];
+        strings[STRINGS * i + 2] = "\n";
+    }
+    *program = clCreateProgramWithSource(device->cl, (cl_uint)(STRINGS * text->files), strings, NULL, &code);
+    if (code == CL_SUCCESS) return SKG_OK;
+    *program = NULL;
+    return skg_cl_fail(code, "clCreateProgramWithSource", __FILE__, __LINE__);
+}
