@@ -55,7 +55,8 @@ skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed);
 /* The shape of the tiles (the whole detector if there are none) and their number. */
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles);
 
-/* Rows of a band: it fits the cache, and each work-group has some. row_bytes: of a row of all accumulators. */
+/* Rows of a band: it fits the cache or has 32 rows, and each work-group has some bands. row_bytes: of a row of all
+ * accumulators. */
 int64_t skg_raster_band_rows(int64_t rows_of_detector, int64_t row_bytes, int64_t groups);
 
 /* How many triangles a work-group of SKG_STRATEGY_COPIES claims at once: few enough that the last claims even out, and

@@ -5,8 +5,12 @@
 
 #include <string.h>
 
+/* Planes fill only parts of a band, and a triangle is set up in each band that it meets: of the thorax with 17 accumulators,
+ * bands of 8, 16, 24, 32 and 64 rows took 3.0, 2.4, 2.3, 2.2 and 2.2 ms at 1024^2, 11.1, 7.0, 6.7, 6.4 and 6.3 ms at 2048^2
+ * (EPYC, 2 cores). */
 enum {
     CACHE_BYTES = 256 * 1024, /* of a band: half of the level 2 cache of common CPUs */
+    HIGH_BAND = 32,           /* rows that a band may have even so */
     MOST_BAND_ROWS = 256,
     SQUARE = 32,            /* side of a tile on a GPU */
     QUEUE_ENTRIES = 1 << 20 /* strips of large triangles; more are drawn without the queue */
@@ -23,7 +27,8 @@ int skg_raster_has_squares(const skg_raster *raster) {
 
 int64_t skg_raster_band_rows(int64_t rows_of_detector, int64_t row_bytes, int64_t groups) {
     const int64_t fit = CACHE_BYTES / row_bytes, even = rows_of_detector / (4 * groups);
-    int64_t rows = fit < even ? fit : even; /* some bands for each worker */
+    int64_t rows = fit > HIGH_BAND ? fit : HIGH_BAND;
+    rows = rows < even ? rows : even; /* some bands for each worker */
     rows = rows < MOST_BAND_ROWS ? rows : MOST_BAND_ROWS;
     const int64_t least = (rows_of_detector + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
     rows = rows > 8 ? rows : 8;
