@@ -155,10 +155,10 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why) {
  *     1024^2    0.57 0.90    0.75 0.93
  *     2048^2    0.59 0.93    0.89 1.06 */
 /* clang-format on */
-enum { MOST_MIXED = 32 };
+enum { MOST_MIXED = 32, MIXED_BYTES = 128 << 20 }; /* accumulators; bytes of all of them */
 
 int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes) {
-    const double fit = MOST_BYTES / accumulator_bytes(request);
+    const double fit = MIXED_BYTES / accumulator_bytes(request);
     const int32_t most = fit < MOST_MIXED ? (int32_t)fit : MOST_MIXED;
     const int32_t few = planes + planes / 2;
     return most > few ? most : few;

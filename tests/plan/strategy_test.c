@@ -46,14 +46,14 @@ START_TEST(rays_of_a_pixel_share_a_pass_where_it_pays) {
 }
 END_TEST
 
-/* Planes are mixed from at most 32 accumulators and 256 MiB, but from half as many again as planes in any case. */
+/* Planes are mixed from at most 32 accumulators and 128 MiB, but from half as many again as planes in any case. */
 START_TEST(planes_are_mixed_from_what_fits) {
     skg_fine_request request = {.shifts = 1, .columns = 512, .rows = 512};
     ck_assert_int_eq(skg_most_mixed(&request, 5), 32);
-    request.shifts = 4; /* 16 MiB each */
-    ck_assert_int_eq(skg_most_mixed(&request, 5), 16);
+    request.shifts = 3; /* 9 MiB each */
+    ck_assert_int_eq(skg_most_mixed(&request, 5), 14);
     request.precision = SKG_PRECISION_DOUBLE;
-    ck_assert_int_eq(skg_most_mixed(&request, 5), 8);
+    ck_assert_int_eq(skg_most_mixed(&request, 5), 7);
     ck_assert_int_eq(skg_most_mixed(&request, 16), 24);
 }
 END_TEST
