@@ -46,21 +46,28 @@ static void *do_thread(void *given) {
     return NULL;
 }
 
-static int64_t count_threads(int64_t items) {
+int32_t skg_thread_limit(void) {
     cpu_set_t cpus;
-    const int64_t most = items < MOST_THREADS ? items : MOST_THREADS;
-    const int64_t known = sched_getaffinity(0, sizeof cpus, &cpus) == 0 ? CPU_COUNT(&cpus) : 1;
-    return known < most ? known : most;
+    return sched_getaffinity(0, sizeof cpus, &cpus) == 0 ? (int32_t)CPU_COUNT(&cpus) : 1;
 }
 
-/* Starts helpers. A signal that the program has asked for goes to the program's own threads. */
-static int start(crew *c, int64_t wanted, pthread_t *threads) {
-    sigset_t all, before;
-    int started = 0;
-    sigfillset(&all);
-    if (wanted < 1 || pthread_sigmask(SIG_SETMASK, &all, &before) != 0) return 0;
-    while (started < wanted && pthread_create(&threads[started], NULL, do_thread, c) == 0) started++;
+int skg_thread_start(pthread_t *thread, void *(*work)(void *given), void *given) {
+    static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGABRT};
+    sigset_t outside, before;
+    sigfillset(&outside);
+    for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) sigdelset(&outside, faults[n]);
+    pthread_sigmask(SIG_BLOCK, &outside, &before);
+    const int error = pthread_create(thread, NULL, work, given);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return error;
+}
+
+/* Starts helpers, at most as many as there are further items and CPUs. */
+static int start(crew *c, pthread_t *threads) {
+    const int64_t most = c->count < MOST_THREADS ? c->count : MOST_THREADS, cpus = skg_thread_limit();
+    int started = 0;
+    while (started + 1 < most && started + 1 < cpus && skg_thread_start(&threads[started], do_thread, c) == 0)
+        started++;
     return started;
 }
 
@@ -68,7 +75,7 @@ skg_status skg_parallel(int64_t count, skg_item_work work, void *user) {
     SKG_PLAIN;
     pthread_t threads[MOST_THREADS];
     crew c = {.count = count, .work = work, .user = user, .lock = PTHREAD_MUTEX_INITIALIZER, .failed = count};
-    const int started = start(&c, count_threads(count) - 1, threads);
+    const int started = start(&c, threads);
     do_items(&c);
     for (int t = 0; t < started; t++) pthread_join(threads[t], NULL);
     pthread_mutex_destroy(&c.lock);

@@ -4,6 +4,7 @@
 #ifndef SKG_DEVICE_H
 #define SKG_DEVICE_H
 
+#include "core/aside.h"
 #include "core/context.h"
 #include "core/digest.h"
 
@@ -20,6 +21,7 @@ typedef struct skg_device {
     skg_device_info info;
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
+    skg_aside loading;            /* of expected programs */
     int64_t builds;        /* programs compiled so far; a second scene with the same effects adds none */
     int64_t launched;      /* programs that there were when a job was last complete; later ones may be new */
     int64_t loads;         /* programs taken from the user's folder so far */
@@ -65,9 +67,14 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 
 /* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1 ...").
  * It comes from the cache of the context or is built. The cache owns it; do not release it. If it does not
- * compile, the sentence of SKG_ERR_BUILD holds the build log. */
+ * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only expected (skg_programs_load). */
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program);
+
+/* Begins to load those of the expected programs that the user's folder has, in a thread of its own, until skg_programs_wait.
+ * Meanwhile the context must not be used otherwise. What cannot be loaded is left to skg_program_get, and its errors too. */
+void skg_programs_load(skg_context *context);
+void skg_programs_wait(skg_context *context);
 
 /* To be called when a job is done: the programs have been launched, and are kept in the user's folder. */
 void skg_programs_launched(skg_context *context);

@@ -10,10 +10,11 @@
 
 struct skg_program {
     struct skg_program *next;
-    char *key; /* files and options */
-    cl_program program;
-    skg_digest digest; /* what it is kept under */
-    int32_t kept;      /* 1: it is in the user's folder, or this process has been counted there */
+    char *key;          /* files and options */
+    cl_program program; /* NULL: it is expected */
+    char *options;      /* for the compiler, while it is expected */
+    skg_digest digest;  /* what it is kept under */
+    int32_t kept;       /* 1: it is in the user's folder, or this process has been counted there */
 };
 
 static skg_status make_key(int32_t files, const char *const *names, const char *options, char **key) {
@@ -73,57 +74,82 @@ static skg_status build_text(skg_context *context, const skg_program_text *text,
 }
 
 /* Makes the program of an entry from what was kept, or from its text. */
-static skg_status build(skg_context *context, int32_t files, const char *const *names, const char *options,
-                        const char *key, struct skg_program *entry) {
+static skg_status build(skg_context *context, const skg_program_text *text, struct skg_program *entry) {
     skg_device *device = context->device;
-    skg_program_text text;
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_program_text_find(device, files, names, options, key, &text));
-    entry->digest = skg_binary_key(device, &text);
-    entry->program = skg_binary_load(device, &entry->digest, text.options);
+    entry->program = skg_binary_load(device, &entry->digest, text->options);
     entry->kept = entry->program != NULL;
     if (entry->kept) {
         device->loads++;
-    } else {
-        SKG_TRY_CLEANUP(build_text(context, &text, key, &entry->program));
-        device->builds++;
+        return SKG_OK;
     }
-cleanup:
-    skg_program_text_release(&text);
-    return status;
+    SKG_TRY(build_text(context, text, entry->key, &entry->program));
+    device->builds++;
+    return SKG_OK;
+}
+
+/* Adds an entry without a program. It takes the key over. */
+static skg_status add(skg_device *device, char **key, struct skg_program **entry) {
+    SKG_TRY(skg_alloc(1, sizeof **entry, "program", entry));
+    (*entry)->key = *key, *key = NULL;
+    (*entry)->next = device->programs;
+    device->programs = *entry;
+    return SKG_OK;
 }
 
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program) {
     skg_device *device = context->device;
     struct skg_program *entry = NULL;
+    skg_program_text text = {0};
     char *key = NULL;
-    *program = NULL;
+    skg_status status = SKG_OK;
+    if (!program && !device->store[0]) return SKG_OK; /* nothing is kept */
+    if (program) *program = NULL;
     SKG_TRY(make_key(files, names, options, &key));
     for (entry = device->programs; entry; entry = entry->next)
-        if (strcmp(entry->key, key) == 0) {
-            skg_free(&key);
-            *program = entry->program;
-            return SKG_OK;
+        if (strcmp(entry->key, key) == 0) break;
+    if (entry && (entry->program || !program)) goto cleanup;
+    SKG_TRY_CLEANUP(skg_program_text_find(device, files, names, options, key, &text));
+    if (!entry) SKG_TRY_CLEANUP(add(device, &key, &entry));
+    entry->digest = skg_binary_key(device, &text);
+    status = program ? build(context, &text, entry) : skg_copy_text(text.options, &entry->options);
+cleanup:
+    if (program && status == SKG_OK) *program = entry->program;
+    skg_program_text_release(&text);
+    skg_free(&key);
+    return status;
+}
+
+static void load(void *user) {
+    skg_device *device = user;
+    for (struct skg_program *entry = device->programs; entry; entry = entry->next)
+        if (!entry->program && entry->options)
+            entry->program = skg_binary_load(device, &entry->digest, entry->options);
+}
+
+void skg_programs_load(skg_context *context) {
+    skg_device *device = context->device;
+    for (const struct skg_program *entry = device->programs; entry; entry = entry->next)
+        if (!entry->program && entry->options) {
+            skg_aside_begin(&device->loading, load, device);
+            return;
         }
-    skg_status status = skg_alloc(1, sizeof *entry, "program", &entry);
-    if (status == SKG_OK) status = build(context, files, names, options, key, entry);
-    if (status != SKG_OK) {
-        skg_free(&entry);
-        skg_free(&key);
-        return status;
+}
+
+void skg_programs_wait(skg_context *context) {
+    skg_device *device = context->device;
+    skg_aside_end(&device->loading);
+    for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
+        if (entry->program && entry->options) entry->kept = 1, device->loads++;
+        skg_free(&entry->options);
     }
-    entry->key = key;
-    entry->next = device->programs;
-    device->programs = entry;
-    *program = entry->program;
-    return SKG_OK;
 }
 
 void skg_programs_launched(skg_context *context) {
     const skg_device *device = context->device;
     if (!device->store[0]) return;
     for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
+        if (!entry->program) continue;
         if (!entry->kept && skg_binary_pays(device, &entry->digest))
             skg_binary_save(device, &entry->digest, entry->program);
         entry->kept = 1;
@@ -134,7 +160,8 @@ void skg_programs_release(skg_device *device, int ours) {
     while (device->programs) {
         struct skg_program *entry = device->programs;
         device->programs = entry->next;
-        if (ours) clReleaseProgram(entry->program);
+        if (ours && entry->program) clReleaseProgram(entry->program);
+        skg_free(&entry->options);
         skg_free(&entry->key);
         skg_free(&entry);
     }

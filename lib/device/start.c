@@ -1,12 +1,12 @@
 #include "device/start.h"
 
+#include "core/parallel.h"
 #include "device/cpus.h"
 #include "device/device.h"
 #include "device/signals.h"
 
 #include <fenv.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
@@ -31,24 +31,11 @@ static void *run(void *argument) {
     return NULL;
 }
 
-/* Blocks what may be sent to the process from outside. A blocked signal of a fault would end the process without calling
- * the handler that the caller may have for it. */
-static void block_signals(sigset_t *before) {
-    static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGABRT};
-    sigset_t all;
-    sigfillset(&all);
-    for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) sigdelset(&all, faults[n]);
-    pthread_sigmask(SIG_BLOCK, &all, before);
-}
-
 static skg_status call(errand *e) {
     pthread_t thread;
-    sigset_t before;
     skg_cpus_get(&e->caller);
     skg_signals_keep();
-    block_signals(&before);
-    const int error = pthread_create(&thread, NULL, run, e);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    const int error = skg_thread_start(&thread, run, e);
     if (error == 0) pthread_join(thread, NULL);
     skg_signals_restore();
     if (error != 0)

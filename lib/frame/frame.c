@@ -11,11 +11,10 @@ static int32_t tile_of(const skg_recipe *recipe, const skg_pass *pass) {
     return tile && pass->fine > 1 && tile < least ? (int32_t)least : tile;
 }
 
-/* Pins the raster that a pass calls for, and reports its layout. */
-static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg_pass *pass,
-                             skg_outcome *outcome) {
-    skg_plan_report *report = &outcome->report;
-    const skg_raster_options options = {
+/* The raster that a pass calls for. */
+static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine *machine,
+                                    const skg_pass *pass) {
+    return (skg_raster_options){
         .kernels = pass->kernels,
         .strategy = recipe->strategy,
         .tile = tile_of(recipe, pass),
@@ -25,17 +24,48 @@ static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg
         .planes = pass->planes,
         .triangles = machine->geometry.triangles,
     };
+}
+
+/* Pins the raster that a pass calls for, and reports its layout. */
+static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg_pass *pass,
+                             skg_outcome *outcome) {
+    skg_plan_report *report = &outcome->report;
+    const skg_raster_options options = raster_of(recipe, machine, pass);
     SKG_TRY(skg_raster_cache_pin(&machine->rasters, &options, &pass->main));
     report->plane_bits = pass->scale.bits;
     skg_raster_tiles(pass->main.raster, &report->tile_columns, &report->tile_rows, &report->tiles);
     return SKG_OK;
 }
 
-skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome) {
+/* The first pass of an image of the recipe's view. */
+static skg_status fill_first(const skg_recipe *recipe, const skg_machine *machine, skg_pass *pass) {
     const skg_frame_work work = {.view = &recipe->view, .lengths_of = -1};
+    return skg_pass_fill(recipe, &work, skg_recipe_averages(recipe) ? 0 : -1, &machine->pass, pass);
+}
+
+/* The programs of one pass. */
+static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machine, const skg_pass *pass) {
+    const skg_raster_options options = raster_of(recipe, machine, pass);
+    const skg_sums sums = {.mixed = pass->mix.sums ? recipe->mixed : 0, .fine = pass->fine};
+    skg_image_place place = {0};
+    SKG_TRY(skg_raster_expect(machine->context, &options));
+    if (pass->priority.count) SKG_TRY(skg_hits_expect(machine->context, pass));
+    const int more = skg_recipe_averages(recipe) && skg_samples_passes(&recipe->samples) > 1;
+    for (place.add = 0; place.add <= more; place.add++)
+        SKG_TRY(skg_attenuate_expect(machine->attenuator, &pass->kernels, &sums, &pass->camera,
+                                     &machine->images, &place));
+    return SKG_OK;
+}
+
+void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine) {
     skg_pass pass;
-    const int64_t first = skg_recipe_averages(recipe) ? 0 : -1;
-    skg_status status = skg_pass_fill(recipe, &work, first, &machine->pass, &pass);
+    if (fill_first(recipe, machine, &pass) == SKG_OK) (void)expect_pass(recipe, machine, &pass);
+    skg_pass_release(&pass);
+}
+
+skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome) {
+    skg_pass pass;
+    skg_status status = fill_first(recipe, machine, &pass);
     if (status == SKG_OK) status = pin_raster(recipe, machine, &pass, outcome);
     skg_pass_release(&pass);
     return status;

@@ -15,29 +15,34 @@ double skg_column_place(const skg_columns *grid, int axis, int64_t index) {
            ((double)index + (axis ? 0.4142135623730951 : 0.7320508075688772)) * grid->step[axis];
 }
 
-/* The x at which the edge from a to b crosses y. The end with the lower y comes first, so that both triangles at
- * an edge get the same bits. */
-static double crossing(const double *a, const double *b, double y) {
-    if (a[1] > b[1] || (a[1] == b[1] && a[0] > b[0])) {
-        const double *swap = a;
-        a = b, b = swap;
-    }
-    return a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-}
-
 /* The hits in the order in which they are found. */
 typedef struct {
-    skg_column_hit hit;
+    double depth;
+    int32_t part, sign;
     int64_t cell;
 } found_hit;
 
 typedef struct {
     const skg_columns *grid;
-    const double *places[2]; /* [side] of each axis: skg_column_place */
-    double inverse[2];       /* 1 / step */
+    double *places[2]; /* [side] of each axis: skg_column_place */
+    double inverse[2]; /* 1 / step */
     int64_t count, capacity;
     found_hit *found;
 } search;
+
+static skg_status open_search(const skg_columns *grid, search *s) {
+    *s = (search){.grid = grid, .inverse = {1 / grid->step[0], 1 / grid->step[1]}};
+    SKG_TRY(skg_alloc(2 * grid->side, sizeof *s->places[0], "overlap columns", &s->places[0]));
+    s->places[1] = s->places[0] + grid->side;
+    for (int64_t i = 0; i < 2 * grid->side; i++)
+        s->places[0][i] = skg_column_place(grid, (int)(i / grid->side), i % grid->side);
+    return SKG_OK;
+}
+
+static void close_search(search *s) {
+    skg_free(&s->places[0]);
+    skg_free(&s->found);
+}
 
 /* Makes room for the hits of one row. */
 static skg_status reserve_row(search *s) {
@@ -56,11 +61,55 @@ static int64_t first_behind(const search *s, int axis, double place) {
     return k;
 }
 
+static double least(double a, double b, double c) {
+    const double ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+/* The corners of a triangle. */
+static void find_corners(const skg_solid *solid, int64_t triangle, const double *p[3]) {
+    for (int k = 0; k < 3; k++) p[k] = solid->positions + 3 * (int64_t)solid->corners[3 * triangle + k];
+}
+
+/* The rows that meet a triangle; none if it lies beside all columns. Crossings are rounded, which is far below the step that
+ * is allowed for. */
+static skg_column_rows rows_of(const search *s, const double *const p[3]) {
+    const double *a = p[0], *b = p[1], *c = p[2], *step = s->grid->step;
+    const int64_t last = s->grid->side - 1;
+    const double left = least(a[0], b[0], c[0]), right = -least(-a[0], -b[0], -c[0]);
+    if (left > s->places[0][last] + step[0] || right < s->places[0][0] - step[0])
+        return (skg_column_rows){0, 0};
+    const int64_t first = first_behind(s, 1, least(a[1], b[1], c[1]));
+    const int64_t end = first_behind(s, 1, -least(-a[1], -b[1], -c[1]));
+    return (skg_column_rows){(uint16_t)first, (uint16_t)end};
+}
+
 /* Where a triangle's plane is: a corner, and how its depth falls along x and y. */
 typedef struct {
     const double *corner;
     double fall[2];
 } plane;
+
+/* An edge of a triangle from the end with the lower y, so that both triangles at the edge get the same bits. */
+typedef struct {
+    double low, high; /* y */
+    double x, slope;  /* at the lower end; dx/dy */
+    int downward;     /* 1: the triangle runs along it towards the lower end */
+} slanted_edge;
+
+/* Edges that are not along x. Returns how many there are. */
+static int find_edges(const double *const p[3], slanted_edge edges[3]) {
+    int count = 0;
+    for (int e = 0; e < 3; e++) {
+        const double *from = p[e], *to = p[(e + 1) % 3];
+        const int downward = from[1] > to[1];
+        const double *low = downward ? to : from, *high = downward ? from : to;
+        if (low[1] == high[1]) continue;
+        edges[count++] =
+            (slanted_edge){low[1], high[1], low[0], (high[0] - low[0]) / (high[1] - low[1]), downward};
+    }
+    return count;
+}
 
 /* Adds the hits of a row, which crosses the triangle at x[0] and x[1]. */
 static skg_status add_row(search *s, int32_t part, const plane *face, int64_t row, const double x[2],
@@ -68,119 +117,122 @@ static skg_status add_row(search *s, int32_t part, const plane *face, int64_t ro
     const int first = x[0] <= x[1] ? 0 : 1;
     const double *places = s->places[0], *a = face->corner;
     const double along = (s->places[1][row] - a[1]) * face->fall[1];
+    /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and the ray enters. */
+    const int32_t sign = downward[first] ? -1 : 1;
     SKG_TRY(reserve_row(s));
     for (int64_t column = first_behind(s, 0, x[first]); column < s->grid->side; column++) {
         if (places[column] >= x[1 - first]) break;
         const double depth = a[2] - ((places[column] - a[0]) * face->fall[0] + along);
-        /* With a normal against +z the triangle is clockwise in x and y: the first crossing runs up, and the ray
-         * enters. */
         s->found[s->count++] =
-            (found_hit){{depth, part, downward[first] ? -1 : 1}, row * s->grid->side + column};
+            (found_hit){depth, part, sign, (row - s->grid->first_row) * s->grid->side + column};
     }
     return SKG_OK;
 }
 
-static double least(double a, double b, double c) {
-    const double ab = a < b ? a : b;
-    return ab < c ? ab : c;
-}
-
-/* Whether a triangle lies beside all columns. Crossings are rounded, which is far below the step that is allowed for. */
-static int misses(const search *s, const double *a, const double *b, const double *c, double lo, double hi) {
-    const int64_t last = s->grid->side - 1;
-    if (!(lo <= s->places[1][last] && hi > s->places[1][0])) return 1;
-    const double left = least(a[0], b[0], c[0]), right = -least(-a[0], -b[0], -c[0]);
-    return left > s->places[0][last] + s->grid->step[0] || right < s->places[0][0] - s->grid->step[0];
-}
-
-/* Adds the hits of one triangle by the scan-crossing rule of the kernels, in double. */
-static skg_status add_triangle(search *s, int32_t part, const double *a, const double *b, const double *c) {
-    const double *p[3] = {a, b, c};
-    const double lo = least(a[1], b[1], c[1]), hi = -least(-a[1], -b[1], -c[1]);
+/* Adds the hits of one triangle in these rows by the scan-crossing rule of the kernels, in double. */
+static skg_status add_triangle(search *s, int32_t part, const double *const p[3], int64_t row, int64_t end) {
     double ab[3], ac[3], normal[3];
-    if (misses(s, a, b, c, lo, hi)) return SKG_OK;
-    skg_add_scaled(b, -1, a, ab);
-    skg_add_scaled(c, -1, a, ac);
+    slanted_edge edges[3];
+    skg_add_scaled(p[1], -1, p[0], ab);
+    skg_add_scaled(p[2], -1, p[0], ac);
     skg_cross(ab, ac, normal);
-    const int slanted = normal[2] != 0;
-    const plane face = {a, {slanted ? normal[0] / normal[2] : 0, slanted ? normal[1] / normal[2] : 0}};
-    for (int64_t row = first_behind(s, 1, lo); row < s->grid->side && s->places[1][row] < hi; row++) {
+    const int slanted = normal[2] != 0, count = find_edges(p, edges);
+    const plane face = {p[0], {slanted ? normal[0] / normal[2] : 0, slanted ? normal[1] / normal[2] : 0}};
+    for (; row < end; row++) {
         const double y = s->places[1][row];
         double x[2];
         int found = 0, downward[2];
-        for (int e = 0; e < 3 && found < 2; e++) {
-            const double *from = p[e], *to = p[(e + 1) % 3];
-            if ((from[1] <= y) == (to[1] <= y)) continue;
-            downward[found] = from[1] > to[1];
-            x[found++] = crossing(from, to, y);
+        for (int e = 0; e < count && found < 2; e++) {
+            if (!(edges[e].low <= y && y < edges[e].high)) continue;
+            downward[found] = edges[e].downward;
+            x[found++] = edges[e].x + (y - edges[e].low) * edges[e].slope;
         }
         if (found == 2) SKG_TRY(add_row(s, part, &face, row, x, downward));
     }
     return SKG_OK;
 }
 
-/* What threads share: the triangles of all solids, in pieces. */
-typedef struct {
-    int64_t count, triangles;
-    const skg_solid *solids;
-    search *pieces; /* [grid->pieces] */
-} gathering;
-
-static skg_status gather_piece(void *user, int64_t piece) {
-    const gathering *g = user;
-    search *s = &g->pieces[piece];
-    int64_t first = piece * g->triangles / s->grid->pieces,
-            end = (piece + 1) * g->triangles / s->grid->pieces;
-    for (int64_t i = 0; i < g->count && end > 0; i++) {
-        const skg_solid *solid = &g->solids[i];
-        const double *at = solid->positions;
-        for (int64_t t = first; t < end && t < solid->triangles; t++) {
-            const int32_t *corner = solid->corners + 3 * t;
-            SKG_TRY(add_triangle(s, (int32_t)i, at + 3 * (int64_t)corner[0], at + 3 * (int64_t)corner[1],
-                                 at + 3 * (int64_t)corner[2]));
+static skg_status find_hits(search *s, int64_t count, const skg_solid *solids, const skg_column_rows *rows) {
+    const int64_t first = s->grid->first_row, end = first + s->grid->rows;
+    int64_t number = 0; /* of the triangle, through all solids */
+    for (int64_t i = 0; i < count; i++)
+        for (int64_t t = 0; t < solids[i].triangles; t++, number++) {
+            const double *p[3];
+            if (rows && (rows[number].first >= end || rows[number].end <= first)) continue;
+            find_corners(&solids[i], t, p);
+            const skg_column_rows met = rows ? rows[number] : rows_of(s, p);
+            SKG_TRY(add_triangle(s, (int32_t)i, p, met.first > first ? met.first : first,
+                                 met.end < end ? met.end : end));
         }
-        first = first > solid->triangles ? first - solid->triangles : 0;
-        end -= solid->triangles;
-    }
     return SKG_OK;
 }
 
 /* Sorts the hits by cell: those of column c are from grid->first[c] to grid->first[c + 1] - 1. */
-static skg_status sort_by_cell(const search *pieces, skg_columns *grid) {
-    const int64_t cells = grid->side * grid->side;
-    int64_t count = 0;
-    for (int64_t k = 0; k < grid->pieces; k++) count += pieces[k].count;
+static skg_status sort_by_cell(const search *s, skg_columns *grid) {
+    const int64_t cells = grid->rows * grid->side;
     SKG_TRY(skg_alloc(cells + 2, sizeof *grid->first, "overlap columns", &grid->first));
-    SKG_TRY(skg_alloc(count, sizeof *grid->hits, "overlap hits", &grid->hits));
+    SKG_TRY(skg_alloc(s->count, sizeof *grid->hits, "overlap hits", &grid->hits));
     /* Counts are stored two places on, so that first[c + 1] is where cell c begins when the cells are filled. */
-    for (int64_t k = 0; k < grid->pieces; k++)
-        for (int64_t i = 0; i < pieces[k].count; i++) grid->first[pieces[k].found[i].cell + 2]++;
+    for (int64_t i = 0; i < s->count; i++) grid->first[s->found[i].cell + 2]++;
     for (int64_t c = 0; c < cells; c++) grid->first[c + 2] += grid->first[c + 1];
-    for (int64_t k = 0; k < grid->pieces; k++)
-        for (int64_t i = 0; i < pieces[k].count; i++)
-            grid->hits[grid->first[pieces[k].found[i].cell + 1]++] = pieces[k].found[i].hit;
+    for (int64_t i = 0; i < s->count; i++) {
+        const found_hit *found = &s->found[i];
+        grid->hits[grid->first[found->cell + 1]++] = (skg_column_hit){found->depth, found->part, found->sign};
+    }
     return SKG_OK;
 }
 
-skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids) {
-    gathering g = {.count = count, .solids = solids};
-    double *places = NULL;
+skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids,
+                              const skg_column_rows *rows) {
+    search s;
     skg_status status = SKG_OK;
-    for (int64_t i = 0; i < count; i++) g.triangles += solids[i].triangles;
-    SKG_TRY(skg_alloc(grid->pieces, sizeof *g.pieces, "overlap hits", &g.pieces));
-    SKG_TRY_CLEANUP(skg_alloc(2 * grid->side, sizeof *places, "overlap columns", &places));
-    for (int64_t i = 0; i < 2 * grid->side; i++)
-        places[i] = skg_column_place(grid, (int)(i / grid->side), i % grid->side);
-    for (int64_t k = 0; k < grid->pieces; k++)
-        g.pieces[k] = (search){.grid = grid,
-                               .places = {places, places + grid->side},
-                               .inverse = {1 / grid->step[0], 1 / grid->step[1]}};
-    SKG_TRY_CLEANUP(skg_parallel(grid->pieces, gather_piece, &g));
-    SKG_TRY_CLEANUP(sort_by_cell(g.pieces, grid));
+    SKG_TRY_CLEANUP(open_search(grid, &s));
+    SKG_TRY_CLEANUP(find_hits(&s, count, solids, rows));
+    SKG_TRY_CLEANUP(sort_by_cell(&s, grid));
 cleanup:
-    for (int64_t k = 0; k < grid->pieces; k++) skg_free(&g.pieces[k].found);
-    skg_free(&g.pieces);
-    skg_free(&places);
+    close_search(&s);
+    return status;
+}
+
+/* What threads share: the triangles of all solids, in pieces. */
+enum { PIECE = 4096 };
+typedef struct {
+    int64_t count;
+    const skg_solid *solids;
+    const search *search;
+    skg_column_rows *rows;
+} spanning;
+
+static skg_status span_piece(void *user, int64_t piece) {
+    const spanning *span = user;
+    int64_t before = 0; /* triangles of the solids so far */
+    for (int64_t i = 0; i < span->count; i++) {
+        const skg_solid *solid = &span->solids[i];
+        const int64_t from = piece * PIECE - before, to = from + PIECE;
+        for (int64_t t = from > 0 ? from : 0; t < to && t < solid->triangles; t++) {
+            const double *p[3];
+            find_corners(solid, t, p);
+            span->rows[before + t] = rows_of(span->search, p);
+        }
+        before += solid->triangles;
+    }
+    return SKG_OK;
+}
+
+skg_status skg_columns_span(const skg_columns *grid, int64_t count, const skg_solid *solids,
+                            skg_column_rows **rows) {
+    search s;
+    int64_t triangles = 0;
+    skg_status status = SKG_OK;
+    *rows = NULL;
+    for (int64_t i = 0; i < count; i++) triangles += solids[i].triangles;
+    SKG_TRY_CLEANUP(open_search(grid, &s));
+    SKG_TRY_CLEANUP(skg_alloc(triangles, sizeof **rows, "overlap columns", rows));
+    spanning span = {count, solids, &s, *rows};
+    SKG_TRY_CLEANUP(skg_parallel((triangles + PIECE - 1) / PIECE, span_piece, &span));
+cleanup:
+    close_search(&s);
+    if (status != SKG_OK) skg_free(rows);
     return status;
 }
 

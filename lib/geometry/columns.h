@@ -18,20 +18,31 @@ typedef struct {
 } skg_column_hit;
 
 typedef struct {
-    int64_t side; /* columns along x and along y; set by the caller */
-    int64_t
-        pieces; /* in which threads gather hits, for the same hits in the same order; 1: the caller's thread alone */
+    int64_t side;            /* columns along x and along y, at most 65,535; set by the caller */
+    int64_t first_row, rows; /* along y, those that are gathered; set by the caller */
     double low[3], high[3], step[2];
-    int64_t *first; /* [side * side + 1] hits of each column */
+    int64_t *first; /* [rows * side + 1] hits of each column */
     skg_column_hit *hits;
 } skg_columns;
+
+/* The rows that meet a triangle: first <= row < end. */
+typedef struct {
+    uint16_t first, end;
+} skg_column_rows;
 
 /* Sets the bounds to those of the solids. The grid is empty where a step is not above 0. */
 void skg_columns_bound(skg_columns *grid, int64_t count, const skg_solid *solids);
 
-/* Finds the hits of each column: those of cell row * side + column are hits[first[cell]] to hits[first[cell + 1] - 1],
- * in no order. Free the columns also after a failure. */
-skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids);
+/* Finds the rows of the whole grid that meet each triangle, numbered through all solids, by several threads. The caller
+ * frees *rows. */
+skg_status skg_columns_span(const skg_columns *grid, int64_t count, const skg_solid *solids,
+                            skg_column_rows **rows);
+
+/* Finds the hits of each column: those of cell (row - first_row) * side + column are hits[first[cell]] to
+ * hits[first[cell + 1] - 1], in no order. rows: of skg_columns_span, which spares other triangles a look; may be NULL. Free
+ * the columns also after a failure. */
+skg_status skg_columns_gather(skg_columns *grid, int64_t count, const skg_solid *solids,
+                              const skg_column_rows *rows);
 void skg_columns_free(skg_columns *grid);
 
 /* Sorts the hits of a cell by depth. */

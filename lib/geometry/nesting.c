@@ -130,7 +130,7 @@ static int meet(const component *a, const component *b) {
 static skg_status examine(const component *components, int64_t c, int32_t orientation, skg_solid *solids,
                           int32_t *sign, verdict *found) {
     const component *own = &components[c];
-    skg_columns grid = {.side = SIDE, .pieces = 1};
+    skg_columns grid = {.side = SIDE, .rows = SIDE};
     int64_t count = 1;
     *found = (verdict){0};
     solids[0] = own->solid, sign[0] = orientation;
@@ -143,7 +143,7 @@ static skg_status examine(const component *components, int64_t c, int32_t orient
     for (int k = 0; k < 3; k++) grid.low[k] = own->low[k], grid.high[k] = own->high[k];
     for (int k = 0; k < 2; k++) grid.step[k] = (grid.high[k] - grid.low[k]) / SIDE;
     if (!(grid.step[0] > 0 && grid.step[1] > 0)) return SKG_OK; /* flat, across x or y */
-    skg_status status = skg_columns_gather(&grid, count, solids);
+    skg_status status = skg_columns_gather(&grid, count, solids, NULL);
     if (status == SKG_OK) sweep(&grid, sign, own->volume < 0, found);
     skg_columns_free(&grid);
     return status;

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Columns along each side of the grid: 65,536 columns are 1.4 mm apart in a thorax. Threads share the rows in bands. */
+/* Columns along each side of the grid: 65,536 columns are 1.4 mm apart in a thorax. Threads share the rows in bands. The hits
+ * of a band stay in a cache, and its memory is used again for the next. */
 enum { SIDE = 256, BANDS = 16, BAND_ROWS = SIDE / BANDS };
 
 typedef struct {
@@ -103,7 +104,8 @@ static skg_status sweep_cell(skg_columns *grid, const skg_solid *solids, sweep_s
     /* Touching surfaces differ by rounding, which is far below this share of the depth of the scene. */
     const double least = 1e-9 * (grid->high[2] - grid->low[2]);
     const int64_t first = grid->first[cell], end = grid->first[cell + 1];
-    double place[3] = {skg_column_place(grid, 0, cell % SIDE), skg_column_place(grid, 1, cell / SIDE)};
+    double place[3] = {skg_column_place(grid, 0, cell % SIDE),
+                       skg_column_place(grid, 1, grid->first_row + cell / SIDE)};
     skg_columns_sort(grid, cell);
     for (int64_t h = first; h < end; h++) {
         pass(state, &grid->hits[h]);
@@ -119,26 +121,36 @@ static skg_status sweep_cell(skg_columns *grid, const skg_solid *solids, sweep_s
 
 /* What threads share. */
 typedef struct {
-    skg_columns grid;
+    skg_columns grid; /* of all bands, without hits */
     int64_t count;
     const skg_solid *solids;
-    sweep_state bands[BANDS];
+    skg_column_rows *rows; /* of the triangles */
+    pair_table found[BANDS];
 } sweeping;
 
 static skg_status sweep_band(void *user, int64_t band) {
     sweeping *s = user;
-    sweep_state *state = &s->bands[band];
-    SKG_TRY(skg_alloc(s->count, sizeof *state->depth, "overlap sweep", &state->depth));
-    SKG_TRY(skg_alloc(s->count, sizeof *state->active, "overlap sweep", &state->active));
-    for (int64_t cell = band * BAND_ROWS * SIDE; cell < (band + 1) * BAND_ROWS * SIDE; cell++)
-        SKG_TRY(sweep_cell(&s->grid, s->solids, state, cell));
-    return SKG_OK;
+    skg_columns grid = s->grid;
+    sweep_state state = {0};
+    skg_status status = SKG_OK;
+    grid.first_row = band * BAND_ROWS, grid.rows = BAND_ROWS;
+    SKG_TRY_CLEANUP(skg_alloc(s->count, sizeof *state.depth, "overlap sweep", &state.depth));
+    SKG_TRY_CLEANUP(skg_alloc(s->count, sizeof *state.active, "overlap sweep", &state.active));
+    SKG_TRY_CLEANUP(skg_columns_gather(&grid, s->count, s->solids, s->rows));
+    for (int64_t cell = 0; cell < BAND_ROWS * SIDE; cell++)
+        SKG_TRY_CLEANUP(sweep_cell(&grid, s->solids, &state, cell));
+cleanup:
+    skg_columns_free(&grid);
+    skg_free(&state.depth);
+    skg_free(&state.active);
+    s->found[band] = state.pairs;
+    return status;
 }
 
 /* Adds up the bands in their order, so that sums do not depend on the threads. */
 static skg_status add_bands(const sweeping *s, pair_table *found) {
     for (int band = 0; band < BANDS; band++) {
-        const pair_table *pairs = &s->bands[band].pairs;
+        const pair_table *pairs = &s->found[band];
         for (int64_t i = 0; i < pairs->slots; i++)
             if (pairs->table[i].part >= 0) SKG_TRY(add_pair(found, &pairs->table[i]));
     }
@@ -154,14 +166,14 @@ static int worst_first(const void *a, const void *b) {
 
 skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pair_count,
                              skg_overlap_pair **pairs) {
-    sweeping s = {.grid = {.side = SIDE, .pieces = 4 * BANDS}, .count = count, .solids = solids};
+    sweeping s = {.grid = {.side = SIDE}, .count = count, .solids = solids};
     pair_table found = {0};
     skg_status status = SKG_OK;
     *pair_count = 0;
     *pairs = NULL;
     skg_columns_bound(&s.grid, count, solids);
     if (!(s.grid.step[0] > 0 && s.grid.step[1] > 0)) return SKG_OK; /* no solid has an extent */
-    SKG_TRY_CLEANUP(skg_columns_gather(&s.grid, count, solids));
+    SKG_TRY_CLEANUP(skg_columns_span(&s.grid, count, solids, &s.rows));
     SKG_TRY_CLEANUP(skg_parallel(BANDS, sweep_band, &s));
     SKG_TRY_CLEANUP(add_bands(&s, &found));
     for (int64_t i = 0; i < found.slots; i++)
@@ -170,12 +182,8 @@ skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pa
     *pairs = found.table;
     found.table = NULL;
 cleanup:
-    skg_columns_free(&s.grid);
-    for (int band = 0; band < BANDS; band++) {
-        skg_free(&s.bands[band].depth);
-        skg_free(&s.bands[band].active);
-        skg_free(&s.bands[band].pairs.table);
-    }
+    skg_free(&s.rows);
+    for (int band = 0; band < BANDS; band++) skg_free(&s.found[band].table);
     skg_free(&found.table);
     return status;
 }

@@ -36,22 +36,51 @@ double skg_total_section(const double sections[SKG_PROCESSES]) {
     return sections[SKG_RAYLEIGH] + sections[SKG_COMPTON] + sections[SKG_PHOTO] + sections[SKG_PAIR];
 }
 
+/* Checks material and energy. Gives the attenuation unless cross sections are needed. */
+static skg_status check(const skg_material *material, double energy_kev, double *per_cm) {
+    SKG_TRY(skg_check_energy(material->name, energy_kev));
+    if (material->kind == SKG_MATTER_CONSTANT) *per_cm = material->mu_per_cm;
+    if (material->kind == SKG_MATTER_TABLE) return table_value(material, energy_kev, per_cm);
+    if (material->kind == SKG_MATTER_COMPOSITION && !(material->density > 0))
+        return skg_fail(SKG_ERR_MATERIAL, "%s: its density is not known; give one in g/cm3", material->name);
+    return SKG_OK;
+}
+
 skg_status skg_material_attenuation_get(const skg_material *material, double energy_kev, double *per_cm) {
     SKG_PLAIN;
     SKG_NEEDS(material);
     SKG_NEEDS(per_cm);
-    SKG_TRY(skg_check_energy(material->name, energy_kev));
-    if (material->kind == SKG_MATTER_CONSTANT) {
-        *per_cm = material->mu_per_cm;
-        return SKG_OK;
-    }
-    if (material->kind == SKG_MATTER_TABLE) return table_value(material, energy_kev, per_cm);
-    if (!(material->density > 0))
-        return skg_fail(SKG_ERR_MATERIAL, "%s: its density is not known; give one in g/cm3", material->name);
+    SKG_TRY(check(material, energy_kev, per_cm));
+    if (material->kind != SKG_MATTER_COMPOSITION) return SKG_OK;
     double sections[SKG_PROCESSES];
     skg_mixed_sections(material->count, material->parts, energy_kev, sections);
     *per_cm = material->density * skg_total_section(sections);
     return SKG_OK;
+}
+
+static skg_status tabulate_element(int32_t z, skg_section_table *table) {
+    if (table->of_element[z]) return SKG_OK;
+    SKG_TRY(skg_alloc(table->count, sizeof *table->of_element[z], "cross sections", &table->of_element[z]));
+    for (int64_t n = 0; n < table->count; n++)
+        skg_element_sections(z, table->energy_kev[n], table->of_element[z][n]);
+    return SKG_OK;
+}
+
+skg_status skg_attenuation_tabulate(const skg_material *material, skg_section_table *table, double *per_cm) {
+    for (int64_t n = 0; n < table->count; n++) SKG_TRY(check(material, table->energy_kev[n], &per_cm[n]));
+    if (material->kind != SKG_MATTER_COMPOSITION) return SKG_OK;
+    for (int64_t i = 0; i < material->count; i++) SKG_TRY(tabulate_element(material->parts[i].z, table));
+    for (int64_t n = 0; n < table->count; n++) {
+        double sections[SKG_PROCESSES] = {0};
+        for (int64_t i = 0; i < material->count; i++)
+            skg_add_sections(&material->parts[i], table->of_element[material->parts[i].z][n], sections);
+        per_cm[n] = material->density * skg_total_section(sections);
+    }
+    return SKG_OK;
+}
+
+void skg_section_table_release(skg_section_table *table) {
+    for (int32_t z = 0; z <= SKG_LAST_ELEMENT; z++) skg_free(&table->of_element[z]);
 }
 
 void skg_coefficients_init_sized(void *coefficients, int32_t size) {

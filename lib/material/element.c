@@ -38,13 +38,18 @@ void skg_element_sections(int32_t z, double energy_kev, double sections[SKG_PROC
     sections[SKG_PAIR] = left > 0 ? sections[SKG_PAIR] * left * left * left : 0;
 }
 
+void skg_add_sections(const skg_mass_fraction *part, const double own[SKG_PROCESSES],
+                      double sections[SKG_PROCESSES]) {
+    for (int p = 0; p < SKG_PROCESSES; p++) sections[p] += part->fraction * own[p];
+}
+
 void skg_mixed_sections(int64_t count, const skg_mass_fraction *parts, double energy_kev,
                         double sections[SKG_PROCESSES]) {
     for (int p = 0; p < SKG_PROCESSES; p++) sections[p] = 0;
     for (int64_t i = 0; i < count; i++) {
         double own[SKG_PROCESSES];
         skg_element_sections(parts[i].z, energy_kev, own);
-        for (int p = 0; p < SKG_PROCESSES; p++) sections[p] += parts[i].fraction * own[p];
+        skg_add_sections(&parts[i], own, sections);
     }
 }
 

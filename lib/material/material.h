@@ -50,6 +50,22 @@ void skg_element_sections(int32_t z, double energy_kev, double sections[SKG_PROC
 void skg_mixed_sections(int64_t count, const skg_mass_fraction *parts, double energy_kev,
                         double sections[SKG_PROCESSES]);
 
+/* Adds the sections of an element, weighted with its fraction. */
+void skg_add_sections(const skg_mass_fraction *part, const double own[SKG_PROCESSES],
+                      double sections[SKG_PROCESSES]);
+
+/* Cross sections of elements at some energies, each worked out once: scenes have many materials of few elements. Set
+ * count and energies, the rest to 0. */
+typedef struct {
+    int64_t count;
+    const double *energy_kev;                                  /* [count] borrowed */
+    double (*of_element[SKG_LAST_ELEMENT + 1])[SKG_PROCESSES]; /* [count] each; NULL: not needed yet */
+} skg_section_table;
+
+/* What skg_material_attenuation_get gives for each of the energies, with its bits and its errors. per_cm: [count] */
+skg_status skg_attenuation_tabulate(const skg_material *material, skg_section_table *table, double *per_cm);
+void skg_section_table_release(skg_section_table *table);
+
 /* The sum over the processes. */
 double skg_total_section(const double sections[SKG_PROCESSES]);
 

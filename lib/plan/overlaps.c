@@ -72,23 +72,32 @@ static skg_status check_mesh(void *user, int64_t mesh) {
     return skg_nesting_find(c->recipe->meshes.meshes[mesh], &c->nestings[mesh], NULL);
 }
 
-skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_context *context, skg_outcome *outcome) {
+skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_outcome *outcome,
+                                  skg_mesh_nesting **nestings) {
     const skg_scene *scene = recipe->scene;
     const int64_t meshes = recipe->meshes.count;
     checking c = {.recipe = recipe, .outcome = outcome};
     skg_status status = SKG_OK;
+    *nestings = NULL;
     if (!recipe->options.overlaps) return SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *c.nestings, "overlap check", &c.nestings));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.solids, "overlap check", &c.solids));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.positions, "overlap check", &c.positions));
     SKG_TRY_CLEANUP(skg_parallel(meshes, check_mesh, &c));
     SKG_TRY_CLEANUP(check_overlaps(&c));
-    SKG_TRY_CLEANUP(skg_plan_meshes_warn(&recipe->meshes, c.nestings, scene, context));
-    warn(recipe, context, outcome);
+    *nestings = c.nestings, c.nestings = NULL;
 cleanup:
     for (int64_t i = 0; c.positions && i < scene->count; i++) skg_free(&c.positions[i]);
     skg_free(&c.positions);
     skg_free(&c.solids);
     skg_free(&c.nestings);
     return status;
+}
+
+skg_status skg_plan_overlaps_warn(const skg_recipe *recipe, const skg_context *context,
+                                  const skg_outcome *outcome, const skg_mesh_nesting *nestings) {
+    if (!nestings) return SKG_OK;
+    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, nestings, recipe->scene, context));
+    warn(recipe, context, outcome);
+    return SKG_OK;
 }

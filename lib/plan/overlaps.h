@@ -4,7 +4,13 @@
 
 #include "plan/outcome.h"
 
-/* Finds overlaps, if the options ask for it, and warns of those that neither priorities nor clipping settle. */
-skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_context *context, skg_outcome *outcome);
+/* Finds overlaps and inverted components, if the options ask for it. nestings: result: [meshes], to be freed by skg_free; NULL
+ * if the options do not ask. */
+skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_outcome *outcome,
+                                  skg_mesh_nesting **nestings);
+
+/* Warns of what was found, except for overlaps that priorities or clipping settle. */
+skg_status skg_plan_overlaps_warn(const skg_recipe *recipe, const skg_context *context,
+                                  const skg_outcome *outcome, const skg_mesh_nesting *nestings);
 
 #endif

@@ -1,6 +1,7 @@
 #include "spectral/model.h"
 
 #include "beam/spectrum.h"
+#include "material/material.h"
 #include "spectral/compress.h"
 #include "spectral/quantity.h"
 
@@ -56,6 +57,8 @@ static int64_t same_material(const making *m, const skg_material *material, cons
 
 static skg_status look_up(making *m, const skg_model *model) {
     int64_t recent[RECENT], count = 0;
+    skg_section_table sections = {.count = model->nodes, .energy_kev = model->node_kev};
+    skg_status status = SKG_OK;
     SKG_TRY(skg_alloc(m->bodies * model->nodes, sizeof *m->mu, "attenuation of the parts", &m->mu));
     for (int64_t p = 0; p < m->bodies; p++) {
         double *mu = m->mu + p * model->nodes;
@@ -67,12 +70,12 @@ static skg_status look_up(making *m, const skg_model *model) {
             continue;
         }
         recent[count++ % RECENT] = p;
-        for (int32_t n = 0; n < model->nodes; n++) {
-            SKG_TRY(skg_material_attenuation_get(material, m->spectrum->energy_kev[m->bins[n]], &mu[n]));
-            mu[n] *= 0.1; /* 1/cm to 1/mm */
-        }
+        SKG_TRY_CLEANUP(skg_attenuation_tabulate(material, &sections, mu));
+        for (int32_t n = 0; n < model->nodes; n++) mu[n] *= 0.1; /* 1/cm to 1/mm */
     }
-    return SKG_OK;
+cleanup:
+    skg_section_table_release(&sections);
+    return status;
 }
 
 /* Half precision sums distances without weights: each material has a plane, to which parts add 1 or -1 times

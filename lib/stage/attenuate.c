@@ -236,6 +236,16 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
                         .ranged = attenuation->range.memory != NULL};
 }
 
+skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,
+                                const skg_sums *sums, const skg_camera *camera,
+                                const skg_attenuation *attenuation, const skg_image_place *place) {
+    const skg_raster raster = {.context = attenuator->context, .options.kernels = *kernels};
+    skg_sums own = *sums;
+    own.raster = &raster;
+    const kernel_key key = key_of(&own, camera, attenuation, place);
+    return get_program(attenuator, &key, NULL);
+}
+
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log) {

@@ -51,11 +51,11 @@ typedef struct {
     int32_t reserved;
 } hits_run;
 
-static skg_status compile(hits_run *run) {
+static skg_status compile(const hits_run *run, cl_program *program) {
     static const char *const files[] = {"pixel.clh", "hits.cl", "source_plane.cl"};
     char slots[32];
     snprintf(slots, sizeof slots, "-D SKG_SLOTS=%" PRId64, skg_priority_slots(&run->pass->priority));
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, slots, &run->program);
+    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, slots, program);
 }
 
 static skg_status reserve(const hits_run *run, skg_buffer *buffer, int64_t bytes, const char *what) {
@@ -272,6 +272,12 @@ static skg_status count_others(const hits_run *run) {
     return list_all(run, SKG_HITS_COUNT + SKG_HITS_OF_OTHERS);
 }
 
+skg_status skg_hits_expect(skg_context *context, const skg_pass *pass) {
+    const skg_raster raster = {.context = context, .options.kernels = pass->kernels};
+    const hits_run run = {.pass = pass, .raster = &raster, .context = context};
+    return compile(&run, NULL);
+}
+
 skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
                         skg_staging *staging) {
     const skg_raster *raster = pass->main.raster;
@@ -284,7 +290,7 @@ skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_
                     .is_double = geometry->precision == SKG_PRECISION_DOUBLE};
     const cl_int4 window = window_of(&run);
     if (window.s[0] >= window.s[2] || window.s[1] >= window.s[3]) return SKG_OK;
-    SKG_TRY(compile(&run));
+    SKG_TRY(compile(&run, &run.program));
     SKG_TRY(upload_tables(&run));
     SKG_TRY(clear(&run));
     SKG_TRY(list_all(&run, SKG_HITS_COUNT));

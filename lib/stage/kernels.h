@@ -18,7 +18,8 @@ typedef struct {
 /* How many lanes kernels with wide vectors use on this device. */
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 
-/* The program of these kernel files, behind the headers that all need, from the context's cache or built. */
+/* The program of these kernel files, behind the headers that all need, from the context's cache or built. program: NULL:
+ * it is only expected (skg_programs_load). */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const char *more_options, cl_program *program);
 

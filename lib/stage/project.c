@@ -52,14 +52,18 @@ static skg_status upload_corners(skg_context *context, skg_geometry *geometry) {
     const int64_t total = geometry->mesh_triangle[geometry->meshes];
     SKG_TRY(skg_buffer_reserve(context, &geometry->corners, total * 3 * (int64_t)sizeof(int32_t),
                                CL_MEM_READ_ONLY, "corners of the triangles"));
-    for (int64_t m = 0; m < geometry->meshes; m++) {
+    cl_int code = CL_SUCCESS;
+    for (int64_t m = 0; m < geometry->meshes && code == CL_SUCCESS; m++) {
         const size_t size = (size_t)geometry->layouts[m].triangles * 3 * sizeof(int32_t);
         if (size > 0)
-            SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, geometry->corners.memory, CL_TRUE,
-                                            (size_t)geometry->mesh_triangle[m] * 3 * sizeof(int32_t), size,
-                                            geometry->layouts[m].corners, 0, NULL, NULL));
-        skg_free(&geometry->layouts[m].corners);
+            code = clEnqueueWriteBuffer(context->device->queue, geometry->corners.memory, CL_FALSE,
+                                        (size_t)geometry->mesh_triangle[m] * 3 * sizeof(int32_t), size,
+                                        geometry->layouts[m].corners, 0, NULL, NULL);
     }
+    const cl_int done = clFinish(context->device->queue); /* until then the device reads the layouts */
+    for (int64_t m = 0; m < geometry->meshes; m++) skg_free(&geometry->layouts[m].corners);
+    if (code == CL_SUCCESS) SKG_CL_TRY(done);
+    SKG_CL_TRY(code);
     return SKG_OK;
 }
 

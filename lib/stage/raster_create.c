@@ -150,7 +150,9 @@ static skg_status compile_files(skg_raster *raster, int32_t files, const char *c
     const char *all[MOST] = {"project.cl"};
     cl_program program = NULL;
     for (int32_t i = 0; i < files; i++) all[i + 1] = names[i];
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 1, all, NULL, &program));
+    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 1, all, NULL,
+                            raster->expected ? NULL : &program));
+    if (raster->expected) return SKG_OK;
     SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
     for (int k = 0; k < kernels; k++)
         SKG_TRY(skg_kernel_create(program, kernel[k].name, &raster->kernels[kernel[k].which]));
@@ -188,8 +190,14 @@ static skg_status compile(skg_raster *raster) {
     cl_program program = NULL;
     SKG_TRY(compile_strategy(raster));
     if (!options->source_plane || options->parallel || options->half) return SKG_OK;
-    SKG_TRY(skg_kernels_get(raster->context, options, 2, source, NULL, &program));
+    SKG_TRY(skg_kernels_get(raster->context, options, 2, source, NULL, raster->expected ? NULL : &program));
+    if (raster->expected) return SKG_OK;
     return skg_kernel_create(program, "skg_source_plane", &raster->kernels[SKG_RASTER_SOURCE]);
+}
+
+skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options) {
+    skg_raster none = {.context = context, .options = *options, .expected = 1};
+    return compile(&none);
 }
 
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster) {

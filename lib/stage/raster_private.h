@@ -31,6 +31,7 @@ struct skg_raster {
     skg_buffer rows_bad; /* [count planes][rows][3] of the last verdicts, as counts.cl leaves it */
     cl_kernel kernels[SKG_RASTER_KERNELS]; /* NULL: not used by the strategy */
     cl_kernel bad_rows, bad;               /* made on demand */
+    int32_t expected;                      /* 1: its programs are only expected */
 };
 
 /* Whether tiles are squares. */

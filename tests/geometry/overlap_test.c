@@ -76,24 +76,34 @@ START_TEST(touching_boxes_do_not_overlap) {
 }
 END_TEST
 
-/* Pieces begin and end inside solids, and some have no triangle at all. */
-START_TEST(pieces_find_the_same_hits_in_the_same_order) {
-    static const int64_t pieces[] = {1, 5, 100};
+/* Bands of rows, with and without the rows that triangles meet, together have what the whole has. */
+START_TEST(bands_find_the_same_hits_in_the_same_order) {
+    static const int64_t heights[] = {40, 8, 1};
     box store[3];
     skg_solid solids[3];
-    skg_columns grids[3] = {0};
+    skg_columns whole = {.side = 40, .rows = 40};
+    skg_column_rows *rows = NULL;
     solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 100, -1);
     solids[1] = make_box(&store[1], 20, 80, 20, 80, 50, 130, 0);
     solids[2] = make_box(&store[2], 25, 75, 25, 75, 60, 90, 1);
-    for (int k = 0; k < 3; k++) {
-        grids[k].side = 40, grids[k].pieces = pieces[k];
-        skg_columns_bound(&grids[k], 3, solids);
-        ck_skg(skg_columns_gather(&grids[k], 3, solids));
-        ck_assert_int_gt(grids[k].first[1600], 0);
-        ck_assert_mem_eq(grids[k].first, grids[0].first, 1601 * sizeof *grids[0].first);
-        ck_assert_mem_eq(grids[k].hits, grids[0].hits, (size_t)grids[0].first[1600] * sizeof *grids[0].hits);
-    }
-    for (int k = 0; k < 3; k++) skg_columns_free(&grids[k]);
+    skg_columns_bound(&whole, 3, solids);
+    ck_skg(skg_columns_gather(&whole, 3, solids, NULL));
+    ck_assert_int_gt(whole.first[1600], 0);
+    ck_skg(skg_columns_span(&whole, 3, solids, &rows));
+    for (int k = 0; k < 6; k++)
+        for (int64_t row = 0; row < 40; row += heights[k / 2]) {
+            skg_columns band = whole;
+            band.first_row = row, band.rows = heights[k / 2];
+            ck_skg(skg_columns_gather(&band, 3, solids, k % 2 ? rows : NULL));
+            const int64_t *first = whole.first + 40 * row;
+            for (int64_t cell = 0; cell <= 40 * band.rows; cell++)
+                ck_assert_int_eq(band.first[cell], first[cell] - first[0]);
+            ck_assert_mem_eq(band.hits, whole.hits + first[0],
+                             (size_t)band.first[40 * band.rows] * sizeof *band.hits);
+            skg_columns_free(&band);
+        }
+    skg_free(&rows);
+    skg_columns_free(&whole);
 }
 END_TEST
 
@@ -111,7 +121,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, overlapping_boxes_are_measured);
     tcase_add_test(tests, a_child_that_leaves_its_parent_is_reported);
     tcase_add_test(tests, touching_boxes_do_not_overlap);
-    tcase_add_test(tests, pieces_find_the_same_hits_in_the_same_order);
+    tcase_add_test(tests, bands_find_the_same_hits_in_the_same_order);
     tcase_add_test(tests, nothing_is_no_failure);
 }
 

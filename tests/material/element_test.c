@@ -120,6 +120,47 @@ START_TEST(energies_outside_are_refused) {
 }
 END_TEST
 
+/* Materials of every kind, whose elements a table works out once, against one energy at a time. */
+START_TEST(tables_of_materials_have_the_bits_of_single_energies) {
+    static const double energies[] = {1, 20, 33.17, 88.01, 1500}, tabled[] = {1, 100, 2000}, mu[] = {5, 1, 0.1};
+    enum { MATERIALS = 5, COUNT = sizeof energies / sizeof *energies };
+    skg_section_table table = {.count = COUNT, .energy_kev = energies};
+    skg_material *materials[MATERIALS] = {0};
+    ck_skg(skg_material_create_element(53, &materials[0]));
+    ck_skg(skg_material_create_formula("CsI", 4.51, &materials[1]));
+    ck_skg(skg_material_create_hounsfield(300, &materials[2]));
+    ck_skg(skg_material_create_mu("grey", 0.3, &materials[3]));
+    ck_skg(skg_material_create_table("rows", 3, tabled, mu, &materials[4]));
+    for (int m = 0; m < MATERIALS; m++) {
+        double found[COUNT];
+        ck_skg(skg_attenuation_tabulate(materials[m], &table, found));
+        for (int n = 0; n < COUNT; n++) {
+            double single = 0;
+            ck_skg(skg_material_attenuation_get(materials[m], energies[n], &single));
+            ck_assert_mem_eq(&found[n], &single, sizeof single);
+        }
+    }
+    for (int m = 0; m < MATERIALS; m++) skg_material_release(&materials[m]);
+    skg_section_table_release(&table);
+}
+END_TEST
+
+START_TEST(tables_of_materials_fail_as_single_energies) {
+    static const double energies[] = {50, 20001}, low = 50;
+    skg_section_table table = {.count = 2, .energy_kev = energies}, one = {.count = 1, .energy_kev = &low};
+    skg_material *iron = NULL, *unknown = NULL;
+    double found[2];
+    ck_skg(skg_material_create_element(26, &iron));
+    ck_skg(skg_material_create_formula("FeO", 0, &unknown));
+    ck_skg_fails(skg_attenuation_tabulate(iron, &table, found), SKG_ERR_MATERIAL, "1 to 20000 keV");
+    ck_skg_fails(skg_attenuation_tabulate(unknown, &one, found), SKG_ERR_MATERIAL, "density");
+    skg_section_table_release(&table);
+    skg_section_table_release(&one);
+    skg_material_release(&iron);
+    skg_material_release(&unknown);
+}
+END_TEST
+
 enum { THREADS = 8, ENERGIES = 500 };
 
 static void *look_up(void *place) {
@@ -154,6 +195,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, at_an_edge_the_value_above_counts);
     tcase_add_test(tests, pairs_begin_at_their_threshold);
     tcase_add_test(tests, energies_outside_are_refused);
+    tcase_add_test(tests, tables_of_materials_have_the_bits_of_single_energies);
+    tcase_add_test(tests, tables_of_materials_fail_as_single_energies);
     tcase_add_test(tests, threads_get_the_same_bits);
 }
 
