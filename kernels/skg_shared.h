@@ -31,7 +31,7 @@
 #define SKG_MOST_BANDS 512
 #define SKG_CHUNK 1024
 
-/* How many rows a work-item of the source plane's kernel draws. */
+/* Rows that the kernel of the source plane draws or skips together. */
 #define SKG_SOURCE_ROWS 32
 
 /* The table `used` of a raster: for each copy whether it counts; the counter of claims; then for each plane the extent

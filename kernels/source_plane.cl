@@ -59,20 +59,42 @@ static int skg_passed(const skg_cut *cut, skg_real i) {
     return cut->front ? i >= cut->x : skg_beside(cut, i) >= 0;
 }
 
-/* Columns x to y - 1, outside which every line passes both cuts on the same side; the whole row if in doubt. */
-static int2 skg_columns_between(const skg_cut *a, const skg_cut *b, int left, int right) {
-    const skg_real first = (skg_real)left, end = (skg_real)right;
-    if (!(a->pt * b->pt > 0)) return (int2)(left, right);
+/* Whether no row from first to last separates the corners: each corner changes its class at one row at most. */
+static int skg_is_aside(const skg_corner *k, int first, int last) {
+    const int below = skg_below(&k[0], (skg_real)first);
+    int same = 1;
+    for (int c = 0; c < 3; c++)
+        same &= below == skg_below(&k[c], (skg_real)first) && below == skg_below(&k[c], (skg_real)last);
+    return same;
+}
+
+/* The cuts of row j: of the edges that go up and down in the order of the corners. 0 if there are none. */
+static int skg_cut_row(const skg_corner *k, skg_real j, skg_cut *up, skg_cut *down) {
+    const int below[3] = {skg_below(&k[0], j), skg_below(&k[1], j), skg_below(&k[2], j)};
+    for (int e = 0; e < 3; e++) {
+        const int next = e == 2 ? 0 : e + 1;
+        if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, up);
+        if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, down);
+    }
+    return below[0] != below[1] || below[1] != below[2];
+}
+
+/* Columns x to y - 1. Every line outside passes both cuts on the same side; if z is 1, because one cut is behind the source,
+ * every line from x to y - 2 does. They have a margin, and if in doubt, no column is left out. */
+static int4 skg_columns_between(const skg_cut *a, const skg_cut *b, int left, int right) {
+    const skg_real first = (skg_real)left, end = (skg_real)right, sides = a->pt * b->pt;
+    if (!(sides > 0 || sides < 0)) return (int4)(left, right, 0, 0);
     const skg_real xa = a->front ? a->x : a->px / a->pt, xb = b->front ? b->x : b->px / b->pt;
     skg_real low = xa < xb ? xa : xb, high = xa < xb ? xb : xa;
     const skg_real margin = 2 + (fabs(low) + fabs(high)) * (skg_real)0x1p-12f;
-    low -= margin;
-    high += margin;
+    low += sides > 0 ? -margin : margin;
+    high += sides > 0 ? margin : -margin;
+    if (sides < 0 && !(low < high)) return (int4)(left, right, 0, 0);
     low = low > first ? low : first;
     low = low < end ? low : end;
     high = high > first ? high : first;
     high = high < end ? high : end;
-    return (int2)((int)low, (int)high == right ? right : (int)high + 1);
+    return (int4)((int)low, (int)high == right ? right : (int)high + 1, sides < 0, 0);
 }
 
 /* r of the hit between the cuts, clamped to the path. */
@@ -95,12 +117,12 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
     skg_deposit_global(sums + ((row) * frame.stride + (column)), frame.plane, contributions, &range, q, factor)
 #endif
 
-/* Each work-item takes SKG_SOURCE_ROWS rows of one triangle. */
+/* Each work-item takes every get_global_size(1)-th block of SKG_SOURCE_ROWS rows of one triangle. */
 __kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corners,
                                __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                __global const int *blocks, __global const skg_real *vertices,
                                SKG_SOURCE_ARGUMENTS) {
-    const int triangle = (int)get_global_id(0), first = SKG_SOURCE_ROWS * (int)get_global_id(1);
+    const int triangle = (int)get_global_id(0);
     if (triangle >= frame.triangles) return;
     skg_range range;
     skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
@@ -114,25 +136,25 @@ __kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corner
     skg_corner_of(p, vertices, corner[0], a, &k[0]);
     skg_corner_of(p, vertices, corner[1], b, &k[1]);
     skg_corner_of(p, vertices, corner[2], c, &k[2]);
-    const int end = min(first + SKG_SOURCE_ROWS, frame.rows);
-    for (int row = first; row < end; row++) {
-        const skg_real j = (skg_real)(row - range.pixel_j);
-        const int below[3] = {skg_below(&k[0], j), skg_below(&k[1], j), skg_below(&k[2], j)};
-        if (below[0] == below[1] && below[1] == below[2]) continue;
-        skg_cut up, down; /* the edges that go up and down, in the order of the corners */
-        for (int e = 0; e < 3; e++) {
-            const int next = e == 2 ? 0 : e + 1;
-            if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, &up);
-            if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, &down);
-        }
-        const int2 columns = skg_columns_between(&up, &down, -range.pixel_i, frame.columns - range.pixel_i);
-        for (int column = columns.x; column < columns.y; column++) {
-            const skg_real i = (skg_real)column;
-            const int passed = skg_passed(&down, i);
-            if (passed == skg_passed(&up, i)) continue;
-            const skg_real r = skg_depth_between(&down, &up, i, p->reference);
-            SKG_SOURCE_HIT(row, range.pixel_i + column, r / p->reference,
-                           (passed != 0) == (range.turned == 0) ? 1 : -1);
+    const int left = -range.pixel_i, right = frame.columns + left;
+    if (skg_is_aside(k, -range.pixel_j, frame.rows - 1 - range.pixel_j)) return;
+    for (int block = (int)get_global_id(1); SKG_SOURCE_ROWS * block < frame.rows; block += (int)get_global_size(1)) {
+        const int first = SKG_SOURCE_ROWS * block, end = min(first + SKG_SOURCE_ROWS, frame.rows);
+        if (skg_is_aside(k, first - range.pixel_j, end - 1 - range.pixel_j)) continue;
+        for (int row = first; row < end; row++) {
+            skg_cut up, down;
+            if (!skg_cut_row(k, (skg_real)(row - range.pixel_j), &up, &down)) continue;
+            const int4 columns = skg_columns_between(&up, &down, left, right);
+            const int last = columns.z ? right : columns.y;
+            for (int column = columns.z ? left : columns.x; column < last; column++) {
+                if (columns.z && column == columns.x) column = max(column, columns.y - 1);
+                const skg_real i = (skg_real)column;
+                const int passed = skg_passed(&down, i);
+                if (passed == skg_passed(&up, i)) continue;
+                const skg_real r = skg_depth_between(&down, &up, i, p->reference);
+                SKG_SOURCE_HIT(row, range.pixel_i + column, r / p->reference,
+                               (passed != 0) == (range.turned == 0) ? 1 : -1);
+            }
         }
     }
 }

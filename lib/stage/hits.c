@@ -162,9 +162,8 @@ static skg_status list_hits_at_source(const hits_run *run, cl_int doing) {
         SKG_ARGUMENT(HITS_SOURCE_PLANE, vertices, run->geometry->offsets.memory),
         LIST_ARGUMENTS(HITS_SOURCE_PLANE, run->memory, window, doing),
     };
-    const size_t rows = (size_t)run->raster->frame.rows;
     return list_with(run, "skg_hits_source_plane", SKG_HITS_SOURCE_PLANE_ARGUMENTS, arguments,
-                     run->raster->frame.triangles, (rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS);
+                     run->raster->frame.triangles, skg_raster_source_bands(run->raster));
 }
 
 static skg_status list_all(const hits_run *run, cl_int doing) {

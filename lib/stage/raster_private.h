@@ -44,4 +44,8 @@ int64_t skg_raster_sum_bytes(const skg_raster *raster);
 skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,
                            int64_t bytes);
 
+/* Into how many work-items the kernel of the source plane divides a triangle: on a CPU few, because most triangles are far from
+ * the source and each work-item has to find that out. */
+size_t skg_raster_source_bands(const skg_raster *raster);
+
 #endif

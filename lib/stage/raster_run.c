@@ -174,6 +174,13 @@ static skg_status run_half(skg_raster *raster, const skg_geometry *g, skg_stage_
     return run(raster, SKG_RASTER_DRAW, "raster", triangle_groups(raster), GROUP, log);
 }
 
+size_t skg_raster_source_bands(const skg_raster *raster) {
+    const skg_device_info *device = &raster->context->device->info;
+    const size_t most = ((size_t)raster->frame.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS;
+    const size_t enough = 2 * (size_t)device->compute_units;
+    return device->is_gpu || most < enough ? most : enough;
+}
+
 static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     cl_kernel kernel = raster->kernels[SKG_RASTER_SOURCE];
     const skg_argument arguments[] = {
@@ -183,8 +190,7 @@ static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stag
         SKG_ARGUMENT(SOURCE_PLANE, sums, raster->sums.memory),
     };
     const size_t local[2] = {GROUP, 1};
-    const size_t global[2] = {triangle_groups(raster) * GROUP,
-                              ((size_t)raster->frame.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS};
+    const size_t global[2] = {triangle_groups(raster) * GROUP, skg_raster_source_bands(raster)};
     SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
     return skg_kernel_run(raster->context, kernel, "source plane", 2, global, local, log);
 }

@@ -248,6 +248,38 @@ START_TEST(source_inside) {
 }
 END_TEST
 
+/* Turned faces cross the source's plane: of their rows and columns, those on both sides of a gap are hit. */
+START_TEST(turned_rods_round_the_source) {
+    shape rod = shape_box(9, 7, 300), coarse = shape_sphere(12, 6, 4);
+    for (int n = 0; n < 12; n++) {
+        skg_view view = view_make(96, 96, 4);
+        const double a = 0.5 * n, b = 0.3 + 0.9 * n;
+        const double pose[16] = {cos(b),
+                                 -sin(b) * cos(a),
+                                 sin(b) * sin(a),
+                                 0.7,
+                                 sin(b),
+                                 cos(b) * cos(a),
+                                 -cos(b) * sin(a),
+                                 -0.4,
+                                 0,
+                                 sin(a),
+                                 cos(a),
+                                 -199.5,
+                                 0,
+                                 0,
+                                 0,
+                                 1};
+        view.source[0] = view.source[1] = 0;
+        view.source[2] = -200;
+        check_cancels("rod", &view, &rod, pose, 1);
+        check_cancels("few faces", &view, &coarse, pose, 1);
+    }
+    shape_free(&rod);
+    shape_free(&coarse);
+}
+END_TEST
+
 /* --- truth ----------------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -387,6 +419,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, edges_on_pixel_centres);
     tcase_add_test(tests, slivers_and_dust);
     tcase_add_test(tests, source_inside);
+    tcase_add_test(tests, turned_rods_round_the_source);
     tcase_add_test(tests, lengths_are_those_of_the_referee);
     tcase_add_test(tests, plates_in_series_add_up);
     tcase_add_test(tests, vertex_that_is_not_finite);
