@@ -54,7 +54,6 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
     machine->context = machine->rasters.context = context;
     SKG_TRY(make_geometry(recipe, machine));
     SKG_TRY(make_detector(recipe, options, machine));
-    SKG_TRY(make_attenuation(recipe, context, &machine->images));
     SKG_TRY(make_lengths(recipe, machine));
     SKG_TRY(skg_attenuator_create(context, &machine->attenuator));
     SKG_TRY(
@@ -64,6 +63,10 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
                                    skg_recipe_most_fine(recipe) * recipe->view.rows, &machine->pass));
     machine->pass.placement = &machine->placement;
     return SKG_OK;
+}
+
+skg_status skg_machine_complete(const skg_recipe *recipe, skg_machine *machine) {
+    return make_attenuation(recipe, machine->context, &machine->images);
 }
 
 skg_status skg_machine_renew(const skg_recipe *recipe, skg_machine *machine) {

@@ -7,36 +7,43 @@
 #include "plan/effects.h"
 #include "plan/overlaps.h"
 
-/* Finds overlaps while programs are loaded, and warns of them. */
-static skg_status find_overlaps(skg_plan *plan) {
-    skg_mesh_nesting *nestings = NULL;
+/* Finds overlaps while programs are loaded and nodes are searched. */
+static skg_status find_overlaps(skg_plan *plan, skg_plan_overlaps *found) {
     skg_frame_expect(plan->recipe, &plan->machine);
     skg_programs_load(plan->context);
-    skg_status status = skg_plan_overlaps_find(plan->recipe, &plan->outcome, &nestings);
+    const skg_status status = skg_plan_overlaps_find(plan->recipe, found);
     skg_programs_wait(plan->context);
-    if (status == SKG_OK)
-        status = skg_plan_overlaps_warn(plan->recipe, plan->context, &plan->outcome, nestings);
-    skg_free(&nestings);
     return status;
 }
 
-static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
-                       const skg_plan_options *given) {
+/* Completes the recipe and what follows from it. */
+static skg_status complete(skg_plan *plan, skg_plan_overlaps *found) {
     skg_machine *machine = &plan->machine;
     skg_outcome *outcome = &plan->outcome;
-    skg_plan_options options;
     skg_recipe *adapted = NULL;
-    skg_plan_options_init(&options);
-    if (given) SKG_TRY(skg_struct_read(given, "skg_plan_options", &options, sizeof options));
-    SKG_TRY(skg_recipe_create(plan->context, scene, view, spectrum, &options, &plan->recipe));
-    SKG_TRY(skg_machine_assemble(plan->context, plan->recipe, &options, machine));
+    SKG_TRY(skg_recipe_complete(plan->recipe, plan->context));
+    SKG_TRY(skg_machine_complete(plan->recipe, machine));
     SKG_TRY(skg_outcome_create(plan->recipe, outcome));
-    SKG_TRY(find_overlaps(plan));
+    SKG_TRY(skg_plan_overlaps_take(plan->recipe, plan->context, found, outcome));
     SKG_TRY(skg_frame_prepare(plan->recipe, machine, outcome));
     SKG_TRY(skg_samples_adapt(plan->recipe, machine, outcome, &adapted));
     skg_recipe_release(&plan->recipe);
     plan->recipe = adapted;
     return skg_effects_find(plan->recipe, plan->context, &machine->layers, outcome);
+}
+
+static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
+                       const skg_plan_options *given) {
+    skg_plan_options options;
+    skg_plan_overlaps found = {0};
+    skg_plan_options_init(&options);
+    if (given) SKG_TRY(skg_struct_read(given, "skg_plan_options", &options, sizeof options));
+    SKG_TRY(skg_recipe_create(plan->context, scene, view, spectrum, &options, &plan->recipe));
+    SKG_TRY(skg_machine_assemble(plan->context, plan->recipe, &options, &plan->machine));
+    skg_status status = find_overlaps(plan, &found);
+    if (status == SKG_OK) status = complete(plan, &found);
+    skg_plan_overlaps_release(&found);
+    return status;
 }
 
 skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,

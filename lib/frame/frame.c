@@ -47,13 +47,15 @@ static skg_status fill_first(const skg_recipe *recipe, const skg_machine *machin
 static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machine, const skg_pass *pass) {
     const skg_raster_options options = raster_of(recipe, machine, pass);
     const skg_sums sums = {.mixed = pass->mix.sums ? recipe->mixed : 0, .fine = pass->fine};
+    skg_attenuation shape;
     skg_image_place place = {0};
+    skg_decide_attenuation(recipe, &shape);
     SKG_TRY(skg_raster_expect(machine->context, &options));
     if (pass->priority.count) SKG_TRY(skg_hits_expect(machine->context, pass));
     const int more = skg_recipe_averages(recipe) && skg_samples_passes(&recipe->samples) > 1;
     for (place.add = 0; place.add <= more; place.add++)
-        SKG_TRY(skg_attenuate_expect(machine->attenuator, &pass->kernels, &sums, &pass->camera,
-                                     &machine->images, &place));
+        SKG_TRY(skg_attenuate_expect(machine->attenuator, &pass->kernels, &sums, &pass->camera, &shape,
+                                     recipe->model.range != NULL, &place));
     return SKG_OK;
 }
 

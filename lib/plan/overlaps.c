@@ -53,10 +53,9 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
 /* What threads share. */
 typedef struct {
     const skg_recipe *recipe;
-    skg_outcome *outcome;
-    skg_mesh_nesting *nestings; /* [meshes] */
-    skg_solid *solids;          /* [parts] */
-    double **positions;         /* [parts] */
+    skg_plan_overlaps *found;
+    skg_solid *solids;  /* [parts] */
+    double **positions; /* [parts] */
 } checking;
 
 static skg_status check_overlaps(checking *c) {
@@ -64,40 +63,44 @@ static skg_status check_overlaps(checking *c) {
     if (scene->count < 2) return SKG_OK;
     for (int64_t i = 0; i < scene->count; i++)
         SKG_TRY(place_solid(&scene->parts[i], &c->solids[i], &c->positions[i]));
-    return skg_overlaps_find(scene->count, c->solids, &c->outcome->overlap_count, &c->outcome->overlaps);
+    return skg_overlaps_find(scene->count, c->solids, &c->found->pair_count, &c->found->pairs);
 }
 
 static skg_status check_mesh(void *user, int64_t mesh) {
     checking *c = user;
-    return skg_nesting_find(c->recipe->meshes.meshes[mesh], &c->nestings[mesh], NULL);
+    return skg_nesting_find(c->recipe->meshes.meshes[mesh], &c->found->nestings[mesh], NULL);
 }
 
-skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_outcome *outcome,
-                                  skg_mesh_nesting **nestings) {
+skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_plan_overlaps *found) {
     const skg_scene *scene = recipe->scene;
     const int64_t meshes = recipe->meshes.count;
-    checking c = {.recipe = recipe, .outcome = outcome};
+    checking c = {.recipe = recipe, .found = found};
     skg_status status = SKG_OK;
-    *nestings = NULL;
+    *found = (skg_plan_overlaps){0};
     if (!recipe->options.overlaps) return SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *c.nestings, "overlap check", &c.nestings));
+    SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *found->nestings, "overlap check", &found->nestings));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.solids, "overlap check", &c.solids));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *c.positions, "overlap check", &c.positions));
     SKG_TRY_CLEANUP(skg_parallel(meshes, check_mesh, &c));
     SKG_TRY_CLEANUP(check_overlaps(&c));
-    *nestings = c.nestings, c.nestings = NULL;
 cleanup:
     for (int64_t i = 0; c.positions && i < scene->count; i++) skg_free(&c.positions[i]);
     skg_free(&c.positions);
     skg_free(&c.solids);
-    skg_free(&c.nestings);
     return status;
 }
 
-skg_status skg_plan_overlaps_warn(const skg_recipe *recipe, const skg_context *context,
-                                  const skg_outcome *outcome, const skg_mesh_nesting *nestings) {
-    if (!nestings) return SKG_OK;
-    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, nestings, recipe->scene, context));
+void skg_plan_overlaps_release(skg_plan_overlaps *found) {
+    skg_free(&found->pairs);
+    skg_free(&found->nestings);
+}
+
+skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *context,
+                                  skg_plan_overlaps *found, skg_outcome *outcome) {
+    if (!found->nestings) return SKG_OK;
+    outcome->overlap_count = found->pair_count;
+    outcome->overlaps = found->pairs, found->pairs = NULL;
+    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, found->nestings, recipe->scene, context));
     warn(recipe, context, outcome);
     return SKG_OK;
 }

@@ -4,13 +4,19 @@
 
 #include "plan/outcome.h"
 
-/* Finds overlaps and inverted components, if the options ask for it. nestings: result: [meshes], to be freed by skg_free; NULL
- * if the options do not ask. */
-skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_outcome *outcome,
-                                  skg_mesh_nesting **nestings);
+/* What the check has found. */
+typedef struct {
+    int64_t pair_count;
+    skg_overlap_pair *pairs;
+    skg_mesh_nesting *nestings; /* [meshes]; NULL: the options do not ask for the check */
+} skg_plan_overlaps;
 
-/* Warns of what was found, except for overlaps that priorities or clipping settle. */
-skg_status skg_plan_overlaps_warn(const skg_recipe *recipe, const skg_context *context,
-                                  const skg_outcome *outcome, const skg_mesh_nesting *nestings);
+/* Finds overlaps and inverted components, if the options ask for it. Release what was found also after a failure. */
+skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_plan_overlaps *found);
+void skg_plan_overlaps_release(skg_plan_overlaps *found);
+
+/* Moves the pairs to the outcome, and warns of what was found, except for overlaps that priorities or clipping settle. */
+skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *context,
+                                  skg_plan_overlaps *found, skg_outcome *outcome);
 
 #endif

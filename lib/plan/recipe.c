@@ -171,9 +171,16 @@ static skg_status choose_strategy(skg_recipe *recipe, const skg_device_info *dev
     return status;
 }
 
+/* What follows from the planes. */
+static skg_status choose_layout(skg_recipe *recipe, const skg_device_info *device) {
+    SKG_TRY(choose_mix(recipe));
+    choose_fine(recipe);
+    return choose_strategy(recipe, device);
+}
+
 static skg_status make_model(skg_recipe *recipe) {
     recipe->owns_model = 1;
-    return skg_model_create(recipe->scene, &recipe->view, recipe->spectrum, &recipe->options, &recipe->model);
+    return skg_model_begin(recipe->scene, &recipe->view, recipe->spectrum, &recipe->options, &recipe->model);
 }
 
 static skg_status decide(skg_recipe *recipe, const skg_device_info *device, const skg_spot *spot) {
@@ -189,9 +196,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(find_leaky(recipe));
     recipe->priority_possible = skg_priority_possible(recipe->scene, options->clip);
     SKG_TRY(check_half(recipe));
-    SKG_TRY(choose_mix(recipe));
-    choose_fine(recipe);
-    return choose_strategy(recipe, device);
+    return choose_layout(recipe, device);
 }
 
 /* --- life */
@@ -224,6 +229,12 @@ skg_status skg_recipe_create(const skg_context *context, skg_scene *scene, const
 cleanup:
     skg_recipe_release(&made);
     return status;
+}
+
+skg_status skg_recipe_complete(skg_recipe *recipe, const skg_context *context) {
+    int changed = 0;
+    SKG_TRY(skg_model_end(&recipe->model, &changed));
+    return changed ? choose_layout(recipe, &context->device->info) : SKG_OK;
 }
 
 /* The count of references is the one member that changes. */
@@ -275,6 +286,7 @@ skg_status skg_recipe_copy(const skg_recipe *recipe, skg_recipe **copy) {
 skg_status skg_recipe_renew(const skg_recipe *recipe, skg_recipe **renewed) {
     const skg_recipe *first = recipe;
     skg_recipe *made = NULL;
+    int changed = 0;
     skg_status status = SKG_OK;
     *renewed = NULL;
     if (recipe->model.bound > 0)
@@ -290,6 +302,7 @@ skg_status skg_recipe_renew(const skg_recipe *recipe, skg_recipe **renewed) {
     made->materials = recipe->scene->materials;
     made->model = (skg_model){0};
     SKG_TRY_CLEANUP(make_model(made));
+    SKG_TRY_CLEANUP(skg_model_end(&made->model, &changed));
     SKG_TRY_CLEANUP(choose_mix(made));
     choose_fine(made);
     *renewed = made;

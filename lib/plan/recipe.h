@@ -46,9 +46,13 @@ struct skg_recipe {
     int64_t *leaky; /* [leaky_count] numbers of the parts whose meshes are not closed */
 };
 
-/* Checks everything and decides. context: the device that frames will run on. options may be NULL. */
+/* Checks everything and decides, but for the nodes of the model, which skg_recipe_complete waits for. context: the device
+ * that frames will run on. options may be NULL. */
 skg_status skg_recipe_create(const skg_context *context, skg_scene *scene, const skg_view *view,
                              skg_spectrum *spectrum, const skg_plan_options *options, skg_recipe **recipe);
+
+/* Completes a recipe that was created. The context is that of its creation. */
+skg_status skg_recipe_complete(skg_recipe *recipe, const skg_context *context);
 skg_recipe *skg_recipe_retain(const skg_recipe *recipe);
 void skg_recipe_release(skg_recipe **recipe);
 

@@ -1,11 +1,13 @@
 #include "spectral/compress.h"
 
+#include "core/aside.h"
 #include "spectral/basis.h"
 #include "spectral/nodes.h"
 #include "spectral/quantity.h"
 #include "spectral/ranges.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The number of nodes that a plane is multiplied for, while it is not known: most beams need 8 to 24. */
@@ -17,16 +19,28 @@ static const double SHARE_OF_PLANES = 0.125;
  * points suffice for a choice; the verification uses thousands. */
 static const skg_sampling CHOICE = {.corners = 64, .draws = 160, .rays = 96, .seed = 3};
 
+/* What a model has before its planes are rewritten. */
 typedef struct {
+    int32_t planes, reserved;
+    int64_t world_plane;
+    int64_t *first_contribution;
+    skg_contribution *contributions;
+} original_planes;
+
+typedef struct skg_compressing {
     const skg_scene *scene;
-    const double *mu;
-    double tolerance;
+    double *mu;
+    double tolerance, errors;
     int is_ratio;
     skg_polychromatic beam;
     skg_ranges ranges;
     double *shares, *sums; /* [nodes][sets], [sets] */
     skg_basis basis;
+    original_planes before;
+    skg_aside aside; /* searches: */
     skg_compression found;
+    skg_status status;
+    char message[512];
 } compressing;
 
 /* Errors are relative from this transmission on. A ratio to the flat field in a world that transmits little, or behind a
@@ -181,7 +195,7 @@ cleanup:
 
 /* --- the model with fewer --- */
 
-static skg_status rewrite_contributions(const compressing *c, skg_model *model) {
+static skg_status rewrite_contributions(compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;
     const int64_t parts = c->scene->count;
     int64_t *first = NULL, count = 0;
@@ -199,8 +213,10 @@ static skg_status rewrite_contributions(const compressing *c, skg_model *model) 
                 contributions[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
     }
     first[parts] = count;
-    skg_free(&model->first_contribution);
-    skg_free(&model->contributions);
+    c->before = (original_planes){.planes = model->planes,
+                                  .world_plane = model->world_plane,
+                                  .first_contribution = model->first_contribution,
+                                  .contributions = model->contributions};
     model->first_contribution = first, model->contributions = contributions;
     first = NULL, contributions = NULL;
     int32_t world = 0;
@@ -255,30 +271,83 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     model->verified = c->found.verified;
 }
 
-skg_status skg_compress(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
-                        const double *mu, skg_model *model) {
+/* The planes from before; those of the basis go. */
+static void restore_planes(compressing *c, skg_model *model) {
+    skg_free(&model->range);
+    skg_free(&model->first_contribution);
+    skg_free(&model->contributions);
+    model->planes = c->before.planes;
+    model->world_plane = c->before.world_plane;
+    model->first_contribution = c->before.first_contribution;
+    model->contributions = c->before.contributions;
+    c->before = (original_planes){0};
+}
+
+/* --- the search beside the caller --- */
+
+static void release(compressing **compressed) {
+    compressing *c = *compressed;
+    if (!c) return;
+    skg_aside_end(&c->aside);
+    skg_ranges_release(&c->ranges);
+    skg_basis_release(&c->basis);
+    skg_nodes_release(&c->found.nodes);
+    skg_free(&c->before.first_contribution);
+    skg_free(&c->before.contributions);
+    skg_free(&c->shares);
+    skg_free(&c->sums);
+    skg_free(&c->mu);
+    skg_free(compressed);
+}
+
+static void find_nodes(void *user) {
+    compressing *c = user;
+    c->status =
+        skg_nodes_find(&c->beam, c->basis.mu, c->tolerance, c->ranges.rays, c->ranges.lengths, &c->found);
+    if (c->status != SKG_OK) snprintf(c->message, sizeof c->message, "%s", skg_last_error());
+}
+
+skg_status skg_compress_begin(const skg_scene *scene, const skg_view *view, const skg_plan_options *options,
+                              double **mu, skg_model *model) {
     const int is_ratio = skg_quantity_is_ratio(options);
-    /* A ratio to the transmission of the world and the shades has the errors of both. */
-    const double errors = is_ratio && (model->world_plane >= 0 || model->shades.count > 0) ? 2 : 1;
-    compressing c = {
-        .scene = scene, .mu = mu, .tolerance = options->tolerance / errors, .is_ratio = is_ratio};
+    compressing *c = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c.ranges));
-    add_shades(model, &c.ranges);
-    SKG_TRY_CLEANUP(describe(&c, model));
-    SKG_TRY_CLEANUP(choose_planes(&c, model));
-    SKG_TRY_CLEANUP(
-        skg_nodes_find(&c.beam, c.basis.mu, c.tolerance, c.ranges.rays, c.ranges.lengths, &c.found));
-    if (c.found.nodes.count == 0) goto cleanup;
-    c.found.bound *= errors;
-    SKG_TRY_CLEANUP(find_range(&c, model));
-    SKG_TRY_CLEANUP(rewrite_contributions(&c, model));
-    rewrite_nodes(&c, model);
+    SKG_TRY(skg_alloc(1, sizeof *c, "nodes", &c));
+    /* A ratio to the transmission of the world and the shades has the errors of both. */
+    c->errors = is_ratio && (model->world_plane >= 0 || model->shades.count > 0) ? 2 : 1;
+    c->scene = scene, c->tolerance = options->tolerance / c->errors, c->is_ratio = is_ratio;
+    c->mu = *mu, *mu = NULL;
+    SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c->ranges));
+    add_shades(model, &c->ranges);
+    SKG_TRY_CLEANUP(describe(c, model));
+    SKG_TRY_CLEANUP(choose_planes(c, model));
+    SKG_TRY_CLEANUP(find_range(c, model));
+    SKG_TRY_CLEANUP(rewrite_contributions(c, model));
+    skg_aside_begin(&c->aside, find_nodes, c);
+    model->search = c;
+    return SKG_OK;
 cleanup:
-    skg_ranges_release(&c.ranges);
-    skg_basis_release(&c.basis);
-    skg_nodes_release(&c.found.nodes);
-    skg_free(&c.shares);
-    skg_free(&c.sums);
+    release(&c);
     return status;
+}
+
+skg_status skg_compress_end(skg_model *model, int *restored) {
+    compressing *c = model->search;
+    *restored = 0;
+    if (!c) return SKG_OK;
+    skg_aside_end(&c->aside);
+    const skg_status status = c->status == SKG_OK ? SKG_OK : skg_fail(c->status, "%s", c->message);
+    if (status == SKG_OK && c->found.nodes.count > 0) {
+        c->found.bound *= c->errors;
+        rewrite_nodes(c, model);
+    } else {
+        restore_planes(c, model);
+        *restored = 1;
+    }
+    release(&model->search);
+    return status;
+}
+
+void skg_compress_drop(skg_model *model) {
+    release(&model->search);
 }

@@ -294,8 +294,8 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
     return SKG_OK;
 }
 
-skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
-                            const skg_plan_options *options, skg_model *model) {
+skg_status skg_model_begin(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
+                           const skg_plan_options *options, skg_model *model) {
     making m = {.scene = scene, .spectrum = spectrum, .options = options, .bodies = scene->count + 1};
     skg_status status = SKG_OK;
     *model = (skg_model){0};
@@ -307,7 +307,7 @@ skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const 
     SKG_TRY_CLEANUP(list_coefficients(&m, model));
     SKG_TRY_CLEANUP(weigh(&m, model));
     if (options->tolerance > 0 && !is_unweighted(&m) && model->nodes > 2 && model->materials > 0)
-        SKG_TRY_CLEANUP(skg_compress(scene, view, options, m.bases, model));
+        SKG_TRY_CLEANUP(skg_compress_begin(scene, view, options, &m.bases, model));
 cleanup:
     skg_free(&m.bins);
     skg_free(&m.mu);
@@ -317,7 +317,12 @@ cleanup:
     return status;
 }
 
+skg_status skg_model_end(skg_model *model, int *changed) {
+    return skg_compress_end(model, changed);
+}
+
 void skg_model_release(skg_model *model) {
+    skg_compress_drop(model);
     skg_free(&model->first_contribution);
     skg_free(&model->contributions);
     skg_free(&model->coefficients);

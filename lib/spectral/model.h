@@ -35,6 +35,7 @@ typedef struct {
     int32_t materials;    /* that differ: the number of planes without compression */
     /* [planes + shades.count][2] mm, the values of planes and shades for which the bound holds; NULL: any */
     double *range;
+    struct skg_compressing *search; /* for fewer nodes, under way (compress.h); NULL: none */
     double bound;     /* stated bound of the error by fewer nodes and planes; 0: every bin is used */
     int64_t verified; /* points of the range of lengths on which the bound was verified */
 } skg_model;
@@ -44,13 +45,18 @@ static inline int32_t skg_model_width(const skg_model *model) {
     return model->planes + model->shades.count;
 }
 
-/* Makes the model (create.c).
+/* Begins to make the model (create.c): its planes and contributions, the channels and the shades are known, but not yet the
+ * nodes.
  *
  * view      a compression holds for the lengths of this view and of options->views
  * options   quantity, response, world, bands, tolerance; with noise there are variances, and the weights are those of
  *           photons in a pixel, not of a ratio */
-skg_status skg_model_create(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
-                            const skg_plan_options *options, skg_model *model);
+skg_status skg_model_begin(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
+                           const skg_plan_options *options, skg_model *model);
+
+/* Completes the model. *changed: 1: planes and contributions are others than before, because fewer nodes do not meet the
+ * tolerance. */
+skg_status skg_model_end(skg_model *model, int *changed);
 void skg_model_release(skg_model *model);
 
 /* Weights of a node: layers times channels. */

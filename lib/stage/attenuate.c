@@ -238,11 +238,13 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
 
 skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,
                                 const skg_sums *sums, const skg_camera *camera,
-                                const skg_attenuation *attenuation, const skg_image_place *place) {
+                                const skg_attenuation *attenuation, int32_t ranged,
+                                const skg_image_place *place) {
     const skg_raster raster = {.context = attenuator->context, .options.kernels = *kernels};
     skg_sums own = *sums;
     own.raster = &raster;
-    const kernel_key key = key_of(&own, camera, attenuation, place);
+    kernel_key key = key_of(&own, camera, attenuation, place);
+    key.ranged = ranged;
     return get_program(attenuator, &key, NULL);
 }
 

@@ -81,10 +81,11 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
 
 /* Expects the program of skg_attenuate (skg_programs_load) with sums of rasters that these kernels make. sums: without a
- * raster. */
+ * raster; attenuation: its shape; ranged: 1: it will have a range. */
 skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,
                                 const skg_sums *sums, const skg_camera *camera,
-                                const skg_attenuation *attenuation, const skg_image_place *place);
+                                const skg_attenuation *attenuation, int32_t ranged,
+                                const skg_image_place *place);
 
 /* Enqueues the flat field: what is shown without parts and noise. sums: of a frame of the same shape; they are not
  * read. */
