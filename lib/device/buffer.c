@@ -4,7 +4,7 @@
 #include <inttypes.h>
 
 /* Makes a buffer in the place of what there is. data: its contents; NULL: none. */
-static skg_status create(const skg_device *device, int64_t bytes, cl_mem_flags flags, const void *data,
+static skg_status create(skg_device *device, int64_t bytes, cl_mem_flags flags, const void *data,
                          const char *what, skg_buffer *buffer) {
     if (bytes > device->info.max_allocation)
         return skg_fail(SKG_ERR_DEVICE_MEMORY,
@@ -14,7 +14,7 @@ static skg_status create(const skg_device *device, int64_t bytes, cl_mem_flags f
     skg_buffer_release(buffer);
     cl_int code = CL_SUCCESS;
     /* OpenCL copies the data, and takes no pointer to const. */
-    cl_mem memory = data ? NULL : skg_pages_buffer(device, bytes, flags);
+    cl_mem memory = data ? NULL : skg_pages_take(device, bytes, flags);
     if (!memory) memory = clCreateBuffer(device->cl, flags, (size_t)bytes, (void *)(uintptr_t)data, &code);
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clCreateBuffer", __FILE__, __LINE__);
@@ -24,6 +24,15 @@ static skg_status create(const skg_device *device, int64_t bytes, cl_mem_flags f
     buffer->memory = memory;
     buffer->bytes = bytes;
     return SKG_OK;
+}
+
+void skg_buffer_expect(skg_context *context, int64_t bytes) {
+    skg_pages_drop(context->device);
+    context->device->expected_bytes = bytes;
+}
+
+void skg_buffer_forget(skg_context *context) {
+    skg_pages_drop(context->device);
 }
 
 skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t bytes, cl_mem_flags flags,

@@ -1,6 +1,7 @@
 #include "core/names.h"
 #include "core/plain.h"
 #include "device/device.h"
+#include "device/pages.h"
 #include "device/program.h"
 #include "device/start.h"
 
@@ -232,6 +233,7 @@ void skg_context_release(skg_context **context) {
     skg_device *device = last->device;
     int ours = last->process == (int64_t)getpid(); /* a child process must not call OpenCL */
     skg_programs_release(device, ours);
+    skg_pages_drop(device);
     if (ours && device->queue) clReleaseCommandQueue(device->queue);
     if (ours && device->cl) clReleaseContext(device->cl);
     if (ours && device->id) clReleaseDevice(device->id); /* does nothing unless it is a sub-device */

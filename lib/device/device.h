@@ -11,6 +11,7 @@
 #include <skiagraph/opencl.h>
 
 struct skg_program;
+struct skg_pages;
 
 typedef struct skg_device {
     cl_platform_id platform;
@@ -21,14 +22,15 @@ typedef struct skg_device {
     skg_device_info info;
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
-    skg_aside loading;            /* of expected programs */
+    skg_aside loading;            /* of what is expected */
+    struct skg_pages *pages;      /* for the expected buffer; NULL: none */
+    int64_t expected_bytes;       /* of that buffer; 0: none */
     int64_t builds;        /* programs compiled so far; a second scene with the same effects adds none */
     int64_t launched;      /* programs that there were when a job was last complete; later ones may be new */
     int64_t loads;         /* programs taken from the user's folder so far */
     skg_digest identity;   /* of the device and its driver */
     char *store;           /* folder in which compiled programs are kept; "": none */
     int32_t caches;        /* 1: the driver keeps compiled kernels itself */
-    int32_t is_cpu;        /* 1: a CPU, whose buffers lie in the memory of the host */
     int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
     uint32_t passed;       /* bit n: test n of lib/trial */
     int32_t compile_noted; /* 1: the log has been told that kernels are compiled */
@@ -67,14 +69,15 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 
 /* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1 ...").
  * It comes from the cache of the context or is built. The cache owns it; do not release it. If it does not
- * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only expected (skg_programs_load). */
+ * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only expected (skg_expected_begin). */
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program);
 
-/* Begins to load those of the expected programs that the user's folder has, in a thread of its own, until skg_programs_wait.
- * Meanwhile the context must not be used otherwise. What cannot be loaded is left to skg_program_get, and its errors too. */
-void skg_programs_load(skg_context *context);
-void skg_programs_wait(skg_context *context);
+/* Begins to load those of the expected programs that the user's folder has, and to enter the memory of the expected buffer, in
+ * a thread of its own, until skg_expected_wait. Meanwhile the context must not be used otherwise. What cannot be had is left
+ * to skg_program_get and skg_buffer_reserve, and its errors too. */
+void skg_expected_begin(skg_context *context);
+void skg_expected_wait(skg_context *context);
 
 /* To be called when a job is done: the programs have been launched, and are kept in the user's folder. */
 void skg_programs_launched(skg_context *context);
@@ -98,6 +101,10 @@ typedef struct {
 skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t bytes, cl_mem_flags flags,
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
+
+/* Expects a buffer of so many bytes without contents (skg_expected_begin), until skg_buffer_forget. */
+void skg_buffer_expect(skg_context *context, int64_t bytes);
+void skg_buffer_forget(skg_context *context);
 
 /* Makes a buffer that kernels read, with these bytes in it. The queue is not used, so nothing is waited for. */
 skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *data, const char *what,

@@ -101,13 +101,10 @@ static int has_cache(cl_platform_id platform) {
 
 skg_status skg_device_identify(skg_device *device) {
     char path[SKG_STORE_PATH];
-    cl_device_type type = 0;
     skg_store_find(path);
     /* Oclgrind compiles with the options of its command line, which nobody else knows. */
     device->simulates = skg_platform_is(device->platform, "Oclgrind");
     if (device->simulates) path[0] = '\0';
-    if (clGetDeviceInfo(device->id, CL_DEVICE_TYPE, sizeof type, &type, NULL) != CL_SUCCESS) type = 0;
-    device->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0 && !device->simulates;
     device->identity = skg_identity_of(device->platform, device->id);
     device->caches = has_cache(device->platform);
     return skg_copy_text(path, &device->store);

@@ -1,34 +1,21 @@
-#define _GNU_SOURCE /* madvise, MAP_ANONYMOUS */
+#define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include "device/pages.h"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
-/* Buffers from half a huge page on: with smaller ones, more memory is cleared than is entered page by page. */
-enum { HUGE_PAGE = 1 << 21, LEAST = HUGE_PAGE / 2 };
-
-typedef struct {
-    void *start;
+/* Mapped, so that it goes back to the system with the buffer. */
+struct skg_pages {
+    char *start;
     size_t bytes;
-} pages;
+};
 
-/* Maps whole huge pages. What is mapped beside them to align them is given back. */
-static int map(int64_t bytes, pages *made) {
-    const size_t page = HUGE_PAGE, wanted = ((size_t)bytes + page - 1) / page * page;
-    char *start = mmap(NULL, wanted + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (start == MAP_FAILED) return 0;
-    const size_t before = (page - (uintptr_t)start % page) % page;
-    if (before > 0) munmap(start, before);
-    munmap(start + before + wanted, page - before);
-    *made = (pages){start + before, wanted};
-#ifdef MADV_HUGEPAGE
-    (void)madvise(made->start, wanted, MADV_HUGEPAGE); /* a wish; nothing depends on it */
-#endif
-    return 1;
-}
+/* Less is not worth a mapping of its own; much more may hold pages that no frame writes to. */
+static const int64_t LEAST_BYTES = 1 << 20, MOST_BYTES = 64 << 20;
 
-static void drop(pages *mapped) {
-    munmap(mapped->start, mapped->bytes);
-    skg_free(&mapped);
+static void drop(struct skg_pages *pages) {
+    if (pages->start) munmap(pages->start, pages->bytes);
+    skg_free(&pages);
 }
 
 static void CL_CALLBACK dropped(cl_mem memory, void *user) {
@@ -36,20 +23,44 @@ static void CL_CALLBACK dropped(cl_mem memory, void *user) {
     drop(user);
 }
 
-cl_mem skg_pages_buffer(const skg_device *device, int64_t bytes, cl_mem_flags flags) {
-    pages *mapped = NULL;
+int skg_pages_wanted(const skg_device *device) {
+    return device->info.is_cpu && !device->simulates && !device->pages &&
+           device->expected_bytes >= LEAST_BYTES && device->expected_bytes <= MOST_BYTES;
+}
+
+void skg_pages_enter(skg_device *device) {
+    struct skg_pages *pages = NULL;
+    const long page = sysconf(_SC_PAGESIZE);
+    const size_t bytes = (size_t)device->expected_bytes;
+    if (!skg_pages_wanted(device) || page < 1) return;
+    if (skg_alloc(1, sizeof *pages, "pages", &pages) != SKG_OK) return;
+    char *start = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED) {
+        drop(pages);
+        return;
+    }
+    for (size_t at = 0; at < bytes; at += (size_t)page) ((volatile char *)start)[at] = 0;
+    *pages = (struct skg_pages){start, bytes};
+    device->pages = pages;
+}
+
+cl_mem skg_pages_take(skg_device *device, int64_t bytes, cl_mem_flags flags) {
+    struct skg_pages *pages = device->pages;
     cl_int code = CL_SUCCESS;
-    if (!device->is_cpu || bytes < LEAST) return NULL;
-    if (skg_alloc(1, sizeof *mapped, "pages", &mapped) != SKG_OK) return NULL;
-    if (!map(bytes, mapped)) {
-        skg_free(&mapped);
+    if (!pages || pages->bytes != (size_t)bytes) return NULL;
+    cl_mem memory =
+        clCreateBuffer(device->cl, flags | CL_MEM_USE_HOST_PTR, (size_t)bytes, pages->start, &code);
+    if (code != CL_SUCCESS) return NULL;
+    if (clSetMemObjectDestructorCallback(memory, dropped, pages) != CL_SUCCESS) {
+        clReleaseMemObject(memory);
         return NULL;
     }
-    cl_mem memory =
-        clCreateBuffer(device->cl, flags | CL_MEM_USE_HOST_PTR, (size_t)bytes, mapped->start, &code);
-    if (code == CL_SUCCESS && clSetMemObjectDestructorCallback(memory, dropped, mapped) == CL_SUCCESS)
-        return memory;
-    if (code == CL_SUCCESS) clReleaseMemObject(memory);
-    drop(mapped);
-    return NULL;
+    device->pages = NULL;
+    return memory;
+}
+
+void skg_pages_drop(skg_device *device) {
+    if (device->pages) drop(device->pages);
+    device->pages = NULL;
+    device->expected_bytes = 0;
 }

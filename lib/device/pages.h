@@ -1,13 +1,21 @@
-/* Huge pages for the buffers of a CPU. Private to lib/device. */
+/* Memory for a buffer of a CPU, entered before the first frame needs it. Private to lib/device. */
 #ifndef SKG_PAGES_H
 #define SKG_PAGES_H
 
 #include "device/device.h"
 
-/* Makes a large buffer of a CPU in memory of our own that asks for huge pages. In a driver's own memory the first frame
- * enters each page of 4 KiB by itself: 5 to 9 ms for 16 MiB of accumulators, and 0.8 ms with huge pages (EPYC, Linux 6.18).
- * OpenCL drops the memory with the buffer. NULL: the buffer is small, the device is no CPU, or there is no such memory;
- * then OpenCL allocates. */
-cl_mem skg_pages_buffer(const skg_device *device, int64_t bytes, cl_mem_flags flags);
+/* 1: skg_pages_enter has something to do. */
+int skg_pages_wanted(const skg_device *device);
+
+/* Allocates what skg_buffer_expect has asked for, and writes to each of its pages: the system clears a page when it is first
+ * written, which takes longer than a whole frame for 16 MiB of accumulators (4 to 6 ms on an EPYC with Linux 6.18). */
+void skg_pages_enter(skg_device *device);
+
+/* Makes a buffer with these flags in that memory, if it has this size. OpenCL drops the memory with the buffer. NULL: there is
+ * none, and OpenCL allocates. */
+cl_mem skg_pages_take(skg_device *device, int64_t bytes, cl_mem_flags flags);
+
+/* Frees the memory if no buffer has taken it. */
+void skg_pages_drop(skg_device *device);
 
 #endif

@@ -1,5 +1,6 @@
 #include "device/program.h"
 #include "device/binaries.h"
+#include "device/pages.h"
 #include "device/program_text.h"
 #include "device/signals.h"
 #include "device/watch.h"
@@ -120,23 +121,23 @@ cleanup:
     return status;
 }
 
-static void load(void *user) {
+static void prepare_expected(void *user) {
     skg_device *device = user;
     for (struct skg_program *entry = device->programs; entry; entry = entry->next)
         if (!entry->program && entry->options)
             entry->program = skg_binary_load(device, &entry->digest, entry->options);
+    skg_pages_enter(device);
 }
 
-void skg_programs_load(skg_context *context) {
+void skg_expected_begin(skg_context *context) {
     skg_device *device = context->device;
+    int expected = skg_pages_wanted(device);
     for (const struct skg_program *entry = device->programs; entry; entry = entry->next)
-        if (!entry->program && entry->options) {
-            skg_aside_begin(&device->loading, load, device);
-            return;
-        }
+        expected |= entry->options != NULL;
+    if (expected) skg_aside_begin(&device->loading, prepare_expected, device);
 }
 
-void skg_programs_wait(skg_context *context) {
+void skg_expected_wait(skg_context *context) {
     skg_device *device = context->device;
     skg_aside_end(&device->loading);
     for (struct skg_program *entry = device->programs; entry; entry = entry->next) {

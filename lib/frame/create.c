@@ -10,9 +10,9 @@
 /* Finds overlaps while programs are loaded and nodes are searched. */
 static skg_status find_overlaps(skg_plan *plan, skg_plan_overlaps *found) {
     skg_frame_expect(plan->recipe, &plan->machine);
-    skg_programs_load(plan->context);
+    skg_expected_begin(plan->context);
     const skg_status status = skg_plan_overlaps_find(plan->recipe, found);
-    skg_programs_wait(plan->context);
+    skg_expected_wait(plan->context);
     return status;
 }
 
@@ -42,6 +42,7 @@ static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, s
     SKG_TRY(skg_machine_assemble(plan->context, plan->recipe, &options, &plan->machine));
     skg_status status = find_overlaps(plan, &found);
     if (status == SKG_OK) status = complete(plan, &found);
+    skg_buffer_forget(plan->context);
     skg_plan_overlaps_release(&found);
     return status;
 }

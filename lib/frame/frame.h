@@ -16,7 +16,7 @@ typedef struct {
     skg_raster_pin *main; /* the raster of the closed parts of the last pass; the caller releases it */
 } skg_frame_means;
 
-/* Expects the programs of images of the recipe's view (skg_programs_load), as far as they are known before a frame. What fails
+/* Expects the programs of images of the recipe's view (skg_expected_begin), as far as they are known before a frame. What fails
  * here fails again, and is reported, where it is needed. */
 void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine);
 

@@ -19,7 +19,7 @@ typedef struct {
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 
 /* The program of these kernel files, behind the headers that all need, from the context's cache or built. program: NULL:
- * it is only expected (skg_programs_load). */
+ * it is only expected (skg_expected_begin). */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const char *more_options, cl_program *program);
 

@@ -30,7 +30,7 @@ typedef struct skg_raster skg_raster;
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster);
 void skg_raster_release(skg_raster **raster);
 
-/* Expects the programs of a raster with these options (skg_programs_load). */
+/* Expects the programs and the accumulators of a raster with these options (skg_expected_begin). */
 skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options);
 
 /* The kernel that projects vertices for this raster. It is of the same program, because each program takes time to compile. */

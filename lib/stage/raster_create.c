@@ -93,12 +93,15 @@ static skg_status reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes,
     return skg_buffer_reserve(raster->context, buffer, bytes, CL_MEM_READ_WRITE, what);
 }
 
+static int64_t bytes_of_sums(const skg_raster *raster) {
+    const skg_frame_args *frame = &raster->frame;
+    return (int64_t)frame->copies * frame->planes * frame->plane * skg_raster_sum_bytes(raster);
+}
+
 static skg_status allocate(skg_raster *raster) {
     const skg_frame_args *frame = &raster->frame;
     const int64_t of_int = sizeof(cl_int), tiles = (int64_t)frame->tiles_across * frame->tiles_down;
-    SKG_TRY(reserve(raster, &raster->sums,
-                    (int64_t)frame->copies * frame->planes * frame->plane * skg_raster_sum_bytes(raster),
-                    "accumulators"));
+    SKG_TRY(reserve(raster, &raster->sums, bytes_of_sums(raster), "accumulators"));
     SKG_TRY(reserve(raster, &raster->used, SKG_EXTENT(frame->copies, frame->planes) * of_int,
                     "accumulators in use"));
     if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
@@ -197,6 +200,9 @@ static skg_status compile(skg_raster *raster) {
 
 skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options) {
     skg_raster none = {.context = context, .options = *options, .expected = 1};
+    SKG_TRY(lay_out(&none));
+    /* Copies are few and small, and a frame writes to most of their pages. */
+    if (options->strategy == SKG_STRATEGY_COPIES) skg_buffer_expect(context, bytes_of_sums(&none));
     return compile(&none);
 }
 
