@@ -19,7 +19,7 @@ typedef struct {
 } work_shape;
 
 static work_shape shape_of(const skg_context *context, int32_t fine) {
-    static const work_shape gpu = {4, 1, {8, 16}}, cpu = {4, 8, {1, 16}};
+    static const work_shape gpu = {4, 1, {8, 16}}, cpu = {SKG_CPU_RUNS, SKG_CPU_STRIP, {1, 16}};
     work_shape shape = context->device->info.is_gpu ? gpu : cpu;
     if (fine > 2) shape.runs = fine;
     return shape;
@@ -32,6 +32,7 @@ typedef struct {
     skg_kernel_options options;
     int32_t planes, channels, shown, world, ratio, falloff, noise, apart, output_double, add, ranged,
         energies, mixed, fine, shades, heel, oblique, bowtie, grid;
+    int32_t copies; /* 1: the raster is one of strategy `copies` */
 } kernel_key;
 
 struct skg_attenuator {
@@ -117,7 +118,16 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
     skg_free(attenuator);
 }
 
+/* Whether the kernel is that of skg_kernels_get_first, and the raster's is in the same program. */
+static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
+    kernel_key first = {.options = key->options, .planes = 1, .channels = 1, .fine = 1, .copies = 1};
+    first.shown = SKG_SHOWN_INTENSITY;
+    return memcmp(key, &first, sizeof first) == 0 &&
+           skg_kernels_are_first(attenuator->context, &key->options);
+}
+
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
+    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
     const char *files[7] = {"exponential.clh"};
     int count = 1;
     const work_shape work = shape_of(attenuator->context, key->fine);
@@ -233,7 +243,10 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
                         .oblique = shades->oblique,
                         .bowtie = shades->bowtie,
                         .grid = shades->grid,
-                        .ranged = attenuation->range.memory != NULL};
+                        .ranged = attenuation->range.memory != NULL,
+                        .copies = raster->options.strategy == SKG_STRATEGY_COPIES &&
+                                  !raster->options.kernels.listed && !raster->options.kernels.source_plane &&
+                                  !raster->options.kernels.parallel};
 }
 
 skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,

@@ -5,6 +5,7 @@
 #include <skiagraph/plan.h>
 
 #include <stdio.h>
+#include <string.h>
 
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision) {
     const int32_t width = context->device->info.float_width;
@@ -31,6 +32,21 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
              options->source_plane != 0, options->listed != 0, options->half != 0,
              !context->device->info.is_gpu, more_options ? more_options : "");
     return skg_program_get(context, HEADERS + files, all, text, program);
+}
+
+static const skg_kernel_options first_options = {.precision = SKG_PRECISION_SINGLE, .bits = 32};
+
+int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *options) {
+    return !context->device->info.is_gpu && memcmp(options, &first_options, sizeof first_options) == 0;
+}
+
+skg_status skg_kernels_get_first(skg_context *context, cl_program *program) {
+    static const char *const files[] = {"project.cl",      "batch.clh",  "draw.clh",    "raster_copies.cl",
+                                        "exponential.clh", "planes.clh", "attenuate.cl"};
+    char more[64];
+    snprintf(more, sizeof more, "-D SKG_RUNS=%d -D SKG_STRIP=%d", SKG_CPU_RUNS, SKG_CPU_STRIP);
+    return skg_kernels_get(context, &first_options, (int32_t)(sizeof files / sizeof *files), files, more,
+                           program);
 }
 
 skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments) {

@@ -23,6 +23,16 @@ int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const char *more_options, cl_program *program);
 
+/* What a work-item of the stage `attenuate` does on a CPU: vectors of pixels together, and how often. */
+enum { SKG_CPU_RUNS = 4, SKG_CPU_STRIP = 8 };
+
+/* Whether these are the options of the program that a first image needs on a CPU. */
+int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *options);
+
+/* That program: strategy `copies`, and the attenuation of one plane. Both together take less time to compile than two programs,
+ * because a driver reads its own header for each. */
+skg_status skg_kernels_get_first(skg_context *context, cl_program *program);
+
 /* One argument of a kernel: its position, by the name that kernels/arguments.h gives it, and its value. */
 typedef struct {
     cl_uint position;

@@ -162,6 +162,13 @@ static skg_status compile_files(skg_raster *raster, int32_t files, const char *c
     return SKG_OK;
 }
 
+static skg_status compile_copies(skg_raster *raster) {
+    cl_program program = NULL;
+    SKG_TRY(skg_kernels_get_first(raster->context, &program));
+    SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
+    return skg_kernel_create(program, "skg_raster_copies", &raster->kernels[SKG_RASTER_DRAW]);
+}
+
 static skg_status compile_strategy(skg_raster *raster) {
     static const char *const half[] = {"pixel.clh", "half.cl"};
     static const char *const copies[] = {"batch.clh", "draw.clh", "raster_copies.cl"};
@@ -180,7 +187,9 @@ static skg_status compile_strategy(skg_raster *raster) {
                                             {SKG_RASTER_DRAW, "skg_raster_bands"}};
     if (raster->options.kernels.half) return compile_files(raster, 2, half, 1, of_half);
     if (raster->options.strategy == SKG_STRATEGY_COPIES)
-        return compile_files(raster, 3, copies, 1, of_copies);
+        return skg_kernels_are_first(raster->context, &raster->options.kernels)
+                   ? compile_copies(raster)
+                   : compile_files(raster, 3, copies, 1, of_copies);
     if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
         return compile_files(raster, 2, atomics, 2, of_atomics);
     return skg_raster_has_squares(raster) ? compile_files(raster, 3, squares, 4, of_squares)
