@@ -26,9 +26,9 @@ static skg_status create(skg_device *device, int64_t bytes, cl_mem_flags flags, 
     return SKG_OK;
 }
 
-void skg_buffer_expect(skg_context *context, int64_t bytes) {
+void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
     skg_pages_drop(context->device);
-    context->device->expected_bytes = bytes;
+    skg_pages_expect(context->device, bytes, count, ranges);
 }
 
 void skg_buffer_forget(skg_context *context) {

@@ -23,8 +23,7 @@ typedef struct skg_device {
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
     skg_aside loading;            /* of what is expected */
-    struct skg_pages *pages;      /* for the expected buffer; NULL: none */
-    int64_t expected_bytes;       /* of that buffer; 0: none */
+    struct skg_pages *pages;      /* of the expected buffer; NULL: none */
     int64_t builds;        /* programs compiled so far; a second scene with the same effects adds none */
     int64_t launched;      /* programs that there were when a job was last complete; later ones may be new */
     int64_t loads;         /* programs taken from the user's folder so far */
@@ -102,8 +101,14 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
 
-/* Expects a buffer of so many bytes without contents (skg_expected_begin), until skg_buffer_forget. */
-void skg_buffer_expect(skg_context *context, int64_t bytes);
+/* Bytes of a buffer: from <= byte < to. */
+typedef struct {
+    int64_t from, to;
+} skg_byte_range;
+
+/* Expects a buffer of so many bytes without contents, of which kernels will soon write these ranges (skg_expected_begin), until
+ * skg_buffer_forget. */
+void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges);
 void skg_buffer_forget(skg_context *context);
 
 /* Makes a buffer that kernels read, with these bytes in it. The queue is not used, so nothing is waited for. */

@@ -1,20 +1,22 @@
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include "device/pages.h"
 
+#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* Mapped, so that it goes back to the system with the buffer. */
+/* Less is a page; much more takes longer than all else in a plan. */
+static const int64_t LEAST_BYTES = 4 << 10, MOST_BYTES = 64 << 20;
+
 struct skg_pages {
-    char *start;
-    size_t bytes;
+    int64_t bytes, count;
+    skg_byte_range *ranges;
+    char *start; /* mapped, so that it goes back to the system with the buffer; NULL: not yet */
 };
 
-/* Less is not worth a mapping of its own; much more may hold pages that no frame writes to. */
-static const int64_t LEAST_BYTES = 1 << 20, MOST_BYTES = 64 << 20;
-
 static void drop(struct skg_pages *pages) {
-    if (pages->start) munmap(pages->start, pages->bytes);
+    if (pages->start) munmap(pages->start, (size_t)pages->bytes);
+    skg_free(&pages->ranges);
     skg_free(&pages);
 }
 
@@ -23,31 +25,38 @@ static void CL_CALLBACK dropped(cl_mem memory, void *user) {
     drop(user);
 }
 
-int skg_pages_wanted(const skg_device *device) {
-    return device->info.is_cpu && !device->simulates && !device->pages &&
-           device->expected_bytes >= LEAST_BYTES && device->expected_bytes <= MOST_BYTES;
-}
-
-void skg_pages_enter(skg_device *device) {
+void skg_pages_expect(skg_device *device, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
     struct skg_pages *pages = NULL;
-    const long page = sysconf(_SC_PAGESIZE);
-    const size_t bytes = (size_t)device->expected_bytes;
-    if (!skg_pages_wanted(device) || page < 1) return;
+    int64_t written = 0;
+    for (int64_t i = 0; i < count; i++) written += ranges[i].to - ranges[i].from;
+    if (!device->info.is_cpu || device->simulates || written < LEAST_BYTES || written > MOST_BYTES) return;
     if (skg_alloc(1, sizeof *pages, "pages", &pages) != SKG_OK) return;
-    char *start = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (start == MAP_FAILED) {
+    *pages = (struct skg_pages){.bytes = bytes, .count = count};
+    if (skg_alloc(count, sizeof *ranges, "pages", &pages->ranges) != SKG_OK) {
         drop(pages);
         return;
     }
-    for (size_t at = 0; at < bytes; at += (size_t)page) ((volatile char *)start)[at] = 0;
-    *pages = (struct skg_pages){start, bytes};
+    memcpy(pages->ranges, ranges, (size_t)count * sizeof *ranges);
     device->pages = pages;
+}
+
+void skg_pages_enter(skg_device *device) {
+    struct skg_pages *pages = device->pages;
+    const int64_t page = sysconf(_SC_PAGESIZE);
+    if (!pages || pages->start || page < 1) return;
+    char *start =
+        mmap(NULL, (size_t)pages->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED) return;
+    for (int64_t i = 0; i < pages->count; i++)
+        for (int64_t at = pages->ranges[i].from / page * page; at < pages->ranges[i].to; at += page)
+            ((volatile char *)start)[at] = 0;
+    pages->start = start;
 }
 
 cl_mem skg_pages_take(skg_device *device, int64_t bytes, cl_mem_flags flags) {
     struct skg_pages *pages = device->pages;
     cl_int code = CL_SUCCESS;
-    if (!pages || pages->bytes != (size_t)bytes) return NULL;
+    if (!pages || !pages->start || pages->bytes != bytes) return NULL;
     cl_mem memory =
         clCreateBuffer(device->cl, flags | CL_MEM_USE_HOST_PTR, (size_t)bytes, pages->start, &code);
     if (code != CL_SUCCESS) return NULL;
@@ -62,5 +71,4 @@ cl_mem skg_pages_take(skg_device *device, int64_t bytes, cl_mem_flags flags) {
 void skg_pages_drop(skg_device *device) {
     if (device->pages) drop(device->pages);
     device->pages = NULL;
-    device->expected_bytes = 0;
 }

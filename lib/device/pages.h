@@ -4,11 +4,11 @@
 
 #include "device/device.h"
 
-/* 1: skg_pages_enter has something to do. */
-int skg_pages_wanted(const skg_device *device);
+/* Plans memory for an expected buffer, of a CPU only. If that fails, nothing is expected. */
+void skg_pages_expect(skg_device *device, int64_t bytes, int64_t count, const skg_byte_range *ranges);
 
-/* Allocates what skg_buffer_expect has asked for, and writes to each of its pages: the system clears a page when it is first
- * written, which takes longer than a whole frame for 16 MiB of accumulators (4 to 6 ms on an EPYC with Linux 6.18). */
+/* Allocates the memory, and writes to each page of the ranges: the system clears a page when it is first written, which takes
+ * longer than a whole frame for 16 MiB of accumulators (4 to 6 ms on an EPYC with Linux 6.18). */
 void skg_pages_enter(skg_device *device);
 
 /* Makes a buffer with these flags in that memory, if it has this size. OpenCL drops the memory with the buffer. NULL: there is

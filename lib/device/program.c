@@ -131,7 +131,7 @@ static void prepare_expected(void *user) {
 
 void skg_expected_begin(skg_context *context) {
     skg_device *device = context->device;
-    int expected = skg_pages_wanted(device);
+    int expected = device->pages != NULL;
     for (const struct skg_program *entry = device->programs; entry; entry = entry->next)
         expected |= entry->options != NULL;
     if (expected) skg_aside_begin(&device->loading, prepare_expected, device);

@@ -50,7 +50,12 @@ static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machi
     skg_attenuation shape;
     skg_image_place place = {0};
     skg_decide_attenuation(recipe, &shape);
-    SKG_TRY(skg_raster_expect(machine->context, &options));
+    cl_int *extents = NULL;
+    SKG_TRY(skg_alloc(4 * pass->planes, sizeof *extents, "extents", &extents));
+    skg_pass_extents(pass, extents);
+    const skg_status status = skg_raster_expect(machine->context, &options, extents);
+    skg_free(&extents);
+    SKG_TRY(status);
     if (pass->priority.count) SKG_TRY(skg_hits_expect(machine->context, pass));
     const int more = skg_recipe_averages(recipe) && skg_samples_passes(&recipe->samples) > 1;
     for (place.add = 0; place.add <= more; place.add++)
@@ -109,7 +114,8 @@ static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pas
                                  skg_raster_projection(pass->main.raster), &pass->camera, pass->parts,
                                  pass->scale.scale, log));
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
-    SKG_TRY(skg_pass_extents(pass, means->staging, &extents));
+    SKG_TRY(skg_staging_take(means->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
+    skg_pass_extents(pass, extents);
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));
     if (pass->priority.count) SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, means->staging));
     if (leaky.count == 0) return SKG_OK;

@@ -123,13 +123,11 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
     return SKG_OK;
 }
 
-skg_status skg_pass_extents(const skg_pass *pass, skg_staging *staging, cl_int **extents) {
-    SKG_TRY(skg_staging_take(staging, 4 * pass->planes, sizeof **extents, "extents", extents));
+void skg_pass_extents(const skg_pass *pass, cl_int *extents) {
     for (int64_t p = 0; p < pass->scene->count; p++) {
         cl_int own[4];
         skg_extent_pixels(&pass->camera, &pass->extents[p], own);
         for (int64_t c = pass->first[p]; c < pass->first[p + 1]; c++)
-            skg_extent_join(*extents + 4 * pass->contributions[c].plane, own);
+            skg_extent_join(extents + 4 * pass->contributions[c].plane, own);
     }
-    return SKG_OK;
 }

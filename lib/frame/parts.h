@@ -11,7 +11,7 @@
 skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t number,
                          const skg_pass_memory *memory, skg_pass *pass);
 
-/* The extents of the raster's planes: what those of their parts cover. Staged, [planes][4]. */
-skg_status skg_pass_extents(const skg_pass *pass, skg_staging *staging, cl_int **extents);
+/* Widens the extents of the raster's planes, [planes][4], all 0 before, to what those of their parts cover. */
+void skg_pass_extents(const skg_pass *pass, cl_int *extents);
 
 #endif

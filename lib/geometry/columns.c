@@ -55,8 +55,9 @@ static skg_status reserve_row(search *s) {
 
 /* The first column at or behind a place; the number of columns if all are before it. */
 static int64_t first_behind(const search *s, int axis, double place) {
-    const double index = (place - s->grid->low[axis]) * s->inverse[axis];
-    int64_t k = index > 1 ? (index < (double)s->grid->side ? (int64_t)index - 1 : s->grid->side) : 0;
+    const double index = (place - s->places[axis][0]) * s->inverse[axis];
+    int64_t k = index > 0 ? (index < (double)s->grid->side ? (int64_t)index : s->grid->side) : 0;
+    while (k > 0 && s->places[axis][k - 1] >= place) k--; /* index is rounded */
     while (k < s->grid->side && s->places[axis][k] < place) k++;
     return k;
 }

@@ -207,11 +207,28 @@ static skg_status compile(skg_raster *raster) {
     return skg_kernel_create(program, "skg_source_plane", &raster->kernels[SKG_RASTER_SOURCE]);
 }
 
-skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options) {
+/* Expects the accumulators, of which a frame writes the rows of the extents. Of more copies than threads, the last finds
+ * no triangles left. */
+static skg_status expect_sums(const skg_raster *raster, const cl_int *extents) {
+    const skg_frame_args *frame = &raster->frame;
+    const int64_t threads = raster->context->device->info.compute_units, bytes = skg_raster_sum_bytes(raster);
+    const int64_t count = (frame->copies < threads ? frame->copies : threads) * frame->planes;
+    skg_byte_range *rows = NULL;
+    SKG_TRY(skg_alloc(count, sizeof *rows, "accumulators", &rows));
+    for (int64_t k = 0; k < count; k++) {
+        const cl_int *extent = extents + 4 * (k % frame->planes);
+        rows[k] = (skg_byte_range){(k * frame->plane + (int64_t)extent[0] * frame->stride) * bytes,
+                                   (k * frame->plane + (int64_t)extent[1] * frame->stride) * bytes};
+    }
+    skg_buffer_expect(raster->context, bytes_of_sums(raster), count, rows);
+    skg_free(&rows);
+    return SKG_OK;
+}
+
+skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options, const cl_int *extents) {
     skg_raster none = {.context = context, .options = *options, .expected = 1};
     SKG_TRY(lay_out(&none));
-    /* Copies are few and small, and a frame writes to most of their pages. */
-    if (options->strategy == SKG_STRATEGY_COPIES) skg_buffer_expect(context, bytes_of_sums(&none));
+    SKG_TRY(expect_sums(&none, extents));
     return compile(&none);
 }
 

@@ -151,6 +151,7 @@ static int64_t address_space_pages(void) {
 /* A buffer whose memory was entered before; one of another size; none. What is not taken is freed. */
 START_TEST(expected_buffers_hold_what_is_written_and_are_given_back) {
     enum { BYTES = 64 << 20, COUNT = BYTES / sizeof(int32_t) };
+    static const skg_byte_range written[] = {{0, 5000}, {BYTES / 2 + 1, BYTES}};
     skg_context *context = NULL;
     int32_t *values = NULL, *back = NULL;
     ck_skg(skg_context_create(NULL, &context));
@@ -162,7 +163,7 @@ START_TEST(expected_buffers_hold_what_is_written_and_are_given_back) {
         const size_t bytes = k % 3 ? BYTES : BYTES / 2 + 4;
         skg_buffer buffer = {0};
         if (k == 6) before = address_space_pages();
-        skg_buffer_expect(context, BYTES);
+        skg_buffer_expect(context, BYTES, 2, written);
         skg_expected_begin(context);
         skg_expected_wait(context);
         if (k % 2) {

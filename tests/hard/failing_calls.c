@@ -278,6 +278,9 @@ CODE(clGetProgramInfo, (cl_program program, cl_program_info what, size_t size, v
      (program, what, size, value, used))
 CODE(clGetMemObjectInfo, (cl_mem memory, cl_mem_info what, size_t size, void *value, size_t *used),
      (memory, what, size, value, used))
+CODE(clSetMemObjectDestructorCallback,
+     (cl_mem memory, void(CL_CALLBACK *callback)(cl_mem memory, void *user), void *user),
+     (memory, callback, user))
 CODE(clFlush, (cl_command_queue queue), (queue))
 CODE(clFinish, (cl_command_queue queue), (queue))
 CODE(clWaitForEvents, (cl_uint count, const cl_event *events), (count, events))
