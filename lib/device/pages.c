@@ -28,7 +28,10 @@ static void CL_CALLBACK dropped(cl_mem memory, void *user) {
 void skg_pages_expect(skg_device *device, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
     struct skg_pages *pages = NULL;
     int64_t written = 0;
-    for (int64_t i = 0; i < count; i++) written += ranges[i].to - ranges[i].from;
+    for (int64_t i = 0; i < count; i++) {
+        if (ranges[i].from < 0 || ranges[i].to > bytes) return;
+        if (ranges[i].to > ranges[i].from) written += ranges[i].to - ranges[i].from;
+    }
     if (!device->info.is_cpu || device->simulates || written < LEAST_BYTES || written > MOST_BYTES) return;
     if (skg_alloc(1, sizeof *pages, "pages", &pages) != SKG_OK) return;
     *pages = (struct skg_pages){.bytes = bytes, .count = count};

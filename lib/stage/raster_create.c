@@ -217,8 +217,9 @@ static skg_status expect_sums(const skg_raster *raster, const cl_int *extents) {
     SKG_TRY(skg_alloc(count, sizeof *rows, "accumulators", &rows));
     for (int64_t k = 0; k < count; k++) {
         const cl_int *extent = extents + 4 * (k % frame->planes);
+        const int64_t end = extent[1] < frame->rows ? extent[1] : frame->rows; /* extents are rounded up */
         rows[k] = (skg_byte_range){(k * frame->plane + (int64_t)extent[0] * frame->stride) * bytes,
-                                   (k * frame->plane + (int64_t)extent[1] * frame->stride) * bytes};
+                                   (k * frame->plane + end * frame->stride) * bytes};
     }
     skg_buffer_expect(raster->context, bytes_of_sums(raster), count, rows);
     skg_free(&rows);
