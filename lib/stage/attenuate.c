@@ -32,7 +32,6 @@ typedef struct {
     skg_kernel_options options;
     int32_t planes, channels, shown, world, ratio, falloff, noise, apart, output_double, add, ranged,
         energies, mixed, fine, shades, heel, oblique, bowtie, grid;
-    int32_t copies; /* 1: the raster is one of strategy `copies` */
 } kernel_key;
 
 struct skg_attenuator {
@@ -118,10 +117,9 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
     skg_free(attenuator);
 }
 
-/* Whether the kernel is that of skg_kernels_get_first, and the raster's is in the same program. */
+/* Whether the kernel is in the program of skg_kernels_get_first. Other rasters than that of this program share it. */
 static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
-    kernel_key first = {.options = key->options, .planes = 1, .channels = 1, .fine = 1, .copies = 1};
-    first.shown = SKG_SHOWN_INTENSITY;
+    const kernel_key first = {.options = key->options, .planes = 1, .channels = 1, .fine = 1};
     return memcmp(key, &first, sizeof first) == 0 &&
            skg_kernels_are_first(attenuator->context, &key->options);
 }
@@ -243,10 +241,7 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
                         .oblique = shades->oblique,
                         .bowtie = shades->bowtie,
                         .grid = shades->grid,
-                        .ranged = attenuation->range.memory != NULL,
-                        .copies = raster->options.strategy == SKG_STRATEGY_COPIES &&
-                                  !raster->options.kernels.listed && !raster->options.kernels.source_plane &&
-                                  !raster->options.kernels.parallel};
+                        .ranged = attenuation->range.memory != NULL};
 }
 
 skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,
