@@ -18,6 +18,12 @@
     X(RASTER_COPIES, frame) X(RASTER_COPIES, corners) X(RASTER_COPIES, projected) X(RASTER_COPIES, parts) \
     X(RASTER_COPIES, contributions) X(RASTER_COPIES, blocks) X(RASTER_COPIES, copies) X(RASTER_COPIES, used)
 
+#define SKG_ARGUMENTS_RASTER_PASSES(X) \
+    X(RASTER_PASSES, frame) X(RASTER_PASSES, corners) X(RASTER_PASSES, vertices) X(RASTER_PASSES, tables) \
+    X(RASTER_PASSES, contributions) X(RASTER_PASSES, blocks) X(RASTER_PASSES, vertex_blocks) \
+    X(RASTER_PASSES, projected) X(RASTER_PASSES, sums) X(RASTER_PASSES, used) X(RASTER_PASSES, bad_vertex) \
+    X(RASTER_PASSES, passes)
+
 #define SKG_ARGUMENTS_RASTER_ATOMICS(X) \
     X(RASTER_ATOMICS, frame) X(RASTER_ATOMICS, corners) X(RASTER_ATOMICS, projected) X(RASTER_ATOMICS, parts) \
     X(RASTER_ATOMICS, contributions) X(RASTER_ATOMICS, blocks) X(RASTER_ATOMICS, sums) X(RASTER_ATOMICS, queue)
@@ -154,7 +160,8 @@
 
 /* X(KERNEL, function) for each kernel. */
 #define SKG_KERNELS(X) \
-    X(PROJECT, skg_project) X(PLACE, skg_place) X(RASTER_COPIES, skg_raster_copies) X(RASTER_ATOMICS, skg_raster_atomics) \
+    X(PROJECT, skg_project) X(PLACE, skg_place) X(RASTER_COPIES, skg_raster_copies) \
+    X(RASTER_PASSES, skg_raster_passes) X(RASTER_ATOMICS, skg_raster_atomics) \
     X(RASTER_QUEUE, skg_raster_queue) X(TILES_COUNT, skg_tiles_count) X(TILES_SCAN, skg_tiles_scan) \
     X(TILES_FILL, skg_tiles_fill) X(RASTER_SQUARES, skg_raster_squares) X(BANDS_SORT, skg_bands_sort) \
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \

@@ -23,11 +23,11 @@ static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_p
     return *finite ? (skg_real4)(seen.x, high, seen.z, seen.w) : (skg_real4)(0, 0, 0, 1);
 }
 
-/* Vertices from this number on. */
+/* Vertices from this number on. projected: the place of the first of them. */
 SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global const skg_part_entry *parts,
                                __global const int *blocks, __global const skg_real *vertices,
                                __global skg_real4 *projected, __global int *bad_vertex) {
-    const int end = min(number + SKG_RUN, frame->vertices), all_parts = frame->parts;
+    const int first = number, end = min(number + SKG_RUN, frame->vertices), all_parts = frame->parts;
     if (number >= end) return;
     int part = skg_part_of_vertex(parts, all_parts, blocks, number);
     while (number < end && part < all_parts) {
@@ -35,7 +35,7 @@ SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global
         number = max(number, p.first_vertex);
         const int last = min(end, p.first_vertex + p.vertices);
         __global const skg_real *restrict v = vertices + 3 * (p.mesh_vertex + number - p.first_vertex);
-        __global skg_real4 *restrict out = projected + number;
+        __global skg_real4 *restrict out = projected + (number - first);
         const int count = last - number;
         int all = 1;
         for (int k = 0; k < count; k++) {
@@ -55,5 +55,6 @@ SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global
 __kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *parts, __global const int *blocks,
                           __global const skg_real *vertices, __global skg_real4 *projected,
                           __global int *bad_vertex) {
-    skg_project_run(SKG_RUN * (int)get_global_id(0), &frame, parts, blocks, vertices, projected, bad_vertex);
+    const int first = SKG_RUN * (int)get_global_id(0);
+    skg_project_run(first, &frame, parts, blocks, vertices, projected + first, bad_vertex);
 }

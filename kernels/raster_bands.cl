@@ -7,7 +7,7 @@ static void skg_draw_list(const skg_target *target, skg_batch *batch, __global c
         const int triangle = list[k];
         if (triangle >= range->end || triangle < range->first)
             skg_range_of(target->parts, skg_part_of_triangle(target->parts, blocks, triangle), range);
-        skg_submit(target, batch, range, triangle);
+        skg_submit(target, batch, range, triangle, triangle + 1);
     }
 }
 

@@ -25,21 +25,14 @@ SKG_APART void skg_draw_copy(int copy, const skg_frame_args *frame, __global con
         used[copy] = 1;
     }
     for (;;) {
-        int triangle = atomic_add(&used[frame->copies], frame->claim);
+        const int triangle = atomic_add(&used[frame->copies], frame->claim);
         if (triangle >= frame->triangles) break;
         const int end = min(triangle + frame->claim, frame->triangles);
         if (!used[copy]) {
             skg_zero(&target, used + SKG_EXTENT(frame->copies, 0), frame->planes, 0, frame->rows);
             used[copy] = 1;
         }
-        int part = skg_part_of_triangle(parts, blocks, triangle);
-        while (triangle < end) {
-            skg_range range;
-            skg_range_of(parts, part++, &range);
-            const int last = min(end, range.end);
-            if (range.contributions == 0) triangle = max(triangle, last);
-            for (; triangle < last; triangle++) skg_submit(&target, &batch, &range, triangle);
-        }
+        skg_draw_triangles(&target, &batch, blocks, triangle, end);
     }
     skg_flush(&target, &batch);
 }

@@ -1,5 +1,6 @@
 #include "frame/frame.h"
 #include "frame/parts.h"
+#include "plan/choose.h"
 #include "plan/decide.h"
 #include "plan/unseen.h"
 #include "spectral/quantity.h"
@@ -11,10 +12,25 @@ static int32_t tile_of(const skg_recipe *recipe, const skg_pass *pass) {
     return tile && pass->fine > 1 && tile < least ? (int32_t)least : tile;
 }
 
+/* How many passes the raster of this one draws together. What other kernels do to its sums needs a pass by itself. */
+static int32_t passes_together(const skg_recipe *recipe, const skg_machine *machine, int64_t number,
+                               const skg_pass *pass, int32_t *side) {
+    const skg_passes_request request = {.strategy = recipe->strategy,
+                                        .workers = machine->context->device->info.compute_units,
+                                        .passes = skg_samples_passes(&recipe->samples),
+                                        .triangles = skg_scene_triangles(recipe->scene),
+                                        .image_bytes = pass->camera.columns * pass->camera.rows *
+                                                       pass->planes * pass->kernels.bits / 8};
+    const int alone = number < 0 || recipe->leaky_count > 0 || recipe->priority_possible ||
+                      (pass->kernels.source_plane && !pass->kernels.parallel) || pass->kernels.half;
+    *side = 1;
+    return alone ? 1 : skg_passes_choose(&request, side);
+}
+
 /* The raster that a pass calls for. */
-static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine *machine,
+static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine *machine, int64_t number,
                                     const skg_pass *pass) {
-    return (skg_raster_options){
+    skg_raster_options options = {
         .kernels = pass->kernels,
         .strategy = recipe->strategy,
         .tile = tile_of(recipe, pass),
@@ -24,28 +40,36 @@ static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine 
         .planes = pass->planes,
         .triangles = machine->geometry.triangles,
     };
+    options.passes = passes_together(recipe, machine, number, pass, &options.side);
+    return options;
 }
 
 /* Pins the raster that a pass calls for, and reports its layout. */
-static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, skg_pass *pass,
+static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, int64_t number, skg_pass *pass,
                              skg_outcome *outcome) {
     skg_plan_report *report = &outcome->report;
-    const skg_raster_options options = raster_of(recipe, machine, pass);
+    const skg_raster_options options = raster_of(recipe, machine, number, pass);
     SKG_TRY(skg_raster_cache_pin(&machine->rasters, &options, &pass->main));
+    outcome->side = options.passes > 1 ? options.side : 0;
     report->plane_bits = pass->scale.bits;
     skg_raster_tiles(pass->main.raster, &report->tile_columns, &report->tile_rows, &report->tiles);
     return SKG_OK;
 }
 
+/* The number of the first pass of an image. */
+static int64_t first_of(const skg_recipe *recipe) {
+    return skg_recipe_averages(recipe) ? 0 : -1;
+}
+
 /* The first pass of an image of the recipe's view. */
 static skg_status fill_first(const skg_recipe *recipe, const skg_machine *machine, skg_pass *pass) {
     const skg_frame_work work = {.view = &recipe->view, .lengths_of = -1};
-    return skg_pass_fill(recipe, &work, skg_recipe_averages(recipe) ? 0 : -1, &machine->pass, pass);
+    return skg_pass_fill(recipe, &work, first_of(recipe), &machine->pass, pass);
 }
 
 /* The programs of one pass. */
 static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machine, const skg_pass *pass) {
-    const skg_raster_options options = raster_of(recipe, machine, pass);
+    const skg_raster_options options = raster_of(recipe, machine, first_of(recipe), pass);
     const skg_sums sums = {.mixed = pass->mix.sums ? recipe->mixed : 0, .fine = pass->fine};
     skg_attenuation shape;
     skg_image_place place = {0};
@@ -73,14 +97,16 @@ void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine) {
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome) {
     skg_pass pass;
     skg_status status = fill_first(recipe, machine, &pass);
-    if (status == SKG_OK) status = pin_raster(recipe, machine, &pass, outcome);
+    if (status == SKG_OK) status = pin_raster(recipe, machine, first_of(recipe), &pass, outcome);
     skg_pass_release(&pass);
     return status;
 }
 
-/* The sums of a pass, as the attenuation reads them. */
-static skg_sums sums_of(const skg_machine *machine, const skg_recipe *recipe, const skg_pass *pass) {
+/* The sums of a pass, as the attenuation reads them. place: of the pass among those of its raster. */
+static skg_sums sums_of(const skg_machine *machine, const skg_recipe *recipe, const skg_pass *pass,
+                        int32_t place) {
     return (skg_sums){.raster = pass->main.raster,
+                      .pass = place,
                       .scale = pass->scale.scale,
                       .mixed = pass->mix.sums ? recipe->mixed : 0,
                       .fine = pass->fine,
@@ -125,7 +151,7 @@ static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pas
 
 /* Enqueues the image of one pass from the sums. */
 static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_work *work, int64_t number,
-                                const skg_pass *pass) {
+                                const skg_pass *pass, int32_t place_of_pass) {
     const skg_recipe *recipe = means->recipe;
     skg_machine *machine = means->machine;
     const int lengths = work->lengths_of >= 0;
@@ -153,24 +179,89 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
         SKG_TRY(skg_mix_lists_send(&machine->mix_lists, pass->mix.lists,
                                    (int64_t)recipe->mixed * recipe->model.planes,
                                    recipe->options.precision == SKG_PRECISION_DOUBLE, means->staging));
-    const skg_sums sums = sums_of(machine, recipe, pass);
+    const skg_sums sums = sums_of(machine, recipe, pass, place_of_pass);
     return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, least,
                          machine->negative.memory, &noise, &place, &means->staging->log);
 }
 
-/* One pass: from the vertices to its share of the image. */
-static skg_status enqueue_pass(const skg_frame_means *means, const skg_frame_work *work, int64_t number) {
+/* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
+typedef struct {
+    skg_pass *passes;
+    int32_t count, room;
+    int64_t first;
+    skg_pass_tables tables;
+} gathered;
+
+/* Enqueues the passes that wait, from the vertices to their shares of the image. */
+static skg_status enqueue_gathered(const skg_frame_means *means, const skg_frame_work *work, gathered *g) {
+    skg_machine *machine = means->machine;
+    skg_status status = SKG_OK;
+    if (g->count) status = skg_geometry_send_passes(machine->context, &machine->geometry, &g->tables);
+    if (g->count && status == SKG_OK)
+        status =
+            skg_raster_run_passes(g->passes->main.raster, &machine->geometry, g->count, &means->staging->log);
+    for (int32_t p = 0; p < g->count; p++) {
+        if (status == SKG_OK) status = enqueue_image(means, work, g->first + p, &g->passes[p], p);
+        skg_pass_release(&g->passes[p]);
+    }
+    g->count = 0;
+    return status;
+}
+
+/* Adds a pass to those that wait, which takes it over. */
+static skg_status gather(const skg_frame_means *means, const skg_pass *pass, int64_t number, gathered *g) {
+    skg_machine *machine = means->machine;
+    cl_int *extents = NULL;
+    if (g->count == 0) {
+        g->room = skg_raster_passes(pass->main.raster);
+        g->first = number;
+        g->tables = (skg_pass_tables){0};
+        SKG_TRY(skg_realloc(g->room, sizeof *g->passes, "passes", &g->passes));
+    }
+    SKG_TRY(skg_plan_meshes_check(&means->recipe->meshes, means->recipe->scene));
+    SKG_TRY(skg_geometry_update(&machine->geometry, means->recipe->meshes.meshes, means->staging));
+    SKG_TRY(skg_geometry_weigh_pass(&machine->geometry, &pass->camera, pass->parts, pass->scale.scale,
+                                    g->room, &g->tables, means->staging));
+    SKG_TRY(skg_staging_take(means->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
+    skg_pass_extents(pass, extents);
+    SKG_TRY(skg_raster_place_pass(pass->main.raster, g->count, extents, &means->staging->log));
+    g->passes[g->count++] = *pass;
+    return SKG_OK;
+}
+
+/* One pass: from the vertices to its share of the image, or to those that wait. */
+static skg_status enqueue_pass(const skg_frame_means *means, const skg_frame_work *work, int64_t number,
+                               gathered *g) {
     skg_machine *machine = means->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_pass_fill(means->recipe, work, number, &machine->pass, &pass));
-    SKG_TRY_CLEANUP(pin_raster(means->recipe, machine, &pass, means->outcome));
+    SKG_TRY_CLEANUP(pin_raster(means->recipe, machine, number, &pass, means->outcome));
     skg_raster_pin_copy(&pass.main, means->main);
     skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, means->outcome);
+    if (g->count && (g->count == g->room || g->passes->main.raster != pass.main.raster))
+        SKG_TRY_CLEANUP(enqueue_gathered(means, work, g));
+    if (skg_raster_passes(pass.main.raster) > 1) {
+        SKG_TRY_CLEANUP(gather(means, &pass, number, g));
+        return SKG_OK;
+    }
     SKG_TRY_CLEANUP(enqueue_sums(means, &pass));
-    status = enqueue_image(means, work, number, &pass);
+    status = enqueue_image(means, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
+    return status;
+}
+
+/* The passes from number `first` on, before `end`. */
+static skg_status enqueue_passes(const skg_frame_means *means, const skg_frame_work *work, int64_t first,
+                                 int64_t end) {
+    gathered g = {0};
+    skg_status status = SKG_OK;
+    for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(enqueue_pass(means, work, p, &g));
+    status = enqueue_gathered(means, work, &g);
+cleanup:
+    for (int32_t p = 0; p < g.count; p++) skg_pass_release(&g.passes[p]);
+    skg_free(&g.passes);
     return status;
 }
 
@@ -216,14 +307,14 @@ static skg_status detect(const skg_frame_means *means, const skg_frame_work *wor
 
 skg_status skg_frame_enqueue(const skg_frame_means *means, const skg_frame_work *work) {
     const skg_recipe *recipe = means->recipe;
-    if (work->lengths_of >= 0) return enqueue_pass(means, work, -1);
-    const int64_t first = skg_recipe_averages(recipe) ? 0 : -1;
+    if (work->lengths_of >= 0) return enqueue_passes(means, work, -1, 0);
+    const int64_t first = first_of(recipe);
     const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
     skg_frame_work layered = *work;
     SKG_TRY(skg_layers_place(means->machine->context, &means->machine->layers, layers_of(means), &work->place,
                              recipe->view.columns, recipe->view.rows, recipe->model.channels,
                              &layered.place));
-    for (int64_t p = first; p < end; p++) SKG_TRY(enqueue_pass(means, &layered, p));
+    SKG_TRY(enqueue_passes(means, &layered, first, end));
     SKG_TRY(detect(means, work, &layered.place));
     if (!skg_decide_late_logarithm(recipe)) return SKG_OK;
     const skg_sums sums = layout_of(means->machine, recipe, means->main);

@@ -55,4 +55,17 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why);
 /* The most accumulators that so many planes are mixed from (spectral/mix.h). The request's own number does not count. */
 int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes);
 
+/* What decides how many passes of a frame are drawn together. */
+typedef struct {
+    int32_t strategy;    /* SKG_STRATEGY_... */
+    int32_t workers;     /* compute units */
+    int64_t passes;      /* of a frame */
+    int64_t image_bytes; /* of all accumulator planes of a pass */
+    int64_t triangles;   /* of a pass */
+} skg_passes_request;
+
+/* How many passes are drawn together, each by one worker in accumulators of its own: a multiple of the workers, or 1, with all
+ * workers at each pass. side: of these, how many a worker draws side by side. */
+int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side);
+
 #endif

@@ -60,7 +60,7 @@ typedef struct {
     int64_t stage_count;
     skg_stage_time stages[SKG_MOST_STAGES];
     int32_t warned_unseen; /* 1: that nothing falls on the detector */
-    int32_t reserved;
+    int32_t side; /* passes of a frame that a worker draws side by side; 0: all workers are at each pass */
     int32_t *
         warned_bad; /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */
 } skg_outcome;

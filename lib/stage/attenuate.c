@@ -272,6 +272,8 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     cl_kernel kernel = NULL;
     skg_ray_double ray;
     skg_ray_float ray_single;
+    skg_frame_args frame = raster->frame;
+    frame.first_plane = sums->pass * frame.planes;
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
     skg_camera_rays(camera, sums->scale, &ray);
     skg_rays_round(&ray, &ray_single);
@@ -283,7 +285,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_foot(camera) : 0);
     skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * factor);
     const skg_argument arguments[SKG_ATTENUATE_ARGUMENTS] = {
-        SKG_ARGUMENT(ATTENUATE, frame, raster->frame),
+        SKG_ARGUMENT(ATTENUATE, frame, frame),
         {SKG_ATTENUATE_ray, is_double ? sizeof ray : sizeof ray_single,
          is_double ? (const void *)&ray : (const void *)&ray_single},
         SKG_ARGUMENT(ATTENUATE, copies, raster->sums.memory),

@@ -60,6 +60,8 @@ typedef struct {
 /* The sums that a frame has left, and how they become planes. */
 typedef struct {
     const skg_raster *raster;
+    int32_t pass; /* of the raster's passes */
+    int32_t reserved;
     double scale;  /* of the sums */
     int32_t mixed; /* accumulators that planes are mixed from (spectral/mix.h); 0: accumulators are planes */
     int32_t fine;  /* pixels of the raster along each side of a pixel of the image, which shows their sum */

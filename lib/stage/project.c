@@ -252,7 +252,8 @@ static double steepest(const skg_geometry *geometry, const skg_camera *camera,
     return STEEP_SHARE * fabs(z) / last_bit;
 }
 
-static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *camera,
+/* pass: of several that are drawn together; their contributions stand one behind the other. */
+static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const skg_camera *camera,
                               const skg_geometry_part *part, double scale, skg_table_slot *slot) {
     int64_t total = 0;
     for (int64_t p = 0; p < geometry->parts; p++) total += part[p].contributions;
@@ -266,7 +267,7 @@ static skg_status fill_tables(const skg_geometry *geometry, const skg_camera *ca
         skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
         entry->vertices = (SKG_INT)geometry->layouts[geometry->mesh_of_part[p]].vertices;
         entry->steepest = steepest(geometry, camera, &part[p]);
-        entry->first_contribution = (SKG_INT)slot->contribution_count;
+        entry->first_contribution = (SKG_INT)(pass * total + slot->contribution_count);
         entry->contributions = (SKG_INT)part[p].contributions;
         if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);
         /* Kernels weigh q = r / reference; a parallel beam's q is r itself. */
@@ -286,28 +287,67 @@ static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, co
                    (size_t)a->contribution_count * contribution_size(geometry)) == 0);
 }
 
+/* Enqueues the upload of tables: [parts] entries and contributions of each pass. read: the event of the write; NULL: none. */
+static skg_status upload_tables(skg_context *context, skg_geometry *geometry, const skg_pass_tables *tables,
+                                cl_event *read) {
+    cl_command_queue queue = context->device->queue;
+    const int64_t bytes = tables->passes * tables->contribution_count * (int64_t)contribution_size(geometry);
+    const int64_t table = tables->passes * geometry->parts * (int64_t)entry_size(geometry);
+    geometry->uploaded = 0; /* if one of the two writes fails, the device has neither table */
+    SKG_TRY(skg_buffer_reserve(context, &geometry->contribution_table, bytes, CL_MEM_READ_ONLY,
+                               "contribution table"));
+    SKG_TRY(skg_buffer_reserve(context, &geometry->part_table, table, CL_MEM_READ_ONLY, "part table"));
+    if (bytes > 0)
+        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->contribution_table.memory, CL_FALSE, 0,
+                                        (size_t)bytes, tables->contributions, 0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->part_table.memory, CL_FALSE, 0, (size_t)table,
+                                    tables->entries, 0, NULL, read));
+    return SKG_OK;
+}
+
 /* Brings the frame's tables to the device where they differ from those it has. */
 skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
                               const skg_geometry_part *part, double scale) {
     const int32_t next = (geometry->slot + 1) % geometry->slot_count;
     skg_table_slot *slot = &geometry->slots[next];
-    cl_command_queue queue = context->device->queue;
     SKG_TRY(wait_for(slot));
-    SKG_TRY(fill_tables(geometry, camera, part, scale, slot));
+    SKG_TRY(fill_tables(geometry, 0, camera, part, scale, slot));
     if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
-    const size_t bytes = (size_t)slot->contribution_count * contribution_size(geometry);
-    geometry->uploaded = 0; /* if one of the two writes fails, the device has neither table */
-    SKG_TRY(skg_buffer_reserve(context, &geometry->contribution_table, (int64_t)bytes, CL_MEM_READ_ONLY,
-                               "contribution table"));
-    if (bytes > 0)
-        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->contribution_table.memory, CL_FALSE, 0, bytes,
-                                        slot->contributions, 0, NULL, NULL));
-    SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->part_table.memory, CL_FALSE, 0,
-                                    (size_t)geometry->parts * entry_size(geometry), slot->entries, 0, NULL,
-                                    &slot->read));
+    const skg_pass_tables tables = {.passes = 1,
+                                    .contribution_count = slot->contribution_count,
+                                    .entries = slot->entries,
+                                    .contributions = slot->contributions};
+    SKG_TRY(upload_tables(context, geometry, &tables, &slot->read));
     geometry->slot = next;
     geometry->uploaded = 1;
     return SKG_OK;
+}
+
+skg_status skg_geometry_weigh_pass(skg_geometry *geometry, const skg_camera *camera,
+                                   const skg_geometry_part *part, double scale, int32_t room,
+                                   skg_pass_tables *tables, skg_staging *staging) {
+    skg_table_slot *slot = &geometry->slots[(geometry->slot + 1) % geometry->slot_count];
+    const size_t table = (size_t)geometry->parts * entry_size(geometry);
+    SKG_TRY(wait_for(slot));
+    SKG_TRY(fill_tables(geometry, tables->passes, camera, part, scale, slot));
+    const size_t bytes = (size_t)slot->contribution_count * contribution_size(geometry);
+    if (tables->passes == 0) {
+        tables->contribution_count = slot->contribution_count;
+        SKG_TRY(skg_staging_take(staging, room, table, "part table", &tables->entries));
+        SKG_TRY(skg_staging_take(staging, room, bytes + 1, "contribution table", &tables->contributions));
+    }
+    if (slot->contribution_count != tables->contribution_count)
+        return skg_fail(SKG_ERR_INTERNAL, "passes with different numbers of contributions");
+    memcpy((char *)tables->entries + (size_t)tables->passes * table, slot->entries, table);
+    if (bytes > 0)
+        memcpy((char *)tables->contributions + (size_t)tables->passes * bytes, slot->contributions, bytes);
+    tables->passes++;
+    return SKG_OK;
+}
+
+skg_status skg_geometry_send_passes(skg_context *context, skg_geometry *geometry,
+                                    const skg_pass_tables *tables) {
+    return upload_tables(context, geometry, tables, NULL);
 }
 
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,

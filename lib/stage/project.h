@@ -100,6 +100,21 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
 skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
                               const skg_geometry_part *part, double scale);
 
+/* The tables of passes that are drawn together, on the host. All zero: of none. */
+typedef struct {
+    int64_t passes, contribution_count; /* of each pass */
+    void *entries, *contributions;      /* staged; one pass behind the other */
+} skg_pass_tables;
+
+/* Adds the tables of one pass to those of others that differ in their cameras and scales. There are at most `room`. */
+skg_status skg_geometry_weigh_pass(skg_geometry *geometry, const skg_camera *camera,
+                                   const skg_geometry_part *part, double scale, int32_t room,
+                                   skg_pass_tables *tables, skg_staging *staging);
+
+/* Enqueues the upload of the tables of all of them. */
+skg_status skg_geometry_send_passes(skg_context *context, skg_geometry *geometry,
+                                    const skg_pass_tables *tables);
+
 /* Bytes on the device. */
 int64_t skg_geometry_bytes(const skg_geometry *geometry);
 

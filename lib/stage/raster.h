@@ -12,16 +12,18 @@ enum { SKG_TILE_AUTO = 0, SKG_TILE_BANDS = 1, SKG_TILE_SQUARES = 2 };
 
 typedef struct {
     skg_kernel_options kernels;
-    int32_t strategy;      /* SKG_STRATEGY_COPIES, _TILES or _ATOMICS */
-    int32_t shape;         /* tiles: SKG_TILE_... */
-    int32_t tile;          /* tiles: rows of a band or side of a square, in pixels; 0: chosen here */
-    int32_t more_sums;     /* 1: other kernels add to the sums of the first copy after a frame */
+    int32_t strategy;  /* SKG_STRATEGY_COPIES, _TILES or _ATOMICS */
+    int32_t shape;     /* tiles: SKG_TILE_... */
+    int32_t tile;      /* tiles: rows of a band or side of a square, in pixels; 0: chosen here */
+    int32_t more_sums; /* 1: other kernels add to the sums of the first copy after a frame */
+    int32_t passes;    /* of a frame that are drawn together, SKG_STRATEGY_COPIES; 0 or 1: each by itself */
+    int32_t side;      /* of these, how many one worker draws side by side: 1 or 4; passes: a multiple */
     int64_t columns, rows; /* of the detector */
     int64_t planes;        /* of accumulators, >= 1 */
     int64_t triangles;     /* the most of a frame */
 } skg_raster_options;
 _Static_assert(sizeof(skg_raster_options) ==
-                   sizeof(skg_kernel_options) + 4 * sizeof(int32_t) + 4 * sizeof(int64_t),
+                   sizeof(skg_kernel_options) + 6 * sizeof(int32_t) + 4 * sizeof(int64_t),
                "options have no gaps: they are compared as bytes");
 
 typedef struct skg_raster skg_raster;
@@ -44,6 +46,16 @@ void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
  * NULL: the whole detector. */
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
                           skg_stage_log *log);
+
+/* How many passes a raster draws together: at least 1. */
+int32_t skg_raster_passes(const skg_raster *raster);
+
+/* Enqueues the upload of the extents of one of them, which must stay until the device has read them. */
+skg_status skg_raster_place_pass(skg_raster *raster, int32_t pass, const cl_int *extents, skg_stage_log *log);
+
+/* Enqueues the projection and the sums of the first `passes` of them, whose tables are uploaded (skg_geometry_send_passes). */
+skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *geometry, int32_t passes,
+                                 skg_stage_log *log);
 
 /* Enqueues the verdicts on `count` count planes (int planes[], on the device) into int verdicts[first...][1 +
  * SKG_FIRST_BAD]: how many pixels have signed hits that do not cancel, then the first of them, row * columns + column,

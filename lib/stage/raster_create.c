@@ -64,12 +64,13 @@ static skg_status lay_out(skg_raster *raster) {
     frame->rows = (SKG_INT)o->rows;
     frame->stride = (SKG_INT)skg_round_up(o->columns + SKG_SPARE_COLUMNS, 16);
     const int64_t plane = frame->stride * (o->rows + SKG_SPARE_ROWS);
-    if (plane * o->planes > INT32_MAX)
+    if (skg_raster_side(raster) * plane * o->planes > INT32_MAX)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%d planes of this detector are more than 2^31 accumulators",
                         (int)o->planes);
     frame->plane = (SKG_INT)plane;
     frame->planes = (SKG_INT)o->planes;
-    frame->copies = o->strategy == SKG_STRATEGY_COPIES ? raster->workers : 1;
+    frame->copies =
+        o->strategy == SKG_STRATEGY_COPIES && skg_raster_passes(raster) == 1 ? raster->workers : 1;
     frame->tile_columns = frame->columns;
     frame->tile_rows = frame->rows;
     if (o->strategy == SKG_STRATEGY_TILES) {
@@ -95,15 +96,17 @@ static skg_status reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes,
 
 static int64_t bytes_of_sums(const skg_raster *raster) {
     const skg_frame_args *frame = &raster->frame;
-    return (int64_t)frame->copies * frame->planes * frame->plane * skg_raster_sum_bytes(raster);
+    return (int64_t)frame->copies * skg_raster_passes(raster) * frame->planes * frame->plane *
+           skg_raster_sum_bytes(raster);
 }
 
 static skg_status allocate(skg_raster *raster) {
     const skg_frame_args *frame = &raster->frame;
     const int64_t of_int = sizeof(cl_int), tiles = (int64_t)frame->tiles_across * frame->tiles_down;
+    const int64_t planes = (int64_t)skg_raster_passes(raster) * frame->planes;
     SKG_TRY(reserve(raster, &raster->sums, bytes_of_sums(raster), "accumulators"));
-    SKG_TRY(reserve(raster, &raster->used, SKG_EXTENT(frame->copies, frame->planes) * of_int,
-                    "accumulators in use"));
+    SKG_TRY(
+        reserve(raster, &raster->used, SKG_EXTENT(frame->copies, planes) * of_int, "accumulators in use"));
     if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
         SKG_TRY(reserve(raster, &raster->queue, (2 * (int64_t)frame->queue + 2) * of_int,
                         "queue of large triangles"));
@@ -133,7 +136,8 @@ skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, c
 /* On the host the whole detector for each plane; on the device any extent, until a frame sends its own. */
 static skg_status make_extents(skg_raster *raster) {
     const skg_frame_args *frame = &raster->frame;
-    SKG_TRY(skg_alloc(8 * (int64_t)frame->planes, sizeof *raster->whole, "extents", &raster->whole));
+    SKG_TRY(skg_alloc(4 * (1 + (int64_t)skg_raster_passes(raster)) * frame->planes, sizeof *raster->whole,
+                      "extents", &raster->whole));
     raster->sent = raster->whole + 4 * frame->planes;
     for (int32_t p = 0; p < frame->planes; p++)
         raster->whole[4 * p + 1] = frame->rows, raster->whole[4 * p + 3] = frame->stride;
@@ -149,11 +153,12 @@ typedef struct {
 /* Compiles these files, the projection before them, and makes its kernel and these. */
 static skg_status compile_files(skg_raster *raster, int32_t files, const char *const *names, int kernels,
                                 const named_kernel *kernel) {
+    const char *more = skg_raster_side(raster) > 1 ? "-D SKG_SIDE=4" : NULL;
     enum { MOST = 5 };
     const char *all[MOST] = {"project.cl"};
     cl_program program = NULL;
     for (int32_t i = 0; i < files; i++) all[i + 1] = names[i];
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 1, all, NULL,
+    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 1, all, more,
                             raster->expected ? NULL : &program));
     if (raster->expected) return SKG_OK;
     SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
@@ -173,11 +178,13 @@ static skg_status compile_copies(skg_raster *raster) {
 static skg_status compile_strategy(skg_raster *raster) {
     static const char *const half[] = {"pixel.clh", "half.cl"};
     static const char *const copies[] = {"batch.clh", "draw.clh", "raster_copies.cl"};
+    static const char *const passes[] = {"batch.clh", "draw.clh", "raster_passes.cl"};
     static const char *const atomics[] = {"pixel.clh", "raster_atomics.cl"};
     static const char *const squares[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
     static const char *const bands[] = {"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"};
     static const named_kernel of_half[] = {{SKG_RASTER_DRAW, "skg_raster_half"}};
     static const named_kernel of_copies[] = {{SKG_RASTER_DRAW, "skg_raster_copies"}};
+    static const named_kernel of_passes[] = {{SKG_RASTER_DRAW, "skg_raster_passes"}};
     static const named_kernel of_atomics[] = {{SKG_RASTER_DRAW, "skg_raster_atomics"},
                                               {SKG_RASTER_LARGE, "skg_raster_queue"}};
     static const named_kernel of_squares[] = {{SKG_RASTER_COUNT, "skg_tiles_count"},
@@ -187,6 +194,7 @@ static skg_status compile_strategy(skg_raster *raster) {
     static const named_kernel of_bands[] = {{SKG_RASTER_FILL, "skg_bands_sort"},
                                             {SKG_RASTER_DRAW, "skg_raster_bands"}};
     if (raster->options.kernels.half) return compile_files(raster, 2, half, 1, of_half);
+    if (skg_raster_passes(raster) > 1) return compile_files(raster, 3, passes, 1, of_passes);
     if (raster->options.strategy == SKG_STRATEGY_COPIES)
         return skg_kernels_are_first(raster->context, &raster->options.kernels)
                    ? compile_copies(raster)
@@ -213,7 +221,8 @@ static skg_status compile(skg_raster *raster) {
 static skg_status expect_sums(const skg_raster *raster, const cl_int *extents) {
     const skg_frame_args *frame = &raster->frame;
     const int64_t threads = raster->context->device->info.compute_units, bytes = skg_raster_sum_bytes(raster);
-    const int64_t count = (frame->copies < threads ? frame->copies : threads) * frame->planes;
+    const int64_t images = (int64_t)frame->copies * skg_raster_passes(raster); /* one of the two is 1 */
+    const int64_t count = (frame->copies > 1 && images > threads ? threads : images) * frame->planes;
     skg_byte_range *rows = NULL;
     SKG_TRY(skg_alloc(count, sizeof *rows, "accumulators", &rows));
     for (int64_t k = 0; k < count; k++) {
@@ -283,6 +292,14 @@ int64_t skg_raster_bytes(const skg_raster *raster) {
     return raster->sums.bytes + raster->used.bytes + raster->scratch.bytes + raster->counts.bytes +
            raster->starts.bytes + raster->list.bytes + raster->for_all.bytes + raster->queue.bytes +
            raster->rows_bad.bytes;
+}
+
+int32_t skg_raster_passes(const skg_raster *raster) {
+    return raster->options.passes > 1 ? raster->options.passes : 1;
+}
+
+int32_t skg_raster_side(const skg_raster *raster) {
+    return raster->options.side > 1 ? raster->options.side : 1;
 }
 
 int64_t skg_raster_plane_count(const skg_raster *raster) {

@@ -22,9 +22,10 @@ struct skg_raster {
     skg_ray_float rays; /* half */
     int32_t workers;    /* persistent work-groups, if the strategy has such */
     skg_buffer sums;
-    skg_buffer used;      /* which copies count, the counter of claims, the extents of the planes */
-    cl_int *whole, *sent; /* [planes][4] extents: the whole detector; as the device has them */
-    skg_buffer scratch;   /* bands: an image for each worker */
+    skg_buffer used; /* which copies count, the counter of claims, the extents of the planes */
+    cl_int *whole,
+        *sent; /* [planes][4], [passes][planes][4] extents: the whole detector; as the device has them */
+    skg_buffer scratch; /* bands: an image for each worker; passes: projected vertices for each worker */
     skg_buffer counts, starts, list,
         for_all;         /* tiles; for bands: counters, pieces, pool, list for all bands */
     skg_buffer queue;    /* atomics: strips of large triangles */
@@ -36,6 +37,9 @@ struct skg_raster {
 
 /* Whether tiles are squares. */
 int skg_raster_has_squares(const skg_raster *raster);
+
+/* How many passes a worker draws side by side: SKG_SIDE of the kernels. */
+int32_t skg_raster_side(const skg_raster *raster);
 
 /* Bytes of an accumulator. */
 int64_t skg_raster_sum_bytes(const skg_raster *raster);

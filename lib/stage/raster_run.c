@@ -10,15 +10,18 @@ enum {
     GROUP = 64 /* local size where a work-item takes a triangle */
 };
 
-static skg_status send_extents(skg_raster *raster, const cl_int *extents, skg_stage_log *log) {
+skg_status skg_raster_place_pass(skg_raster *raster, int32_t pass, const cl_int *extents,
+                                 skg_stage_log *log) {
     const skg_frame_args *frame = &raster->frame;
     const size_t bytes = 4 * (size_t)frame->planes * sizeof *extents;
+    cl_int *sent = raster->sent + 4 * (size_t)pass * (size_t)frame->planes;
     if (!extents) extents = raster->whole;
-    if (memcmp(extents, raster->sent, bytes) == 0) return SKG_OK;
-    SKG_TRY(skg_stage_write(raster->context, "upload", raster->used.memory,
-                            SKG_EXTENT(frame->copies, 0) * (int64_t)sizeof *extents, (int64_t)bytes, extents,
-                            log));
-    memcpy(raster->sent, extents, bytes);
+    if (memcmp(extents, sent, bytes) == 0) return SKG_OK;
+    SKG_TRY(
+        skg_stage_write(raster->context, "upload", raster->used.memory,
+                        SKG_EXTENT(frame->copies, (int64_t)pass * frame->planes) * (int64_t)sizeof *extents,
+                        (int64_t)bytes, extents, log));
+    memcpy(sent, extents, bytes);
     return SKG_OK;
 }
 
@@ -42,6 +45,18 @@ static int64_t plane_bytes(const skg_raster *raster) {
     return (int64_t)raster->frame.planes * raster->frame.plane * skg_raster_sum_bytes(raster);
 }
 
+/* What the launches need to know of the scene. */
+static skg_status set_counts(skg_raster *raster, const skg_geometry *geometry) {
+    skg_frame_args *frame = &raster->frame;
+    frame->parts = (SKG_INT)geometry->parts;
+    frame->vertices = (SKG_INT)geometry->vertices;
+    frame->triangles = (SKG_INT)geometry->triangles;
+    frame->claim = (SKG_INT)skg_raster_claim(geometry->triangles, raster->workers - 1);
+    if (geometry->triangles > raster->options.triangles)
+        return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
+    return SKG_OK;
+}
+
 static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const skg_frame_args *frame = &raster->frame;
     const int64_t of_int = sizeof(cl_int);
@@ -54,6 +69,35 @@ static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stag
     SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
     if (raster->kernels[SKG_RASTER_SOURCE] || raster->options.more_sums) /* the first copy is added to */
         SKG_TRY(skg_raster_fill(raster, &raster->used, SKG_TO_ZERO, 0, of_int));
+    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
+    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
+}
+
+skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *g, int32_t passes,
+                                 skg_stage_log *log) {
+    const int64_t vertex =
+        4 * (int64_t)(g->precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float));
+    skg_frame_args *frame = &raster->frame;
+    SKG_TRY(set_counts(raster, g));
+    SKG_TRY(
+        skg_buffer_reserve(raster->context, &raster->scratch,
+                           raster->workers * skg_raster_side(raster) * (g->vertices + SKG_CPU_RUN) * vertex,
+                           CL_MEM_READ_WRITE, "projected vertices"));
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(RASTER_PASSES, frame, *frame),
+        SKG_ARGUMENT(RASTER_PASSES, corners, g->corners.memory),
+        SKG_ARGUMENT(RASTER_PASSES, vertices, g->offsets.memory),
+        SKG_ARGUMENT(RASTER_PASSES, tables, g->part_table.memory),
+        SKG_ARGUMENT(RASTER_PASSES, contributions, g->contribution_table.memory),
+        SKG_ARGUMENT(RASTER_PASSES, blocks, g->triangle_blocks.memory),
+        SKG_ARGUMENT(RASTER_PASSES, vertex_blocks, g->vertex_blocks.memory),
+        SKG_ARGUMENT(RASTER_PASSES, projected, raster->scratch.memory),
+        SKG_ARGUMENT(RASTER_PASSES, sums, raster->sums.memory),
+        SKG_ARGUMENT(RASTER_PASSES, used, raster->used.memory),
+        SKG_ARGUMENT(RASTER_PASSES, bad_vertex, g->bad.memory),
+        SKG_ARGUMENT(RASTER_PASSES, passes, passes),
+    };
+    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
     SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
     return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
 }
@@ -197,14 +241,8 @@ static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stag
 
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
                           skg_stage_log *log) {
-    skg_frame_args *frame = &raster->frame;
-    frame->parts = (SKG_INT)geometry->parts;
-    frame->vertices = (SKG_INT)geometry->vertices;
-    frame->triangles = (SKG_INT)geometry->triangles;
-    frame->claim = (SKG_INT)skg_raster_claim(geometry->triangles, raster->workers - 1);
-    if (geometry->triangles > raster->options.triangles)
-        return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
-    SKG_TRY(send_extents(raster, extents, log));
+    SKG_TRY(set_counts(raster, geometry));
+    SKG_TRY(skg_raster_place_pass(raster, 0, extents, log));
     if (raster->options.kernels.half) return run_half(raster, geometry, log);
     if (raster->options.strategy == SKG_STRATEGY_COPIES)
         SKG_TRY(run_copies(raster, geometry, log));

@@ -1,5 +1,6 @@
 #include "trial/judge.h"
 #include "frame/plan.h"
+#include "geometry/samples.h"
 #include "trial/blurs.h"
 #include "trial/exposure.h"
 #include "trial/place.h"
@@ -46,6 +47,8 @@ static int shows_lengths(skg_trial_number number) {
     case SKG_TRIAL_HEEL:
     case SKG_TRIAL_DEPTHS:
     case SKG_TRIAL_APART:
+    case SKG_TRIAL_PASSES:
+    case SKG_TRIAL_SIDE:
         return 0;
     default:
         return 1;
@@ -78,28 +81,36 @@ static skg_status render(trial_run *run) {
     return status < 0 ? status : SKG_OK;
 }
 
-/* The mean over the rays of a pixel. */
-static double mean_intensity(trial_run *run, int row, int column, const double *shares) {
-    const int p = row * (int)run->scene.view.columns + column;
-    const int side = run->scene.options.supersampling;
-    double net[2], sum = 0;
-    for (int k = 0; k < side * side; k++) {
-        const double down = (k / side + 0.5) / side - 0.5, right = (k % side + 0.5) / side - 0.5;
-        skg_trial_lengths(&run->scene, row + down, column + right, &run->surface[p], net);
-        sum += skg_trial_intensity(&run->scene, shares, net, &run->open);
+/* The mean over the samples of the source and the rays of a pixel. */
+static double mean_intensity(trial_run *run, const skg_samples *samples, int row, int column,
+                             const double *shares) {
+    skg_view *view = &run->scene.view;
+    const skg_view point = *view;
+    const int p = row * (int)view->columns + column, side = run->scene.options.supersampling;
+    double net[2], shift[2], sum = 0;
+    for (int64_t s = 0; s < samples->spot_count; s++) {
+        if (run->scene.options.spot) skg_samples_at(samples, &point, s, view->source, shift);
+        for (int k = 0; k < side * side; k++) {
+            const double down = (k / side + 0.5) / side - 0.5, right = (k % side + 0.5) / side - 0.5;
+            skg_trial_lengths(&run->scene, row + down, column + right, &run->surface[p], net);
+            sum += skg_trial_intensity(&run->scene, shares, net, &run->open);
+        }
     }
-    return sum / (side * side);
+    *view = point;
+    return sum / (double)(samples->spot_count * side * side);
 }
 
 static skg_status expect(trial_run *run) {
     const skg_trial_number number = run->scene.number;
     const int columns = (int)run->scene.view.columns;
     double shares[SKG_TRIAL_ENERGIES_MAX] = {1, 1, 1};
+    skg_samples samples;
+    SKG_TRY(skg_samples_make(run->scene.options.spot, 1, &samples));
     for (int p = 0; p < run->pixels; p++) {
         const int row = p / columns, column = p % columns;
         if (number == SKG_TRIAL_SHADES) SKG_TRY(skg_trial_shade(&run->scene, row, column, shares));
         if (number == SKG_TRIAL_HEEL) SKG_TRY(skg_trial_heel(&run->scene, row, column, shares));
-        run->shown[p] = mean_intensity(run, row, column, shares);
+        run->shown[p] = mean_intensity(run, &samples, row, column, shares);
         run->longest = fmax(run->longest, run->surface[p]);
     }
     return is_blurred(number) ? skg_trial_blur(&run->scene, run->shown, run->blurred) : SKG_OK;

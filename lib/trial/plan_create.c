@@ -35,6 +35,8 @@ static uint32_t tests_of(const skg_plan *plan, const skg_view *view) {
     if (recipe->options.precision == SKG_PRECISION_DOUBLE) tests |= UINT32_C(1) << SKG_TRIAL_DOUBLE;
     if (recipe->options.precision == SKG_PRECISION_HALF) tests |= UINT32_C(1) << SKG_TRIAL_HALF;
     if (view->projection != SKG_PROJECTION_POINT) tests |= UINT32_C(1) << SKG_TRIAL_PARALLEL;
+    if (plan->outcome.side)
+        tests |= UINT32_C(1) << (plan->outcome.side > 1 ? SKG_TRIAL_SIDE : SKG_TRIAL_PASSES);
     for (size_t i = 0; i < sizeof of_effects / sizeof *of_effects; i++)
         if (effects[of_effects[i].effect].on) tests |= UINT32_C(1) << of_effects[i].test;
     return tests;

@@ -1,4 +1,5 @@
 #include "trial/scene.h"
+#include "device/device.h"
 #include "device/verdict.h"
 
 #include <math.h>
@@ -36,6 +37,8 @@ static const skg_trial trials[SKG_TRIALS] = {
     [SKG_TRIAL_HEEL] = {"heel effect", 1e-4, 1e-4},
     [SKG_TRIAL_DEPTHS] = {"blur by depths", 1e-4, 1e-4},
     [SKG_TRIAL_APART] = {"noise power", 1e-4, 1e-4},
+    [SKG_TRIAL_PASSES] = {"extended source", 1e-4, 1e-4},
+    [SKG_TRIAL_SIDE] = {"extended source, side by side", 1e-4, 1e-4},
 };
 
 const skg_trial *skg_trial_get(skg_trial_number number) {
@@ -134,9 +137,23 @@ static void choose_options(skg_trial_scene *scene) {
     case SKG_TRIAL_RAYS:
         options->supersampling = 2;
         break;
+    case SKG_TRIAL_PASSES:
+    case SKG_TRIAL_SIDE:
+        options->strategy = SKG_STRATEGY_COPIES;
+        options->spot = &scene->spot;
+        break;
     default:
         break;
     }
+}
+
+/* As many samples as are drawn together (plan/choose.h); on a single worker PASSES draws each by itself. */
+static void choose_spot(const skg_context *context, skg_trial_scene *scene) {
+    const int32_t workers = context->device->info.compute_units;
+    skg_spot_init(&scene->spot);
+    scene->spot.shape = SKG_SPOT_RECTANGLE;
+    scene->spot.extent[0] = scene->spot.extent[1] = 2;
+    scene->spot.samples = scene->number == SKG_TRIAL_SIDE ? 4 * workers : workers;
 }
 
 skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number, int64_t pixels,
@@ -150,6 +167,7 @@ skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number,
     view->centre[2] = 200;
     view->column_step[0] = view->row_step[1] = 100.0 / (double)pixels;
     place_boxes(scene);
+    choose_spot(context, scene);
     choose_options(scene);
     SKG_TRY(skg_scene_create(context, &scene->scene));
     SKG_TRY(add_part(context, scene, 0));

@@ -34,6 +34,8 @@ typedef enum {
     SKG_TRIAL_HEEL,     /* heel effect: exposure.h */
     SKG_TRIAL_DEPTHS,   /* several blurs, added: blurs.h */
     SKG_TRIAL_APART,    /* noise with a blur of its own, added: blurs.h */
+    SKG_TRIAL_PASSES,   /* passes of a frame, each by a worker */
+    SKG_TRIAL_SIDE,     /* the same, several side by side */
     SKG_TRIALS
 } skg_trial_number;
 
@@ -68,6 +70,7 @@ typedef struct {
     skg_dqe dqe;
     double per_mm[SKG_TRIAL_FREQUENCIES]; /* of the DQE */
     double dqe_values[SKG_TRIAL_FREQUENCIES];
+    skg_spot spot;
     skg_material *filter;   /* of the bow-tie */
     skg_material *crystal;  /* of the scintillator */
     skg_response *response; /* of the same */

@@ -27,7 +27,8 @@ typedef struct {
     int32_t leaky;    /* the box lacks a triangle */
     int32_t priority; /* the octahedron's, which overlaps the box */
     int32_t inside;   /* the source stands in the box */
-    int32_t parallel, colours, world, bands, noise, dqe, blur, spot;
+    int32_t parallel, colours, world, bands, noise, dqe, blur;
+    int32_t spot;   /* samples of the source; with strategy copies, for each worker */
     int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
     double electronic, step, tolerance;
     int32_t picture; /* draws the 3D view instead of an image */
@@ -38,6 +39,8 @@ enum { BLUR_LINES = 1, BLUR_POINT = 2 };
 
 static const group groups[] = {
     {.name = "copies", .strategy = SKG_STRATEGY_COPIES},
+    {.name = "passes", .strategy = SKG_STRATEGY_COPIES, .colours = 1, .spot = 4},
+    {.name = "double_passes", .precision = SKG_PRECISION_DOUBLE, .strategy = SKG_STRATEGY_COPIES, .spot = 4},
     {.name = "tiles", .strategy = SKG_STRATEGY_TILES},
     {.name = "atomics", .strategy = SKG_STRATEGY_ATOMICS},
     {.name = "parallel", .parallel = 1},
@@ -171,6 +174,7 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     dqe.count = 2, dqe.per_mm = frequencies, dqe.dqe = efficiencies;
     if (g->dqe) options.dqe = &dqe;
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 2;
+    if (g->strategy == SKG_STRATEGY_COPIES) spot.samples = g->spot * context->device->info.compute_units;
     if (g->spot) options.spot = &spot;
     if (g->shades) add_shades(&more, &options);
     TRY(skg_spectrum_create_bins(g->colours ? 3 : 1, energies, photons, &beam));

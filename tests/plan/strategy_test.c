@@ -58,8 +58,43 @@ START_TEST(planes_are_mixed_from_what_fits) {
 }
 END_TEST
 
+/* How many passes are drawn together: the cases that were measured (choose.c), and the limits. */
+START_TEST(passes_are_drawn_together_where_it_pays) {
+    int32_t side = 0;
+    skg_passes_request request = {.strategy = SKG_STRATEGY_COPIES,
+                                  .workers = 2,
+                                  .passes = 16,
+                                  .image_bytes = 1 << 20,
+                                  .triangles = 42000};
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 8);
+    ck_assert_int_eq(side, 4);
+    request.passes = 4; /* too few for four at a time */
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 2);
+    ck_assert_int_eq(side, 1);
+    request.passes = 5; /* a worker would wait in the last turn */
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 1);
+    request.passes = 1;
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 1);
+    request.passes = 16, request.image_bytes = 4 << 20;
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 2);
+    request.triangles = 1002528;
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 8);
+    request.triangles = 4000000; /* each worker would need memory for four times their vertices */
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 2);
+    request.workers = 64;
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 1);
+    request.passes = 64;
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 64);
+    request.image_bytes = 32 << 20; /* some planes, which leave the caches */
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 1);
+    request.workers = 2, request.strategy = SKG_STRATEGY_TILES;
+    ck_assert_int_eq(skg_passes_choose(&request, &side), 1);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, planes_are_mixed_from_what_fits);
+    tcase_add_test(tests, passes_are_drawn_together_where_it_pays);
     tcase_add_test(tests, rays_of_a_pixel_share_a_pass_where_it_pays);
     tcase_add_test(tests, strategy_follows_from_the_facts);
 }

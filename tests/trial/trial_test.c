@@ -159,7 +159,12 @@ static const struct {
     {"project.cl", "(p->anchor_x + across, p->anchor_y + down, r, t)",
      "(p->anchor_x + across, p->anchor_y + down, r * 1.0000001f, t)", SKG_TRIAL_PARALLEL},
     /* Strategies; the loops of draw.clh: tiny, narrow, rows, tall, spans, steep; what only large triangles take. */
-    {"raster_copies.cl", "triangle < last; triangle++", "triangle < last; triangle += 2", SKG_TRIAL_COPIES},
+    {"raster_copies.cl", "blocks, triangle, end);", "blocks, triangle, end - 1);", SKG_TRIAL_COPIES},
+    {"raster_passes.cl", "blocks, 0, frame->triangles);", "blocks, 0, frame->triangles - 1);",
+     SKG_TRIAL_PASSES},
+    {"raster_passes.cl", "(p.y, q.y, r.y, s.y)", "(p.y, q.y, r.y, r.y)", SKG_TRIAL_SIDE},
+    {"draw.clh", "pass * target->image_size", "0", SKG_TRIAL_SIDE},
+    {"sums.clh", "(size_t)(frame->first_plane + plane)", "(size_t)plane", SKG_TRIAL_PASSES},
     {"draw.clh", "skg_hit_v(&line, i) & (i < right) & (j < bottom)",
      "skg_hit_v(&line, i) & (i < right - 1) & (j < bottom)", SKG_TRIAL_COPIES},
     {"draw.clh", "SKG_DRAW_BLOCK(1, SKG_BLOCK_1)", "SKG_DRAW_BLOCK(1, SKG_BLOCK_0)", SKG_TRIAL_COPIES},
