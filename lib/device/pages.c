@@ -11,18 +11,23 @@ static const int64_t LEAST_BYTES = 4 << 10, MOST_BYTES = 64 << 20;
 struct skg_pages {
     int64_t bytes, count;
     skg_byte_range *ranges;
-    char *start; /* mapped, so that it goes back to the system with the buffer; NULL: not yet */
+    size_t *mapping; /* its own size, and from the second page on the buffer; NULL: not yet */
+    char *start;     /* of the buffer */
 };
 
+static void unmap(size_t *mapping) {
+    if (mapping) munmap(mapping, *mapping);
+}
+
 static void drop(struct skg_pages *pages) {
-    if (pages->start) munmap(pages->start, (size_t)pages->bytes);
+    unmap(pages->mapping);
     skg_free(&pages->ranges);
     skg_free(&pages);
 }
 
 static void CL_CALLBACK dropped(cl_mem memory, void *user) {
     (void)memory;
-    drop(user);
+    unmap(user);
 }
 
 void skg_pages_expect(skg_device *device, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
@@ -47,9 +52,12 @@ void skg_pages_enter(skg_device *device) {
     struct skg_pages *pages = device->pages;
     const int64_t page = sysconf(_SC_PAGESIZE);
     if (!pages || pages->start || page < 1) return;
-    char *start =
-        mmap(NULL, (size_t)pages->bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (start == MAP_FAILED) return;
+    const size_t whole = (size_t)(page + pages->bytes);
+    char *mapped = mmap(NULL, whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapped == MAP_FAILED) return;
+    pages->mapping = (size_t *)(void *)mapped;
+    *pages->mapping = whole;
+    char *start = mapped + page;
     for (int64_t i = 0; i < pages->count; i++)
         for (int64_t at = pages->ranges[i].from / page * page; at < pages->ranges[i].to; at += page)
             ((volatile char *)start)[at] = 0;
@@ -63,11 +71,12 @@ cl_mem skg_pages_take(skg_device *device, int64_t bytes, cl_mem_flags flags) {
     cl_mem memory =
         clCreateBuffer(device->cl, flags | CL_MEM_USE_HOST_PTR, (size_t)bytes, pages->start, &code);
     if (code != CL_SUCCESS) return NULL;
-    if (clSetMemObjectDestructorCallback(memory, dropped, pages) != CL_SUCCESS) {
+    if (clSetMemObjectDestructorCallback(memory, dropped, pages->mapping) != CL_SUCCESS) {
         clReleaseMemObject(memory);
         return NULL;
     }
-    device->pages = NULL;
+    pages->mapping = NULL;
+    skg_pages_drop(device);
     return memory;
 }
 

@@ -83,7 +83,7 @@ static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machi
     if (pass->priority.count) SKG_TRY(skg_hits_expect(machine->context, pass));
     const int more = skg_recipe_averages(recipe) && skg_samples_passes(&recipe->samples) > 1;
     for (place.add = 0; place.add <= more; place.add++)
-        SKG_TRY(skg_attenuate_expect(machine->attenuator, &pass->kernels, &sums, &pass->camera, &shape,
+        SKG_TRY(skg_attenuate_expect(machine->attenuator, &options, &sums, &pass->camera, &shape,
                                      recipe->model.range != NULL, &place));
     return SKG_OK;
 }

@@ -244,11 +244,11 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
                         .ranged = attenuation->range.memory != NULL};
 }
 
-skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,
+skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_raster_options *options,
                                 const skg_sums *sums, const skg_camera *camera,
                                 const skg_attenuation *attenuation, int32_t ranged,
                                 const skg_image_place *place) {
-    const skg_raster raster = {.context = attenuator->context, .options.kernels = *kernels};
+    const skg_raster raster = {.context = attenuator->context, .options = *options};
     skg_sums own = *sums;
     own.raster = &raster;
     kernel_key key = key_of(&own, camera, attenuation, place);

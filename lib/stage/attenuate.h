@@ -82,9 +82,9 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
                          const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
 
-/* Expects the program of skg_attenuate (skg_expected_begin) with sums of rasters that these kernels make. sums: without a
+/* Expects the program of skg_attenuate (skg_expected_begin) with sums of a raster with these options. sums: without a
  * raster; attenuation: its shape; ranged: 1: it will have a range. */
-skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_kernel_options *kernels,
+skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_raster_options *options,
                                 const skg_sums *sums, const skg_camera *camera,
                                 const skg_attenuation *attenuation, int32_t ranged,
                                 const skg_image_place *place);
