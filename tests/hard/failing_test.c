@@ -164,14 +164,18 @@ static const effects runs[] = {
     {.file = "scene.json",
      .settings = {"Precision=half", "World=Vacuum", "Samples.sheet.Path=bone.obj", "Detector.Oversampling=2",
                   "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"}},
-    /* samples of the source as their tolerance asks for, drawn together because meshes are closed; a table of attenuation; the
-     * caller's OpenCL objects */
+    /* samples of the source as their tolerance asks for; a table of attenuation; the caller's OpenCL objects; vertices of an open
+     * mesh that part */
     {.file = "scene.json",
-     .settings = {"Samples.skin.Material=[\"Table\",\"response.txt\",\"keV\"]", "Samples.sheet.Path=bone.obj",
-                  "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"},
+     .settings = {"Samples.skin.Material=[\"Table\",\"response.txt\",\"keV\"]"},
      .strategy = SKG_STRATEGY_COPIES,
      .spot = {.shape = SKG_SPOT_DISC, .extent = {0.2, 0, 0}, .tolerance = 0.2, .samples_max = 8},
      .shared = 1},
+    /* samples that are drawn together, because meshes are closed */
+    {.file = "scene.json",
+     .settings = {"Samples.sheet.Path=bone.obj", "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"},
+     .strategy = SKG_STRATEGY_COPIES,
+     .spot = {.shape = SKG_SPOT_RECTANGLE, .extent = {1, 1, 0}, .samples = 4}},
     {.file = "body.json", .breathes = 1},
     {.file = "scene.json",
      .settings = {"Tolerance=0", "World=Vacuum"},
