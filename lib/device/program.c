@@ -5,6 +5,7 @@
 #include "device/signals.h"
 #include "device/watch.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -146,15 +147,37 @@ void skg_expected_wait(skg_context *context) {
     }
 }
 
-void skg_programs_launched(skg_context *context) {
-    const skg_device *device = context->device;
-    if (!device->store[0]) return;
+/* The contexts of this process, and who counts them or keeps programs. */
+static pthread_mutex_t counting = PTHREAD_MUTEX_INITIALIZER;
+static int64_t contexts;
+
+void skg_programs_opened(void) {
+    pthread_mutex_lock(&counting);
+    contexts++;
+    pthread_mutex_unlock(&counting);
+}
+
+void skg_programs_closed(void) {
+    pthread_mutex_lock(&counting);
+    contexts--;
+    pthread_mutex_unlock(&counting);
+}
+
+static void keep_programs(const skg_device *device) {
     for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
         if (!entry->program) continue;
         if (!entry->kept && skg_binary_pays(device, &entry->digest))
             skg_binary_save(device, &entry->digest, entry->program);
         entry->kept = 1;
     }
+}
+
+void skg_programs_launched(skg_context *context) {
+    const skg_device *device = context->device;
+    if (!device->store[0] || device->running > 0) return;
+    pthread_mutex_lock(&counting);
+    if (contexts == 1) keep_programs(device);
+    pthread_mutex_unlock(&counting);
 }
 
 void skg_programs_release(skg_device *device, int ours) {

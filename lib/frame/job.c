@@ -11,6 +11,7 @@ skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_ou
     skg_status status = SKG_OK;
     made->recipe = skg_recipe_retain(recipe);
     made->machine = machine;
+    machine->context->device->running++;
     made->outcome = outcome;
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
@@ -32,7 +33,10 @@ void skg_job_release(skg_job **job) {
     if (!job || !*job) return;
     skg_job *done = *job;
     /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged memory. */
-    if (!done->finished) clFinish(done->machine->context->device->queue);
+    if (!done->finished) {
+        clFinish(done->machine->context->device->queue);
+        done->machine->context->device->running--;
+    }
     if (done->last) clReleaseEvent(done->last);
     skg_staging_release(&done->staging);
     skg_recipe_release(&done->recipe);
@@ -50,7 +54,10 @@ skg_status skg_job_complete(skg_job **job) {
     if (first) skg_signals_restore();
     context->device->launched = programs;
     done->finished = code == CL_SUCCESS;
-    if (done->finished) skg_programs_launched(context);
+    if (done->finished) {
+        context->device->running--;
+        skg_programs_launched(context);
+    }
     const skg_status status = code == CL_SUCCESS
                                   ? skg_report_work(done->recipe, context, &done->machine->geometry,
                                                     &done->results, &done->staging.log, done->outcome)

@@ -41,6 +41,8 @@ typedef struct {
     int value;
 } outcome;
 
+static int64_t still_running; /* jobs, when the program has run */
+
 /* What a process does: makes the program and runs it. caches: as drivers do that keep kernels themselves. */
 static outcome run(const char *options, int caches) {
     const char *names[] = {"set.cl"};
@@ -65,7 +67,9 @@ static outcome run(const char *options, int caches) {
     ck_assert_int_eq(clEnqueueReadBuffer(device->queue, buffer.memory, CL_TRUE, 0, sizeof out.value,
                                          &out.value, 0, NULL, NULL),
                      CL_SUCCESS);
+    device->running = still_running;
     skg_programs_launched(context);
+    device->running = 0;
     out.builds = device->builds - builds;
     out.loads = device->loads - loads;
     clReleaseKernel(kernel);
@@ -120,6 +124,22 @@ START_TEST(what_a_driver_keeps_is_kept_by_a_later_process) {
     ck_assert_int_eq(count_kept(".program", NULL), 1);
     ck_assert_int_eq(count_kept(".uses", NULL), 0);
     ck_outcome(run("", 1), 0, 1, 7);
+}
+END_TEST
+
+/* A driver that compiles for a binary what runs just then may end the process. */
+START_TEST(nothing_is_kept_while_kernels_may_run) {
+    skg_context *other = NULL;
+    still_running = 1;
+    ck_outcome(run("", 0), 1, 0, 7);
+    ck_assert_int_eq(count_kept(".program", NULL), 0);
+    still_running = 0;
+    ck_skg(skg_context_create("device=0:0", &other));
+    ck_outcome(run("", 0), 1, 0, 7);
+    ck_assert_int_eq(count_kept(".program", NULL), 0);
+    skg_context_release(&other);
+    ck_outcome(run("", 0), 1, 0, 7);
+    ck_assert_int_eq(count_kept(".program", NULL), 1);
 }
 END_TEST
 
@@ -195,6 +215,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, none_keeps_nothing);
     tcase_add_test(tests, a_folder_that_cannot_be_written_does_no_harm);
     tcase_add_test(tests, what_a_driver_keeps_is_kept_by_a_later_process);
+    tcase_add_test(tests, nothing_is_kept_while_kernels_may_run);
     tcase_add_test(tests, pocl_keeps_kernels_itself);
     tcase_add_test(tests, what_the_driver_rejects_is_compiled);
     tcase_add_test(tests, processes_beside_each_other_share_the_folder);
