@@ -135,8 +135,6 @@ static skg_status new_context(skg_context **context) {
     if (status != SKG_OK) {
         skg_free(&made->device);
         skg_free(&made);
-    } else {
-        skg_programs_opened();
     }
     *context = made;
     return status;
@@ -235,7 +233,6 @@ void skg_context_release(skg_context **context) {
     skg_device *device = last->device;
     int ours = last->process == (int64_t)getpid(); /* a child process must not call OpenCL */
     skg_programs_release(device, ours);
-    if (ours) skg_programs_closed();
     skg_pages_drop(device);
     if (ours && device->queue) clReleaseCommandQueue(device->queue);
     if (ours && device->cl) clReleaseContext(device->cl);

@@ -27,7 +27,6 @@ typedef struct skg_device {
     int64_t builds;        /* programs compiled so far; a second scene with the same effects adds none */
     int64_t launched;      /* programs that there were when a job was last complete; later ones may be new */
     int64_t loads;         /* programs taken from the user's folder so far */
-    int64_t running;       /* jobs that are not known to be complete */
     skg_digest identity;   /* of the device and its driver */
     char *store;           /* folder in which compiled programs are kept; "": none */
     int32_t caches;        /* 1: the driver keeps compiled kernels itself */
@@ -79,14 +78,15 @@ skg_status skg_program_get(skg_context *context, int32_t files, const char *cons
 void skg_expected_begin(skg_context *context);
 void skg_expected_wait(skg_context *context);
 
-/* To be called when work is done: the programs have been launched, and are kept in the user's folder. Nothing is kept while
- * jobs run or the process has another context. A driver that is asked for a binary compiles its kernels once more, and PoCL 3.1
- * ends the process (an assertion on a count of uses) if one of them began to run before. */
-void skg_programs_launched(skg_context *context);
+/* Kernels of this process, of any context, may run from the one call to the other. skg_work_begin waits while programs are kept. */
+void skg_work_begin(void);
+void skg_work_end(void);
+int64_t skg_work_count(void); /* work that has begun and not ended */
 
-/* Counts the contexts of the process. A new one waits until another has kept its programs. */
-void skg_programs_opened(void);
-void skg_programs_closed(void);
+/* To be called when work has ended: the programs have been launched, and are kept in the user's folder, unless other work is
+ * under way: a driver that is asked for a binary compiles its kernels once more, and PoCL 3.1 ends the process (an assertion on
+ * a count of uses) if one of them began to run before. */
+void skg_programs_launched(skg_context *context);
 
 /* Makes a kernel of such a program. The caller releases it with clReleaseKernel. */
 skg_status skg_kernel_create(cl_program program, const char *name, cl_kernel *kernel);

@@ -147,20 +147,29 @@ void skg_expected_wait(skg_context *context) {
     }
 }
 
-/* The contexts of this process, and who counts them or keeps programs. */
+/* The work of this process, and who counts it or keeps programs. */
 static pthread_mutex_t counting = PTHREAD_MUTEX_INITIALIZER;
-static int64_t contexts;
+static int64_t under_way;
 
-void skg_programs_opened(void) {
+static void count(int64_t more) {
     pthread_mutex_lock(&counting);
-    contexts++;
+    under_way += more;
     pthread_mutex_unlock(&counting);
 }
 
-void skg_programs_closed(void) {
+void skg_work_begin(void) {
+    count(1);
+}
+
+void skg_work_end(void) {
+    count(-1);
+}
+
+int64_t skg_work_count(void) {
     pthread_mutex_lock(&counting);
-    contexts--;
+    const int64_t now = under_way;
     pthread_mutex_unlock(&counting);
+    return now;
 }
 
 static void keep_programs(const skg_device *device) {
@@ -174,9 +183,9 @@ static void keep_programs(const skg_device *device) {
 
 void skg_programs_launched(skg_context *context) {
     const skg_device *device = context->device;
-    if (!device->store[0] || device->running > 0) return;
+    if (!device->store[0]) return;
     pthread_mutex_lock(&counting);
-    if (contexts == 1) keep_programs(device);
+    if (under_way == 0) keep_programs(device);
     pthread_mutex_unlock(&counting);
 }
 

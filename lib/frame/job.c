@@ -11,7 +11,7 @@ skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_ou
     skg_status status = SKG_OK;
     made->recipe = skg_recipe_retain(recipe);
     made->machine = machine;
-    machine->context->device->running++;
+    skg_work_begin();
     made->outcome = outcome;
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
@@ -35,7 +35,7 @@ void skg_job_release(skg_job **job) {
     /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged memory. */
     if (!done->finished) {
         clFinish(done->machine->context->device->queue);
-        done->machine->context->device->running--;
+        skg_work_end();
     }
     if (done->last) clReleaseEvent(done->last);
     skg_staging_release(&done->staging);
@@ -55,7 +55,7 @@ skg_status skg_job_complete(skg_job **job) {
     context->device->launched = programs;
     done->finished = code == CL_SUCCESS;
     if (done->finished) {
-        context->device->running--;
+        skg_work_end();
         skg_programs_launched(context);
     }
     const skg_status status = code == CL_SUCCESS

@@ -148,6 +148,7 @@ skg_status skg_show_draw(skg_context *context, const skg_show_model *model, cons
     scratch s = {0};
     int32_t *starts = NULL;
     skg_status status = SKG_OK;
+    skg_work_begin();
     SKG_TRY_CLEANUP(skg_alloc((int64_t)SKG_SHOW_LISTS * args.across * args.down + 1, sizeof *starts,
                               "lists of the 3D view", &starts));
     SKG_TRY_CLEANUP(get_kernels(context, &s));
@@ -156,9 +157,10 @@ skg_status skg_show_draw(skg_context *context, const skg_show_model *model, cons
     SKG_TRY_CLEANUP(draw_lists(context, &args, &s));
     SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, s.rgba.memory, CL_TRUE, 0,
                                        (size_t)(4 * look->columns * look->rows), rgba, 0, NULL, NULL));
-    skg_programs_launched(context);
 cleanup:
     if (status != SKG_OK) clFinish(context->device->queue); /* kernels may still use the buffers */
+    skg_work_end();
+    if (status == SKG_OK) skg_programs_launched(context);
     free_scratch(&s);
     skg_free(&starts);
     return status;

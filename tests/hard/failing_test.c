@@ -312,7 +312,7 @@ static skg_status draw(run *r) {
                                &job));
     else
         TRY(skg_plan_submit(r->plan, 2, frames, &output, &job));
-    if (r->context->device->running != 1) return SKG_ERR_INTERNAL; /* Check would allocate */
+    if (skg_work_count() != 1) return SKG_ERR_INTERNAL; /* Check would allocate */
     TRY(skg_job_wait(&job));
     if (r->with->shared) shared_read(&r->shared, 2 * PIXELS * sizeof *r->image, r->image);
     output.row_stride = 0;
@@ -442,7 +442,7 @@ static skg_status run_once(int kind, const effects *with, int64_t at, float *ima
         memcpy(image, r.image, VALUES * sizeof *image);
         memcpy(lengths, r.lengths, PIXELS * sizeof *lengths);
     }
-    if (r.plan) ck_assert_int_eq(r.context->device->running, 0);
+    ck_assert_int_eq(skg_work_count(), 0);
     free(r.image);
     free(r.lengths);
     skg_plan_release(&r.plan);
