@@ -122,7 +122,8 @@ END_TEST
 
 /* Materials of every kind, whose elements a table works out once, against one energy at a time. */
 START_TEST(tables_of_materials_have_the_bits_of_single_energies) {
-    static const double energies[] = {1, 20, 33.17, 88.01, 1500}, tabled[] = {1, 100, 2000}, mu[] = {5, 1, 0.1};
+    static const double energies[] = {1, 20, 33.17, 88.01, 1500}, tabled[] = {1, 100, 2000},
+                        mu[] = {5, 1, 0.1};
     enum { MATERIALS = 5, COUNT = sizeof energies / sizeof *energies };
     skg_section_table table = {.count = COUNT, .energy_kev = energies};
     skg_material *materials[MATERIALS] = {0};
