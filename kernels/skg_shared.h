@@ -81,10 +81,9 @@
 typedef struct {
     SKG_INT parts, vertices, triangles;
     SKG_INT columns, rows;
-    SKG_INT stride, plane, planes,
-        copies;                      /* elements per row, per plane; how many planes (of a pass), copies */
-    SKG_INT claim;                   /* items that a work-group claims at once */
-    SKG_INT tile_columns, tile_rows; /* shape of a tile */
+    SKG_INT stride, plane, planes, copies; /* elements per row, per plane; planes of a pass; copies */
+    SKG_INT claim;                         /* items that a work-group claims at once */
+    SKG_INT tile_columns, tile_rows;       /* shape of a tile */
     SKG_INT tiles_across, tiles_down;
     SKG_INT queue;       /* entries of the queue of large triangles */
     SKG_INT first_plane; /* that a pass has, of those of several passes */
