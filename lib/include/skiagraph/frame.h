@@ -105,7 +105,8 @@ SKG_API skg_status skg_job_test(const skg_job *job, int32_t *done);
  *     range    SKG_RANGE: the images are in place, but some pixels meet path lengths outside the range for
  *              which the plan's error bound was verified, or some are not finite (skg_last_error says which)
  *     errors   SKG_ERR_MESH with frame, part and vertex if a vertex is not finite in its pose: the images of the
- *              other frames are in place, and later jobs are not touched; SKG_ERR_DEVICE and others. The job is released all the same, except with SKG_ERR_FORK */
+ *              other frames are in place, and later jobs are not touched; SKG_ERR_DEVICE and others. The job is
+ *              released all the same, except with SKG_ERR_FORK */
 SKG_API skg_status skg_job_wait(skg_job **job);
 
 /** Makes one image of the scene as it stands: submits one frame and waits for it. */
