@@ -1,5 +1,13 @@
-# cpack -G DEB in the build folder: the library, its headers, the command and the package of Python, each a Debian package.
+# cpack in the build folder of the preset debian: the library, its headers, the command and the package of Python, each a
+# Debian package.
 set(CPACK_GENERATOR DEB)
+# The folder of the libraries is fixed now, and Debian's is that of the machine's kind.
+set(CPACK_PROJECT_CONFIG_FILE ${skiagraph_SOURCE_DIR}/cmake/debian_paths.cmake)
+set(CPACK_SKG_LIBDIR ${CMAKE_INSTALL_LIBDIR})
+set(CPACK_SKG_DEBIAN_LIBDIR ${CMAKE_INSTALL_LIBDIR})
+if(CMAKE_LIBRARY_ARCHITECTURE)
+  set(CPACK_SKG_DEBIAN_LIBDIR lib/${CMAKE_LIBRARY_ARCHITECTURE})
+endif()
 set(CPACK_PACKAGE_NAME skiagraph)
 set(CPACK_PACKAGE_CONTACT "The authors of Skiagraph <skiagraph@localhost>" CACHE STRING "Maintainer of the packages")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "X-ray images of triangle meshes on any OpenCL device")

@@ -5,10 +5,11 @@
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
 libassimp-dev libcglm-dev libjansson-dev libpng-dev zlib1g-dev libtiff-dev libcairo2-dev"
 
-# Without these something is left out: HDF5 files of scans, scans under MPI, films as .gif, films as .mp4 and .webm, pages
-# of large scenes with fewer triangles, fits by CMA-ES.
+# Without these something is left out; the README has a table of it.
 # shellcheck disable=SC2034
-skg_optional_packages="libhdf5-dev libopenmpi-dev openmpi-bin libgif-dev ffmpeg libmeshoptimizer-dev liblapacke-dev"
+skg_optional_packages="libhdf5-dev libgif-dev ffmpeg libmeshoptimizer-dev liblapacke-dev"
+# shellcheck disable=SC2034
+skg_mpi_packages="libopenmpi-dev openmpi-bin"
 
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {
@@ -38,7 +39,24 @@ skg_need() {
     fi
     echo "Installing: $sudo $line"
     # shellcheck disable=SC2086
-    $sudo apt-get update -qq && $sudo env DEBIAN_FRONTEND=noninteractive $line
+    { $sudo apt-get update -qq && $sudo env DEBIAN_FRONTEND=noninteractive $line; } >packages.log 2>&1 || {
+        tail -n 20 packages.log
+        echo "Packages could not be installed; the whole log is in packages.log"
+        return 1
+    }
+}
+
+# skg_python_packages: what tests need and Debian lacks, in an environment in the build folder on top of Debian's Python:
+# the toolbox (on SciPy) of the authors of CTSimU scenarios. Without network that test is skipped.
+skg_python_packages() {
+    [ "$skg_install" = yes ] && [ -x /usr/bin/python3 ] || return 0
+    venv=build/venv
+    [ -e $venv/complete ] && return 0
+    mkdir -p build
+    { /usr/bin/python3 -m venv --system-site-packages $venv && $venv/bin/python -m pip install -q ctsimu; } \
+        >build/venv.log 2>&1 && touch $venv/complete && return 0
+    tail -n 2 build/venv.log
+    echo "The Python package ctsimu cannot be installed; the whole log is in build/venv.log"
 }
 
 # skg_build PRESET [TARGET...]: configures one of CMakePresets.json, and builds these targets or all.

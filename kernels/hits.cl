@@ -92,7 +92,7 @@ __kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, _
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, range.first + item - runs[3 * run], &a, &b, &c);
-    if (!skg_bounds(a, b, c, skg_window(&range, window.x, window.y, window.z, window.w), &box)) return;
+    if (!skg_bounds(a, b, c, skg_window(&range, window.x, window.y, window.z, window.w), range.shift, &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {

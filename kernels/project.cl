@@ -1,9 +1,7 @@
-/* Projects every vertex of every part to (x, y, z, t): x, y in pixels relative to the part's pixel, z = r / t, t. A work-item
- * takes one vertex on a GPU; on a CPU a run, so that compilers can turn the loop over the vertices of a part into vectors. */
+/* Projects every vertex of every part to (x, y, z, t): x, y in pixels relative to the part's pixel, z = r / t, t. With SKG_RESTS
+ * the rests of x and y stand for t (fine.clh). A work-item takes one vertex on a GPU; on a CPU a run, so that compilers can turn
+ * the loop over the vertices of a part into vectors. */
 #define SKG_RUN (SKG_CPU ? SKG_CPU_RUN : 1)
-
-/* Heights below this are set to 0, so that the slope of no edge overflows. */
-#define SKG_FLAT 0x1p-40f
 
 /* Projects one vertex. *finite: 0 if it is not finite. */
 static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_part_entry *p, int *finite) {
@@ -19,8 +17,8 @@ static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_p
     /* 0 * x is 0 only for finite x. A vertex that is not finite is put where it does no harm. */
     const skg_real zero = 0 * (across + down + r) + 0 * (x + y + z);
     *finite = zero == 0;
-    const skg_real high = fabs(seen.y) < (skg_real)SKG_FLAT ? 0 : seen.y;
-    return *finite ? (skg_real4)(seen.x, high, seen.z, seen.w) : (skg_real4)(0, 0, 0, 1);
+    const skg_real high = skg_on_row(seen.y, p->shift), last = SKG_RESTS ? 0 : seen.w;
+    return *finite ? (skg_real4)(seen.x, high, seen.z, last) : (skg_real4)(0, 0, 0, !SKG_RESTS);
 }
 
 /* Vertices from this number on. projected: the place of the first of them. */
@@ -38,7 +36,16 @@ SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global
         __global skg_real4 *restrict out = projected + (number - first);
         const int count = last - number;
         int all = 1;
+#if SKG_RESTS
+        for (int k = 0; k < (p.fine ? count : 0); k++) {
+            int finite;
+            out[k] = skg_project_fine(v + 3 * k, v + 3 * (p.vertices + k), &p, &finite);
+            all &= finite;
+        }
+        for (int k = 0; k < (p.fine ? 0 : count); k++) {
+#else
         for (int k = 0; k < count; k++) {
+#endif
             int finite;
             out[k] = skg_project_one(v[3 * k], v[3 * k + 1], v[3 * k + 2], &p, &finite);
             all &= finite;

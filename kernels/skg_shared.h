@@ -59,6 +59,7 @@
     real highest;  /* of r: where the ray ends, at the pixel */                                              \
     real start[3]; /* parallel: paths start at r = start[0] + start[1] i + start[2] j */                     \
     real steepest; /* gradient of z (per pixel) times a coordinate above which a face is steep */            \
+    real shift;    /* pixels by which upright edges are moved for coverage, with SKG_SEAMS */                \
     SKG_INT pixel_i, pixel_j;                                                                                \
     SKG_INT mesh_vertex;  /* first of the mesh in the vertex buffer */                                       \
     SKG_INT first_vertex; /* of the part, in the numbering over all parts */                                 \
@@ -68,7 +69,7 @@
     SKG_INT triangles;                                                                                       \
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
     SKG_INT first_contribution, contributions;                                                               \
-    SKG_INT reserved;
+    SKG_INT fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost */
 
 /* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
  * plane has weight 0 and bias 1. */
@@ -175,8 +176,8 @@ typedef struct {
 typedef struct {
     SKG_RAY_MEMBERS(double)
 } skg_ray_double;
-_Static_assert(sizeof(skg_part_float) == 20 * 4 + 12 * 4, "layout of a part, single");
-_Static_assert(sizeof(skg_part_double) == 20 * 8 + 12 * 4, "layout of a part, double");
+_Static_assert(sizeof(skg_part_float) == 21 * 4 + 12 * 4, "layout of a part, single");
+_Static_assert(sizeof(skg_part_double) == 21 * 8 + 12 * 4, "layout of a part, double");
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");

@@ -4,7 +4,17 @@
  * each at a point P. The line from the source through pixel (i, j) passes each P on one side or the other, and hits the
  * triangle if the two sides differ. Hits on both sides of the source are counted, and depths are clamped to the path, so that
  * signed counts still cancel. A corner in front of the source gets the class that triangle.clh gives it, and an edge between
- * two such corners the same crossing: neighbours that are drawn there fit without a seam. */
+ * two such corners the same crossing: neighbours that are drawn there fit without a seam.
+ *
+ * With SKG_SEAMS, other corners and points P are moved as well, by more than their rounding: a corner that is within it
+ * of the row's plane belongs to the lower class, and a line that is within it of P passes P on the right. */
+
+/* The share of its terms by which a distance from the row's plane or from a line is taken for 0. */
+#if SKG_DOUBLE
+#define SKG_TOUCH 0x1p-44
+#else
+#define SKG_TOUCH 0x1p-22f
+#endif
 
 /* A corner: x, y of its projection if it is in front of the source, and h = (t i, t j, t) relative to the part's own pixel. */
 typedef struct {
@@ -27,17 +37,18 @@ static void skg_corner_of(__global const skg_part_entry *p, __global const skg_r
 }
 
 static int skg_below(const skg_corner *k, skg_real j) {
-    return k->front ? k->y <= j : fma(-j, k->t, k->hy) <= 0;
+    return k->front ? k->y <= j : fma(-j, k->t, k->hy) <= SKG_SEAMS * SKG_TOUCH * (fabs(k->hy) + fabs(j * k->t));
 }
 
 /* The point where the row's plane cuts an edge. */
 typedef struct {
     skg_real x;          /* its column, if both ends are in front */
     skg_real px, pt, pr; /* hx, t and r of the point */
+    skg_real touch;      /* the distance from it that is 0 */
     int front;
 } skg_cut;
 
-static void skg_cut_of(const skg_corner *low, const skg_corner *high, skg_real j, skg_cut *out) {
+static void skg_cut_of(const skg_corner *low, const skg_corner *high, skg_real j, skg_real shift, skg_cut *out) {
     skg_cut cut;
     const skg_real s = fma(-j, low->t, low->hy), e = fma(-j, high->t, high->hy);
     skg_real part = s / (s - e);
@@ -46,8 +57,10 @@ static void skg_cut_of(const skg_corner *low, const skg_corner *high, skg_real j
     cut.px = fma(part, high->hx - low->hx, low->hx);
     cut.pt = fma(part, high->t - low->t, low->t);
     cut.pr = fma(part, high->r - low->r, low->r);
+    cut.touch = SKG_SEAMS * SKG_TOUCH * (fabs(low->hx) + fabs(high->hx));
     cut.front = low->front && high->front;
-    cut.x = fma(j - low->y, (high->x - low->x) / (high->y - low->y), low->x);
+    const skg_real slope = (high->x - low->x) / (high->y - low->y);
+    cut.x = fma(j - low->y, slope, skg_moved(low->x, slope, shift));
     *out = cut;
 }
 
@@ -56,7 +69,7 @@ static skg_real skg_beside(const skg_cut *cut, skg_real i) {
 }
 
 static int skg_passed(const skg_cut *cut, skg_real i) {
-    return cut->front ? i >= cut->x : skg_beside(cut, i) >= 0;
+    return cut->front ? i >= cut->x : skg_beside(cut, i) >= (cut->pt < 0 ? cut->touch : -cut->touch);
 }
 
 /* Whether no row from first to last separates the corners: each corner changes its class at one row at most. */
@@ -69,12 +82,12 @@ static int skg_is_aside(const skg_corner *k, int first, int last) {
 }
 
 /* The cuts of row j: of the edges that go up and down in the order of the corners. 0 if there are none. */
-static int skg_cut_row(const skg_corner *k, skg_real j, skg_cut *up, skg_cut *down) {
+static int skg_cut_row(const skg_corner *k, skg_real j, skg_real shift, skg_cut *up, skg_cut *down) {
     const int below[3] = {skg_below(&k[0], j), skg_below(&k[1], j), skg_below(&k[2], j)};
     for (int e = 0; e < 3; e++) {
         const int next = e == 2 ? 0 : e + 1;
-        if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, up);
-        if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, down);
+        if (below[e] && !below[next]) skg_cut_of(&k[e], &k[next], j, shift, up);
+        if (!below[e] && below[next]) skg_cut_of(&k[next], &k[e], j, shift, down);
     }
     return below[0] != below[1] || below[1] != below[2];
 }
@@ -86,7 +99,8 @@ static int4 skg_columns_between(const skg_cut *a, const skg_cut *b, int left, in
     if (!(sides > 0 || sides < 0)) return (int4)(left, right, 0, 0);
     const skg_real xa = a->front ? a->x : a->px / a->pt, xb = b->front ? b->x : b->px / b->pt;
     skg_real low = xa < xb ? xa : xb, high = xa < xb ? xb : xa;
-    const skg_real margin = 2 + (fabs(low) + fabs(high)) * (skg_real)0x1p-12f;
+    const skg_real touch = SKG_SEAMS ? fabs(a->touch / a->pt) + fabs(b->touch / b->pt) : 0;
+    const skg_real margin = 2 + (fabs(low) + fabs(high)) * (skg_real)0x1p-12f + touch;
     low += sides > 0 ? -margin : margin;
     high += sides > 0 ? margin : -margin;
     if (sides < 0 && !(low < high)) return (int4)(left, right, 0, 0);
@@ -143,7 +157,7 @@ __kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corner
         if (skg_is_aside(k, first - range.pixel_j, end - 1 - range.pixel_j)) continue;
         for (int row = first; row < end; row++) {
             skg_cut up, down;
-            if (!skg_cut_row(k, (skg_real)(row - range.pixel_j), &up, &down)) continue;
+            if (!skg_cut_row(k, (skg_real)(row - range.pixel_j), range.shift, &up, &down)) continue;
             const int4 columns = skg_columns_between(&up, &down, left, right);
             const int last = columns.z ? right : columns.y;
             for (int column = columns.z ? left : columns.x; column < last; column++) {

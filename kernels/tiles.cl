@@ -11,7 +11,7 @@ static int skg_tiles_of(const skg_frame_args *frame, __global const int *corners
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame->columns, frame->rows), &box))
+    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame->columns, frame->rows), range.shift, &box))
         return 0;
     tiles->x = (box.i0 + range.pixel_i) / frame->tile_columns;
     tiles->y = (box.j0 + range.pixel_j) / frame->tile_rows;

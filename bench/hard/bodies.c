@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-const char *const hard_names[HARD_KINDS] = {"sphere", "blob",   "torus", "shell", "octahedra",
-                                            "slabs",  "sliver", "fine",  "flat"};
+const char *const hard_names[HARD_KINDS] = {"sphere", "blob", "torus", "shell",  "octahedra", "slabs",
+                                            "sliver", "fine", "flat",  "plates", "foils"};
 
 /* Every body fits a sphere of this radius around the origin, in mm. */
 static const double extent = 80;
@@ -93,6 +93,50 @@ static solid fine_shells(const skg_view *view, uint64_t *seed) {
     return all;
 }
 
+/* The generator of a plate's numbers; the thickness is drawn first. */
+static uint64_t plate_seed(uint64_t number) {
+    return number * 7919 + 11;
+}
+
+static double draw_thickness(uint64_t *seed) {
+    return pow(10, draw(seed, -3, log10(3)));
+}
+
+double hard_thickness(uint64_t number) {
+    uint64_t seed = plate_seed(number);
+    return draw_thickness(&seed);
+}
+
+/* Half of them lean from the rays by any small angle, the others by any angle; each is turned about the beam. */
+static solid plate(uint64_t number) {
+    uint64_t seed = plate_seed(number);
+    const double thickness = draw_thickness(&seed);
+    const double x = pow(10, draw(&seed, 0, log10(500))), y = pow(10, draw(&seed, 0, log10(500)));
+    solid s = solid_box(x, y, thickness);
+    const double lean = draw_below(&seed, 2) ? pow(10, draw(&seed, -6, 0.19)) : draw(&seed, 0, 1.57);
+    const double c = cos(1.5707963267948966 - lean), sine = sin(1.5707963267948966 - lean);
+    const double around = draw(&seed, 0, 6.28), within = draw(&seed, 0, 6.28);
+    const double spin[12] = {cos(within), -sin(within), 0, 0, sin(within), cos(within), 0, 0, 0, 0, 1, 0};
+    const double tilt[12] = {1, 0, 0, 0, 0, c, -sine, 0, 0, sine, c, 0};
+    const double roll[12] = {cos(around), -sin(around),
+                             0,           draw(&seed, -9, 9),
+                             sin(around), cos(around),
+                             0,           draw(&seed, -9, 9),
+                             0,           0,
+                             1,           draw(&seed, -50, 50)};
+    solid_move(&s, spin);
+    solid_move(&s, tilt);
+    solid_move(&s, roll);
+    return s;
+}
+
+void hard_view_fit(const solid *s, skg_view *view) {
+    double most = 0;
+    for (int64_t n = 0; n < s->vertices; n++)
+        most = fmax(most, fmax(fabs(s->positions[3 * n]), fabs(s->positions[3 * n + 1])));
+    view->column_step[0] = view->row_step[1] = 2.7 * most / (double)view->columns;
+}
+
 static solid raw_body(int kind, const skg_view *view, uint64_t *seed) {
     /* Triangles of 3 to 20 pixels: smaller ones fold up when their corners go to the same rays. */
     const int around = (int)((double)view->columns * draw(seed, 0.06, 0.18)), down = around / 2;
@@ -123,7 +167,8 @@ static solid raw_body(int kind, const skg_view *view, uint64_t *seed) {
 }
 
 solid hard_body(int kind, const skg_view *view, uint64_t number) {
-    uint64_t seed = number * HARD_KINDS + (uint64_t)kind + 1;
+    if (kind == HARD_PLATES) return plate(number);
+    uint64_t seed = number * HARD_TURNS + (uint64_t)kind + 1;
     solid s = raw_body(kind, view, &seed);
     if (kind == HARD_SLABS || kind == HARD_OCTAHEDRA) return s;
     if (kind != HARD_FINE) turn(&s, &seed);

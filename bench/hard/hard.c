@@ -1,18 +1,21 @@
 /* Adversarial pixels in bulk: no ray whose signed hits fail to cancel, and no length out of its bar. Not timed. */
 #include "hard/bodies.h"
 #include "hard/judge.h"
+#include "hard/several.h"
 
 #include "common/bench.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 
-static const char usage[] = "[--pixels N] [--size N] [--first N] [--kind N] [--device CONFIG] [--csv FILE]";
+static const char usage[] =
+    "[--pixels N] [--size N] [--first N] [--kind N] [--faces N | --drawn N] [--device CONFIG] [--csv FILE]";
 
 typedef struct {
     long pixels, size;
-    long first; /* picture; another run can go on where one ended */
-    long kind;  /* -1: all */
+    long first;        /* picture; another run can go on where one ended */
+    long kind;         /* -1: all */
+    long faces, drawn; /* scenes instead of pictures */
     const char *device, *csv;
 } settings;
 
@@ -39,7 +42,11 @@ static void read_settings(int count, char **words, settings *out) {
         else if (bench_option(&arguments, "--first", &value))
             bench_numbers(value, 0, 1000000000, 1, &out->first);
         else if (bench_option(&arguments, "--kind", &value))
-            bench_numbers(value, 0, HARD_KINDS - 1, 1, &out->kind);
+            bench_numbers(value, 0, HARD_PLATES, 1, &out->kind);
+        else if (bench_option(&arguments, "--faces", &value))
+            bench_numbers(value, 1, 1000000000, 1, &out->faces);
+        else if (bench_option(&arguments, "--drawn", &value))
+            bench_numbers(value, 1, 1000000000, 1, &out->drawn);
         else if (!bench_option(&arguments, "--device", &out->device) &&
                  !bench_option(&arguments, "--csv", &out->csv))
             bench_usage(&arguments, usage);
@@ -113,12 +120,14 @@ static int64_t unbalanced(const tools *t, const solid *s, const skg_view *view, 
 static void take(const tools *t, const settings *set, uint64_t number, float *single, double *twice,
                  tally *total) {
     static const int32_t strategies[] = {SKG_STRATEGY_COPIES, SKG_STRATEGY_TILES, SKG_STRATEGY_ATOMICS};
-    const int kind = (int)(number % HARD_KINDS);
+    const int plates = set->kind == HARD_PLATES, kind = plates ? HARD_PLATES : (int)(number % HARD_TURNS);
     if (set->kind >= 0 && kind != set->kind) return;
-    const skg_view view = hard_view(set->size, number / HARD_KINDS);
+    skg_view view = hard_view(set->size, plates ? number : number / HARD_TURNS);
     solid s = hard_body(kind, &view, number);
+    if (plates) hard_view_fit(&s, &view);
     solid_round(&s); /* what the library stores is what the caster sees */
-    tally *its = &total[kind];
+    const int foil = plates && hard_thickness(number) < 0.01; /* mm */
+    tally *its = &total[foil ? HARD_FOILS : kind];
     its->pictures++;
     its->unbalanced[0] += unbalanced(t, &s, &view, SKG_PRECISION_SINGLE, single);
     its->unbalanced[1] += unbalanced(t, &s, &view, SKG_PRECISION_DOUBLE, twice);
@@ -126,7 +135,8 @@ static void take(const tools *t, const settings *set, uint64_t number, float *si
     lengths_of(t, &s, &view, SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO, twice);
     char name[64];
     snprintf(name, sizeof name, "picture %" PRIu64 " (%s)", number, hard_names[kind]);
-    hard_judge(&s, &view, single, twice, name, &its->verdict);
+    const double share = foil ? 5e-6 : 2e-6;
+    hard_judge(&s, &view, share, single, twice, name, &its->verdict);
     solid_free(&s);
 }
 
@@ -134,26 +144,27 @@ static void take(const tools *t, const settings *set, uint64_t number, float *si
 static int print(const tally *total, FILE *csv) {
     int bad = 0;
     printf(
-        "| bodies | pictures | pixels | met | unbalanced, single / double | judged | thin | folded | out of bar | worst | lowest |\n"
-        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+        "| bodies | pictures | pixels | met | unbalanced, single / double | judged | thin | folded | out of bar | rough | worst | lowest |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     if (csv)
         fprintf(
             csv,
-            "bodies,pictures,pixels,met,unbalanced_single,unbalanced_double,judged,thin,folded,out,worst,lowest\n");
+            "bodies,pictures,pixels,met,unbalanced_single,unbalanced_double,judged,thin,folded,out,rough,worst,lowest\n");
     for (int k = 0; k < HARD_KINDS; k++) {
         const tally *its = &total[k];
         const hard_verdict *v = &its->verdict;
         printf("| %s | %" PRId64 " | %" PRId64 " | %" PRId64 " | %" PRId64 " / %" PRId64 " | %" PRId64
-               " | %" PRId64 " | %" PRId64 " | %" PRId64 " | %.2g | %.2g |\n",
+               " | %" PRId64 " | %" PRId64 " | %" PRId64 " | %" PRId64 " | %.2g | %.2g |\n",
                hard_names[k], its->pictures, v->pixels, v->met, its->unbalanced[0], its->unbalanced[1],
-               v->judged, v->thin, v->folded, v->out, v->worst, v->lowest);
+               v->judged, v->thin, v->folded, v->out, v->rough, v->worst, v->lowest);
         if (csv)
             fprintf(csv,
                     "%s,%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64
-                    ",%" PRId64 ",%" PRId64 ",%.3g,%.3g\n",
+                    ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%.3g,%.3g\n",
                     hard_names[k], its->pictures, v->pixels, v->met, its->unbalanced[0], its->unbalanced[1],
-                    v->judged, v->thin, v->folded, v->out, v->worst, v->lowest);
+                    v->judged, v->thin, v->folded, v->out, v->rough, v->worst, v->lowest);
         bad |= its->unbalanced[0] > 0 || its->unbalanced[1] > 0 || v->out > 0;
+        if (k >= HARD_PLATES) bad |= 1000 * v->rough > v->met;
     }
     return bad;
 }
@@ -171,6 +182,13 @@ int main(int count, char **words) {
     bench_try(skg_context_device_get(t.context, &info), "device");
     if (!info.has_double)
         bench_die("the device has no double precision, by which the pixels are chosen that need a judge");
+    if (set.faces || set.drawn) {
+        int64_t out = 0;
+        if (set.faces) out += hard_faces(t.context, set.first, set.faces);
+        if (set.drawn) out += hard_drawn(t.context, set.first, set.drawn);
+        skg_context_release(&t.context);
+        return out > 0;
+    }
     bench_try(skg_material_create_mu("body", 0.1, &t.material), "material");
     bench_try(skg_spectrum_create_mono(100, 1, &t.beam), "beam");
     const int64_t per_picture = (int64_t)set.size * set.size;

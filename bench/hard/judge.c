@@ -7,15 +7,14 @@
 #include <math.h>
 #include <stdio.h>
 
-/* 3e-5 of the longest path, but at least 2e-6 of the body's extent along the rays: up to 1e-6 of it, a face counts as not
- * steep, and a ray through a plate meets two. */
-static double bar_of(const solid *s, double longest) {
+/* The body's extent along the rays. */
+static double extent_of(const solid *s) {
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int64_t v = 0; v < s->vertices; v++) {
         low = fmin(low, s->positions[3 * v + 2]);
         high = fmax(high, s->positions[3 * v + 2]);
     }
-    return fmax(3e-5 * longest, 2e-6 * (high - low));
+    return high - low;
 }
 
 /* Half of the larger side of the pixels that are met: the largest coordinate relative to the part, but for one pixel. */
@@ -65,18 +64,21 @@ static void judge_pixel(const hard_sight *sight, int64_t column, int64_t row, do
                name, row, column, got, exact.low, exact.high, longest, found == OUT ? "" : " (folded)");
 }
 
-void hard_judge(const solid *s, const skg_view *view, const float *single, const double *twice,
+void hard_judge(const solid *s, const skg_view *view, double share, const float *single, const double *twice,
                 const char *name, hard_verdict *v) {
     const int64_t pixels = view->columns * view->rows;
     const double shift = 4 * (double)FLT_EPSILON * radius_of(view, twice);
     double longest = 0;
     hard_sight sight = {0};
     for (int64_t n = 0; n < pixels; n++) longest = fmax(longest, twice[n]);
-    const double bar = bar_of(s, longest);
+    /* 3e-5 of the longest path, but at least a share of the extent: up to 1e-6 of it, a face counts as not steep, and a ray
+     * through a plate meets two. */
+    const double extent = extent_of(s), bar = fmax(3e-5 * longest, share * extent);
     v->pixels += pixels;
     for (int64_t n = 0; n < pixels; n++) {
         const double got = (double)single[n];
         v->met += twice[n] != 0 || single[n] != 0;
+        v->rough += fabs(got - twice[n]) > 3e-5 * longest + 5e-7 * extent;
         v->lowest = fmin(v->lowest, got / longest);
         /* 1 % is a thousand times what the error in double precision adds. */
         if (fabs(got - twice[n]) <= 0.99 * bar) continue;

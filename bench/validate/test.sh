@@ -1,5 +1,6 @@
 #!/bin/sh
-# usage: test.sh BUILD. Makes the page with the first Python that can, and fails if a bar is missed.
+# usage: test.sh BUILD. Makes the page with the first Python that can, and fails if a bar is missed, or if docs/validation.md was
+# made with other kernels.
 set -eu
 build=$1 status=77
 here=$(dirname "$0")
@@ -8,4 +9,9 @@ for python in python3 /usr/bin/python3; do
     status=0
     "$here/run" --build "$build" --python "$python" --into "$build/validation.md" || status=$?
 done
+kernels_of() { sed -n 's/^Made .*, kernels \([0-9a-f]*\)\..*/\1/p' "$1"; }
+if [ "$status" -eq 0 ] && [ "$(kernels_of "$build/validation.md")" != "$(kernels_of "$here/../../docs/validation.md")" ]; then
+    echo "docs/validation.md was made with other kernels: run bench/validate/run"
+    status=1
+fi
 exit "$status"

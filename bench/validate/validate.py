@@ -12,6 +12,7 @@ import body
 import images
 import lengths
 import packages
+import precision
 import skiagraph as sk
 import tubes
 from page import Page
@@ -23,6 +24,8 @@ Every claim of this project that has a reference outside it: ours, the reference
 
 SpekPy and xraylib serve as references where Python has them, otherwise the tables of `bench/validate/tables` that they gave
 do (`bench/validate/packages.py` makes them again). Data that are not part of the repository lie in the folder `$SKG_DATA`.
+The line below names the first digits of the SHA-256 of all files of `kernels/`; the test `bench_validate_holds` fails when
+they have changed and this page was not made again.
 """
 
 
@@ -31,16 +34,18 @@ def main() -> int:
     parser.add_argument("--build", required=True)
     parser.add_argument("--data", required=True)
     parser.add_argument("--commit", required=True)
+    parser.add_argument("--kernels", required=True)
     given = parser.parse_args()
     warnings.simplefilter("ignore", sk.SkiagraphWarning)  # beams are softer than IEC 60601-1-3 asks for, on purpose
     page = Page()
     attenuation.add(page)
     tubes.add(page)
     lengths.add(page)
+    precision.add(page)
     images.add(page)
     body.add(page, given.build, given.data)
     names = [packages.rows_of(name)[1] for name in packages.PACKAGES]
-    head = [*HEAD.splitlines(), f"Made {datetime.date.today()} from commit {given.commit}. Packages: {'; '.join(names)}."]
+    head = [*HEAD.splitlines(), f"Made {datetime.date.today()} from commit {given.commit}, kernels {given.kernels}. Packages: {'; '.join(names)}."]
     sys.stdout.write(page.write(head))
     for missed in page.missed:
         print(f"missed: {missed}", file=sys.stderr)

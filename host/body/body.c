@@ -4,7 +4,9 @@
 
 #include "body/link.h"
 #include "body/organ.h"
+#include "body/ribs.h"
 
+#include "core/openmp.h"
 #include "core/plain.h"
 #include "core/vector.h"
 
@@ -16,8 +18,27 @@
 enum { THREADS_FROM = 40000 };
 
 void skg_body_options_init_sized(void *options, int32_t size) {
-    const skg_body_options defaults = {.tendon_mm = {0, 0, -15}};
+    const skg_body_options defaults = {.tendon_mm = {0, 0, -15},
+                                       .muscle_length = 0.8,
+                                       .rib_angle_rad = skg_rib_angle(),
+                                       .liver_follows = 1,
+                                       .liver_held = 0.25};
     skg_struct_init(options, size, &defaults, sizeof defaults);
+}
+
+static skg_status check_anatomy(const skg_body_options *o) {
+    const struct {
+        const char *name;
+        double value, low, high;
+    } all[] = {{"dome_left_mm", o->dome_left_mm, -57, 57}, {"dome_right_mm", o->dome_right_mm, -57, 57},
+               {"dome_back_mm", o->dome_back_mm, -57, 57}, {"muscle_length", o->muscle_length, 0.1, 1},
+               {"rib_angle_rad", o->rib_angle_rad, 0, 1},  {"rib_fall_rad", o->rib_fall_rad, -0.1, 0.1},
+               {"liver_follows", o->liver_follows, 0, 2},  {"liver_held", o->liver_held, 0, 1}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (!(all[i].value >= all[i].low && all[i].value <= all[i].high))
+            return skg_fail(SKG_ERR_BREATHING, "body: %s is %g; the range is %g to %g", all[i].name,
+                            all[i].value, all[i].low, all[i].high);
+    return SKG_OK;
 }
 
 static skg_status check_options(const skg_body_options *o) {
@@ -39,6 +60,7 @@ static skg_status check_options(const skg_body_options *o) {
             SKG_ERR_BREATHING,
             "body: the diaphragm's links reach %g mm to ribs and %g mm to the liver; the range is 0 to 1000 mm",
             o->diaphragm_ribs_mm, o->diaphragm_liver_mm);
+    SKG_TRY(check_anatomy(o));
     if (o->coupling != SKG_COUPLING_ANATOMICAL && o->coupling != SKG_COUPLING_PAPER)
         return skg_fail(SKG_ERR_BREATHING, "body: coupling is %" PRId32 "; one of SKG_COUPLING_",
                         o->coupling);
@@ -55,6 +77,7 @@ static skg_status create(skg_context *context, const skg_body_options *options, 
     skg_body_options_init(&ours);
     if (options) SKG_TRY(skg_struct_read(options, "skg_body_options", &ours, sizeof ours));
     SKG_TRY(check_options(&ours));
+    SKG_TRY(skg_openmp_enter());
     skg_body *body;
     SKG_TRY(skg_alloc(1, sizeof *body, "body", &body));
     if (context) SKG_TRY(skg_context_retain(context));
@@ -77,10 +100,10 @@ static void free_organ(skg_body_organ *o) {
         skg_free(&to);
     }
     skg_tree_free(&o->tree);
-    void *block[] = {&o->label,  &o->rest,   &o->corner,      &o->node_of,     &o->moved,
-                     &o->link,   &o->anchor, &o->target,      &o->state,       &o->memory,
-                     &o->near,   &o->given,  &o->near_weight, &o->fraction,    &o->share,
-                     &o->course, &o->beyond, &o->bone,        &o->bone_weight, &o->thin};
+    void *block[] = {&o->label,       &o->rest,     &o->corner, &o->node_of, &o->moved,     &o->link,
+                     &o->anchor,      &o->target,   &o->state,  &o->memory,  &o->near,      &o->given,
+                     &o->near_weight, &o->fraction, &o->share,  &o->course,  &o->beyond,    &o->bone,
+                     &o->bone_weight, &o->thin,     &o->way,    &o->base,    &o->bone_base, &o->bone_away};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 

@@ -92,6 +92,7 @@ static skg_status build_chain(skg_body *body, skg_body_organ *o, chain_parts *c)
     for (int64_t d = 0; d < o->links; d++)
         memcpy(o->anchor + 3 * d, c->rest + 3 * (int64_t)c->driven[d], 3 * sizeof(double));
     o->corotates = skg_corotates(body, o);
+    o->unfolds = o->given_count == 0 && skg_is_anatomical(body) && skg_label_begins(o->label, "cartilage");
     if (o->links == 0)
         skg_log(
             body->context, SKG_LOG_WARNING,
@@ -113,8 +114,9 @@ skg_status skg_body_make_chain(skg_body *body, skg_body_organ *o) {
 
 void skg_body_drop_chain(skg_body_organ *o) {
     skg_chain_free(&o->chain);
-    void *block[] = {&o->link,  &o->anchor, &o->target, &o->state,       &o->memory,
-                     &o->share, &o->course, &o->bone,   &o->bone_weight, &o->thin};
+    void *block[] = {&o->link,  &o->anchor, &o->target,    &o->state,       &o->memory,
+                     &o->share, &o->course, &o->bone,      &o->bone_weight, &o->thin,
+                     &o->way,   &o->base,   &o->bone_base, &o->bone_away};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
     o->links = 0;
 }

@@ -1,5 +1,6 @@
 #include "body/follow.h"
 
+#include "body/dome.h"
 #include "core/vector.h"
 
 #include <string.h>
@@ -20,7 +21,12 @@ void skg_link_follow(const skg_body *body, const skg_link *link, double displace
 
 void skg_carried_vertex(const skg_body *body, const skg_body_organ *o, int64_t i, double displacement[3]) {
     memset(displacement, 0, 3 * sizeof *displacement);
-    if (o->carrier == LINK_TENDON) memcpy(displacement, body->tendon, sizeof body->tendon);
+    if (o->carrier == LINK_TENDON) {
+        double centre[3], motion[3];
+        for (int k = 0; k < 3; k++) centre[k] = 0.5 * (o->bounds[k] + o->bounds[3 + k]);
+        skg_dome_motion(body, centre, motion);
+        skg_scale_vector(body->descended, motion, displacement);
+    }
     for (int n = 0; o->carrier >= 0 && n < CARRIERS; n++)
         skg_add_scaled(displacement, o->near_weight[CARRIERS * i + n],
                        body->organ[o->carrier].moved + 3 * o->near[CARRIERS * i + n], displacement);

@@ -7,11 +7,15 @@
 #include "body/rules.h"
 #include "body/share.h"
 #include "body/tie.h"
+#include "core/openmp.h"
 
 /* The diaphragm comes first, since others take its share. */
 static skg_status make_chains(skg_body *body) {
     static const skg_role deformable[] = {ROLE_DIAPHRAGM, ROLE_LINKED};
     for (int64_t i = 0; i < body->organs; i++) body->organ[i].coupled = skg_is_coupled(body, body->organ + i);
+    body->diaphragm = -1;
+    for (int64_t i = 0; i < body->organs; i++)
+        if (body->organ[i].role == ROLE_DIAPHRAGM && body->organ[i].coupled) body->diaphragm = (int32_t)i;
     for (size_t r = 0; r < sizeof deformable / sizeof *deformable; r++)
         for (int64_t i = 0; i < body->organs; i++)
             if (body->organ[i].role == deformable[r]) SKG_TRY(skg_body_make_chain(body, body->organ + i));
@@ -23,7 +27,19 @@ static skg_status make_chains(skg_body *body) {
     return SKG_OK;
 }
 
+skg_status skg_body_share_again(skg_body *body) {
+    static const skg_role followers[] = {ROLE_DIAPHRAGM, ROLE_LINKED, ROLE_SPANNED};
+    for (size_t r = 0; r < sizeof followers / sizeof *followers; r++)
+        for (int64_t i = 0; i < body->organs; i++) {
+            skg_body_organ *o = body->organ + i;
+            if (o->role == followers[r] && o->coupled) SKG_TRY(skg_share_again(body, o));
+        }
+    for (int64_t i = 0; i < body->organs; i++) skg_liver_carries(body, body->organ + i);
+    return SKG_OK;
+}
+
 skg_status skg_body_find_links(skg_body *body) {
+    SKG_TRY(skg_openmp_enter());
     skg_body_set_tendon_plane(body);
     for (int64_t i = 0; i < body->organs; i++)
         if (body->organ[i].role == ROLE_RIB) SKG_TRY(skg_rib_prepare(body, body->organ + i));

@@ -11,4 +11,7 @@ skg_status skg_body_find_links(skg_body *body);
  * For a body that is linked. */
 skg_status skg_body_find_links_again(skg_body *body);
 
+/* Finds only how coupled organs follow ribs and dome, after one of the options for that was changed. */
+skg_status skg_body_share_again(skg_body *body);
+
 #endif

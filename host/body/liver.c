@@ -1,21 +1,30 @@
 #include "body/liver.h"
 
+#include "body/dome.h"
 #include "body/near.h"
 #include "core/vector.h"
 
 /* Where the liver touches the dome: at most this far below it, in mm, and at most so near to the rim. Choices. */
 static const double liver_reach = 9, dome_from = 0.5;
 
-/* By how much less the liver's lower end goes than its top, which the organs below it hold: a choice. */
-static const double held = 0.25;
+skg_status skg_liver_find(const skg_body_organ *diaphragm, skg_body_organ *o) {
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->base, o->label, &o->base));
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int64_t i = 0; i < o->vertices; i++) {
+        skg_link link = {.fraction = 1};
+        skg_base *base = o->base + i;
+        base->away = skg_nearest(diaphragm, o->rest + 3 * i, liver_reach, &link);
+        for (int c = 0; c < 3; c++) base->corner[c] = link.corner[c], base->weight[c] = link.weight[c];
+    }
+    return SKG_OK;
+}
 
-/* The diaphragm's share near a point of the liver; below dome_from: the point does not touch the dome. */
-static double dome_over(const skg_body_organ *diaphragm, const double p[3]) {
-    skg_link link;
+/* The diaphragm's share near a vertex of the liver; below dome_from: the vertex does not touch the dome. */
+static double dome_over(const skg_body_organ *diaphragm, const skg_base *base) {
     double share = 0;
-    if (skg_nearest(diaphragm, p, liver_reach, &link) == HUGE_VAL) return 0;
+    if (base->away == HUGE_VAL) return 0;
     for (int c = 0; c < 3; c++)
-        share += link.weight[c] * diaphragm->share[diaphragm->node_of[link.corner[c]]];
+        share += base->weight[c] * diaphragm->share[diaphragm->node_of[base->corner[c]]];
     return share;
 }
 
@@ -42,26 +51,37 @@ static void fill_frame(const skg_body *body, skg_body_organ *o, liver_frame *f) 
         low = fmin(low, at), high = fmax(high, at);
     }
     f->top = low;
-    o->squeeze = high > low ? held / (high - low) : 0;
+    o->squeeze = high > low ? body->options.liver_held / (high - low) : 0;
 }
 
-/* The dome's share over a vertex, and what the liver needs at its top to have that share there. */
-static int touches(const skg_body_organ *o, const liver_frame *f, int64_t i, double *needs) {
-    *needs = o->share[i] + o->squeeze * (skg_dot(f->along, o->rest + 3 * i) - f->top);
-    return o->share[i] >= dome_from;
+/* How far the tendon goes over a vertex, as a part of tendon_mm. */
+static double motion_over(const skg_body *body, const double p[3]) {
+    const double *tendon = body->options.tendon_mm;
+    double motion[3];
+    skg_dome_motion(body, p, motion);
+    return skg_dot(motion, tendon) / skg_dot(tendon, tendon);
+}
+
+/* Whether a vertex touches the dome, and what the liver needs at its top to go there as far as the dome. */
+static int touches(const skg_body *body, const skg_body_organ *o, const liver_frame *f, int64_t i,
+                   double *needs) {
+    if (o->share[i] < dome_from) return 0;
+    *needs = o->share[i] * motion_over(body, o->rest + 3 * i) +
+             o->squeeze * (skg_dot(f->along, o->rest + 3 * i) - f->top);
+    return 1;
 }
 
 /* The slope across the tendon's motion that is nearest to what the vertices at the dome need (least squares). */
-static void fit_shear(skg_body_organ *o, liver_frame *f) {
+static void fit_shear(const skg_body *body, skg_body_organ *o, liver_frame *f) {
     double s[3] = {0}, t[2] = {0}, slope[2] = {0}, count = 0, needs;
     for (int64_t i = 0; i < o->vertices; i++) {
-        if (!touches(o, f, i, &needs)) continue;
+        if (!touches(body, o, f, i, &needs)) continue;
         for (int k = 0; k < 2; k++) f->mean[k] += skg_dot(f->axis[k], o->rest + 3 * i);
         f->mean[2] += needs, count++;
     }
     for (int k = 0; k < 3 && count > 0; k++) f->mean[k] /= count;
     for (int64_t i = 0; i < o->vertices; i++) {
-        if (!touches(o, f, i, &needs)) continue;
+        if (!touches(body, o, f, i, &needs)) continue;
         const double x = skg_dot(f->axis[0], o->rest + 3 * i) - f->mean[0];
         const double y = skg_dot(f->axis[1], o->rest + 3 * i) - f->mean[1], more = needs - f->mean[2];
         s[0] += x * x, s[1] += x * y, s[2] += y * y, t[0] += x * more, t[1] += y * more;
@@ -90,15 +110,15 @@ static void grow(const skg_body *body, const skg_body_organ *liver, const double
 void skg_liver_course(const skg_body *body, const skg_body_organ *diaphragm, skg_body_organ *o) {
     liver_frame f;
     double centre[3], lift = 0, needs;
+    memset(o->course, 0, (size_t)(3 * o->vertices) * sizeof *o->course);
     if (skg_length(body->options.tendon_mm) == 0) return;
     memset(&f, 0, sizeof f);
     fill_frame(body, o, &f);
-#pragma omp parallel for schedule(dynamic, 64)
-    for (int64_t i = 0; i < o->vertices; i++) o->share[i] = dome_over(diaphragm, o->rest + 3 * i);
-    fit_shear(o, &f);
+    for (int64_t i = 0; i < o->vertices; i++) o->share[i] = dome_over(diaphragm, o->base + i);
+    fit_shear(body, o, &f);
     const double shift = skg_dot(o->shear, f.axis[0]) * f.mean[0] + skg_dot(o->shear, f.axis[1]) * f.mean[1];
     for (int64_t i = 0; i < o->vertices; i++)
-        if (touches(o, &f, i, &needs))
+        if (touches(body, o, &f, i, &needs))
             lift = fmax(lift, needs - (f.mean[2] + skg_dot(o->shear, o->rest + 3 * i) - shift));
     for (int k = 0; k < 3; k++) centre[k] = 0.5 * (o->bounds[k] + o->bounds[3 + k]);
     const double at_centre = f.mean[2] + lift + skg_dot(o->shear, centre) - shift -
@@ -108,6 +128,7 @@ void skg_liver_course(const skg_body *body, const skg_body_organ *diaphragm, skg
         skg_add_scaled(o->rest + 3 * i, -1, centre, d);
         grow(body, o, d, course);
         skg_add_scaled(course, at_centre, body->options.tendon_mm, course);
+        skg_scale_vector(body->options.liver_follows, course, course);
     }
 }
 
@@ -121,6 +142,6 @@ void skg_liver_carries(const skg_body *body, skg_body_organ *o) {
             skg_add_scaled(d, -o->near_weight[CARRIERS * i + n],
                            liver->rest + 3 * (int64_t)o->near[CARRIERS * i + n], d);
         grow(body, liver, d, growth);
-        memcpy(o->beyond + 3 * i, growth, sizeof growth);
+        skg_scale_vector(body->options.liver_follows, growth, o->beyond + 3 * i);
     }
 }

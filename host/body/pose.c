@@ -6,6 +6,7 @@
 #include "body/share.h"
 #include "body/thin.h"
 #include "body/wall.h"
+#include "core/openmp.h"
 #include "core/plain.h"
 #include "core/vector.h"
 
@@ -63,6 +64,23 @@ static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
 /* Fraction of the way to the mean of its neighbours that a node goes in one pass (a choice). */
 static const double relaxed_by = 0.5;
 
+/* Times that facets are opened and links kept again, at most. */
+enum { UNFOLDINGS = 8 };
+
+/* A facet of a chain that would fold is opened, even where bones drive its corners: by some tenths of a mm. Links are kept
+ * last. */
+static skg_status unfold_chain(skg_body_organ *o) {
+    skg_chain_report report;
+    for (int round = 0; round < UNFOLDINGS && skg_thin_open(o, 1); round++) {
+        SKG_TRY(skg_chain_settle(o->chain, o->moved, &report));
+        if (report.conflict_mm == 0) break;
+    }
+    for (int64_t i = 0; i < o->vertices; i++)
+        if (o->node_of[i] != i)
+            memcpy(o->moved + 3 * i, o->moved + 3 * (int64_t)o->node_of[i], 3 * sizeof(double));
+    return SKG_OK;
+}
+
 static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
     const double blend = body->options.hysteresis;
     const int64_t nodes = o->chain->nodes;
@@ -83,8 +101,10 @@ static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
             moved[k] = o->state[at];
             if (blend > 0) moved[k] += blend * (o->memory[at] - moved[k]);
         }
-        if (turns) skg_corotate_restore(&motion, o->rest + 3 * i, moved, moved);
     }
+    if (o->unfolds) SKG_TRY(unfold_chain(o));
+    for (int64_t i = 0; i < o->vertices && turns; i++)
+        skg_corotate_restore(&motion, o->rest + 3 * i, o->moved + 3 * i, o->moved + 3 * i);
     return SKG_OK;
 }
 
@@ -114,13 +134,12 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
 /* Links are kept last. Where the wish breaks some, facets that are not thin may fold too: then both are done again, as
  * long as facets fold. */
 static skg_status pose_coupled(const skg_body *body, skg_body_organ *o) {
-    enum { ROUNDS = 8 };
     skg_chain_report last;
     skg_share_displace(body, o);
     skg_thin_open(o, 0);
     if (o->chain) SKG_TRY(skg_chain_settle(o->chain, o->moved, &o->report));
     last = o->report;
-    for (int round = 1; round < ROUNDS && last.conflict_mm > 0 && skg_thin_open(o, 1); round++) {
+    for (int round = 1; round < UNFOLDINGS && last.conflict_mm > 0 && skg_thin_open(o, 1); round++) {
         SKG_TRY(skg_chain_settle(o->chain, o->moved, &last));
         if (last.conflict_mm > o->report.conflict_mm) o->report = last;
     }
@@ -206,7 +225,7 @@ static void pose_bones(skg_body *body, double thoracic) {
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
         if (o->role == ROLE_RIB || o->role == ROLE_RIGID || o->turned)
-            pose_turn(o, o->turned ? thoracic - from : fraction);
+            pose_turn(o, o->turned ? thoracic - from : fraction * skg_rib_factor(&body->options, o));
     }
     fit_sternum(body, thoracic != from, &sternum);
     for (int64_t i = 0; i < body->organs; i++) {
@@ -279,6 +298,7 @@ skg_status skg_body_pose(skg_body *body, const skg_breath_state *theirs) {
     skg_breath_state state;
     skg_breath_state_init(&state);
     if (!body || !body->linked) return skg_fail(SKG_ERR_BREATHING, "body: call skg_body_link first");
+    SKG_TRY(skg_openmp_enter());
     SKG_TRY(skg_struct_read(theirs, "skg_breath_state", &state, sizeof state));
     if (!(state.thoracic >= 0 && state.thoracic <= 4 && state.diaphragmatic >= 0 &&
           state.diaphragmatic <= 4 && state.phase >= 0 && state.phase < 1))

@@ -14,6 +14,21 @@ static const double degree = SKG_PI / 180;
 static const double full_range[12][2] = {{8, 6},  {12, 13.5}, {11, 13}, {10, 12.25}, {9, 11.5}, {8, 10.75},
                                          {7, 10}, {6, 9.25},  {5, 8.5}, {4, 7.75},   {3, 6},    {3, 6}};
 
+static double table_angle(int number) {
+    return degree * hypot(full_range[number - 1][0], full_range[number - 1][1]);
+}
+
+double skg_rib_angle(void) {
+    return table_angle(5);
+}
+
+/* The factor falls along the ribs, so that the angles fall by so much more. */
+double skg_rib_factor(const skg_body_options *options, const skg_body_organ *rib) {
+    if (rib->role != ROLE_RIB) return 1;
+    const double fall = options->rib_fall_rad * (rib->number - 5) / table_angle(rib->number);
+    return options->rib_angle_rad / table_angle(5) - fall;
+}
+
 /* Weight 1 is a quiet breath: 0.5 of about 3 l, 17 % of the volume v from rest to full inspiration. Angles grow
  * faster than the volume at first and slower at the end (Beyer et al., Respir. Physiol. Neurobiol. 232 (2016) 57).
  * The curve is a choice: straight to half the volume, from there a parabola of the same slope, 1.25, to 1 at full

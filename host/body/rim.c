@@ -15,10 +15,6 @@ static const double insertion = 0.1;
 /* Greatest slope of the rim. The generated one has 1.3, from the xiphoid to the flanks. */
 static const double steepest = 2;
 
-/* Length of the muscle from the rim to the tendon, as a part of the greatest distance from the rim: a choice, which
- * gives the generated diaphragm fibres of 120 mm. */
-static const double muscle_part = 0.8;
-
 typedef struct {
     double centre[2], top, low[SECTORS];
 } rim;
@@ -68,33 +64,33 @@ static skg_status share_to_plane(const double plane[4], skg_body_organ *o, unsig
     for (int64_t i = 0; i < o->vertices; i++) given[i] = skg_dot(plane, o->rest + 3 * i) + plane[3] > 0;
     skg_status status = skg_surface_distance(o, given, struts, ends, to_tendon);
     for (int64_t i = 0; i < o->vertices; i++)
-        o->share[i] = given[i] ? 1 : o->share[i] / fmax(o->share[i] + to_tendon[i], 1e-9);
+        o->way[i] = given[i] ? 1 : o->way[i] / fmax(o->way[i] + to_tendon[i], 1e-9);
     skg_free(&to_tendon);
     return status;
 }
 
-static skg_status share_by_length(skg_body_organ *o) {
-    double greatest = 0;
+void skg_rim_share(const skg_body *body, skg_body_organ *o) {
+    const double muscle = body->plane_given ? 1 : body->options.muscle_length * o->farthest;
     for (int64_t i = 0; i < o->vertices; i++)
-        if (o->node_of[i] == i) greatest = fmax(greatest, o->share[i]);
-    for (int64_t i = 0; i < o->vertices && greatest > 0; i++)
-        o->share[i] = fmin(1, o->share[i] / (muscle_part * greatest));
-    return SKG_OK;
+        o->share[i] = fmin(1, muscle > 0 ? o->way[i] / muscle : o->way[i]);
 }
 
-skg_status skg_rim_share(const skg_body *body, skg_body_organ *o) {
+skg_status skg_rim_find(const skg_body *body, skg_body_organ *o) {
     unsigned char *given = NULL;
     int32_t *ends = NULL;
     int64_t struts = 0;
     rim r;
     skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(o->vertices, sizeof *o->way, o->label, &o->way));
     SKG_TRY_CLEANUP(skg_alloc(o->vertices, sizeof *given, o->label, &given));
     SKG_TRY_CLEANUP(skg_body_add_struts(o, &struts, &ends));
     find_rim(o, &r);
     for (int64_t i = 0; i < o->vertices; i++) given[i] = (unsigned char)is_rim(&r, o->rest + 3 * i);
-    SKG_TRY_CLEANUP(skg_surface_distance(o, given, struts, ends, o->share));
-    status = body->plane_given ? share_to_plane(body->options.tendon_plane, o, given, struts, ends)
-                               : share_by_length(o);
+    SKG_TRY_CLEANUP(skg_surface_distance(o, given, struts, ends, o->way));
+    o->farthest = 0;
+    for (int64_t i = 0; i < o->vertices; i++)
+        if (o->node_of[i] == i) o->farthest = fmax(o->farthest, o->way[i]);
+    if (body->plane_given) status = share_to_plane(body->options.tendon_plane, o, given, struts, ends);
 cleanup:
     skg_free(&given);
     skg_free(&ends);

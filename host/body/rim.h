@@ -4,7 +4,10 @@
 
 #include "body/types.h"
 
-/* Sets the diaphragm's share of the dome's motion: 0 at the rim, growing along the muscle, 1 in the tendon. */
-skg_status skg_rim_share(const skg_body *body, skg_body_organ *diaphragm);
+/* Finds how far each vertex of the diaphragm is from the rim. */
+skg_status skg_rim_find(const skg_body *body, skg_body_organ *diaphragm);
+
+/* Sets its share of the dome's motion from that: 0 at the rim, growing along the muscle, 1 in the tendon. */
+void skg_rim_share(const skg_body *body, skg_body_organ *diaphragm);
 
 #endif

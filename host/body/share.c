@@ -1,5 +1,6 @@
 #include "body/share.h"
 
+#include "body/dome.h"
 #include "body/liver.h"
 #include "body/near.h"
 #include "body/rim.h"
@@ -23,11 +24,14 @@ static const skg_body_organ *diaphragm_of(const skg_body *body) {
     return NULL;
 }
 
+int skg_is_anatomical(const skg_body *body) {
+    return body->options.coupling == SKG_COUPLING_ANATOMICAL && body->options.hysteresis == 0 &&
+           body->options.relaxation == 0;
+}
+
 int skg_is_coupled(const skg_body *body, const skg_body_organ *o) {
     int ribs = 0;
-    if (body->options.coupling != SKG_COUPLING_ANATOMICAL || body->options.hysteresis > 0 ||
-        body->options.relaxation > 0)
-        return 0;
+    if (!skg_is_anatomical(body)) return 0;
     for (int64_t i = 0; i < body->organs; i++) ribs += body->organ[i].role == ROLE_RIB;
     if (ribs == 0 || o->given_count > 0) return 0;
     if (o->role == ROLE_DIAPHRAGM) return 1;
@@ -65,20 +69,35 @@ static void out_of(const lung_space *space, const double p[3], double normal[3])
     skg_scale_vector(1 / fmax(skg_length(normal), 1e-9), normal, normal);
 }
 
-/* What lies on the diaphragm goes with it: the less the higher, and at the top of the lungs not at all. Lungs, their
- * vessels and the heart do so alike, so that they stay beside each other. away: distances from the diaphragm, mm. */
-static void share_over_diaphragm(const skg_body *body, skg_body_organ *o, double *away) {
+/* The points of the diaphragm that are nearest to an organ over it. */
+static skg_status find_base(const skg_body *body, skg_body_organ *o) {
     const skg_body_organ *d = diaphragm_of(body);
-    const double base = 8; /* mm; the base goes with the diaphragm as a whole */
     const double height = find_lungs(body).half[2];
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->base, o->label, &o->base));
 #pragma omp parallel for schedule(dynamic, 64)
     for (int64_t i = 0; i < o->vertices; i++) {
-        skg_link link;
+        skg_link link = {.fraction = 1};
+        skg_base *base = o->base + i;
         if (o->node_of[i] != i) continue;
-        away[i] = skg_nearest(d, o->rest + 3 * i, height, &link);
-        const double t = fmin(1 - (away[i] - base) / (height - base), 1);
-        for (int c = 0; c < 3 && away[i] < height; c++)
-            o->share[i] += t * t * link.weight[c] * d->share[d->node_of[link.corner[c]]];
+        base->away = skg_nearest(d, o->rest + 3 * i, height, &link);
+        for (int c = 0; c < 3; c++) base->corner[c] = link.corner[c], base->weight[c] = link.weight[c];
+    }
+    return SKG_OK;
+}
+
+/* What lies on the diaphragm goes with it: the less the higher, and at the top of the lungs not at all. Lungs, their
+ * vessels and the heart do so alike, so that they stay beside each other. */
+static void share_over_diaphragm(const skg_body *body, skg_body_organ *o) {
+    const skg_body_organ *d = diaphragm_of(body);
+    const double touching = 8; /* mm; the base goes with the diaphragm as a whole */
+    const double height = find_lungs(body).half[2];
+    for (int64_t i = 0; i < o->vertices; i++) {
+        const skg_base *base = o->base + i;
+        if (o->node_of[i] != i) continue;
+        const double t = fmin(1 - (base->away - touching) / (height - touching), 1);
+        o->share[i] = 0;
+        for (int c = 0; c < 3 && base->away < height; c++)
+            o->share[i] += t * t * base->weight[c] * d->share[d->node_of[base->corner[c]]];
     }
 }
 
@@ -87,56 +106,71 @@ static double ramp(double x, double from, double to) {
     return fmin(fmax((x - from) / (to - from), 0), 1);
 }
 
-/* The displacement with the tendon at weight 1, and the bones of a vertex with their weights. What lies farther than
+static skg_status find_bones(const skg_body *body, skg_body_organ *o) {
+    const int spine = o->role == ROLE_DIAPHRAGM;
+    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone, o->label, &o->bone));
+    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone_weight, o->label, &o->bone_weight));
+    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone_base, o->label, &o->bone_base));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->bone_away, o->label, &o->bone_away));
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int64_t i = 0; i < o->vertices; i++)
+        if (o->node_of[i] == i)
+            o->bone_away[i] =
+                skg_wall_bones(body, spine, o->rest + 3 * i, o->bone + BONES * i, o->bone_base + BONES * i);
+    return SKG_OK;
+}
+
+/* The displacement with the tendon at weight 1, and the weights of a vertex's bones. What lies farther than
  * `near` from bones follows them less, and from `far` on not at all: skin over the fat of the ribs, muscle, the lungs'
  * sides at the midplane. The diaphragm follows wholly, and stays beside the spine. A lung slides along the ribs: there it
  * has what the diaphragm gives along its surface only, and all of what the ribs give. */
-static void find_course(const skg_body *body, skg_body_organ *o, int64_t i, double away,
-                        const lung_space *lungs) {
+static void find_course(const skg_body *body, skg_body_organ *o, int64_t i, const lung_space *lungs) {
     const int sheet = o->role == ROLE_DIAPHRAGM, wall = skg_label_is_wall(o->label);
-    const double near = 22, far = wall ? 90 : 70;
+    const double near = 22, far = wall ? 90 : 70, distance = o->bone_away[i];
     double *weight = o->bone_weight + BONES * i, *course = o->course + 3 * i, slides = 0, normal[3];
-    const double distance = skg_wall_bones(body, sheet, o->rest + 3 * i, o->bone + BONES * i, weight);
-    skg_scale_vector(o->share[i], body->options.tendon_mm, course);
-    if (is_lung(o)) slides = ramp(away, 8, 45) * ramp(distance, 40, 16);
+    skg_dome_motion(body, o->rest + 3 * i, course);
+    skg_scale_vector(o->share[i], course, course);
+    if (is_lung(o)) slides = ramp(o->base[i].away, 8, 45) * ramp(distance, 40, 16);
     if (slides > 0) {
         out_of(lungs, o->rest + 3 * i, normal);
         skg_add_scaled(course, -slides * skg_dot(course, normal), normal, course);
     }
     for (int b = 0; b < BONES; b++)
-        weight[b] *= fmax(1 - o->share[i], slides) * (sheet ? 1 : ramp(distance, far, near));
+        weight[b] = o->bone_base[BONES * i + b] *
+                    (fmax(1 - o->share[i], slides) * (sheet ? 1 : ramp(distance, far, near)));
 }
 
-static skg_status find_courses(const skg_body *body, skg_body_organ *o, const double *away) {
+/* Shares and courses from what was found of the meshes. */
+skg_status skg_share_again(const skg_body *body, skg_body_organ *o) {
     lung_space lungs = {0};
-    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone, o->label, &o->bone));
-    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone_weight, o->label, &o->bone_weight));
-    if (is_lung(o)) lungs = find_lungs(body);
-#pragma omp parallel for schedule(dynamic, 64)
-    for (int64_t i = 0; i < o->vertices; i++)
-        if (o->node_of[i] == i) find_course(body, o, i, away[i], &lungs);
-    return SKG_OK;
-}
-
-skg_status skg_share_find(const skg_body *body, skg_body_organ *o) {
-    double *away = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->share, o->label, &o->share));
-    SKG_TRY(skg_alloc(3 * o->vertices, sizeof *o->course, o->label, &o->course));
     if (is_liver(o)) {
         skg_liver_course(body, diaphragm_of(body), o);
         return SKG_OK;
     }
-    SKG_TRY_CLEANUP(skg_alloc(o->vertices, sizeof *away, o->label, &away));
     if (o->role == ROLE_DIAPHRAGM)
-        SKG_TRY_CLEANUP(skg_rim_share(body, o));
+        skg_rim_share(body, o);
+    else if (o->base)
+        share_over_diaphragm(body, o);
+    if (is_lung(o)) lungs = find_lungs(body);
+    for (int64_t i = 0; i < o->vertices; i++)
+        if (o->node_of[i] == i) find_course(body, o, i, &lungs);
+    skg_free(&o->thin);
+    return skg_thin_find(o);
+}
+
+skg_status skg_share_find(const skg_body *body, skg_body_organ *o) {
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->share, o->label, &o->share));
+    SKG_TRY(skg_alloc(3 * o->vertices, sizeof *o->course, o->label, &o->course));
+    if (is_liver(o)) {
+        SKG_TRY(skg_liver_find(diaphragm_of(body), o));
+        return skg_share_again(body, o);
+    }
+    if (o->role == ROLE_DIAPHRAGM)
+        SKG_TRY(skg_rim_find(body, o));
     else if (!skg_label_is_wall(o->label))
-        share_over_diaphragm(body, o, away);
-    SKG_TRY_CLEANUP(find_courses(body, o, away));
-    SKG_TRY_CLEANUP(skg_thin_find(o));
-cleanup:
-    skg_free(&away);
-    return status;
+        SKG_TRY(find_base(body, o));
+    SKG_TRY(find_bones(body, o));
+    return skg_share_again(body, o);
 }
 
 void skg_share_displace(const skg_body *body, skg_body_organ *o) {

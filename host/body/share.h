@@ -12,11 +12,17 @@
 /* The share from which the diaphragm is dome, rather than the wall beside which organs slide: a choice. */
 extern const double skg_dome_from;
 
+/* Whether the options ask for that. */
+int skg_is_anatomical(const skg_body *body);
+
 /* Whether an organ moves so: by its label, in a body with ribs and, unless it is the wall, with a diaphragm. */
 int skg_is_coupled(const skg_body *body, const skg_body_organ *organ);
 
 /* Finds shares and bones. The diaphragm's come first. */
 skg_status skg_share_find(const skg_body *body, skg_body_organ *organ);
+
+/* Shares and courses once more, after the options have changed. */
+skg_status skg_share_again(const skg_body *body, skg_body_organ *organ);
 
 /* The displacements that the vertices of such an organ shall have: into moved. */
 void skg_share_displace(const skg_body *body, skg_body_organ *organ);

@@ -33,6 +33,12 @@ typedef struct {
     double by[3], normal[3]; /* at rest, twice the area long */
 } skg_thin;
 
+/* The point of the diaphragm nearest to a vertex, and how far away it is in mm. */
+typedef struct {
+    double away, weight[3];
+    int32_t corner[3], reserved;
+} skg_base;
+
 typedef struct {
     skg_mesh *mesh;
     char *label;
@@ -68,6 +74,7 @@ typedef struct {
     int64_t given_count;
     int stage;      /* posed after organs of lower stages */
     int corotates;  /* 1: boxes turn with the drivers */
+    int unfolds;    /* 1: facets that would fold are opened after its links were kept */
     double *target; /* per driver: displacement */
     double *state;  /* displacements of the chain's nodes, axis by axis */
     double *memory; /* the same with hysteresis: the state before, as moved on */
@@ -82,6 +89,13 @@ typedef struct {
     double *course;  /* per vertex: displacement with the tendon at weight 1, mm */
     int32_t *bone;   /* per vertex: BONES bones; NULL: none */
     double *bone_weight; /* their weights */
+    /* What these are made of, as the meshes lie: options that change find only shares and courses again. */
+    double *
+        way; /* of the diaphragm, per vertex: distance from the rim, mm; its share where the plane is given */
+    double farthest;   /* the greatest */
+    skg_base *base;    /* per vertex of what lies over the diaphragm */
+    double *bone_base; /* per vertex: weights of its bones, whose sum is 1 */
+    double *bone_away; /* per vertex: distance of the nearest bone, mm */
     int64_t thins;
     skg_thin *thin; /* facets that fold easily (thin.h) */
 
@@ -104,12 +118,13 @@ struct skg_body {
     skg_body_options options;
     int64_t organs, capacity;
     skg_body_organ *organ;
-    int tried, linked; /* 1: skg_body_link was called; it succeeded */
-    int plane_given;   /* 1: the options have a plane of the tendon */
-    int large;         /* 1: deformable organs have so many vertices that threads pay */
-    double tendon[3];  /* displacement as posed, mm */
-    double descended;  /* the same over that at weight 1 */
-    double withdrawn;  /* by how much the needle is drawn back, mm */
+    int tried, linked;           /* 1: skg_body_link was called; it succeeded */
+    int plane_given;             /* 1: the options have a plane of the tendon */
+    int large;                   /* 1: deformable organs have so many vertices that threads pay */
+    int32_t diaphragm, reserved; /* its number, if it is coupled; otherwise -1 */
+    double tendon[3];            /* displacement as posed, mm */
+    double descended;            /* the same over that at weight 1 */
+    double withdrawn;            /* by how much the needle is drawn back, mm */
     double *
         bone_motion; /* per organ, of bones: displacement of p is row k times p plus the fourth number, 12 numbers */
     int bones_move;     /* 1: one of them is not at rest */

@@ -1,4 +1,5 @@
 /* Waveforms and phase. */
+#include "breath/signal.h"
 #include "core/core.h"
 #include "core/maths.h"
 #include "core/names.h"
@@ -103,6 +104,7 @@ static skg_status check(const skg_breath *b) {
     SKG_TRY(check_range("diaphragmatic", b->diaphragmatic, 0, 4));
     SKG_TRY(check_range("thoracic_lag", b->thoracic_lag, -0.5, 0.5));
     if (b->waveform == SKG_WAVEFORM_SAMPLED) SKG_TRY(check_samples(b));
+    if (b->signal || b->signal_count != 0) SKG_TRY(skg_signal_check(b));
     return check_holds(b);
 }
 
@@ -158,6 +160,16 @@ static skg_status fill(const skg_breath *b, double phase, skg_breath_state *thei
     return skg_struct_write(&state, sizeof state, "skg_breath_state", theirs);
 }
 
+/* With a signal: the ribs are later by a part of the period. */
+static skg_status fill_recorded(const skg_breath *b, double time, skg_breath_state *theirs) {
+    skg_breath_state state = {.size = (int32_t)sizeof state};
+    state.phase = wrap(skg_signal_phase(b, time));
+    state.amplitude = skg_signal_amplitude(b, time);
+    state.thoracic = b->thoracic * skg_signal_amplitude(b, time - b->thoracic_lag * b->period_s);
+    state.diaphragmatic = b->diaphragmatic * state.amplitude;
+    return skg_struct_write(&state, sizeof state, "skg_breath_state", theirs);
+}
+
 skg_status skg_breath_state_at_phase(const skg_breath *breath, double phase, skg_breath_state *state) {
     SKG_PLAIN;
     skg_breath ours;
@@ -189,5 +201,6 @@ skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg
     if (!isfinite(time_s)) return skg_fail(SKG_ERR_BREATHING, "breath: time %g s is not finite", time_s);
     double spent = 0;
     SKG_TRY(breathing_time(&ours, time_s, &spent));
-    return fill(&ours, ours.start_phase + spent / ours.period_s, state);
+    return ours.signal ? fill_recorded(&ours, spent, state)
+                       : fill(&ours, ours.start_phase + spent / ours.period_s, state);
 }

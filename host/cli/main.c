@@ -3,6 +3,8 @@
 #include "common/interrupt.h"
 #include "common/json.h"
 #include "common/overwrite.h"
+#include "common/probe.h"
+#include "common/probe_child.h"
 #include "common/say.h"
 #include "manual/help.h"
 #include "manual/list.h"
@@ -50,6 +52,9 @@ static int run_verb(const cli_verb *verb, int count, char **words) {
         cli_set_verbose(cli_given(&arguments, &cli_flag_verbose));
         exit_status = cli_check_overwrites(&arguments);
         if (exit_status == CLI_DONE) exit_status = verb->run(&arguments);
+        if (exit_status == CLI_DONE && cli_given(&arguments, &cli_flag_strict) && cli_warning_count() > 0)
+            exit_status = cli_error(CLI_CHECK_FAILED, "%d warning%s, which --strict makes an error",
+                                    cli_warning_count(), cli_warning_count() == 1 ? "" : "s");
     }
     cli_arguments_free(&arguments);
     return exit_status;
@@ -71,6 +76,7 @@ static int run(int count, char **words) {
         cli_help_overview(stderr);
         return CLI_USAGE;
     }
+    if (strcmp(words[1], CLI_PROBE_WORD) == 0) return cli_probe_child(count - 2, words + 2);
     if (is_one_of(words[1], "version", "--version", NULL) && count > 2 && wants_json(count, words))
         return cli_json_print(json_pack("{s:s}", "version", skg_version()));
     if (is_one_of(words[1], "version", "--version", NULL)) {

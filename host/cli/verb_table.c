@@ -19,6 +19,7 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_beam, cli_beam},
     {&cli_manual_devices, cli_devices},
     {&cli_manual_thorax, cli_thorax},
+    {&cli_manual_make, cli_make},
     {&cli_manual_breathe, cli_breathe},
     {&cli_manual_fit, cli_fit},
     {&cli_manual_scan, cli_scan},

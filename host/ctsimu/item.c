@@ -1,14 +1,12 @@
 #include "ctsimu/item.h"
 
 #include "core/columns.h"
+#include "core/input.h"
 #include "core/maths.h"
-#include "core/path_hint.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -196,13 +194,8 @@ skg_status skg_item_file(const skg_item *item, const char **path) {
     *path = NULL;
     if (!name || !*name) return SKG_OK;
     SKG_TRY(item->scenario->find(item->scenario->user, name, path));
-    FILE *file = fopen(*path, "rb");
-    if (!file) {
-        const skg_status status = skg_fail_unreadable(*path, errno);
-        return skg_item_fail(item, status, "%s", skg_last_error());
-    }
-    fclose(file);
-    return SKG_OK;
+    const skg_status status = skg_input_check(*path, SKG_INPUT_LARGE);
+    return status == SKG_OK ? SKG_OK : skg_item_fail(item, status, "%s", skg_last_error());
 }
 
 /* Adds the values of a drift, which are spread evenly over the projections. */

@@ -1,5 +1,6 @@
 /* Distances between surfaces. */
 #include "core/core.h"
+#include "core/openmp.h"
 #include "core/plain.h"
 #include "core/vector.h"
 #include "distance/sample.h"
@@ -114,6 +115,7 @@ skg_status skg_distance_measure(const skg_mesh *from, const skg_mesh *to, const 
     SKG_NEEDS(from);
     SKG_NEEDS(to);
     SKG_NEEDS(distance);
+    SKG_TRY(skg_openmp_enter());
     skg_distance_options_init(&ours);
     skg_distance_init(&result);
     if (options) SKG_TRY(skg_struct_read(options, "skg_distance_options", &ours, sizeof ours));
@@ -140,6 +142,7 @@ skg_status skg_distance_of_points(const skg_mesh *to, int64_t count, const doubl
     for (int64_t i = 0; i < count; i++)
         if (!skg_all_finite(points + 3 * i, 3))
             return skg_fail(SKG_ERR_ARGUMENT, "skg_distance_of_points: point %" PRId64 " is not finite", i);
+    SKG_TRY(skg_openmp_enter());
     SKG_TRY(tree_of(to, &tree));
     find_distances(&tree, count, points, distances);
     skg_tree_free(&tree);

@@ -47,11 +47,15 @@ static int is_simple(skg_role role) {
     return role == ROLE_RIB || role == ROLE_STERNUM || role == ROLE_DIAPHRAGM || role == ROLE_LINKED;
 }
 
-/* Whether a part is needed. By the rules of labels, bones, the diaphragm and what is linked to both depend on these alone.
- * If a goal follows other organs, or organs have links of their own, all parts are kept. */
+static int is_labelled(const skg_organ *organ, const char *word) {
+    return skg_label_begins(organ->label, word);
+}
+
+/* Whether a part is needed. By the rules of labels, bones, the diaphragm and what is linked to both depend on these and on
+ * the lungs alone, diaphragm and liver on bones. If a goal follows other organs, or organs have links of their own, all parts are kept. */
 static int is_needed(const skg_setup *setup, const skg_fit_body *model, int64_t part, const skg_goal *goals,
                      int64_t count) {
-    int number, side, is_goal = 0, keeps_all = count == 0;
+    int number, side, is_goal = 0, keeps_all = count == 0, with_lungs = 0;
     skg_organ organ;
     for (int64_t p = 0; p < model->parts && !keeps_all; p++) {
         describe(setup, model, p, &organ);
@@ -61,11 +65,12 @@ static int is_needed(const skg_setup *setup, const skg_fit_body *model, int64_t 
         describe(setup, model, goals[g].part, &organ);
         keeps_all |= !is_simple(skg_role_of(organ.label, &number, &side));
         is_goal |= goals[g].part == part;
+        with_lungs |= !is_labelled(&organ, "diaphragm") && !is_labelled(&organ, "liver");
     }
     describe(setup, model, part, &organ);
     const skg_role role = skg_role_of(organ.label, &number, &side);
     return keeps_all || is_goal || role == ROLE_RIB || role == ROLE_STERNUM || role == ROLE_DIAPHRAGM ||
-           skg_label_stays(organ.label);
+           skg_label_stays(organ.label) || (with_lungs && is_labelled(&organ, "lung"));
 }
 
 static skg_status add_part(const skg_setup *setup, skg_fit_body *model, int64_t part) {
@@ -88,8 +93,9 @@ static skg_status add_with_parents(const skg_setup *setup, skg_fit_body *model, 
 static skg_status fill(skg_context *context, const skg_setup *setup, const skg_goal *goals, int64_t count,
                        skg_fit_body *model) {
     skg_body_options options = setup->breathing.body;
-    options.hysteresis = 0;                /* a fit compares states, not histories */
-    options.coupling = SKG_COUPLING_PAPER; /* whose parameters it finds */
+    if (options.hysteresis > 0 || options.relaxation > 0)
+        options.coupling = SKG_COUPLING_PAPER; /* as posed */
+    options.hysteresis = 0;                    /* a fit compares states, not histories */
     SKG_TRY(skg_alloc(model->parts, sizeof *model->organ, "fit", &model->organ));
     SKG_TRY(skg_alloc(model->parts, sizeof(skg_mesh *), "fit", &model->meshes));
     for (int64_t p = 0; p < model->parts; p++) model->organ[p] = -1;

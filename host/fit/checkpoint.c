@@ -1,10 +1,10 @@
 /* Where a search is, as a file of text. */
+#include "core/input.h"
 #include "core/output.h"
 #include "core/path_hint.h"
 #include "core/plain.h"
 #include "fit/types.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -98,8 +98,8 @@ skg_status skg_fit_checkpoint_load(skg_fit *fit, const char *path) {
     SKG_TRY(skg_fit_begin(fit));
     if (fit->search.counters[SEARCH_GENERATION] > 0)
         return skg_fail(SKG_ERR_ARGUMENT, "fit: a checkpoint is loaded before the first step");
-    FILE *stream = fopen(path, "r");
-    if (!stream) return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    FILE *stream = NULL;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &stream, NULL));
     skg_status status = skg_alloc(fit->search.number_count, sizeof *numbers, "fit", &numbers);
     if (status == SKG_OK) {
         status = read_file(fit, stream, path, numbers);

@@ -41,13 +41,34 @@ static skg_status check_options(const skg_fit_options *o) {
     return SKG_OK;
 }
 
+/* Takes what was chosen: of a group, what has an effect on this body. SKG_ERR_ARGUMENT: nothing has, or a name has not. */
+static skg_status take_choice(skg_fit *fit, const int32_t *chosen) {
+    int32_t taken[BODY_PARAMETERS];
+    int any = 0, first = -1;
+    for (int p = 0; p < BODY_PARAMETERS; p++) {
+        if (chosen[p] == BODY_BY_NAME) SKG_TRY(skg_parameter_check_coupling(p, fit->coupling));
+        if (chosen[p] && first < 0) first = p;
+        taken[p] = chosen[p] && skg_parameter_is_of(p, fit->coupling);
+        any |= taken[p];
+    }
+    if (!any && first >= 0) return skg_parameter_check_coupling(first, fit->coupling);
+    if (!any) return skg_fail(SKG_ERR_ARGUMENT, "fit: no parameter is chosen");
+    memcpy(fit->chosen, taken, sizeof taken);
+    return SKG_OK;
+}
+
 /* What the scene's key Fit says. */
-static void take_section(skg_fit *fit) {
+static skg_status take_section(skg_fit *fit) {
     const skg_body_fit_section *said = &fit->setup->breathing.fit;
     for (int p = 0; p < BODY_PARAMETERS; p++) {
-        fit->chosen[p] = !said->chooses || said->chosen[p];
-        if (said->has_range[p]) fit->low[p] = said->low[p], fit->high[p] = said->high[p];
+        const int is_of = skg_parameter_is_of(p, fit->coupling);
+        fit->chosen[p] = is_of && (fit->coupling == SKG_COUPLING_PAPER || skg_parameter_kinds[p].by_default);
+        if (said->has_range[p]) {
+            SKG_TRY(skg_parameter_check_coupling(p, fit->coupling));
+            fit->low[p] = said->low[p], fit->high[p] = said->high[p];
+        }
     }
+    return said->chooses ? take_choice(fit, said->chosen) : SKG_OK;
 }
 
 /* Starts and ranges. A range that nobody gave is widened to hold the start. */
@@ -63,8 +84,8 @@ static skg_status find_ranges(skg_fit *fit, const skg_body *body) {
             fit->low[p] = fmin(unit * kind->low, fit->start[p]);
             fit->high[p] = fmax(unit * kind->high, fit->start[p]);
         }
-        take_section(fit);
-        return SKG_OK;
+        fit->coupling = organ->coupled ? SKG_COUPLING_ANATOMICAL : SKG_COUPLING_PAPER;
+        return take_section(fit);
     }
     return skg_fail(SKG_ERR_BREATHING, "fit: the scene has no diaphragm, whose motion is fitted");
 }
@@ -155,19 +176,17 @@ skg_status skg_fit_target_add(skg_fit *fit, int64_t part, double phase, skg_mesh
 
 skg_status skg_fit_parameters_choose(skg_fit *fit, const char *names) {
     char *copy = NULL, *rest = NULL;
+    int32_t chosen[BODY_PARAMETERS] = {0};
     SKG_NEEDS(fit);
     SKG_NEEDS(names);
     SKG_TRY(check_not_begun(fit));
     SKG_TRY(skg_copy_text(names, &copy));
     skg_status status = SKG_OK;
-    memset(fit->chosen, 0, sizeof fit->chosen);
     for (char *word = strtok_r(copy, ", ", &rest); word && status == SKG_OK;
          word = strtok_r(NULL, ", ", &rest))
-        status = skg_parameters_choose(word, fit->chosen);
+        status = skg_parameters_choose(word, chosen);
     skg_free(&copy);
-    if (status == SKG_OK && skg_fit_dimensions(fit) == 0)
-        return skg_fail(SKG_ERR_ARGUMENT, "fit: no parameter is chosen");
-    return status;
+    return status == SKG_OK ? take_choice(fit, chosen) : status;
 }
 
 skg_status skg_fit_bounds_set(skg_fit *fit, const char *name, double low, double high) {
@@ -176,6 +195,7 @@ skg_status skg_fit_bounds_set(skg_fit *fit, const char *name, double low, double
     SKG_NEEDS(name);
     SKG_TRY(check_not_begun(fit));
     SKG_TRY(skg_parameter_find(name, &p));
+    SKG_TRY(skg_parameter_check_coupling(p, fit->coupling));
     SKG_TRY(skg_parameter_check_range(p, low, high));
     fit->low[p] = low, fit->high[p] = high;
     return SKG_OK;

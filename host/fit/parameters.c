@@ -42,11 +42,34 @@ static void get_tissue(const skg_body *body, const char *word, double *values) {
     values[0] = tissue.alpha_min, values[1] = tissue.alpha_max, values[2] = tissue.beta;
 }
 
+static void get_anatomy(const skg_body_options *options, double *values) {
+    values[BODY_DOMES] = options->dome_left_mm, values[BODY_DOMES + 1] = options->dome_right_mm;
+    values[BODY_DOMES + 2] = options->dome_back_mm;
+    values[BODY_MUSCLE] = options->muscle_length;
+    values[BODY_RIB_ANGLE] = options->rib_angle_rad / degree;
+    values[BODY_RIB_FALL] = options->rib_fall_rad / degree;
+    values[BODY_FOLLOWS] = options->liver_follows, values[BODY_HELD] = options->liver_held;
+}
+
+static void set_anatomy(const int32_t *chosen, const double *values, skg_body_options *options) {
+    const struct {
+        int parameter;
+        double *option, unit;
+    } all[] = {
+        {BODY_DOMES, &options->dome_left_mm, 1},           {BODY_DOMES + 1, &options->dome_right_mm, 1},
+        {BODY_DOMES + 2, &options->dome_back_mm, 1},       {BODY_MUSCLE, &options->muscle_length, 1},
+        {BODY_RIB_ANGLE, &options->rib_angle_rad, degree}, {BODY_RIB_FALL, &options->rib_fall_rad, degree},
+        {BODY_FOLLOWS, &options->liver_follows, 1},        {BODY_HELD, &options->liver_held, 1}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (chosen[all[i].parameter]) *all[i].option = all[i].unit * values[all[i].parameter];
+}
+
 void skg_fit_values_get(const skg_body *body, double *values) {
     memcpy(values + BODY_TENDON, body->options.tendon_mm, 3 * sizeof *values);
     get_plane(body, values);
     get_tissue(body, "diaphragm", values + BODY_DIAPHRAGM);
     get_tissue(body, "liver", values + BODY_LIVER);
+    get_anatomy(&body->options, values);
     values[BODY_RIBS] = skg_diaphragm_ribs_reach(&body->options);
     values[BODY_REACH] = skg_diaphragm_liver_reach(&body->options);
 }
@@ -60,7 +83,9 @@ static int any(const int32_t *chosen, int first, int count) {
 
 static void set_tissue(skg_body *body, const char *word, const double *values) {
     const int32_t organ = skg_find_organ(body, word);
-    if (organ >= 0) body->organ[organ].tissue = (skg_tissue){values[0], values[1], values[2]};
+    if (organ < 0) return;
+    body->organ[organ].tissue = (skg_tissue){values[0], values[1], values[2]};
+    body->organ[organ].tissue_by_label = 0;
 }
 
 skg_status skg_fit_values_set(skg_body *body, const int32_t *chosen, const double *values) {
@@ -72,6 +97,7 @@ skg_status skg_fit_values_set(skg_body *body, const int32_t *chosen, const doubl
     if (any(chosen, BODY_LIVER, 3)) set_tissue(body, "liver", values + BODY_LIVER);
     if (chosen[BODY_RIBS]) options->diaphragm_ribs_mm = values[BODY_RIBS];
     if (chosen[BODY_REACH]) options->diaphragm_liver_mm = values[BODY_REACH];
-    return any(chosen, BODY_AZIMUTH, BODY_PARAMETERS - BODY_AZIMUTH) ? skg_body_find_links_again(body)
-                                                                     : SKG_OK;
+    set_anatomy(chosen, values, options);
+    if (any(chosen, BODY_AZIMUTH, BODY_DOMES - BODY_AZIMUTH)) return skg_body_find_links_again(body);
+    return body->diaphragm >= 0 ? skg_body_share_again(body) : SKG_OK;
 }

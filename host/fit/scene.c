@@ -56,8 +56,10 @@ static const char *label_of(const skg_fit *fit, const skg_fit_body *model, const
     return NULL;
 }
 
-static int any(const skg_fit *fit, int first) {
-    return fit->chosen[first] || fit->chosen[first + 1] || fit->chosen[first + 2];
+static int any(const skg_fit *fit, int first, int count) {
+    int one = 0;
+    for (int p = first; p < first + count; p++) one |= fit->chosen[p];
+    return one;
 }
 
 static int set_tissue(const skg_fit *fit, json_t *breathing, const char *label, const double *values) {
@@ -67,6 +69,27 @@ static int set_tissue(const skg_fit *fit, json_t *breathing, const char *label, 
     return !label || (organ && set(organ, "Tissue", numbers(3, values, NULL)));
 }
 
+/* A key is written if one of its numbers was fitted. */
+static int set_anatomy(const skg_fit *fit, json_t *breathing, const double *values) {
+    static const struct {
+        const char *key, *unit;
+        int first, count;
+    } keys[] = {{"Domes", "mm", BODY_DOMES, 3}, {"RibAngles", NULL, BODY_RIB_ANGLE, 2}};
+    static const struct {
+        const char *key;
+        int parameter;
+    } fractions[] = {{"MuscleLength", BODY_MUSCLE}, {"LiverFollows", BODY_FOLLOWS}, {"LiverHeld", BODY_HELD}};
+    int done = 1;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        if (any(fit, keys[k].first, keys[k].count))
+            done = done &&
+                   set(breathing, keys[k].key, numbers(keys[k].count, values + keys[k].first, keys[k].unit));
+    for (size_t f = 0; f < sizeof fractions / sizeof *fractions; f++)
+        if (fit->chosen[fractions[f].parameter])
+            done = done && set(breathing, fractions[f].key, json_real(values[fractions[f].parameter]));
+    return done;
+}
+
 static int set_parameters(const skg_fit *fit, json_t *scene) {
     double values[BODY_PARAMETERS], plane[4];
     json_t *breathing = object_in(scene, "Breathing");
@@ -74,14 +97,16 @@ static int set_parameters(const skg_fit *fit, json_t *scene) {
     skg_fit_values_at(fit, fit->search.best, values);
     skg_fit_plane(fit->bounds, values, plane);
     done = done && set(breathing, "Comment", json_string("fitted by skiagraph fit"));
-    done = done && set(breathing, "Coupling", json_string("Paper"));
-    if (any(fit, BODY_TENDON))
+    done = done && set(breathing, "Coupling",
+                       json_string(fit->coupling == SKG_COUPLING_PAPER ? "Paper" : "Anatomical"));
+    done = done && set_anatomy(fit, breathing, values);
+    if (any(fit, BODY_TENDON, 3))
         done = done && set(breathing, "Tendon", numbers(3, values + BODY_TENDON, "mm"));
-    if (any(fit, BODY_AZIMUTH)) done = done && set(breathing, "TendonPlane", numbers(4, plane, NULL));
-    if (any(fit, BODY_DIAPHRAGM))
+    if (any(fit, BODY_AZIMUTH, 3)) done = done && set(breathing, "TendonPlane", numbers(4, plane, NULL));
+    if (any(fit, BODY_DIAPHRAGM, 3))
         done = done &&
                set_tissue(fit, breathing, label_of(fit, fit->models, "diaphragm"), values + BODY_DIAPHRAGM);
-    if (any(fit, BODY_LIVER))
+    if (any(fit, BODY_LIVER, 3))
         done = done && set_tissue(fit, breathing, label_of(fit, fit->models, "liver"), values + BODY_LIVER);
     if (fit->chosen[BODY_RIBS])
         done = done && set(breathing, "DiaphragmRibs", numbers(1, values + BODY_RIBS, "mm"));

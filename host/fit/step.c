@@ -1,4 +1,5 @@
 /* Evaluating generations. */
+#include "core/openmp.h"
 #include "core/plain.h"
 #include "fit/types.h"
 
@@ -45,6 +46,7 @@ static skg_status begin(skg_fit *fit) {
 }
 
 skg_status skg_fit_begin(skg_fit *fit) {
+    SKG_TRY(skg_openmp_enter());
     if (fit->began) return SKG_OK;
     const skg_status status = begin(fit);
     if (status != SKG_OK) { /* so that the next call begins anew */

@@ -13,6 +13,7 @@ struct skg_fit {
     skg_context *context; /* retained */
     const skg_setup *setup;
     skg_fit_options options;
+    int coupling; /* SKG_COUPLING_ with which the body is posed */
     int32_t chosen[BODY_PARAMETERS];
     double start[BODY_PARAMETERS], low[BODY_PARAMETERS], high[BODY_PARAMETERS];
     double bounds[6]; /* of the diaphragm */

@@ -34,7 +34,10 @@ static skg_status fail(const skg_json_node *node, skg_status status, const char 
     char path[LONGEST_PATH] = "";
     write_path(node, path, sizeof path);
     if (status == SKG_ERR_ARGUMENT) status = SKG_ERR_FORMAT;
-    int64_t line = skg_json_line(node);
+    int64_t line = skg_json_line(node), column = skg_json_column(node);
+    if (column > 0)
+        return skg_fail(status, "%s: line 1, column %" PRId64 ": %s: %s", node->file->path, column, path,
+                        sentence);
     if (line > 0)
         return skg_fail(status, "%s: line %" PRId64 ": %s: %s", node->file->path, line, path, sentence);
     return skg_fail(status, "%s: %s%s%s", node->file->path, path, *path ? ": " : "", sentence);
@@ -75,7 +78,10 @@ skg_status skg_json_fault(const skg_json_node *node, skg_status status, const ch
     va_start(arguments, format);
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
-    return node->file->lenient ? remark(node, sentence) : fail(node, status, sentence);
+    if (node->file->lenient) return remark(node, sentence);
+    char whole[LONGEST_SENTENCE + 64];
+    snprintf(whole, sizeof whole, "%s; read leniently (--lenient), this is a warning", sentence);
+    return fail(node, status, whole);
 }
 
 skg_status skg_json_at(const skg_json_node *node, skg_status status) {

@@ -1,33 +1,16 @@
 #include "json/json_file.h"
+#include "core/input.h"
 
-#include "core/path_hint.h"
-
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The whole file, with a 0 at its end. stream: standard input, or NULL for the file of this path. */
-static skg_status read_text(FILE *stream, const char *path, char **text, size_t *length) {
-    if (!stream) stream = fopen(path, "rb");
-    if (!stream) return skg_fail_unreadable(path, errno);
-    skg_status status = SKG_OK;
-    size_t capacity = 0, got = 0;
-    *length = 0;
-    do {
-        if (*length + 1 >= capacity) {
-            capacity = 2 * capacity + 65536;
-            SKG_TRY_CLEANUP(skg_realloc((int64_t)capacity, 1, path, text));
-        }
-        got = fread(*text + *length, 1, capacity - 1 - *length, stream);
-        *length += got;
-    } while (got > 0);
-    if (ferror(stream))
-        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
-    else
-        (*text)[*length] = '\0';
-cleanup:
-    if (stream != stdin) fclose(stream);
+/* The whole file, with a 0 at its end. */
+static skg_status read_text(int is_input, const char *path, char **text, size_t *length) {
+    FILE *stream = stdin;
+    if (!is_input) SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &stream, NULL));
+    const skg_status status = skg_input_read(stream, path, SKG_INPUT_TEXT, text, length);
+    if (!is_input) fclose(stream);
     return status;
 }
 
@@ -71,6 +54,13 @@ static skg_status parse_with_commas(skg_json_file *file, size_t length, json_err
         file->root = json_loadb(file->text, length, JSON_REJECT_DUPLICATES, &again);
     }
     if (file->root) return SKG_OK;
+    const char *first = file->text + strspn(file->text, " \t\r\n");
+    if (*first && *first != '{' && *first != '[')
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: is neither a scene nor a mesh: a scene is JSON and begins with {, and a mesh ends in .stl, .ply, .obj "
+            "or the like (line %d, column %d: %s)",
+            file->path, error->line, error->column, error->text);
     return skg_fail(SKG_ERR_FORMAT, "%s: line %d, column %d: %s", file->path, error->line, error->column,
                     error->text);
 }
@@ -96,7 +86,7 @@ skg_status skg_json_open(const char *path, skg_json_file *file) {
     if (is_input) path = "standard input";
     *file = (skg_json_file){.path = path};
     size_t length = 0;
-    SKG_TRY(read_text(is_input ? stdin : NULL, path, &file->text, &length));
+    SKG_TRY(read_text(is_input, path, &file->text, &length));
     return parse(file, length);
 }
 
@@ -191,6 +181,13 @@ static const char *find_node(const skg_json_node *node, const char **value) {
     const char *around = NULL;
     if (!find_node(node->up, &around)) return NULL;
     return find_child(around, node, value);
+}
+
+int64_t skg_json_column(const skg_json_node *node) {
+    const char *text = node->file->text, *value = NULL, *end = text ? strchr(text, '\n') : NULL;
+    if (!text || was_set(node) || (end && *skip_space(end))) return 0;
+    const char *at = find_node(node, &value);
+    return at && node->up ? at - text + 1 : 0;
 }
 
 int64_t skg_json_line(const skg_json_node *node) {

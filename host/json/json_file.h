@@ -38,4 +38,7 @@ skg_json_node skg_json_root(const skg_json_file *file);
 /* The line of a node in the file's text, from 1; 0 where it has none. */
 int64_t skg_json_line(const skg_json_node *node);
 
+/* The column of a node in a file of one line, where the line says nothing, from 1; 0 in other files. */
+int64_t skg_json_column(const skg_json_node *node);
+
 #endif

@@ -40,6 +40,21 @@ static int64_t find_element(json_t *array, const char *path, size_t *length) {
     return end == path + *length && end > path && number >= 0 && number < count ? (int64_t)number : -1;
 }
 
+/* Turns a step such as "Samples[0]", as messages write places, into "Samples.0", where no key has this name. */
+static void open_bracket(json_t *object, char *path) {
+    const size_t length = strcspn(path, ".");
+    char *bracket = memchr(path, '[', length),
+         *end = bracket ? memchr(bracket, ']', length - (size_t)(bracket - path)) : NULL;
+    char whole[256];
+    if (!end || end == bracket + 1 || bracket == path || length >= sizeof whole) return;
+    if (strspn(bracket + 1, "0123456789") != (size_t)(end - bracket - 1) || !strchr(".[", end[1])) return;
+    memcpy(whole, path, length);
+    whole[length] = '\0';
+    if (json_object_get(object, find_key(object, whole))) return;
+    *bracket = '.';
+    memmove(end, end + 1, strlen(end));
+}
+
 static skg_status no_element(const char *setting, json_t *array, const char *step) {
     return skg_fail(SKG_ERR_ARGUMENT,
                     "--set %s: \"%s\" is neither the label of an element nor a number from 0 to %" PRId64,
@@ -56,6 +71,7 @@ static skg_status drop(const char *setting, json_t *object, const char *key) {
  * overwritten. */
 static skg_status put(const char *setting, json_t *at, char *path, json_t *value) {
     for (;;) {
+        if (json_is_object(at)) open_bracket(at, path);
         size_t length = strcspn(path, ".");
         if (json_is_array(at)) {
             int64_t index = find_element(at, path, &length);

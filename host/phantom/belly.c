@@ -8,8 +8,8 @@
 #include <math.h>
 
 static const skg_ellipsoid gallbladder = {{-52, -104, -130}, {11, 13, 24}, {1, 0, 0.3}};
-static const skg_ellipsoid kidneys[2] = {{{60, -27, -166}, {31, 29, 60}, {1, 0.35, 0.18}},
-                                         {{-60, -27, -184}, {31, 29, 60}, {1, -0.35, -0.18}}};
+static const skg_ellipsoid kidneys[2] = {{{60, -27, -166}, {29, 27, 57}, {1, 0.35, 0.18}},
+                                         {{-60, -27, -184}, {29, 27, 57}, {1, -0.35, -0.18}}};
 static const skg_ellipsoid spleen = {{86, -33, -94}, {37, 48, 65}, {1, -0.5, 0.35}};
 static const skg_ellipsoid stomach = {{56, -84, -104}, {62, 46, 94}, {1, 0.1, -0.55}};
 
@@ -31,8 +31,8 @@ static double to_common_duct(const double p[3]) {
 /* Height over the liver's underside: a rounded right lobe, the porta, and a left lobe that thins to the left and lies in
  * front of the stomach: its underside falls to the front, steeply on the left. */
 static double over_liver_floor(const double p[3]) {
-    static const double floor[][2] = {{-130, -200}, {-105, -234}, {-80, -243}, {-55, -236}, {-30, -214},
-                                      {-5, -186},   {18, -152},   {38, -96},   {50, -40},   {60, 20}};
+    static const double floor[][2] = {{-130, -212}, {-105, -248}, {-80, -258}, {-55, -250}, {-30, -228},
+                                      {-5, -200},   {18, -158},   {38, -96},   {50, -40},   {60, 20}};
     const double slope = 0.12 + 0.28 / (1 + exp((-5 - p[0]) / 12));
     return p[2] - skg_shape_curve(floor, (int)(sizeof floor / sizeof *floor), p[0]) - slope * (p[1] + 60);
 }

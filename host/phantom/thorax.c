@@ -1,4 +1,5 @@
 /* The generated thorax as a handle. */
+#include "core/openmp.h"
 #include "core/plain.h"
 #include "phantom/makers.h"
 
@@ -52,6 +53,7 @@ skg_status skg_thorax_create(const skg_thorax_options *options, skg_thorax **res
     if (ours.triangles < 10000 || ours.triangles > 20000000)
         return skg_fail(SKG_ERR_ARGUMENT, "thorax: %" PRId64 " triangles; 10000 to 20000000", ours.triangles);
     skg_thorax *thorax;
+    SKG_TRY(skg_openmp_enter());
     SKG_TRY(skg_alloc(1, sizeof *thorax, "thorax", &thorax));
     skg_status status = fill(ours.simple, (double)ours.triangles, thorax);
     if (status != SKG_OK) {

@@ -1,6 +1,7 @@
 /* Filtered backprojection of cone beams. */
 #include "core/core.h"
 #include "core/names.h"
+#include "core/openmp.h"
 #include "core/output.h"
 #include "core/plain.h"
 #include "core/vector.h"
@@ -208,6 +209,7 @@ skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
     pixel_map map;
     SKG_NEEDS(fdk);
     SKG_NEEDS(image);
+    SKG_TRY(skg_openmp_enter());
     SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, &fdk->orbit, index, &pose));
     SKG_TRY(filter_image(fdk, &pose, image));
     find_map(&pose, &map);

@@ -3,24 +3,8 @@
 
 #include "core/plain.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
-#include <unistd.h>
-
-static skg_status read_at(const skg_scan_file *file, void *to, int64_t count, int64_t at) {
-    char *bytes = to;
-    while (count > 0) {
-        const ssize_t got = pread(file->data, bytes, (size_t)count, (off_t)at);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0)
-            return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", file->path,
-                            got < 0 ? strerror(errno) : "it ends");
-        bytes += got, at += got, count -= got;
-    }
-    return SKG_OK;
-}
 
 skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part) {
     SKG_PLAIN;
@@ -41,9 +25,11 @@ skg_status skg_scan_file_join(skg_scan_file *file, const skg_scan_file *part) {
         const int64_t index = part->first + k;
         double phase = (double)NAN;
         if (part->done[k] != 1 || file->done[index - file->first] == 1) continue;
-        status = read_at(part, image, part->bytes, part->data_at + k * part->bytes);
+        status = skg_scan_read_at(part, image, part->bytes, part->data_at + k * part->bytes);
+        if (status == SKG_OK && !skg_scan_checksum_fits(part, k, image))
+            continue; /* damaged: computed again */
         if (status == SKG_OK && part->phase_at)
-            status = read_at(part, &phase, sizeof phase, part->phase_at + k * (int64_t)sizeof phase);
+            status = skg_scan_read_at(part, &phase, sizeof phase, part->phase_at + k * (int64_t)sizeof phase);
         if (status == SKG_OK) status = skg_scan_file_write(file, 1, &index, image, &phase);
     }
     skg_free(&image);
@@ -55,7 +41,7 @@ static skg_status copy_fields(const skg_scan_file *to, int64_t to_at, int64_t to
                               const skg_scan_file *from, int64_t from_at, int64_t from_count, char *image) {
     if (!to_at || !from_at || to_count != from_count) return SKG_OK;
     for (int64_t f = 0; f < to_count; f++) {
-        SKG_TRY(read_at(from, image, from->bytes, from_at + f * from->bytes));
+        SKG_TRY(skg_scan_read_at(from, image, from->bytes, from_at + f * from->bytes));
         SKG_TRY(skg_scan_write_at(to->path, to->data, image, to->bytes, to_at + f * to->bytes));
     }
     return SKG_OK;
@@ -93,7 +79,12 @@ skg_status skg_scan_file_copy(skg_scan_file *file, const skg_scan_file *from, in
                                 from->options.darks, image));
     for (int64_t k = 0; k < count; k++) {
         const int64_t at = from->data_at + (indices[k] - from->first) * from->bytes;
-        SKG_TRY_CLEANUP(read_at(from, image, from->bytes, at));
+        SKG_TRY_CLEANUP(skg_scan_read_at(from, image, from->bytes, at));
+        if (!skg_scan_checksum_fits(from, indices[k] - from->first, image)) {
+            status = skg_fail(SKG_ERR_FILE, "%s: projection %" PRId64 " is damaged; verify the scan first",
+                              from->path, indices[k]);
+            goto cleanup;
+        }
         SKG_TRY_CLEANUP(skg_scan_file_write(file, 1, &k, image, phases ? phases + k : NULL));
     }
 cleanup:

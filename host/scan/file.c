@@ -4,6 +4,7 @@
 #include "core/element.h"
 #include "core/names.h"
 #include "core/output.h"
+#include "core/part_name.h"
 #include "core/plain.h"
 
 #include <errno.h>
@@ -63,8 +64,14 @@ skg_status skg_scan_file_samples_get(const char *path, const char *hash, int64_t
     return SKG_OK;
 }
 
+/* Where checksums stand in NAME.progress. */
+static int64_t checksums_behind(const skg_scan_file *file) {
+    return (PROGRESS_TEXT + file->projections + 3) / 4 * 4;
+}
+
 /* The progress of a file that was just laid out. */
 static skg_status begin_progress(const skg_scan_file *file) {
+    static const char none[4];
     char text[PROGRESS_TEXT] = "";
     skg_output_file output;
     if (!file->progress_path) return SKG_OK;
@@ -72,6 +79,8 @@ static skg_status begin_progress(const skg_scan_file *file) {
     skg_scan_write_identity(file, text, sizeof text);
     fwrite(text, 1, sizeof text, output.stream);
     fwrite(file->done, 1, (size_t)file->projections, output.stream);
+    fwrite(none, 1, (size_t)(checksums_behind(file) - PROGRESS_TEXT - file->projections), output.stream);
+    fwrite(file->checksums, sizeof *file->checksums, (size_t)file->projections, output.stream);
     return skg_output_commit(&output);
 }
 
@@ -88,23 +97,35 @@ static void sync_folder(const char *path) {
     close(descriptor);
 }
 
+/* Removes what was made of a file that could not be laid out. */
+static void take_back(skg_scan_file *file, const char *temporary) {
+    if (temporary) unlink(temporary);
+    if (file->progress_path) unlink(file->progress_path);
+    if (file->format->remove) file->format->remove(file);
+}
+
 /* First the progress, then the file: whoever finds a file without a progress finds a finished one. */
 static skg_status lay_out(skg_scan_file *file) {
-    char ending[32], *temporary = NULL;
+    char *temporary = NULL;
+    skg_status status = SKG_OK;
+    int descriptor = -1;
     if (file->format->remove)
         SKG_TRY(file->format->remove(file));
     else
         unlink(file->path);
     SKG_TRY(begin_progress(file));
     if (file->format->write) return file->format->lay_out(file, NULL);
-    snprintf(ending, sizeof ending, ".part-%ld", (long)getpid());
-    SKG_TRY(skg_scan_path_with(file->path, ending, &temporary));
-    skg_status status = file->format->lay_out(file, temporary);
-    if (status == SKG_OK && rename(temporary, file->path) != 0) {
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)strlen(file->path) + SKG_PART_ENDING, 1, "file name", &temporary));
+    descriptor = skg_part_open(file->path, temporary);
+    if (descriptor < 0)
+        status = skg_output_part_fail(file->path, temporary, errno);
+    else
+        close(descriptor), status = file->format->lay_out(file, temporary);
+    if (status == SKG_OK && rename(temporary, file->path) != 0)
         status = skg_output_fail(file->path, errno, "");
-        unlink(temporary);
-    }
     if (status == SKG_OK) sync_folder(file->path);
+cleanup:
+    if (status != SKG_OK) take_back(file, descriptor < 0 ? NULL : temporary);
     skg_free(&temporary);
     return status;
 }
@@ -116,6 +137,7 @@ static skg_status read_done(skg_scan_file *file) {
                         file->progress_path ? file->progress_path : file->path);
     file->done_count = 0;
     for (int64_t k = 0; k < file->projections; k++) file->done_count += file->done[k] == 1;
+    skg_scan_checksums_read(file);
     return SKG_OK;
 }
 
@@ -129,6 +151,7 @@ static skg_status open_progress(skg_scan_file *file) {
         return SKG_OK;
     }
     file->done_at = PROGRESS_TEXT;
+    file->checksum_at = checksums_behind(file);
     file->progress = open(file->progress_path, O_RDWR | O_CLOEXEC);
     if (file->progress < 0) return skg_output_fail(file->progress_path, errno, "");
     return read_done(file);
@@ -186,9 +209,7 @@ static skg_status find_part(skg_scan_file *file, const skg_scan_file_options *o)
 
 static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_file_options *o) {
     SKG_TRY(skg_scan_find_format(path, &file->format));
-    SKG_TRY(skg_copy_text(path, &file->path));
-    size_t length = strlen(path);
-    while (length > 1 && file->path[length - 1] == '/') file->path[--length] = '\0';
+    SKG_TRY(skg_scan_copy_path(path, &file->path));
     SKG_TRY(skg_scan_path_with(file->path, ".lock", &file->lock_path));
     if (!file->format->find_done && !file->format->has_progress_inside)
         SKG_TRY(skg_scan_path_with(file->path, ".progress", &file->progress_path));
@@ -200,17 +221,23 @@ static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_
     skg_view_init(&file->view);
     SKG_TRY(skg_scan_view_get(o->scan, 0, &file->view));
     file->bytes = file->view.columns * file->view.rows * skg_element_bytes(o->type);
+    SKG_TRY(skg_alloc(file->projections, sizeof *file->checksums, "list of projections", &file->checksums));
     return skg_alloc(file->projections, 1, "list of projections", &file->done);
 }
 
 static skg_status open_file(skg_scan_file *file) {
     int is_there = 0;
-    if (!file->options.is_helper) SKG_TRY(skg_scan_lock(file->lock_path, &file->lock));
+    if (!file->options.is_helper) {
+        SKG_TRY(skg_scan_lock(file->lock_path, &file->lock));
+        skg_scan_remove_stale(file);
+    }
     SKG_TRY(look(file, &is_there));
     if (!is_there && file->options.is_helper)
         return skg_fail(SKG_ERR_OUTPUT, "%s: is not laid out", file->path);
     if (!is_there) SKG_TRY(lay_out(file));
-    return open_laid_out(file);
+    SKG_TRY(open_laid_out(file));
+    const int continues = file->done_count > 0 && file->done_count < file->projections;
+    return continues && !file->options.is_helper && file->checksum_at ? skg_scan_file_verify(file) : SKG_OK;
 }
 
 skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *options,
@@ -261,6 +288,7 @@ void skg_scan_file_release(skg_scan_file **file) {
     skg_free(&f->lock_path);
     skg_free(&f->progress_path);
     skg_free(&f->done);
+    skg_free(&f->checksums);
     skg_free(&f->copies_block);
     skg_free(file);
 }
@@ -308,13 +336,15 @@ skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int3
 }
 
 /* Marks what the disk has. */
-static skg_status mark(skg_scan_file *file, int64_t count, const int64_t *indices) {
+static skg_status mark(skg_scan_file *file, int64_t count, const int64_t *indices, const char *images) {
     static const char one = 1;
     if (file->data >= 0 && fdatasync(file->data) != 0) return skg_output_fail(file->path, errno, "");
     for (int64_t i = 0; i < count; i++) {
         const int64_t at = indices[i] - file->first;
-        if (file->progress >= 0)
+        if (file->progress >= 0) {
+            SKG_TRY(skg_scan_checksum_write(file, at, images + i * file->bytes));
             SKG_TRY(skg_scan_write_at(file->path, file->progress, &one, 1, file->done_at + at));
+        }
         file->done_count += file->done[at] != 1;
         file->done[at] = 1;
     }
@@ -350,7 +380,7 @@ skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t
         while (i + row < count && indices[i + row] == indices[i] + row) row++;
         SKG_TRY(write_row(file, indices[i], row, image, phases ? phases + i : NULL));
     }
-    return mark(file, count, indices);
+    return mark(file, count, indices, images);
 }
 
 skg_status skg_scan_file_finish(skg_scan_file *file) {

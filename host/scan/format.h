@@ -1,8 +1,8 @@
 /* A file of projections, and what its formats have in common. Private.
  *
  * A file is found unfinished or finished, never half laid out: the header and the room for all projections are made
- * under a temporary name. In NAME.progress stand 256 bytes of text, then a byte for each projection: 1 once the disk
- * has it. HDF5 keeps these bytes inside. */
+ * under a temporary name. In NAME.progress stand 256 bytes of text, a byte for each projection: 1 once the disk has it,
+ * and, from the next multiple of 4 on, the checksum of each. HDF5 keeps both inside. */
 #ifndef SKG_SCAN_FORMAT_H
 #define SKG_SCAN_FORMAT_H
 
@@ -26,10 +26,13 @@ struct skg_scan_file {
     void *copies_block, *copies; /* for memory that is not aligned; NULL: not needed yet */
     int64_t data_at;             /* place of projection 0; the others follow without gaps */
     int64_t done_at;             /* place of the byte of projection 0 in `progress` */
+    int64_t checksum_at;         /* place of the checksum of projection 0 in `progress`; 0: none */
     int64_t phase_at;            /* place of the phases, which are doubles; 0: none */
     int64_t white_at, dark_at;   /* place of flat and dark fields; 0: none */
     char *done;                  /* [projections] */
     int64_t done_count;
+    uint32_t *checksums; /* [projections] CRC-32C of those that are done */
+    int64_t damaged;     /* projections that did not fit their checksum */
 };
 
 /* Who wrote a file. */
@@ -65,6 +68,10 @@ extern const skg_scan_format skg_scan_format_mha, skg_scan_format_raw, skg_scan_
 
 skg_status skg_scan_find_format(const char *path, const skg_scan_format **format);
 
+/* A path without a slash at its end. A symbolic link to an output of the same extension is that output: lock, progress and
+ * temporary names are beside its target. */
+skg_status skg_scan_copy_path(const char *path, char **copy);
+
 /* path with an ending; the caller frees it. */
 skg_status skg_scan_path_with(const char *path, const char *ending, char **result);
 
@@ -74,6 +81,15 @@ skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity)
 
 /* Fails if a file does not have a projection of the scan. */
 skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index);
+
+/* Reads all bytes at a place. */
+skg_status skg_scan_read_at(const skg_scan_file *file, void *to, int64_t count, int64_t at);
+
+/* The checksums of a file that is open: read, written for projection `at` of the file, and compared (1: it fits, or there is
+ * none). */
+void skg_scan_checksums_read(skg_scan_file *file);
+skg_status skg_scan_checksum_write(skg_scan_file *file, int64_t at, const void *image);
+int skg_scan_checksum_fits(const skg_scan_file *file, int64_t at, const void *image);
 
 /* Writes all bytes at a place. */
 skg_status skg_scan_write_at(const char *path, int descriptor, const void *bytes, int64_t count, int64_t at);
@@ -90,6 +106,9 @@ skg_status skg_scan_reserve(const char *path);
 
 /* Fails if a file has another length. */
 skg_status skg_scan_check_length(const char *path, int64_t total);
+
+/* Removes the unfinished files of a scan that a killed writer has left; the caller has its lock. */
+void skg_scan_remove_stale(const skg_scan_file *file);
 
 /* Takes the lock of `path`, or says who has it. */
 skg_status skg_scan_lock(const char *path, int *descriptor);

@@ -15,6 +15,7 @@ skg_status skg_scan_hash_get(const skg_setup *setup, const skg_plan_options *opt
     SKG_PLAIN;
     skg_plan_options o;
     skg_scan_run_options r;
+    skg_spectrum *spectrum = NULL;
     skg_digester sum;
     char text[512];
     SKG_NEEDS(options);
@@ -24,6 +25,9 @@ skg_status skg_scan_hash_get(const skg_setup *setup, const skg_plan_options *opt
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &o, sizeof o));
     if (run) SKG_TRY(skg_struct_read(run, "skg_scan_run_options", &r, sizeof r));
     SKG_TRY(skg_setup_hash_get(setup, hash, size));
+    SKG_TRY(skg_setup_spectrum_get(setup, &spectrum));
+    if (o.falloff == SKG_FALLOFF_AUTO && spectrum) SKG_TRY(skg_spectrum_absolute_get(spectrum, &o.falloff));
+    if (o.falloff == SKG_FALLOFF_AUTO) o.falloff = SKG_FALLOFF_OFF;
     snprintf(text, sizeof text,
              "%s %d %d %d %.17g %d %d %d %d %d %d %" PRId64 " %.17g %.17g %.17g %d %" PRId64 " %d %" PRId64,
              SKG_VERSION, (int)r.type, (int)o.precision, (int)o.quantity, o.tolerance, (int)o.falloff,

@@ -160,6 +160,7 @@ static int make_process(hid_t root, const skg_scan_file *file) {
     const hid_t group = H5Gcreate2(root, "process", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (group < 0) return 0;
     const int done = make_dataset(group, "done", H5T_NATIVE_UINT8, 1, &n, file->done, NULL) &&
+                     make_dataset(group, "checksum", H5T_NATIVE_UINT32, 1, &n, file->checksums, "CRC-32C") &&
                      write_text(group, "hash", file->options.hash) &&
                      write_number(group, "samples", H5T_NATIVE_INT64, &file->options.samples) &&
                      write_text(group, "program", "skiagraph " SKG_VERSION);
@@ -217,6 +218,7 @@ static skg_status locate(skg_scan_file *file) {
         file->dark_at = place_of(root, "exchange/data_dark");
         file->phase_at = place_of(root, "geometry/phase");
         file->done_at = place_of(root, "process/done");
+        file->checksum_at = place_of(root, "process/checksum");
         H5Fclose(root);
     }
     skg_hdf5_be_as_before(&before);

@@ -1,6 +1,9 @@
 /* The last pass over a finished scan: the same file again, compressed in chunks. */
+#include "core/input.h"
 #include "core/output.h"
+#include "core/part_name.h"
 #include "core/plain.h"
+#include "scan/hdf5_copy.h"
 #include "scan/hdf5_errors.h"
 
 #include <skiagraph/scan_file.h>
@@ -233,14 +236,20 @@ static skg_status pack(packing *p) {
     const hid_t group = H5Gcreate2(p->result, "exchange", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (group < 0) return fail(p);
     if (p->grey > 0) flat = full_grey;
+    const hid_t exchange = H5Gopen2(p->source, "exchange", H5P_DEFAULT);
     const int done = write_words(p->result, "implements", "exchange") &&
                      write_words(group, "quantity", p->grey > 0 ? "grey value" : quantity) &&
-                     write_attribute(group, "flat_field", H5T_NATIVE_DOUBLE, &flat) &&
-                     H5Ocopy(p->source, "exchange/theta", group, "theta", H5P_DEFAULT, H5P_DEFAULT) >= 0 &&
-                     H5Ocopy(p->source, "geometry", p->result, "geometry", H5P_DEFAULT, H5P_DEFAULT) >= 0 &&
-                     H5Ocopy(p->source, "process", p->result, "process", H5P_DEFAULT, H5P_DEFAULT) >= 0;
+                     write_attribute(group, "flat_field", H5T_NATIVE_DOUBLE, &flat);
+    errno = 0;
+    const int copied = exchange >= 0 && skg_hdf5_copy_set(exchange, group, "theta") &&
+                       skg_hdf5_copy_groups(p->source, p->result);
+    if (exchange >= 0) H5Gclose(exchange);
     H5Gclose(group);
-    if (!done) return fail(p);
+    if (!copied && errno != ENOSPC)
+        return refuse(p, "it is damaged: angles, geometry or progress cannot be copied");
+    if (!done || !copied) return fail(p);
+    if (p->grey > 0)
+        H5Ldelete(p->result, "process/checksum", H5P_DEFAULT); /* it is that of the other values */
     SKG_TRY(pack_set(p, "exchange/data", 1));
     SKG_TRY(pack_set(p, "exchange/data_white", 0));
     return pack_set(p, "exchange/data_dark", 0);
@@ -272,16 +281,26 @@ static skg_status check(const packing *p) {
 }
 
 static skg_status run(packing *p) {
-    char temporary[4096];
+    char *temporary = NULL;
+    skg_status status = SKG_OK;
+    int descriptor = -1;
     SKG_TRY(check(p));
-    if (snprintf(temporary, sizeof temporary, "%s.part-%ld", p->to, (long)getpid()) >= (int)sizeof temporary)
-        return skg_output_fail(p->to, ENAMETOOLONG, "");
+    SKG_TRY(skg_input_check(p->from, INT64_MAX));
     p->source = H5Fopen(p->from, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (p->source < 0) return skg_hdf5_fail(p->from);
-    skg_status status = pack_to(p, temporary);
-    H5Fclose(p->source);
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)strlen(p->to) + SKG_PART_ENDING, 1, "file name", &temporary));
+    descriptor = skg_part_open(p->to, temporary);
+    if (descriptor < 0) {
+        status = skg_output_part_fail(p->to, temporary, errno);
+        goto cleanup;
+    }
+    close(descriptor); /* HDF5 opens it by its name */
+    status = pack_to(p, temporary);
     if (status == SKG_OK && rename(temporary, p->to) != 0) status = skg_output_fail(p->to, errno, "");
     if (status != SKG_OK) unlink(temporary);
+cleanup:
+    H5Fclose(p->source);
+    skg_free(&temporary);
     return status;
 }
 

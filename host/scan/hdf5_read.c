@@ -1,4 +1,5 @@
 /* Reading a finished scan from HDF5. */
+#include "core/input.h"
 #include "core/plain.h"
 #include "core/vector.h"
 #include "scan/hdf5_errors.h"
@@ -140,6 +141,7 @@ static skg_status check_finished(const skg_scan_reader *reader) {
 static skg_status open_reader(skg_scan_reader *reader) {
     hsize_t size[3];
     char quantity[64] = "";
+    SKG_TRY(skg_input_check(reader->path, INT64_MAX));
     reader->root = H5Fopen(reader->path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (reader->root < 0) return skg_hdf5_fail(reader->path);
     reader->data = H5Dopen2(reader->root, "exchange/data", H5P_DEFAULT);

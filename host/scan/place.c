@@ -1,6 +1,7 @@
 /* Bytes at their places in a file, and the text that says which scan a file holds. */
+#define _XOPEN_SOURCE 700 /* realpath */
+#include "core/input.h"
 #include "core/output.h"
-#include "core/path_hint.h"
 #include "scan/format.h"
 
 #include <errno.h>
@@ -22,6 +23,28 @@ skg_status skg_scan_path_with(const char *path, const char *ending, char **resul
     return SKG_OK;
 }
 
+/* The extension, which names the kind of an output. */
+static const char *ending_of(const char *path) {
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot : "";
+}
+
+skg_status skg_scan_copy_path(const char *path, char **copy) {
+    struct stat its;
+    char *target = NULL;
+    SKG_TRY(skg_copy_text(path, copy));
+    size_t length = strlen(path);
+    while (length > 1 && (*copy)[length - 1] == '/') (*copy)[--length] = '\0';
+    if (lstat(*copy, &its) == 0 && S_ISLNK(its.st_mode)) target = realpath(*copy, NULL);
+    skg_status status = SKG_OK;
+    if (target && strcmp(ending_of(target), ending_of(*copy)) == 0) {
+        skg_free(copy);
+        status = skg_copy_text(target, copy);
+    }
+    free(target);
+    return status;
+}
+
 void skg_scan_write_identity(const skg_scan_file *file, char *text, size_t size) {
     snprintf(text, size, "%s%s\n%s%" PRId64 "\n", hash_key, file->options.hash, samples_key,
              file->options.samples);
@@ -30,9 +53,9 @@ void skg_scan_write_identity(const skg_scan_file *file, char *text, size_t size)
 skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity) {
     char text[4096 + 1];
     *identity = (skg_scan_identity){0};
-    FILE *stream = fopen(path, "rb");
-    if (!stream && errno == ENOENT) return SKG_OK;
-    if (!stream) return skg_fail_unreadable(path, errno);
+    FILE *stream = NULL;
+    if (access(path, F_OK) != 0 && errno == ENOENT) return SKG_OK;
+    SKG_TRY(skg_input_open(path, INT64_MAX, &stream, NULL)); /* a scan may have any length */
     const size_t got = fread(text, 1, sizeof text - 1, stream);
     fclose(stream);
     for (size_t i = 0; i < got; i++)

@@ -1,7 +1,6 @@
 /* The key Beam of a source: energies, a file of them, or a tube. */
 #include "core/context.h"
 #include "core/units.h"
-#include "core/vector.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
@@ -32,8 +31,11 @@ static const skg_json_key spectrum_keys[] = {
     {"Current", "X-ray tube current", SKG_KEY_READ},
     {"Filter", NULL, SKG_KEY_READ},
     {"Filtration", "Filter", SKG_KEY_READ},
+    {"Filters", "Filter", SKG_KEY_READ},
     {"MaxNumberOfEnergyBins", NULL, SKG_KEY_READ},
     {"Output", NULL, SKG_KEY_READ},
+    {"Bins", NULL, SKG_KEY_READ},
+    {"At1m", NULL, SKG_KEY_READ},
 };
 
 static skg_status read_channel(const skg_json_node *node, double *energy_kev, double *photons) {
@@ -246,47 +248,44 @@ cleanup:
     return status;
 }
 
+/* Bins: rows of keV and photons, per pixel, or with At1m per mm2 at 1 m. */
+static skg_status read_bins(skg_setup_reader *reader, const skg_json_object *beam,
+                            const skg_json_node *node) {
+    const skg_json_node at = skg_json_member(beam, "At1m");
+    double *rows = NULL, *columns = NULL;
+    skg_spectrum *bins = NULL;
+    int64_t count = 0;
+    if (at.value) SKG_TRY(skg_json_flag(&at, &reader->setup->absolute));
+    SKG_TRY(skg_setup_read_rows(node, 2, "[[60, 1000]], in keV and photons", &count, &rows));
+    skg_status status = skg_alloc(2 * count, sizeof *columns, "beam", &columns);
+    SKG_TRY_CLEANUP(status);
+    for (int64_t i = 0; i < count; i++) columns[i] = rows[2 * i], columns[count + i] = rows[2 * i + 1];
+    status = skg_spectrum_create_bins(count, columns, columns + count, &bins);
+    SKG_TRY_CLEANUP(skg_json_at(node, status));
+    if (reader->setup->absolute)
+        status = skg_spectrum_create_absolute(bins, &reader->setup->spectrum);
+    else
+        reader->setup->spectrum = bins, bins = NULL;
+cleanup:
+    skg_spectrum_release(&bins);
+    skg_free(&rows);
+    skg_free(&columns);
+    return status;
+}
+
 skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node) {
     if (!json_is_object(node->value)) return read_channels(reader->setup, node);
     skg_json_object beam;
     SKG_TRY(skg_json_read_object(node, spectrum_keys, sizeof spectrum_keys / sizeof *spectrum_keys, &beam));
     skg_json_node file = skg_json_member(&beam, "TextFile"), macro = skg_json_member(&beam, "GateMacro");
-    skg_json_node kvp = skg_json_member(&beam, "kVp");
-    int32_t given = (file.value != NULL) + (macro.value != NULL) + (kvp.value != NULL);
+    skg_json_node kvp = skg_json_member(&beam, "kVp"), bins = skg_json_member(&beam, "Bins");
+    int32_t given = (file.value != NULL) + (macro.value != NULL) + (kvp.value != NULL) + (bins.value != NULL);
     if (given > 1)
         return skg_json_fail(node, SKG_ERR_FORMAT,
-                             "describes several beams; give one of kVp, TextFile, GateMacro");
+                             "describes several beams; give one of kVp, Bins, TextFile, GateMacro");
     if (file.value) return read_file(reader, &beam, &file);
     if (macro.value) return read_file(reader, &beam, &macro);
+    if (bins.value) return read_bins(reader, &beam, &bins);
     if (kvp.value) return read_tube(reader, &beam, &kvp);
     return skg_json_fail(node, SKG_ERR_FORMAT, "describes no beam; give %s, or {\"kVp\": 85}", example);
-}
-
-/* From photons per mm2 at 1 m to photons per pixel where the perpendicular from the source meets the detector. */
-skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node) {
-    skg_setup *setup = reader->setup;
-    const skg_view *view = &setup->view;
-    double normal[3], way[3];
-    skg_spectrum *placed = NULL;
-    if (!setup->absolute) return SKG_OK;
-    if (view->projection != SKG_PROJECTION_POINT) {
-        skg_quality quality;
-        skg_quality_init(&quality);
-        SKG_TRY(skg_spectrum_quality_get(setup->spectrum, &quality));
-        setup->absolute = 0;
-        return skg_json_remark(
-            node,
-            "a parallel beam has no distance from a tube, so mAs does not say how many photons "
-            "arrive (a point source would send %.4g to a mm2 at 1 m); the image is in units of "
-            "that number per pixel",
-            quality.photons);
-    }
-    skg_cross(view->column_step, view->row_step, normal);
-    double area = skg_length(normal);
-    skg_add_scaled(view->centre, -1, view->source, way);
-    double distance = fabs(skg_dot(way, normal)) / area;
-    SKG_TRY(skg_spectrum_create_scaled(setup->spectrum, area * pow(1000 / distance, 2), &placed));
-    skg_spectrum_release(&setup->spectrum);
-    setup->spectrum = placed;
-    return SKG_OK;
 }

@@ -1,4 +1,6 @@
 /* The section Breathing of a scene file. */
+#include "breath/signal.h"
+#include "core/maths.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
@@ -16,6 +18,9 @@ static const skg_json_key breathing_keys[] = {
     {"Events", NULL, SKG_KEY_READ},        {"RibAxes", NULL, SKG_KEY_READ},
     {"DiaphragmRibs", NULL, SKG_KEY_READ}, {"DiaphragmLiver", NULL, SKG_KEY_READ},
     {"Coupling", NULL, SKG_KEY_READ},      {"Fit", NULL, SKG_KEY_READ},
+    {"Domes", NULL, SKG_KEY_READ},         {"MuscleLength", NULL, SKG_KEY_READ},
+    {"RibAngles", NULL, SKG_KEY_READ},     {"LiverFollows", NULL, SKG_KEY_READ},
+    {"LiverHeld", NULL, SKG_KEY_READ},     {"Signal", NULL, SKG_KEY_READ},
 };
 
 static const skg_json_key event_keys[] = {
@@ -30,6 +35,7 @@ void skg_breathing_section_free(skg_breathing_section *section) {
     for (int64_t i = 0; i < section->contrast_count; i++)
         skg_free(&section->contrasts[i].fill_fraction.points);
     skg_free(&section->samples);
+    skg_free(&section->signal);
     skg_free(&section->holds);
     skg_free(&section->contrasts);
     skg_free(&section->weight.points);
@@ -95,6 +101,44 @@ static skg_status read_reach(const skg_json_object *object, const char *name, do
     return skg_json_fail(&node, SKG_ERR_BREATHING, "is %g mm; the range is above 0 to 1000 mm", *mm);
 }
 
+/* What the anatomical coupling can be told. Values out of range are refused here, where the file can be named. */
+static skg_status read_anatomy(const skg_json_object *object, skg_body_options *body) {
+    const double degree = SKG_PI / 180;
+    const struct {
+        const char *name;
+        double *value, low, high;
+    } fraction[] = {{"MuscleLength", &body->muscle_length, 0.1, 1},
+                    {"LiverFollows", &body->liver_follows, 0, 2},
+                    {"LiverHeld", &body->liver_held, 0, 1}};
+    double domes[3] = {0}, angles[2] = {0};
+    const skg_json_node dome = skg_json_member(object, "Domes"), rib = skg_json_member(object, "RibAngles");
+    for (size_t f = 0; f < sizeof fraction / sizeof *fraction; f++) {
+        const skg_json_node node = skg_json_member(object, fraction[f].name);
+        if (!node.value) continue;
+        SKG_TRY(skg_json_number(&node, fraction[f].value));
+        if (!(*fraction[f].value >= fraction[f].low && *fraction[f].value <= fraction[f].high))
+            return skg_json_fail(&node, SKG_ERR_BREATHING, "is %g; the range is %g to %g", *fraction[f].value,
+                                 fraction[f].low, fraction[f].high);
+    }
+    if (dome.value) {
+        SKG_TRY(skg_json_lengths(&dome, "[4, -2, 0, \"mm\"]: left, right, back", 3, domes));
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(domes[k]) <= 57))
+                return skg_json_fail(&dome, SKG_ERR_BREATHING, "has %g mm; the range is -57 to 57 mm",
+                                     domes[k]);
+        body->dome_left_mm = domes[0], body->dome_right_mm = domes[1], body->dome_back_mm = domes[2];
+    }
+    if (!rib.value) return SKG_OK;
+    SKG_TRY(skg_json_numbers(&rib, "[14.6, 0]: degrees of rib 5, and how much more they fall per rib", 2,
+                             angles));
+    if (!(angles[0] >= 0 && angles[0] <= 45 && fabs(angles[1]) <= 5))
+        return skg_json_fail(&rib, SKG_ERR_BREATHING,
+                             "is [%g, %g]; the first is 0 to 45 degrees, the second -5 to 5 degrees",
+                             angles[0], angles[1]);
+    body->rib_angle_rad = degree * angles[0], body->rib_fall_rad = degree * angles[1];
+    return SKG_OK;
+}
+
 static skg_status read_body(skg_breathing_section *section, const skg_json_object *object) {
     skg_body_options *body = &section->body;
     skg_json_node tendon = skg_json_member(object, "Tendon"), plane = skg_json_member(object, "TendonPlane");
@@ -114,6 +158,7 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     body->reference_thoracic = amplitude * section->breath.thoracic;
     body->reference_diaphragmatic = amplitude * section->breath.diaphragmatic;
     if (tendon.value) SKG_TRY(skg_json_lengths(&tendon, "[0, 0, -15, \"mm\"]", 3, body->tendon_mm));
+    SKG_TRY(read_anatomy(object, body));
     SKG_TRY(read_reach(object, "DiaphragmRibs", &body->diaphragm_ribs_mm));
     SKG_TRY(read_reach(object, "DiaphragmLiver", &body->diaphragm_liver_mm));
     if (plane.value) SKG_TRY(skg_json_numbers(&plane, "[0, 1, 1, 20]", 4, body->tendon_plane));
@@ -200,6 +245,19 @@ static skg_status read_events(skg_setup_reader *reader, const skg_json_node *nod
     return SKG_OK;
 }
 
+/* What was recorded of a patient, in a file. */
+static skg_status read_signal(skg_setup_reader *reader, const skg_json_node *node) {
+    skg_breathing_section *section = &reader->setup->breathing;
+    const char *name = NULL, *path = NULL;
+    SKG_TRY(skg_json_text(node, &name));
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
+    SKG_TRY(skg_json_at(node, skg_signal_load(path, &section->signal, &section->breath.signal_count)));
+    section->breath.signal = section->signal;
+    if (section->body.hysteresis > 0)
+        return skg_json_fail(node, SKG_ERR_UNSUPPORTED, "is no periodic breath; it needs Hysteresis 0");
+    return SKG_OK;
+}
+
 skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_node *node) {
     skg_breathing_section *section = &reader->setup->breathing;
     skg_json_object object;
@@ -216,6 +274,8 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     skg_json_node organs = skg_json_member(&object, "Organs"), events = skg_json_member(&object, "Events");
     if (organs.value) SKG_TRY(skg_setup_read_organs(reader, &organs));
     if (events.value) SKG_TRY(read_events(reader, &events));
+    skg_json_node signal = skg_json_member(&object, "Signal");
+    if (signal.value) SKG_TRY(read_signal(reader, &signal));
     skg_json_node fit = skg_json_member(&object, "Fit");
     if (fit.value) SKG_TRY(skg_setup_read_body_fit(&fit, &section->fit));
     skg_status status = skg_breath_check(&section->breath);

@@ -13,7 +13,8 @@ static const skg_json_key detector_keys[] = {
     {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", NULL, SKG_KEY_READ},
     {"PSF", NULL, SKG_KEY_READ},          {"GreyValues", NULL, SKG_KEY_READ},
     {"Grid", NULL, SKG_KEY_READ},         {"MTF", NULL, SKG_KEY_READ},
-    {"DQE", NULL, SKG_KEY_READ},
+    {"DQE", NULL, SKG_KEY_READ},          {"ColumnStep", NULL, SKG_KEY_READ},
+    {"RowStep", NULL, SKG_KEY_READ},
 };
 
 /* Size and Spacing may both be given if they agree; if they do not, that is a fault, and Spacing holds. */
@@ -115,14 +116,37 @@ skg_status skg_setup_is_fitted(const skg_json_node *node, int32_t *fitted) {
     return SKG_OK;
 }
 
+/* ColumnStep and RowStep, instead of the directions and sizes of a pixel. *given: 0 where there is neither. */
+static skg_status read_steps(const skg_json_object *detector, skg_view *view, int32_t *given) {
+    static const char *const others[] = {"UpVector", "RightVector", "Size", "Spacing"};
+    static const char *const example = "[0.5, 0, 0, \"mm\"]";
+    skg_json_node column = skg_json_member(detector, "ColumnStep"),
+                  row = skg_json_member(detector, "RowStep");
+    *given = column.value || row.value;
+    if (!*given) return SKG_OK;
+    for (int k = 0; k < 4; k++) {
+        const skg_json_node other = skg_json_member(detector, others[k]);
+        if (other.value)
+            return skg_json_fail(&other, SKG_ERR_FORMAT,
+                                 "ColumnStep and RowStep say it already; leave %s out", others[k]);
+    }
+    SKG_TRY(skg_json_need(detector, "ColumnStep", example, &column));
+    SKG_TRY(skg_json_need(detector, "RowStep", "[0, 0, -0.5, \"mm\"]", &row));
+    SKG_TRY(skg_json_lengths(&column, example, 3, view->column_step));
+    return skg_json_lengths(&row, "[0, 0, -0.5, \"mm\"]", 3, view->row_step);
+}
+
 static skg_status place(const skg_json_object *detector, const skg_json_node *position, skg_view *view) {
     double right[3], up[3], spacing[2];
+    int32_t steps = 0;
     SKG_TRY(skg_json_lengths(position, "[0, 500, 0, \"mm\"]", 3, view->centre));
     SKG_TRY(read_pixels(detector, view));
     if (view->columns < 1 || view->rows < 1) { /* before Size is divided by them */
         skg_status status = skg_view_check(view);
         return skg_json_at(detector->node, status);
     }
+    SKG_TRY(read_steps(detector, view, &steps));
+    if (steps) return SKG_OK;
     SKG_TRY(read_spacing(detector, view, spacing));
     SKG_TRY(read_axes(detector, view, right, up));
     skg_scale_vector(spacing[0], right, view->column_step);

@@ -1,5 +1,6 @@
 /* What identifies a set-up: its file after the settings, and the contents of the files that it names. */
 #include "core/digest.h"
+#include "core/input.h"
 #include "core/path_hint.h"
 #include "setup/sections.h"
 
@@ -22,16 +23,24 @@ skg_status skg_setup_keep_text(skg_setup_reader *reader) {
 static skg_status add_file(const char *path, skg_digester *sum) {
     char bytes[65536];
     struct stat there;
+    int64_t size = 0;
     size_t got;
+    FILE *file = NULL;
     if (stat(path, &there) != 0 || !S_ISREG(there.st_mode)) return SKG_OK;
-    FILE *file = fopen(path, "rb");
-    if (!file) return skg_fail_unreadable(path, errno);
-    snprintf(bytes, sizeof bytes, "%" PRId64 "\n", (int64_t)there.st_size);
+    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &file, &size));
+    snprintf(bytes, sizeof bytes, "%" PRId64 "\n", size);
     skg_digest_add_text(sum, bytes);
     while ((got = fread(bytes, 1, sizeof bytes, file)) > 0) skg_digest_add(sum, bytes, got);
     const int reason = ferror(file) ? errno : 0;
     fclose(file);
     return reason ? skg_fail_unreadable(path, reason) : SKG_OK;
+}
+
+skg_status skg_setup_text_get(const skg_setup *setup, const char **text) {
+    SKG_NEEDS(setup);
+    SKG_NEEDS(text);
+    *text = setup->text;
+    return SKG_OK;
 }
 
 skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_t size) {

@@ -1,11 +1,10 @@
 /* What the keys Scan, GreyValues and Poses say of how projections are recorded. */
 #include "core/core.h"
-#include "core/path_hint.h"
+#include "core/input.h"
 #include "core/plain.h"
 #include "core/vector.h"
 #include "setup/sections.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -94,8 +93,8 @@ static skg_status load_map(const char *path, int64_t pixels, int64_t format, int
     const int64_t size = sizes[format];
     unsigned char *bytes = NULL;
     skg_status status = SKG_OK;
-    FILE *file = fopen(path, "rb");
-    if (!file) return skg_fail_unreadable(path, errno);
+    FILE *file = NULL;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &file, NULL));
     SKG_TRY_CLEANUP(skg_alloc(pixels, (size_t)size, "map of bad pixels", &bytes));
     SKG_TRY_CLEANUP(skg_alloc(pixels, sizeof **map, "map of bad pixels", map));
     if (fseek(file, (long)header, SEEK_SET) != 0 ||

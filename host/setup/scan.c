@@ -136,6 +136,43 @@ static skg_status read_angles(const skg_json_object *object, angles *a, skg_scan
     return read_flag(object, "Short", &a->is_short);
 }
 
+/* Whether projections differ in time. */
+static int is_series(const skg_json_object *object) {
+    return skg_json_member(object, "StartTime").value || skg_json_member(object, "Interval").value;
+}
+
+/* Without an end of the turn, several projections that nothing else tells apart go once around. */
+static skg_status complete_turn(const skg_json_node *node, const skg_json_object *object,
+                                const skg_scan_options *scan, angles *a) {
+    const int by_count = a->count > 1 && !a->has_step;
+    const int by_step = a->count == 0 && a->has_step && a->step != 0;
+    if (a->has_final || a->is_short || !(by_count || by_step)) return SKG_OK;
+    if (by_count && skg_json_member(object, "SourceTravel").value) return SKG_OK;
+    if (by_count && is_series(object))
+        return skg_json_remark(node, "has neither FinalAngle nor AngleStep: nothing turns");
+    a->has_final = 1;
+    a->final = scan->start_rad / degree + (by_step ? copysign(360, a->step) : 360);
+    return skg_json_remark(node,
+                           by_count ? "has neither FinalAngle nor AngleStep: the projections go once around, "
+                                      "FinalAngle %g"
+                                    : "has no FinalAngle: the projections go once around, FinalAngle %g",
+                           a->final);
+}
+
+/* Warns if number, step and final angle contradict each other. */
+static skg_status compare_angles(const skg_json_node *node, const skg_scan_options *scan, const angles *a) {
+    const int64_t steps = a->count - (a->include_last ? 1 : 0);
+    const double start = scan->start_rad / degree, end = start + (double)steps * a->step;
+    /* a thousandth of a step, as files round what they write */
+    if (a->count == 0 || !a->has_step || !a->has_final || fabs(end - a->final) <= 1e-3 * fabs(a->step))
+        return SKG_OK;
+    return skg_json_remark(
+        node,
+        "%lld projections with an AngleStep of %g end at %g degrees, but FinalAngle is %g; "
+        "FinalAngle is without effect",
+        (long long)a->count, a->step, end, a->final);
+}
+
 /* Number of projections and step from what is given. *last: the position at which the rotation ends. */
 static skg_status decide_angles(const skg_json_node *node, const skg_view *view, angles *a,
                                 skg_scan_options *scan, double *last) {
@@ -261,6 +298,8 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
         SKG_TRY(skg_json_text(&folder, &text));
         SKG_TRY(skg_setup_resolve(reader, text, &scan->folder));
     }
+    if (!table.value) SKG_TRY(complete_turn(node, &object, &options, &a));
+    if (!table.value) SKG_TRY(compare_angles(node, &options, &a));
     SKG_TRY(make_scan(reader, node, &table, &a, &options));
     if (known.value) SKG_TRY(make_known(reader, &known, &options));
     return skg_setup_read_record(reader, &object);

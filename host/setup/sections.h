@@ -52,10 +52,8 @@ void skg_setup_organs_free(skg_breathing_section *section);
 skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
                                        int32_t *parallel);
 
-/* The key Beam. With mAs, photons are counted per mm2 at 1 m until the detector is known and skg_setup_place_beam
- * makes them photons per pixel. node: of the beam or what it lies in, for messages. */
+/* The key Beam. With mAs the spectrum is absolute. */
 skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node);
-skg_status skg_setup_place_beam(skg_setup_reader *reader, const skg_json_node *node);
 
 /* The keys Bowtie of a source (value NULL: none) and Grid of a detector. */
 skg_status skg_setup_read_bowtie(skg_setup_reader *reader, const skg_json_node *node);

@@ -155,18 +155,22 @@ static skg_status read_all(skg_setup_reader *reader) {
     if (source.value) SKG_TRY(skg_setup_read_source(reader, &source));
     if (fitted) SKG_TRY(skg_setup_read_samples(reader, &samples, &graph));
     if (source.value) SKG_TRY(skg_setup_read_detector(reader, &detector));
-    if (source.value) SKG_TRY(skg_setup_place_beam(reader, &source));
     const skg_json_node falloff = skg_json_member(&top, "Falloff");
-    reader->setup->falloff = reader->setup->absolute;
+    reader->setup->falloff = SKG_FALLOFF_AUTO;
     if (falloff.value) SKG_TRY(skg_json_flag(&falloff, &reader->setup->falloff));
     SKG_TRY(read_world(reader, &top));
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
-    if (reader->setup->absolute && !noise.value)
+    if (reader->setup->absolute && !noise.value && reader->setup->view.projection == SKG_PROJECTION_POINT)
         skg_logger_say(
             &reader->log, SKG_LOG_NOTE,
             "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
             "given");
+    if (reader->setup->has_tube && !reader->setup->absolute && reader->setup->noise.quantum)
+        skg_logger_say(
+            &reader->log, SKG_LOG_NOTE,
+            "the noise is that of the photons that 1 mAs sends to a mm2 at 1 m, taken as those of a pixel, because "
+            "the tube has no mAs");
     skg_json_node scan = skg_json_member(&top, "Scan");
     if (scan.value && !source.value) return skg_json_fail(&scan, SKG_ERR_SCENE, "needs Source and Detector");
     if (scan.value && fitted)
@@ -340,7 +344,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
     if (setup->has_precision) ours.precision = setup->precision;
     if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
-    if (setup->falloff) ours.falloff = 1;
+    if (setup->falloff != SKG_FALLOFF_AUTO) ours.falloff = setup->falloff;
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;
     if (setup->has_band_weight) ours.band_weight = setup->band_weight;

@@ -130,12 +130,11 @@ static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
         SKG_TRY(skg_json_number(&member, &length[k]));
         length[k] *= mm;
     }
-    if (length[2] != length[3])
-        return skg_json_fail(node, SKG_ERR_UNSUPPORTED,
-                             "has a first step of another height, which is not supported yet; give the same "
-                             "FirstStepHeight and OtherStepHeight");
-    skg_status status =
-        skg_mesh_create_step_wedge(length[0], length[1], (double)steps * length[2], steps, mesh);
+    double *heights = NULL;
+    SKG_TRY(skg_alloc(steps, sizeof *heights, "step wedge", &heights));
+    for (int64_t k = 0; k < steps; k++) heights[k] = length[2] + (double)k * length[3];
+    const skg_status status = skg_mesh_create_steps(length[0], length[1], steps, heights, mesh);
+    skg_free(&heights);
     return skg_json_at(node, status);
 }
 

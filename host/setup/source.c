@@ -7,7 +7,7 @@ static const skg_json_key source_keys[] = {
     {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
     {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
     {"From", NULL, SKG_KEY_READ},     {"Heel", NULL, SKG_KEY_READ},
-    {"Bowtie", NULL, SKG_KEY_READ},
+    {"Bowtie", NULL, SKG_KEY_READ},   {"LSF", NULL, SKG_KEY_READ},
 };
 
 /* Where only path lengths are wanted, any energy does for a beam that is absent. */
@@ -81,6 +81,10 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
         SKG_TRY(skg_json_need(&source, "Position", example, &position));
         SKG_TRY(skg_json_lengths(&position, example, 3, setup->view.source));
     }
+    const skg_json_node lines = skg_json_member(&source, "LSF");
+    if (lines.value)
+        SKG_TRY(skg_json_remark(&lines,
+                                "is passed over, as gVXR does; a line spread function belongs to Detector"));
     beam = skg_json_member(&source, "Beam");
     if (node->file->lengths && (!beam.value || json_is_null(beam.value))) {
         SKG_TRY(skg_json_remark(node,

@@ -68,7 +68,11 @@ skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_
     int64_t choice = 0;
     skg_spot_init(spot);
     *parallel = 0;
-    SKG_TRY(skg_json_need(source, "Shape", "\"PointSource\" or \"ParallelBeam\"", &node));
+    node = skg_json_member(source, "Shape");
+    if (!node.value) {
+        *parallel = skg_json_member(source, "Direction").value != NULL; /* only a parallel beam has one */
+        return SKG_OK;
+    }
     if (json_is_array(node.value)) {
         SKG_TRY(read_spot(&node, spot));
         return read_sampling(source, spot);

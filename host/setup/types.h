@@ -54,6 +54,7 @@ typedef struct {
     skg_breath breath; /* its samples and holds point to those below */
     skg_body_options body;
     double *samples;
+    double *signal; /* recorded; NULL: none */
     skg_breath_hold *holds;
     int32_t lung_density; /* 1: the lungs keep their mass */
     int32_t is_given;     /* 1: the file has it */
@@ -100,7 +101,7 @@ struct skg_setup {
     skg_scene *scene;
     skg_spectrum *spectrum;
     int32_t absolute;       /* 1: photons come from mAs */
-    int32_t falloff;        /* 1: the beam falls off with distance */
+    int32_t falloff;        /* enum skg_falloff */
     skg_response *response; /* NULL: ideal */
     skg_material *world;    /* around the parts; NULL: vacuum */
     skg_setup_blur blur;    /* columns 0: none */

@@ -1,5 +1,6 @@
 /* A table of poses from a text file. */
 #include "core/columns.h"
+#include "core/input.h"
 #include "core/path_hint.h"
 #include "core/plain.h"
 #include "trajectory/types.h"
@@ -69,8 +70,8 @@ skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *opt
     SKG_NEEDS(scan);
     *scan = NULL;
     SKG_NEEDS(path);
-    FILE *file = fopen(path, "r");
-    if (!file) return skg_fail_unreadable(path, errno);
+    FILE *file = NULL;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &file, NULL));
     skg_status status = read_lines(&t, file);
     fclose(file);
     if (status == SKG_OK) status = skg_scan_create_table(view, options, t.count, t.poses, scan);

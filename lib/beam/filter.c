@@ -58,6 +58,7 @@ skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, int64_t co
         made->photons[used++] = made->photons[i];
     }
     made->count = used;
+    made->absolute = spectrum->absolute;
     *behind = made;
     return SKG_OK;
 cleanup:

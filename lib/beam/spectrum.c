@@ -110,11 +110,35 @@ skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double facto
         return skg_fail(SKG_ERR_BEAM, "a spectrum times %g makes no beam; give a factor above 0", factor);
     SKG_TRY(check_sum(spectrum->count, spectrum->energy_kev, spectrum->photons, factor));
     SKG_TRY(skg_spectrum_make(spectrum->count, scaled));
+    (*scaled)->absolute = spectrum->absolute;
     for (int64_t i = 0; i < spectrum->count; i++) {
         (*scaled)->energy_kev[i] = spectrum->energy_kev[i];
         (*scaled)->photons[i] = spectrum->photons[i] * factor;
     }
     return SKG_OK;
+}
+
+skg_status skg_spectrum_create_counts(const skg_spectrum *spectrum, double factor, skg_spectrum **counts) {
+    SKG_TRY(skg_spectrum_create_scaled(spectrum, factor, counts));
+    (*counts)->absolute = 0;
+    return SKG_OK;
+}
+
+skg_status skg_spectrum_create_absolute(const skg_spectrum *spectrum, skg_spectrum **absolute) {
+    SKG_TRY(skg_spectrum_create_scaled(spectrum, 1, absolute));
+    (*absolute)->absolute = 1;
+    return SKG_OK;
+}
+
+skg_status skg_spectrum_absolute_get(const skg_spectrum *spectrum, int32_t *absolute) {
+    SKG_NEEDS(spectrum);
+    SKG_NEEDS(absolute);
+    *absolute = spectrum->absolute;
+    return SKG_OK;
+}
+
+double skg_microsteradians(double pixel_mm2, double distance_mm) {
+    return pixel_mm2 * pow(1000 / distance_mm, 2);
 }
 
 skg_status skg_spectrum_retain(skg_spectrum *spectrum) {

@@ -8,13 +8,21 @@
 
 struct skg_spectrum {
     skg_refs refs;
+    int32_t absolute; /* 1: photons are per microsteradian, not per pixel */
+    int32_t reserved;
     int64_t count;
     double *energy_kev; /* [count], rising */
-    double *photons;    /* [count] per pixel, above 0 */
+    double *photons;    /* [count] above 0 */
 };
 
 /* Makes a spectrum of `count` energies, which the caller fills. */
 skg_status skg_spectrum_make(int64_t count, skg_spectrum **spectrum);
+
+/* The microsteradians that a pixel of an area at the foot of the perpendicular from the source fills. */
+double skg_microsteradians(double pixel_mm2, double distance_mm);
+
+/* Makes a spectrum times a factor, whose photons are per pixel. */
+skg_status skg_spectrum_create_counts(const skg_spectrum *spectrum, double factor, skg_spectrum **counts);
 
 /* Whether a response says what is recorded, but not of how many photons: all are then taken as recorded. */
 int skg_response_assumes_efficiency(const skg_response *response);

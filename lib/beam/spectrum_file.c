@@ -1,9 +1,9 @@
 #include "beam/spectrum.h"
 #include "core/columns.h"
+#include "core/input.h"
 #include "core/plain.h"
 #include "core/units.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@
 static skg_status find_word(const char *path, const char **word) {
     char text[512];
     *word = NULL;
-    FILE *file = fopen(path, "r");
-    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
+    FILE *file = NULL;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &file, NULL));
     while (!*word && fgets(text, sizeof text, file)) {
         if (text[strspn(text, " \t")] != '/') continue; /* commands of a macro begin with a slash */
         if (strstr(text, "histpoint")) *word = "histpoint";

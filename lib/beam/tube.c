@@ -10,13 +10,7 @@
 enum { TUNGSTEN = 74, MOST_BINS = 5000 };
 
 void skg_tube_init_sized(void *tube, int32_t size) {
-    const skg_tube defaults = {.angle_deg = 12,
-                               .anode = TUNGSTEN,
-                               .bin_kev = 1,
-                               .mas = 1,
-                               .distance_mm = 1000,
-                               .pixel_mm2 = 1,
-                               .output_at_mm = 1000};
+    const skg_tube defaults = {.angle_deg = 12, .anode = TUNGSTEN, .bin_kev = 1, .output_at_mm = 1000};
     skg_struct_init(tube, size, &defaults, sizeof defaults);
 }
 
@@ -25,6 +19,16 @@ static skg_status check_value(const char *what, double value, double lowest, dou
     if (value >= lowest && value <= highest) return SKG_OK;
     return skg_fail(SKG_ERR_BEAM, "%s of %g %s is not usable; give %g to %g", what, value, unit, lowest,
                     highest);
+}
+
+/* A pixel at a distance, or neither: then the plan has both from its view. */
+static skg_status check_pixel(const skg_tube *tube) {
+    if (tube->distance_mm == 0 && tube->pixel_mm2 == 0) return SKG_OK;
+    SKG_TRY(check_value("a distance", tube->distance_mm, 1e-3, 1e9, "mm"));
+    SKG_TRY(check_value("a pixel", tube->pixel_mm2, 1e-12, 1e12, "mm2"));
+    if (tube->mas > 0) return SKG_OK;
+    return skg_fail(SKG_ERR_BEAM, "a pixel of %g mm2 at %g mm without a tube load; give mas, too",
+                    tube->pixel_mm2, tube->distance_mm);
 }
 
 skg_status skg_tube_check(const skg_tube *tube) {
@@ -41,9 +45,8 @@ skg_status skg_tube_check(const skg_tube *tube) {
         return skg_fail(SKG_ERR_BEAM, "an anode of %s is not usable; give calcium (20) to uranium (92)",
                         symbol);
     SKG_TRY(check_value("a bin", tube->bin_kev, 0.1, 10, "keV"));
-    SKG_TRY(check_value("a tube load", tube->mas, 1e-12, 1e12, "mAs"));
-    SKG_TRY(check_value("a distance", tube->distance_mm, 1e-3, 1e9, "mm"));
-    SKG_TRY(check_value("a pixel", tube->pixel_mm2, 1e-12, 1e12, "mm2"));
+    if (tube->mas != 0) SKG_TRY(check_value("a tube load", tube->mas, 1e-12, 1e12, "mAs"));
+    SKG_TRY(check_pixel(tube));
     SKG_TRY(check_value("an output", tube->output_ugy_mas, 0, 1e12, "uGy/mAs"));
     return check_value("an output's distance", tube->output_at_mm, 1e-3, 1e9, "mm");
 }
@@ -178,10 +181,12 @@ skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectru
     SKG_TRY(skg_tube_bare(&ours, &bare));
     SKG_TRY_CLEANUP(skg_spectrum_create_filtered(bare, ours.filter_count, ours.filters, &behind));
     SKG_TRY_CLEANUP(warn(&ours, bare, behind));
-    double scale = ours.mas * ours.pixel_mm2 * pow(1000 / ours.distance_mm, 2);
+    double scale = ours.mas > 0 ? ours.mas : 1;
+    if (ours.pixel_mm2 > 0) scale *= skg_microsteradians(ours.pixel_mm2, ours.distance_mm);
     if (ours.output_ugy_mas > 0)
         scale *= ours.output_ugy_mas * pow(ours.output_at_mm / 1000, 2) / skg_spectrum_kerma(behind);
-    status = skg_spectrum_create_scaled(behind, scale, spectrum);
+    SKG_TRY_CLEANUP(skg_spectrum_create_scaled(behind, scale, spectrum));
+    (*spectrum)->absolute = ours.mas > 0 && !(ours.pixel_mm2 > 0);
 cleanup:
     skg_spectrum_release(&bare);
     skg_spectrum_release(&behind);

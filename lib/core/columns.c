@@ -1,4 +1,5 @@
 #include "core/columns.h"
+#include "core/input.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -127,8 +128,8 @@ static skg_status read_line(reading *r, const char *text) {
 static skg_status read_file(reading *r) {
     char text[512];
     skg_status status = SKG_OK;
-    FILE *file = fopen(r->path, "r");
-    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", r->path, strerror(errno));
+    FILE *file = NULL;
+    SKG_TRY(skg_input_open(r->path, SKG_INPUT_TEXT, &file, NULL));
     while (status == SKG_OK && fgets(text, sizeof text, file)) {
         r->line++;
         if (strlen(text) + 1 == sizeof text)
@@ -192,8 +193,8 @@ skg_status skg_read_list(const char *path, int64_t *count, double **numbers) {
     skg_status status = SKG_OK;
     *count = 0;
     *numbers = NULL;
-    FILE *file = fopen(path, "r");
-    if (!file) return skg_fail(SKG_ERR_FILE, "%s: cannot be read (%s)", path, strerror(errno));
+    FILE *file = NULL;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &file, NULL));
     for (int64_t line = 1; status == SKG_OK && fgets(text, sizeof text, file); line++) {
         if (strlen(text) + 1 == sizeof text)
             status = skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", path, line);

@@ -1,5 +1,7 @@
 #include "core/output.h"
 
+#include "core/part_name.h"
+
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,10 +17,18 @@ skg_status skg_output_fail(const char *path, int reason, const char *otherwise) 
                     reason ? strerror(reason) : otherwise, mend);
 }
 
+skg_status skg_output_part_fail(const char *path, const char *temporary, int reason) {
+    if (reason != EEXIST) return skg_output_fail(path, reason, "");
+    return skg_fail(SKG_ERR_OUTPUT,
+                    "%s: cannot be written: unfinished files of this name are in the way, such as %s; remove "
+                    "them",
+                    path, temporary);
+}
+
 skg_status skg_output_open(const char *path, skg_output_file *file) {
     *file = (skg_output_file){0};
     skg_status status = SKG_OK;
-    size_t length = strlen(path) + 32;
+    int descriptor = -1;
     struct stat there;
     /* The rename would replace a device such as /dev/null by a file. */
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
@@ -26,15 +36,17 @@ skg_status skg_output_open(const char *path, skg_output_file *file) {
                                S_ISDIR(there.st_mode) ? "it is a folder; add a file name"
                                                       : "it is a device, not a file; name a file");
     SKG_TRY_CLEANUP(skg_copy_text(path, &file->path));
-    SKG_TRY_CLEANUP(skg_alloc((int64_t)length, 1, "file name", &file->temporary));
-    snprintf(file->temporary, length, "%s.part-%ld", path, (long)getpid());
-    file->stream = fopen(file->temporary, "w+bx"); /* read too: libtiff goes back to earlier directories */
-    if (!file->stream) {
-        status = skg_output_fail(path, errno, "");
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)strlen(path) + SKG_PART_ENDING, 1, "file name", &file->temporary));
+    descriptor = skg_part_open(path, file->temporary);
+    if (descriptor < 0) {
+        status = skg_output_part_fail(path, file->temporary, errno);
         skg_free(&file->temporary); /* not ours to remove */
         goto cleanup;
     }
-    return SKG_OK;
+    file->stream = fdopen(descriptor, "w+b"); /* read too: libtiff goes back to earlier directories */
+    if (file->stream) return SKG_OK;
+    status = skg_output_fail(path, errno, "");
+    close(descriptor);
 cleanup:
     skg_output_discard(file);
     return status;

@@ -21,6 +21,9 @@ skg_status skg_output_open(const char *path, skg_output_file *file);
  * otherwise   the reason in words if `reason` is 0 */
 skg_status skg_output_fail(const char *path, int reason, const char *otherwise);
 
+/* The same where skg_part_open failed; the sentence names the leftover that is in the way. */
+skg_status skg_output_part_fail(const char *path, const char *temporary, int reason);
+
 /* Syncs, closes and renames the file. On failure no file is left. */
 skg_status skg_output_commit(skg_output_file *file);
 

@@ -1,6 +1,8 @@
 #include "core/names.h"
 #include "device/device.h"
+#include "device/icd.h"
 #include "device/identity.h"
+#include "device/platforms.h"
 #include "device/start.h"
 #include "device/store.h"
 #include "device/verdict.h"
@@ -11,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Platforms and devices beyond these are not seen. */
-enum { MOST_PLATFORMS = 32, MOST_DEVICES = 64 };
+/* Devices beyond these are not seen. */
+enum { MOST_DEVICES = 64 };
 
 typedef struct {
     cl_platform_id platform;
@@ -20,23 +22,48 @@ typedef struct {
     int32_t platform_number, device_number;
 } found_device;
 
-/* Lists every device of every platform. A machine without a platform has no devices, which is no failure. */
-static skg_status find_devices(found_device *found, int32_t *count) {
-    cl_platform_id platforms[MOST_PLATFORMS];
-    cl_uint platform_count = 0;
+/* Which platforms are asked for their devices. */
+enum { ASK_TRUSTED = -1, ASK_ALL = -2 }; /* otherwise the number of one */
+
+typedef struct {
+    cl_platform_id platform;
+    cl_device_id devices[MOST_DEVICES];
+    cl_uint count;
+    cl_int code;
+} asking;
+
+static void ask(void *argument) {
+    asking *a = argument;
+    a->code = clGetDeviceIDs(a->platform, CL_DEVICE_TYPE_ALL, MOST_DEVICES, a->devices, &a->count);
+}
+
+/* A platform without devices returns an error. One that is not known was not started yet (start.c). */
+static skg_status add_devices(cl_platform_id platform, int32_t number, found_device *found, int32_t *count) {
+    asking a = {.platform = platform};
+    if (skg_platform_is_known(platform))
+        ask(&a);
+    else
+        SKG_TRY(skg_opencl_call(ask, &a));
+    if (a.code != CL_SUCCESS) return SKG_OK;
+    for (cl_uint d = 0; d < a.count && d < MOST_DEVICES && *count < MOST_DEVICES; d++)
+        found[(*count)++] = (found_device){platform, a.devices[d], number, (int32_t)d};
+    return SKG_OK;
+}
+
+/* Lists the devices of trusted platforms, then, if asked for, those of the others: so a device has the same place in both lists.
+ * A machine without a platform has no devices, which is no failure. only: platforms to be asked; NULL: all. */
+static skg_status find_devices(int which, const skg_platform_list *only, const char *store,
+                               found_device *found, int32_t *count) {
+    skg_platform_list platforms;
     *count = 0;
-    cl_int code = clGetPlatformIDs(MOST_PLATFORMS, platforms, &platform_count);
-    if (code == -1001 /* CL_PLATFORM_NOT_FOUND_KHR */) return SKG_OK;
-    SKG_CL_TRY(code);
-    if (platform_count > MOST_PLATFORMS) platform_count = MOST_PLATFORMS;
-    for (cl_uint p = 0; p < platform_count; p++) {
-        cl_device_id devices[MOST_DEVICES];
-        cl_uint device_count = 0;
-        code = clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, MOST_DEVICES, devices, &device_count);
-        if (code != CL_SUCCESS) continue; /* a platform without devices returns an error */
-        for (cl_uint d = 0; d < device_count && d < MOST_DEVICES && *count < MOST_DEVICES; d++)
-            found[(*count)++] = (found_device){platforms[p], devices[d], (int32_t)p, (int32_t)d};
-    }
+    SKG_TRY(skg_platforms_find(&platforms));
+    for (int trusted = 1; trusted >= 0; trusted--)
+        for (int32_t p = 0; p < platforms.count; p++) {
+            if (which >= 0 && which != p) continue;
+            if (only && !skg_platform_listed(only, platforms.items[p])) continue;
+            if (trusted != skg_platform_is_trusted(store, platforms.items[p])) continue;
+            if (trusted || which != ASK_TRUSTED) SKG_TRY(add_devices(platforms.items[p], p, found, count));
+        }
     return SKG_OK;
 }
 
@@ -64,6 +91,7 @@ skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_
     SKG_CL_TRY(clGetDeviceInfo(device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof single, &single, NULL));
     if (clGetDeviceInfo(device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof twice, &twice, NULL) != CL_SUCCESS)
         twice = 0;
+    info->known = skg_platform_is_known(platform);
     info->is_gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
     info->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
     info->compute_units = (int32_t)units;
@@ -76,9 +104,7 @@ skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_
     device_text(device, CL_DEVICE_NAME, info->name, sizeof info->name);
     device_text(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
     device_text(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
-    if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform_name, info->platform_name,
-                          NULL) != CL_SUCCESS)
-        snprintf(info->platform_name, sizeof info->platform_name, "?");
+    skg_platform_name(platform, info->platform_name, sizeof info->platform_name);
     return SKG_OK;
 }
 
@@ -91,8 +117,10 @@ skg_status skg_device_count(int64_t *count) {
     SKG_NEEDS(count);
     SKG_TRY(skg_opencl_start());
     found_device found[MOST_DEVICES];
+    char store[SKG_STORE_PATH];
     int32_t all = 0;
-    SKG_TRY(find_devices(found, &all));
+    skg_store_find(store);
+    SKG_TRY(find_devices(ASK_ALL, NULL, store, found, &all));
     *count = all;
     return SKG_OK;
 }
@@ -100,8 +128,10 @@ skg_status skg_device_count(int64_t *count) {
 skg_status skg_device_get(int64_t index, skg_device_info *info) {
     SKG_TRY(skg_opencl_start());
     found_device found[MOST_DEVICES];
+    char store[SKG_STORE_PATH];
     int32_t all = 0;
-    SKG_TRY(find_devices(found, &all));
+    skg_store_find(store);
+    SKG_TRY(find_devices(ASK_ALL, NULL, store, found, &all));
     if (index < 0 || index >= all)
         return skg_fail(SKG_ERR_ARGUMENT, "device %" PRId64 " of %" PRId32 " (counted from 0)", index, all);
     skg_device_info ours;
@@ -110,15 +140,26 @@ skg_status skg_device_get(int64_t index, skg_device_info *info) {
     return skg_struct_write(&ours, sizeof ours, "skg_device_info", info);
 }
 
+/* Whether the word is PLATFORM:DEVICE. */
+static int is_number(const char *wanted, int *platform, int *device) {
+    int end = 0;
+    return wanted && sscanf(wanted, "%d:%d%n", platform, device, &end) == 2 && wanted[end] == '\0';
+}
+
+/* Whether the word leaves the choice to the library: none, auto, cpu or gpu. */
+static int is_open(const char *wanted) {
+    return !wanted || skg_same_name(wanted, "auto") || skg_same_name(wanted, "gpu") ||
+           skg_same_name(wanted, "cpu");
+}
+
 /* Whether `wanted` names this device: auto or NULL (any), cpu, gpu, PLATFORM:DEVICE, or a part of its name in any
  * case. */
 static int fits(const char *wanted, const skg_device_info *info) {
     if (!wanted || skg_same_name(wanted, "auto")) return 1;
     if (skg_same_name(wanted, "gpu")) return info->is_gpu;
     if (skg_same_name(wanted, "cpu")) return info->is_cpu;
-    int platform = 0, device = 0, end = 0;
-    if (sscanf(wanted, "%d:%d%n", &platform, &device, &end) == 2 && wanted[end] == '\0')
-        return platform == info->platform && device == info->device;
+    int platform = 0, device = 0;
+    if (is_number(wanted, &platform, &device)) return platform == info->platform && device == info->device;
     for (const char *at = info->name; *at; at++) {
         size_t i = 0;
         while (wanted[i] && at[i] && tolower((unsigned char)wanted[i]) == tolower((unsigned char)at[i])) i++;
@@ -131,60 +172,148 @@ static int fits(const char *wanted, const skg_device_info *info) {
 typedef struct {
     skg_device_info info;
     skg_verdict verdict; /* of the test "core" */
-    int32_t known;       /* 1: the verdict is known */
-    int32_t doubtful;    /* 1: not tested, and of a kind that is known to compute wrongly */
+    int32_t tested;      /* 1: the verdict is known */
+    int32_t number;      /* in the list; -1: no device */
 } candidate;
 
-/* Mesa's software rasteriser reports the vector lanes of a processor as its units, and with Rusticl 22 it returns black
- * images. */
-static void look_up(const found_device *found, const char *store, candidate *one) {
-    const skg_digest identity = skg_identity_of(found->platform, found->device);
-    one->known = skg_verdict_known(store, &identity, SKG_TEST_OF_ALL, &one->verdict);
-    one->doubtful = !one->known && strstr(one->info.name, "llvmpipe") != NULL;
+static int failed(const candidate *one) {
+    return one->tested && !one->verdict.good;
 }
 
-/* Devices that failed come last, then those in doubt. GPUs come before other devices. Then the measured speed decides if
- * both are measured, otherwise the number of compute units. */
+static int is_untested(const candidate *one) {
+    return !one->tested && !one->info.known;
+}
+
+/* Devices that failed come last, then those that are neither known nor tested. GPUs come before other devices. Then the
+ * measured speed decides if both are measured, otherwise the number of compute units. */
 static int better(const candidate *a, const candidate *b) {
-    const int a_failed = a->known && !a->verdict.good, b_failed = b->known && !b->verdict.good;
-    if (a_failed != b_failed) return b_failed;
-    if (a->doubtful != b->doubtful) return b->doubtful;
+    if (failed(a) != failed(b)) return failed(b);
+    if (is_untested(a) != is_untested(b)) return is_untested(b);
     if (a->info.is_gpu != b->info.is_gpu) return a->info.is_gpu > b->info.is_gpu;
-    if (a->known && b->known && a->verdict.score > 0 && b->verdict.score > 0)
+    if (a->tested && b->tested && a->verdict.score > 0 && b->verdict.score > 0)
         return a->verdict.score > b->verdict.score;
     return a->info.compute_units > b->info.compute_units;
 }
 
-skg_status skg_device_choose(const char *wanted, uint64_t without, cl_platform_id *platform,
-                             cl_device_id *device, skg_device_info *info, int32_t *index) {
-    found_device found[MOST_DEVICES];
-    candidate best = {0};
+typedef struct {
+    const char *device; /* value of device=, or NULL */
+    const char *driver; /* value of driver=, or NULL */
+    skg_platform_list of_driver;
     char store[SKG_STORE_PATH];
-    int32_t all = 0, chosen = -1;
-    SKG_TRY(find_devices(found, &all));
-    if (all == 0)
+    found_device found[MOST_DEVICES];
+    int32_t all;
+} survey;
+
+/* Opens the driver of driver=. */
+static skg_status start_survey(const skg_device_words *words, survey *s) {
+    s->device = words->device;
+    s->driver = words->driver;
+    s->of_driver.count = 0;
+    s->all = 0;
+    skg_store_find(s->store);
+    return s->driver ? skg_icd_open(s->driver, &s->of_driver) : SKG_OK;
+}
+
+/* With driver=, a device has to be one of that driver's. Without it, a driver that was opened before has no part in the
+ * choice, so that a configuration means the same whatever was opened; but the numbers of the list name every device. */
+static int in_reach(const survey *s, cl_platform_id platform) {
+    int numbers[2];
+    return s->driver || !skg_icd_has(platform) || is_number(s->device, &numbers[0], &numbers[1]);
+}
+
+/* The best of the devices that these platforms have. Of a platform that is not known, only one that has passed its test is taken,
+ * unless the words name it. */
+static skg_status pick(survey *s, int which, uint64_t without, candidate *best) {
+    best->number = -1;
+    SKG_TRY(find_devices(which, s->driver ? &s->of_driver : NULL, s->store, s->found, &s->all));
+    for (int32_t i = 0; i < s->all; i++) {
+        candidate one = {.number = i};
+        const found_device *at = &s->found[i];
+        if (!in_reach(s, at->platform)) continue;
+        const skg_status status =
+            skg_device_inform(at->platform_number, at->device_number, at->platform, at->device, &one.info);
+        if (status != SKG_OK && which == ASK_TRUSTED && !skg_platform_is_known(at->platform)) continue;
+        SKG_TRY(status);
+        if (!fits(s->device, &one.info) || without >> i & 1) continue;
+        const skg_digest identity = skg_identity_of(at->platform, at->device);
+        one.tested = skg_verdict_known(s->store, &identity, SKG_TEST_OF_ALL, &one.verdict);
+        if (which == ASK_TRUSTED && !one.info.known && !(one.tested && one.verdict.good)) continue;
+        if (best->number < 0 || better(&one, best)) *best = one;
+    }
+    return SKG_OK;
+}
+
+/* A platform that is not asked for its devices unless the caller names one; NULL if there is none. which: see find_devices. */
+static cl_platform_id find_untrusted(int which, const char *store) {
+    skg_platform_list platforms;
+    if (skg_platforms_find(&platforms) != SKG_OK) return NULL;
+    for (int32_t p = 0; p < platforms.count; p++)
+        if ((which < 0 || which == p) && !skg_platform_is_trusted(store, platforms.items[p]))
+            return platforms.items[p];
+    return NULL;
+}
+
+static skg_status no_device(const survey *s) {
+    char name[128] = "";
+    if (s->driver)
+        return skg_fail(SKG_ERR_NO_DEVICE, "driver=%s has no device%s%s", s->driver,
+                        s->device ? " that fits device=" : "", s->device ? s->device : "");
+    const cl_platform_id untrusted = find_untrusted(ASK_ALL, s->store);
+    if (untrusted) skg_platform_name(untrusted, name, sizeof name);
+    if (is_open(s->device) && untrusted)
+        return skg_fail(
+            SKG_ERR_NO_DEVICE,
+            "no device of a known platform fits device=%s; the platform \"%s\" is not known, and no "
+            "verdict is kept of a device of it that passed its test. `skiagraph devices` tests such devices in "
+            "processes of their own",
+            s->device ? s->device : "auto", name);
+    if (s->all == 0 && !untrusted)
         return skg_fail(SKG_ERR_NO_DEVICE,
                         "no OpenCL device on this machine; install a driver, for instance PoCL "
                         "(apt-get install pocl-opencl-icd)");
-    skg_store_find(store);
-    for (int32_t i = 0; i < all; i++) {
-        candidate one = {0};
-        SKG_TRY(skg_device_inform(found[i].platform_number, found[i].device_number, found[i].platform,
-                                  found[i].device, &one.info));
-        if (!fits(wanted, &one.info) || without >> i & 1) continue;
-        look_up(&found[i], store, &one);
-        if (chosen >= 0 && !better(&one, &best)) continue;
-        chosen = i;
-        best = one;
+    return skg_fail(SKG_ERR_NO_DEVICE,
+                    "no OpenCL device fits device=%s; `skiagraph devices` lists what there is (%" PRId32 ")",
+                    s->device ? s->device : "auto", s->all);
+}
+
+skg_status skg_device_choose(const skg_device_words *words, uint64_t without, cl_platform_id *platform,
+                             cl_device_id *device, skg_device_info *info, int32_t *index) {
+    survey s;
+    candidate best;
+    int number = 0, its_device = 0;
+    SKG_TRY(start_survey(words, &s));
+    if (s.driver) { /* the caller has named it */
+        SKG_TRY(pick(&s, ASK_ALL, without, &best));
+    } else if (is_number(s.device, &number, &its_device)) {
+        SKG_TRY(pick(&s, number < 0 ? ASK_TRUSTED : number, without, &best));
+    } else {
+        SKG_TRY(pick(&s, ASK_TRUSTED, without, &best));
+        if (best.number < 0 && !is_open(s.device)) SKG_TRY(pick(&s, ASK_ALL, without, &best));
     }
-    if (chosen < 0)
-        return skg_fail(SKG_ERR_NO_DEVICE,
-                        "no OpenCL device fits device=%s; `skiagraph devices` lists what there is (%" PRId32
-                        ")",
-                        wanted ? wanted : "auto", all);
-    *platform = found[chosen].platform;
-    *device = found[chosen].device;
+    if (best.number < 0) return no_device(&s);
+    *platform = s.found[best.number].platform;
+    *device = s.found[best.number].device;
     *info = best.info;
-    *index = chosen;
+    *index = best.number;
+    return SKG_OK;
+}
+
+skg_status skg_device_doubt(const skg_device_words *words, int32_t *untested) {
+    survey s;
+    candidate best;
+    int number = 0, its_device = 0;
+    *untested = 0;
+    SKG_TRY(start_survey(words, &s));
+    if (is_open(s.device) && !s.driver) return SKG_OK;
+    const int one = is_number(s.device, &number, &its_device);
+    if (!s.driver) {
+        if (one && number < 0) return SKG_OK; /* no such device */
+        if (!one) SKG_TRY(pick(&s, ASK_TRUSTED, 0, &best));
+        if (!one && best.number >= 0) return SKG_OK; /* it is known, or has passed */
+        *untested = find_untrusted(one ? number : ASK_ALL, s.store) != NULL;
+        if (*untested || !one) return SKG_OK;
+    }
+    SKG_TRY(pick(&s, s.driver ? ASK_ALL : number, 0, &best));
+    *untested = best.number >= 0 && is_untested(&best);
     return SKG_OK;
 }

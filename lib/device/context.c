@@ -1,6 +1,7 @@
 #include "core/names.h"
 #include "core/plain.h"
 #include "device/device.h"
+#include "device/icd.h"
 #include "device/pages.h"
 #include "device/program.h"
 #include "device/start.h"
@@ -20,7 +21,8 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 }
 
 typedef struct {
-    char device[128]; /* "": any */
+    char device[128];  /* "": any */
+    char driver[1024]; /* "": those of the OpenCL loader */
     char kernels[1024];
     int32_t threads; /* 0: all */
 } wanted_device;
@@ -33,49 +35,88 @@ static skg_status copy_word(const char *value, size_t length, char *place, size_
     return SKG_OK;
 }
 
-/* Reads words such as "device=gpu threads=4". A word without "=" is the value of device=. */
+/* A word such as device=gpu. Without a key it is the value of device=. */
+typedef struct {
+    char key[32];
+    const char *value;
+    size_t length;
+} device_word;
+
+/* Takes the word at *at, and moves *at behind it. A value in double quotes may hold blanks. */
+static skg_status take_word(const char **at, device_word *word) {
+    const char *equals = **at == '"' ? NULL : memchr(*at, '=', strcspn(*at, " "));
+    *word = (device_word){.key = "device", .value = *at};
+    if (equals) {
+        SKG_TRY(copy_word(*at, (size_t)(equals - *at), word->key, sizeof word->key));
+        word->value = equals + 1;
+    }
+    const int quoted = *word->value == '"';
+    word->value += quoted;
+    word->length = strcspn(word->value, quoted ? "\"" : " ");
+    *at = word->value + word->length;
+    if (quoted && (**at != '"' || ((*at)[1] != '\0' && (*at)[1] != ' ')))
+        return skg_fail(SKG_ERR_ARGUMENT, "device words: the quote of %s=\"%s has no end before a blank",
+                        word->key, word->value);
+    *at += quoted;
+    return SKG_OK;
+}
+
+static skg_status read_threads(const device_word *word, int32_t *threads) {
+    char *end = NULL;
+    const long count = strtol(word->value, &end, 10);
+    if (end != word->value + word->length || count < 1 || count > 4096)
+        return skg_fail(SKG_ERR_ARGUMENT, "threads=%.*s is not a number from 1 to 4096", (int)word->length,
+                        word->value);
+    *threads = (int32_t)count;
+    return SKG_OK;
+}
+
 static skg_status read_words(const char *words, wanted_device *wanted) {
-    static const char *const keys[] = {"device", "threads", "kernels"};
+    static const char *const keys[] = {"device", "driver", "threads", "kernels"};
     const char *at = words;
     while (*at == ' ') at++;
     while (*at) {
-        size_t length = strcspn(at, " ");
-        const char *equals = memchr(at, '=', length);
-        char key[32] = "device"; /* for a word without "=" */
-        if (equals) SKG_TRY(copy_word(at, (size_t)(equals - at), key, sizeof key));
-        const char *value = equals ? equals + 1 : at;
-        length -= (size_t)(value - at);
-        if (skg_same_name(key, "device")) {
-            SKG_TRY(copy_word(value, length, wanted->device, sizeof wanted->device));
-        } else if (skg_same_name(key, "kernels")) {
-            SKG_TRY(copy_word(value, length, wanted->kernels, sizeof wanted->kernels));
-        } else if (skg_same_name(key, "threads")) {
-            char *end = NULL;
-            long threads = strtol(value, &end, 10);
-            if (end != value + length || threads < 1 || threads > 4096)
-                return skg_fail(SKG_ERR_ARGUMENT, "threads=%.*s is not a number from 1 to 4096", (int)length,
-                                value);
-            wanted->threads = (int32_t)threads;
+        device_word word;
+        SKG_TRY(take_word(&at, &word));
+        if (skg_same_name(word.key, "device")) {
+            SKG_TRY(copy_word(word.value, word.length, wanted->device, sizeof wanted->device));
+        } else if (skg_same_name(word.key, "driver")) {
+            SKG_TRY(copy_word(word.value, word.length, wanted->driver, sizeof wanted->driver));
+        } else if (skg_same_name(word.key, "kernels")) {
+            SKG_TRY(copy_word(word.value, word.length, wanted->kernels, sizeof wanted->kernels));
+        } else if (skg_same_name(word.key, "threads")) {
+            SKG_TRY(read_threads(&word, &wanted->threads));
         } else {
-            const char *near = skg_nearest_name(key, keys, 3);
-            return skg_fail(SKG_ERR_ARGUMENT,
-                            "\"%s\" says nothing about a device%s%s; known: device=, threads=, kernels=", key,
-                            near ? "; did you mean " : "", near ? near : "");
+            const char *near = skg_nearest_name(word.key, keys, sizeof keys / sizeof *keys);
+            return skg_fail(
+                SKG_ERR_ARGUMENT,
+                "\"%s\" says nothing about a device%s%s; known: device=, driver=, threads=, kernels=",
+                word.key, near ? "; did you mean " : "", near ? near : "");
         }
-        at = value + length;
         while (*at == ' ') at++;
     }
     return SKG_OK;
 }
 
+/* Words of config replace those of the environment. A driver of the environment ends with a device of config, which is one
+ * of the loader's. */
 static skg_status read_config(const char *config, wanted_device *wanted) {
+    wanted_device asked = {0};
     *wanted = (wanted_device){0};
     const char *device = getenv("SKG_DEVICE"), *kernels = getenv("SKG_KERNEL_DIR");
     if (device && read_words(device, wanted) != SKG_OK)
         return skg_fail(SKG_ERR_ARGUMENT, "environment variable SKG_DEVICE=%s: %s", device, skg_last_error());
     if (kernels && !wanted->kernels[0])
         SKG_TRY(copy_word(kernels, strlen(kernels), wanted->kernels, sizeof wanted->kernels));
-    return config ? read_words(config, wanted) : SKG_OK;
+    if (!config) return SKG_OK;
+    SKG_TRY(read_words(config, &asked));
+    if (asked.device[0] && !asked.driver[0]) wanted->driver[0] = '\0';
+    return read_words(config, wanted);
+}
+
+static skg_device_words words_of(const wanted_device *wanted) {
+    return (skg_device_words){.device = wanted->device[0] ? wanted->device : NULL,
+                              .driver = wanted->driver[0] ? wanted->driver : NULL};
 }
 
 /* Leaves a warning for the context's log, which the caller has not set yet. */
@@ -152,7 +193,9 @@ static void open_queue(void *argument) {
     skg_device *device = o->context->device;
     cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
     o->call = "clCreateContext";
-    device->cl = clCreateContext(properties, 1, &device->id, skg_driver_says,
+    /* The loader of Debian refuses platforms that it does not list; without a platform it asks the device's driver. */
+    const int listed = !skg_icd_has(device->platform);
+    device->cl = clCreateContext(listed ? properties : NULL, 1, &device->id, skg_driver_says,
                                  skg_mailbox_address(o->context->driver), &o->code);
     if (o->code != CL_SUCCESS) return;
     o->call = "clCreateCommandQueue";
@@ -170,8 +213,8 @@ skg_status skg_context_open(const char *config, uint64_t without, skg_context **
     SKG_TRY(new_context(&made));
     skg_device *device = made->device;
     opening o = {.context = made};
-    SKG_TRY_CLEANUP(skg_device_choose(wanted.device[0] ? wanted.device : NULL, without, &device->platform,
-                                      &device->id, &device->info, index));
+    const skg_device_words words = words_of(&wanted);
+    SKG_TRY_CLEANUP(skg_device_choose(&words, without, &device->platform, &device->id, &device->info, index));
     if (wanted.threads > 0)
         SKG_TRY_CLEANUP(limit_threads(made, wanted.threads));
     else
@@ -185,6 +228,34 @@ skg_status skg_context_open(const char *config, uint64_t without, skg_context **
 cleanup:
     skg_context_release(&made);
     return status;
+}
+
+skg_status skg_device_untested(const char *config, int32_t *untested) {
+    wanted_device wanted;
+    SKG_NEEDS(untested);
+    *untested = 0;
+    SKG_TRY(read_config(config, &wanted));
+    SKG_TRY(skg_opencl_start());
+    const skg_device_words words = words_of(&wanted);
+    return skg_device_doubt(&words, untested);
+}
+
+skg_status skg_device_locate(const char *config, cl_platform_id *platform, cl_device_id *device,
+                             skg_device_info *info) {
+    wanted_device wanted;
+    int32_t index = 0;
+    SKG_TRY(read_config(config, &wanted));
+    SKG_TRY(skg_opencl_start());
+    const skg_device_words words = words_of(&wanted);
+    return skg_device_choose(&words, 0, platform, device, info, &index);
+}
+
+skg_status skg_device_find(const char *config, skg_device_info *info) {
+    cl_platform_id platform = NULL;
+    cl_device_id device = NULL;
+    skg_device_info ours;
+    SKG_TRY(skg_device_locate(config, &platform, &device, &ours));
+    return skg_struct_write(&ours, sizeof ours, "skg_device_info", info);
 }
 
 skg_status skg_context_create_cl(cl_context cl, cl_device_id id, cl_command_queue queue,

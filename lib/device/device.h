@@ -29,6 +29,7 @@ typedef struct skg_device {
     int64_t loads;         /* programs taken from the user's folder so far */
     skg_digest identity;   /* of the device and its driver */
     char *store;           /* folder in which compiled programs are kept; "": none */
+    int32_t clang;         /* 1: kernels may use the builtins of clang */
     int32_t caches;        /* 1: the driver keeps compiled kernels itself */
     int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
     uint32_t passed;       /* bit n: test n of lib/trial */
@@ -128,11 +129,24 @@ skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t by
 
 /* --- choosing (choose.c) --- */
 
+/* What the words of a config say of the device; NULL where they say nothing. */
+typedef struct {
+    const char *device, *driver; /* the values of device= and driver= */
+} skg_device_words;
+
 /* Chooses the device for the words of a config, and fills info. without: bit n is set if device n is not wanted; index: the
  * number of the one that is chosen. A device that has failed the test of what every plan needs is passed over, unless it
  * is the only one that fits; its user then hears why. */
-skg_status skg_device_choose(const char *wanted, uint64_t without, cl_platform_id *platform,
+skg_status skg_device_choose(const skg_device_words *words, uint64_t without, cl_platform_id *platform,
                              cl_device_id *device, skg_device_info *info, int32_t *index);
+
+/* untested: 1 if the device of these words is of a platform that is not known, and no verdict on it is kept, so that the first
+ * context on it would test it in this process. Platforms that are not trusted are not asked for their devices. */
+skg_status skg_device_doubt(const skg_device_words *words, int32_t *untested);
+
+/* The device that skg_context_create tries first for this config. */
+skg_status skg_device_locate(const char *config, cl_platform_id *platform, cl_device_id *device,
+                             skg_device_info *info);
 
 /* Opens a device as skg_context_create does, but tests nothing. */
 skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index);

@@ -1,5 +1,6 @@
 #include "device/identity.h"
 #include "device/device.h"
+#include "device/platforms.h"
 #include "device/store.h"
 
 #include <skiagraph/version.h>
@@ -106,6 +107,7 @@ skg_status skg_device_identify(skg_device *device) {
     device->simulates = skg_platform_is(device->platform, "Oclgrind");
     if (device->simulates) path[0] = '\0';
     device->identity = skg_identity_of(device->platform, device->id);
+    device->clang = skg_platform_has_clang(device->platform);
     device->caches = has_cache(device->platform);
     return skg_copy_text(path, &device->store);
 }

@@ -1,7 +1,7 @@
 #include "device/program_text.h"
+#include "core/input.h"
 #include "device/sources.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -9,23 +9,12 @@ static skg_status read_file(const char *dir, const char *name, char **text) {
     char path[2048];
     if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
         return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, name);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return skg_fail(SKG_ERR_FILE, "%s: %s (kernels are read from here on demand)", path, strerror(errno));
-    skg_status status = SKG_OK;
-    size_t used = 0, got = 0;
-    int64_t capacity = 0;
-    do {
-        if ((int64_t)used + 4096 > capacity) {
-            capacity = capacity * 2 + 16384;
-            SKG_TRY_CLEANUP(skg_realloc(capacity, 1, path, text));
-        }
-        got = fread(*text + used, 1, 4095, file);
-        used += got;
-        (*text)[used] = '\0';
-    } while (got > 0);
-    if (ferror(file)) status = skg_fail(SKG_ERR_FILE, "%s: cannot be read", path);
-cleanup:
+    FILE *file = NULL;
+    size_t length = 0;
+    skg_status status = skg_input_open(path, SKG_INPUT_TEXT, &file, NULL);
+    if (status != SKG_OK)
+        return skg_fail(status, "%s (kernels are read from here on demand)", skg_last_error());
+    status = skg_input_read(file, path, SKG_INPUT_TEXT, text, &length);
     fclose(file);
     return status;
 }
@@ -64,9 +53,9 @@ skg_status skg_program_text_find(const skg_device *device, int32_t files, const 
     memset(text->read, 0, sizeof text->read);
     for (int32_t i = 0; i < files; i++) SKG_TRY(find_file(device, i, text));
     /* With correctly rounded division, images are equal bit for bit on different devices. */
-    if (snprintf(text->options, sizeof text->options, "-cl-std=CL1.2%s %s",
+    if (snprintf(text->options, sizeof text->options, "-cl-std=CL1.2%s%s %s",
                  device->info.correct_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
-                 options) >= (int)sizeof text->options)
+                 device->clang ? "" : " -D SKG_NO_BUILTINS", options) >= (int)sizeof text->options)
         return skg_fail(SKG_ERR_INTERNAL, "%s: the options are too long", what);
     return SKG_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "device/device.h"
 
-enum { SKG_PROGRAM_FILES = 16, SKG_PROGRAM_OPTIONS = 2048 };
+enum { SKG_PROGRAM_FILES = 17, SKG_PROGRAM_OPTIONS = 2048 };
 
 /* Kernel files in their order, from the folder for kernels or built in. */
 typedef struct {

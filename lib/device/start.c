@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "device/cpus.h"
 #include "device/device.h"
+#include "device/platforms.h"
 #include "device/signals.h"
 
 #include <fenv.h>
@@ -51,15 +52,25 @@ skg_status skg_opencl_call(void (*work)(void *argument), void *argument) {
     return call(&e);
 }
 
-/* Asks each platform for its devices: by then PoCL has its threads. Errors are left to those who ask again. */
-static void touch(void *nothing) {
-    enum { MOST = 32 };
-    cl_platform_id platforms[MOST];
+/* Asks platforms for their devices: by then PoCL has its threads. Errors are left to those who ask again.
+ *
+ * list   NULL: the known ones of the loader; others are left to those who trust them */
+static void touch(void *list) {
+    const skg_platform_list *given = list;
+    skg_platform_list loaders = {.count = 0};
     cl_uint count = 0, devices = 0;
-    (void)nothing;
-    if (clGetPlatformIDs(MOST, platforms, &count) != CL_SUCCESS) return;
-    for (cl_uint n = 0; n < count && n < MOST; n++)
-        clGetDeviceIDs(platforms[n], CL_DEVICE_TYPE_ALL, 0, NULL, &devices);
+    if (!given) {
+        if (clGetPlatformIDs(SKG_PLATFORMS_MOST, loaders.items, &count) != CL_SUCCESS) return;
+        loaders.count = count < SKG_PLATFORMS_MOST ? (int32_t)count : SKG_PLATFORMS_MOST;
+    }
+    const skg_platform_list *all = given ? given : &loaders;
+    for (int32_t n = 0; n < all->count; n++)
+        if (given || skg_platform_is_known(all->items[n]))
+            clGetDeviceIDs(all->items[n], CL_DEVICE_TYPE_ALL, 0, NULL, &devices);
+}
+
+skg_status skg_opencl_touch(skg_platform_list *list) {
+    return skg_opencl_call(touch, list);
 }
 
 skg_status skg_opencl_start(void) {

@@ -7,6 +7,7 @@
 #define SKG_START_H
 
 #include "core/core.h"
+#include "device/platforms.h"
 
 /* Starts OpenCL unless this process has done so. Every public call that may be the first to use OpenCL begins with it.
  * SKG_ERR_FORK if a process has started OpenCL and this one is its child by fork. */
@@ -17,6 +18,9 @@ skg_status skg_opencl_start(void);
  * process; those that report a fault of the thread itself are not blocked. Dispositions of signals that change are
  * restored. */
 skg_status skg_opencl_call(void (*work)(void *argument), void *argument);
+
+/* Asks platforms for their devices in such a thread, so that drivers make their threads there. */
+skg_status skg_opencl_touch(skg_platform_list *list);
 
 /* The number of CPUs that the threads of a driver may use; 0: unknown. To be called after skg_opencl_start. */
 int32_t skg_opencl_cpu_count(void);

@@ -1,5 +1,6 @@
 #include "device/store.h"
 #include "core/core.h"
+#include "core/part_name.h"
 #include "device/store_bound.h"
 
 #include <errno.h>
@@ -145,14 +146,15 @@ int skg_store_read(const char *path, const skg_digest *key, skg_kept kind, void 
 int skg_store_write(const char *path, const skg_digest *key, skg_kept kind, const void *data, int64_t bytes) {
     static atomic_int number; /* makes the temporary names of a process differ; it has no other effect */
     header head = {.format = FORMAT, .kind = (uint32_t)kind, .key = *key, .bytes = (uint64_t)bytes};
-    char name[MOST_NAME], temporary[2 * MOST_NAME];
+    char name[MOST_NAME], ending[SKG_PART_ENDING], temporary[MOST_NAME + SKG_PART_ENDING + 32];
     if (bytes < 0 || bytes > MOST_BYTES) return 0;
     const int folder = open_folder(path, 1);
     if (folder < 0) return 0;
     memcpy(head.magic, magic, sizeof magic);
     head.checksum = checksum_of(&head, data);
     name_of(key, kind, name);
-    snprintf(temporary, sizeof temporary, "%s.%ld.%d%s", name, (long)getpid(), atomic_fetch_add(&number, 1),
+    skg_part_ending(ending);
+    snprintf(temporary, sizeof temporary, "%s%s.%d%s", name, ending, atomic_fetch_add(&number, 1),
              SKG_TEMPORARY);
     const int file = openat(folder, temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
     int good = 0;

@@ -8,8 +8,8 @@
 #define SKG_TEST_OF_ALL "core"
 
 typedef struct {
-    int32_t good; /* 1: it computes rightly */
-    int32_t reserved;
+    int32_t good;     /* 1: it computes rightly */
+    int32_t failed;   /* 1: the driver failed, or ended or blocked the process that tested it */
     double score;     /* of the test "core": images per second; 0: not measured */
     char reason[256]; /* what is wrong */
 } skg_verdict;

@@ -2,6 +2,16 @@
 #include "core/vector.h"
 #include "plan/decide.h"
 
+/* Marks the meshes with flat faces where at least two parts have one. */
+static void find_flat(const skg_recipe *recipe, skg_mesh_layout *layouts) {
+    const skg_plan_meshes *meshes = &recipe->meshes;
+    int64_t parts = 0;
+    for (int64_t i = 0; recipe->scene->count > 1 && i < meshes->count; i++)
+        layouts[i].flat = skg_mesh_has_flat_face(meshes->meshes[i]);
+    for (int64_t p = 0; p < recipe->scene->count; p++) parts += layouts[meshes->of_part[p]].flat;
+    for (int64_t i = 0; parts < 2 && i < meshes->count; i++) layouts[i].flat = 0;
+}
+
 static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) {
     const skg_plan_meshes *meshes = &recipe->meshes;
     skg_mesh_layout *layouts = NULL;
@@ -9,6 +19,7 @@ static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) 
     SKG_TRY(skg_alloc(meshes->count, sizeof *layouts, "meshes", &layouts));
     for (int64_t i = 0; i < meshes->count && status == SKG_OK; i++)
         status = skg_mesh_layout_create(meshes->meshes[i], &layouts[i]);
+    if (status == SKG_OK) find_flat(recipe, layouts);
     if (status == SKG_OK)
         status = skg_geometry_create(machine->context, skg_recipe_kernel_precision(recipe), meshes->count,
                                      layouts, recipe->scene->count, meshes->of_part, &machine->geometry);

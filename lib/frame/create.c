@@ -4,8 +4,10 @@
 #include "frame/assemble.h"
 #include "frame/frame.h"
 #include "frame/plan.h"
+#include "plan/doubts.h"
 #include "plan/effects.h"
 #include "plan/overlaps.h"
+#include "plan/precision.h"
 
 /* Finds overlaps while programs are loaded and nodes are searched. */
 static skg_status find_overlaps(skg_plan *plan, skg_plan_overlaps *found) {
@@ -25,10 +27,12 @@ static skg_status complete(skg_plan *plan, skg_plan_overlaps *found) {
     SKG_TRY(skg_machine_complete(plan->recipe, machine));
     SKG_TRY(skg_outcome_create(plan->recipe, outcome));
     SKG_TRY(skg_plan_overlaps_take(plan->recipe, plan->context, found, outcome));
+    skg_plan_warn_doubts(plan->recipe, plan->context);
     SKG_TRY(skg_frame_prepare(plan->recipe, machine, outcome));
     SKG_TRY(skg_samples_adapt(plan->recipe, machine, outcome, &adapted));
     skg_recipe_release(&plan->recipe);
     plan->recipe = adapted;
+    SKG_TRY(skg_plan_precision_warn(plan->recipe, plan->context));
     return skg_effects_find(plan->recipe, plan->context, &machine->layers, outcome);
 }
 

@@ -149,6 +149,13 @@ static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pas
                          &means->results->leaky, means->staging);
 }
 
+/* What the weights of the model are multiplied by for a view: those of a ratio hold for any. */
+static double exposure_of(const skg_recipe *recipe, const skg_view *view) {
+    const int is_ratio =
+        skg_quantity_is_ratio(&recipe->options) && !skg_quantity_is_absolute(&recipe->options);
+    return is_ratio ? 1 : skg_recipe_exposure(recipe, view);
+}
+
 /* Enqueues the image of one pass from the sums. */
 static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_work *work, int64_t number,
                                 const skg_pass *pass, int32_t place_of_pass) {
@@ -160,7 +167,9 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
         recipe->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&recipe->options);
     const double rays = (double)pass->fine * pass->fine;
     const double area = areas ? skg_camera_pixel_area(&pass->camera) * rays : 1;
-    const double factor = lengths ? 1 : 1 / (area * (double)skg_samples_count(&recipe->samples));
+    const double share = 1 / (double)skg_samples_count(&recipe->samples);
+    const double factor =
+        lengths ? 1 : exposure_of(recipe, work->view) / (area * (double)skg_samples_count(&recipe->samples));
     /* A length may be wrong by some of the scale's bound if a face lies nearly along the ray (docs/numerics.md). Below a
      * ten-thousandth of the bound it does not show that more was subtracted than there is. */
     const double least = -1e-4 * pass->scale.bound - 1e-6;
@@ -180,7 +189,7 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
                                    (int64_t)recipe->mixed * recipe->model.planes,
                                    recipe->options.precision == SKG_PRECISION_DOUBLE, means->staging));
     const skg_sums sums = sums_of(machine, recipe, pass, place_of_pass);
-    return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, least,
+    return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, share, least,
                          machine->negative.memory, &noise, &place, &means->staging->log);
 }
 
@@ -275,7 +284,8 @@ static skg_status find_flat_field(const skg_frame_means *means, const skg_frame_
                                       .attenuator = machine->attenuator,
                                       .attenuation = &machine->images,
                                       .layers = &machine->layers,
-                                      .negative = machine->negative.memory};
+                                      .negative = machine->negative.memory,
+                                      .exposure = exposure_of(recipe, work->view)};
     return skg_flat_field_find(&machine->flat_field, &flat, work->view, work->place.output_double,
                                means->staging);
 }
@@ -298,9 +308,10 @@ static skg_status detect(const skg_frame_means *means, const skg_frame_work *wor
                             recipe->model.channels, log));
     if (!machine->detector || recipe->linear) return SKG_OK;
     SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
-    const double factor =
-        recipe->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
-    if (skg_detector_wants_flat_field(machine->detector)) SKG_TRY(find_flat_field(means, work));
+    const int has_flat_field = skg_detector_wants_flat_field(machine->detector);
+    double factor = recipe->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
+    if (skg_quantity_is_ratio(&recipe->options) && !has_flat_field) factor /= exposure_of(recipe, work->view);
+    if (has_flat_field) SKG_TRY(find_flat_field(means, work));
     return skg_detector_run(machine->detector, &work->noise, factor, machine->flat_field.image.memory,
                             &work->place, columns, rows, log);
 }

@@ -62,6 +62,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                         skg_pass *pass) {
     const skg_scene *scene = recipe->scene;
     const skg_scale_grid grid = skg_scale_grid_of(&memory->grid, pass->camera.columns, pass->camera.rows);
+    const double last_bit = skg_recipe_last_bit(recipe);
     int64_t contributing = 0;
     pass->parts = memory->parts;
     pass->extents = memory->extents;
@@ -72,15 +73,18 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
         skg_extent *extent = &pass->extents[p];
         const skg_placed_mesh *placed = skg_placement_of(memory->placement, mesh, recipe->meshes.of_part[p]);
         if (placed)
-            skg_extent_find_within(&pass->camera, mesh, placed->lowest, placed->highest, pose, extent);
+            skg_extent_find_within(&pass->camera, mesh, placed->lowest, placed->highest, pose, last_bit,
+                                   extent);
         else
-            skg_extent_find(&pass->camera, mesh, pose, extent);
+            skg_extent_find(&pass->camera, mesh, pose, last_bit, extent);
         pass->parts[p] =
             (skg_geometry_part){.pose = pose,
                                 .origin = mesh->origin,
                                 .flipped = mesh->orientation < 0,
                                 .reference = 0.5 * (extent->scale.low_depth + extent->scale.high_depth),
                                 .depth = extent->scale.high_depth - extent->scale.low_depth,
+                                .columns = {extent->scale.low_column, extent->scale.high_column},
+                                .rows = {extent->scale.low_row, extent->scale.high_row},
                                 .contributions = mesh->closed ? (int32_t)count : 0,
                                 .contribution = pass->contributions + pass->first[p]};
         if (count == 0) continue;
@@ -119,6 +123,7 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
     kernels->half = recipe->options.precision == SKG_PRECISION_HALF;
     kernels->bits = kernels->half ? 32 : pass->scale.bits; /* half: units of 2^-24 m, whatever the scene */
     kernels->parallel = pass->camera.parallel;
+    kernels->seams = recipe->scene->count > 1;
     kernels->listed = kernels->half || has_lists(pass, recipe->scene->count);
     return SKG_OK;
 }

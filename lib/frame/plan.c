@@ -37,7 +37,7 @@ static skg_status move(skg_plan *plan, const skg_view *view) {
     skg_recipe *recipe = NULL;
     skg_view_init(&moved);
     SKG_TRY(skg_struct_read(view, "skg_view", &moved, sizeof moved));
-    SKG_TRY(skg_recipe_check_size(plan->recipe, &moved));
+    SKG_TRY(skg_recipe_check_view(plan->recipe, &moved));
     SKG_TRY(skg_recipe_copy(plan->recipe, &recipe));
     recipe->view = moved;
     replace(plan, recipe);

@@ -1,7 +1,7 @@
 /* What a plan answers about itself. */
 #include "core/plain.h"
 #include "frame/plan.h"
-#include "spectral/rounding.h"
+#include "plan/precision.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -30,11 +30,7 @@ skg_status skg_plan_precision_bound_get(const skg_plan *plan, double *bound) {
     SKG_NEEDS(bound);
     const skg_recipe *recipe = plan->recipe;
     *bound = 0;
-    if (recipe->options.precision == SKG_PRECISION_HALF)
-        return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "no bound of the error is known for precision half; take single or double");
-    return skg_rounding_bound(recipe->scene, &recipe->view, &recipe->model,
-                              recipe->options.precision == SKG_PRECISION_DOUBLE, bound);
+    return skg_plan_precision_bound(recipe, bound);
 }
 
 void skg_channel_init_sized(void *channel, int32_t size) {
@@ -53,11 +49,12 @@ skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel
     SKG_NEEDS(plan);
     const skg_recipe *recipe = plan->recipe;
     SKG_TRY(check_index(__func__, "channel", index, recipe->model.channels));
-    const skg_channel ours = {
-        .size = sizeof ours,
-        .name = recipe->channel_names[index].text,
-        .unit = skg_channel_unit(recipe->options.quantity),
-        .flat_field = skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view, index)};
+    const skg_channel ours = {.size = sizeof ours,
+                              .name = recipe->channel_names[index].text,
+                              .unit = skg_channel_unit(recipe->options.quantity),
+                              .flat_field =
+                                  skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view,
+                                                         skg_recipe_exposure(recipe, &recipe->view), index)};
     return skg_struct_write(&ours, sizeof ours, "skg_channel", channel);
 }
 
@@ -71,10 +68,11 @@ skg_status skg_plan_node_count(const skg_plan *plan, int64_t *count) {
 skg_status skg_plan_node_get(const skg_plan *plan, int64_t index, double *energy_kev, double *photons,
                              double *weights) {
     SKG_NEEDS(plan);
-    const skg_model *model = &plan->recipe->model;
+    const skg_recipe *recipe = plan->recipe;
+    const skg_model *model = &recipe->model;
     SKG_TRY(check_index(__func__, "node", index, model->nodes));
     if (energy_kev) *energy_kev = model->node_kev[index];
-    if (photons) *photons = model->node_photons[index];
+    if (photons) *photons = model->node_photons[index] * skg_recipe_exposure(recipe, &recipe->view);
     for (int32_t c = 0; weights && c < model->channels; c++) {
         weights[c] = 0;
         for (int32_t l = 0; l < model->layers; l++)

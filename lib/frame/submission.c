@@ -93,7 +93,7 @@ static skg_status read_frame(const skg_submission *s, int64_t index, skg_frame *
         SKG_TRY(skg_view_check(frame->view));
         skg_view_init(view);
         SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
-        SKG_TRY(skg_recipe_check_size(recipe, view));
+        SKG_TRY(skg_recipe_check_view(recipe, view));
     }
     if (frame->pose_count < 0 || (frame->pose_count > 0 && (!frame->pose_parts || !frame->poses)))
         return skg_fail(SKG_ERR_ARGUMENT,

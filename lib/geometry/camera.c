@@ -142,8 +142,8 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
                      part->reference;
     part->start[1] = camera->start[1];
     part->start[2] = camera->start[2];
-    part->steepest = 0;
-    part->reserved = 0;
+    part->steepest = part->shift = 0;
+    part->fine = 0;
     /* Seen from the source, the far faces of an outward mesh turn in the sense of the picture's axes. */
     const int mirrored = (determinant(pose_linear) < 0) != (camera->determinant < 0);
     part->turned = mirrored != (flipped != 0) ? -1 : 0;

@@ -37,7 +37,7 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
 void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]);
 
 /* Fills the projection of a part's entry (skg_shared.h), but neither its place in the tables, nor its contributions, nor which
- * of its faces are steep.
+ * of its faces are steep, nor how far edges are moved.
  *
  * pose        4x4, row by row
  * origin      of the offsets of the mesh, mm

@@ -248,6 +248,18 @@ void skg_columns_bound(skg_columns *grid, int64_t count, const skg_solid *solids
     for (int k = 0; k < 2; k++) grid->step[k] = (grid->high[k] - grid->low[k]) / (double)grid->side;
 }
 
+double skg_columns_expect(const skg_columns *grid, int64_t count, const skg_solid *solids) {
+    double twice = 0; /* mm2 */
+    for (int64_t i = 0; i < count; i++)
+        for (int64_t t = 0; t < solids[i].triangles; t++) {
+            const double *p[3];
+            find_corners(&solids[i], t, p);
+            twice +=
+                fabs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+        }
+    return 0.5 * twice / (grid->step[0] * grid->step[1]);
+}
+
 static int by_depth(const void *a, const void *b) {
     const skg_column_hit *left = a, *right = b;
     if (left->depth != right->depth) return left->depth < right->depth ? -1 : 1;

@@ -20,9 +20,12 @@ typedef struct {
     double place[3];     /* mm, the middle of that chord */
 } skg_overlap_pair;
 
+/* The columns along each side of the grid, unless they have more than 10^7 hits. */
+enum { SKG_OVERLAP_SIDE = 256 };
+
 /* Finds every pair; the largest volume comes first. The caller frees *pairs with skg_free. A solid without triangles
- * takes no part: leaky parts are passed so. */
-skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *pair_count,
+ * takes no part: leaky parts are passed so. *side: the columns along each side that were taken. */
+skg_status skg_overlaps_find(int64_t count, const skg_solid *solids, int64_t *side, int64_t *pair_count,
                              skg_overlap_pair **pairs);
 
 #endif

@@ -1,5 +1,6 @@
 /* How a mesh lies in the memory of a device: vertices at one place are one vertex there, and vertices follow the
  * triangles that use them. No image depends on it, since sums do not depend on the order of triangles. */
+#include "core/vector.h"
 #include "mesh/mesh.h"
 
 #include <math.h>
@@ -59,10 +60,23 @@ static void number_by_use(const skg_mesh *mesh, int merged, skg_mesh_layout *lay
         if (mesh->weld[v] != v) layout->source[next + layout->copies++] = v;
 }
 
+/* Whether a closed mesh is much thinner than wide, as a plate, whose thickness is twice its volume by its area. Of 10,000 plates
+ * those that lost digits with single corners were thinner than 1.6e-3 of their diagonals and 7e-3 of the root of their area. Grains
+ * all over a picture are small against its diagonal, too. */
+static int is_thin(const skg_mesh *mesh) {
+    const skg_mesh_health *health = &mesh->health;
+    double diagonal[3];
+    for (int k = 0; k < 3; k++) diagonal[k] = health->bounds[3 + k] - health->bounds[k];
+    const double wide = 0x1p-6 * sqrt(health->area / (double)health->components);
+    return mesh->closed && health->components > 0 &&
+           2 * fabs(health->volume) < fmin(0x1p-8 * skg_length(diagonal), wide) * health->area;
+}
+
 skg_status skg_mesh_layout_create(const skg_mesh *mesh, skg_mesh_layout *layout) {
     skg_status status = SKG_OK;
     int32_t sorted = 0, *of = NULL;
-    *layout = (skg_mesh_layout){.vertices = mesh->vertices, .triangles = mesh->triangles};
+    *layout =
+        (skg_mesh_layout){.vertices = mesh->vertices, .triangles = mesh->triangles, .fine = is_thin(mesh)};
     SKG_TRY_CLEANUP(skg_alloc(3 * mesh->triangles, sizeof *layout->corners, mesh->name, &layout->corners));
     SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, layout->corners, &sorted));
     const int merged = pays_to_merge(mesh);

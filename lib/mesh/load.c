@@ -3,9 +3,11 @@
  * numbering is gone; it keeps only floats; it accepts truncated ascii STL and PLY files as complete ones, and leaks
  * memory when it refuses one. */
 #include "core/context.h"
+#include "core/input.h"
 #include "core/names.h"
-#include "core/path_hint.h"
 #include "core/plain.h"
+#include "mesh/archive.h"
+#include "mesh/assimp_files.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
 
@@ -16,23 +18,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Opens a regular file that is not empty. */
 static skg_status open_file(const char *path, FILE **stream, int64_t *size) {
-    struct stat about;
-    *stream = fopen(path, "rb");
-    if (!*stream) return skg_fail_unreadable(path, errno);
-    skg_status status = SKG_OK;
-    if (fstat(fileno(*stream), &about) != 0)
-        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
-    else if (!S_ISREG(about.st_mode))
-        status = skg_fail(SKG_ERR_FILE, "%s: cannot be read: it is not a file", path);
-    else if (about.st_size == 0)
-        status = skg_fail(SKG_ERR_FORMAT, "%s: the file is empty", path);
-    *size = (int64_t)about.st_size;
-    if (status != SKG_OK) fclose(*stream);
-    return status;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, stream, size));
+    if (*size > 0) return SKG_OK;
+    fclose(*stream);
+    return skg_fail(SKG_ERR_FORMAT, "%s: the file is empty", path);
 }
 
 typedef skg_status (*reader)(const skg_mesh_file *file, skg_mesh_arrays *arrays);
@@ -88,8 +80,11 @@ static skg_status add_node(const struct aiScene *scene, const struct aiNode *nod
 }
 
 /* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. */
-static skg_status read_by_assimp(const char *path, skg_mesh_arrays *arrays) {
-    const struct aiScene *scene = aiImportFile(path, 0);
+static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
+    struct aiFileIO files;
+    SKG_TRY(skg_archive_check(path, stream, size));
+    skg_assimp_files(&files);
+    const struct aiScene *scene = aiImportFileEx(path, 0, &files);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
     struct aiMatrix4x4 identity;
     aiIdentityMatrix4(&identity);
@@ -113,7 +108,8 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     int64_t size = 0;
     SKG_TRY(open_file(path, &stream, &size));
     const reader read = find_reader(path);
-    skg_status status = read ? read_here(stream, path, size, read, arrays) : read_by_assimp(path, arrays);
+    skg_status status =
+        read ? read_here(stream, path, size, read, arrays) : read_by_assimp(stream, path, size, arrays);
     fclose(stream);
     return status;
 }

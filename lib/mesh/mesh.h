@@ -82,6 +82,10 @@ enum { SKG_MESH_SMALL = 4096 };
  * *sorted is 1 if the triangles were reordered. */
 skg_status skg_mesh_sorted_corners(const skg_mesh *mesh, int32_t *corners, int32_t *sorted);
 
+/* 1: the mesh has a face that is flat, such as a block's: in this other parts may touch it, and rays may run along it. Faces whose
+ * triangles are scattered over the list, and smaller ones than a thousandth of the surface, are not found. */
+int skg_mesh_has_flat_face(const skg_mesh *mesh);
+
 /* The vertices and triangles of a mesh as a device has them. Vertices at the same place are merged. Those of a closed
  * mesh stay together (skg_mesh_positions_set). Those of a leaky one may part, so the layout lists their copies as well. */
 typedef struct {
@@ -91,6 +95,9 @@ typedef struct {
     int32_t *
         source; /* [vertices + copies] the mesh's number of each; NULL: as the mesh numbers them, none merged */
     int32_t *corners; /* [triangles][3] */
+    /* 1: a thin mesh, of which the device has also what rounding the vertices to floats has lost */
+    int32_t fine;
+    int32_t flat; /* 1: the mesh has a flat face, and the scene other such meshes; set by the caller */
 } skg_mesh_layout;
 
 /* Merges vertices if that saves an eighth of them, and puts triangles and vertices in an order in which neighbours in

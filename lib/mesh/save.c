@@ -102,13 +102,20 @@ skg_status skg_mesh_save(const skg_mesh *mesh, const char *path) {
     skg_output_file file;
     SKG_NEEDS(mesh);
     SKG_NEEDS(path);
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    const int is_stl = dot && skg_same_name(dot, ".stl");
     if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_save: no path");
     if (mesh->first_bad >= 0)
         return skg_fail(SKG_ERR_MESH, "%s: vertex %" PRId64 " is not finite; not written to %s", mesh->name,
                         mesh->first_bad, path);
     SKG_TRY(skg_output_open(path, &file));
-    const char *dot = strrchr(path, '.');
-    if (dot && skg_same_name(dot, ".stl"))
+    if (!is_stl && !(dot && skg_same_name(dot, ".ply"))) {
+        skg_output_discard(&file);
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: the extension %s%s is no mesh format that is written; use .ply or .stl", path,
+                        dot ? dot : "", dot ? "" : "is missing and");
+    }
+    if (is_stl)
         write_stl(mesh, file.stream);
     else
         write_ply(mesh, file.stream);

@@ -40,7 +40,7 @@ const char *skg_channel_unit(int32_t quantity) {
 }
 
 double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
-                              int64_t channel) {
+                              double exposure, int64_t channel) {
     skg_camera camera;
     switch (options->quantity) {
     case SKG_QUANTITY_TRANSMISSION:
@@ -49,8 +49,8 @@ double skg_channel_flat_field(const skg_plan_options *options, const skg_model *
         return 0;
     case SKG_QUANTITY_FLUENCE:
         if (skg_camera_make(view, NULL, 0, 0, &camera) != SKG_OK) return 0;
-        return model->flat_field[channel] / skg_camera_pixel_area(&camera);
+        return exposure * model->flat_field[channel] / skg_camera_pixel_area(&camera);
     default:
-        return model->flat_field[channel];
+        return exposure * model->flat_field[channel];
     }
 }

@@ -15,8 +15,9 @@ skg_status skg_channel_names_create(const skg_plan_options *options, int32_t cha
 /* The unit of a quantity; static storage. */
 const char *skg_channel_unit(int32_t quantity);
 
-/* What a channel shows without parts and world, not weakened by falloff. */
+/* What a channel shows without parts and world, not weakened by falloff. exposure: the photons per pixel of the view over
+ * those of the model. */
 double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
-                              int64_t channel);
+                              double exposure, int64_t channel);
 
 #endif

@@ -1,6 +1,7 @@
 #include "plan/choose.h"
 #include "geometry/extent.h"
 
+#include <float.h>
 #include <math.h>
 
 /* clang-format off */
@@ -41,12 +42,12 @@ int32_t skg_strategy_choose(const skg_strategy_facts *facts, const char **why) {
 
 /* Mean number of pixels of a triangle's box. A closed part covers its rectangle about twice, and a box has twice the
  * area of its triangle. */
-static double mean_box(const skg_scene *scene, const skg_camera *camera) {
+static double mean_box(const skg_scene *scene, const skg_camera *camera, double last_bit) {
     double pixels = 0, triangles = 0;
     for (int64_t p = 0; p < scene->count; p++) {
         const skg_scene_part_data *part = &scene->parts[p];
         skg_extent extent;
-        skg_extent_find(camera, part->mesh, part->pose, &extent);
+        skg_extent_find(camera, part->mesh, part->pose, last_bit, &extent);
         if (!extent.on_detector) continue;
         const skg_scale_part *r = &extent.scale;
         const double width = fmin(r->high_column, (double)camera->columns) - fmax(r->low_column, 0);
@@ -59,14 +60,14 @@ static double mean_box(const skg_scene *scene, const skg_camera *camera) {
 
 /* Pixels in the extents of all accumulators. */
 static skg_status reached_pixels(const skg_strategy_request *request, const skg_camera *camera,
-                                 int64_t *pixels) {
+                                 double last_bit, int64_t *pixels) {
     const skg_scene *scene = request->scene;
     int32_t *extents = NULL; /* [accumulators][4] */
     SKG_TRY(skg_alloc(4 * request->accumulators, sizeof *extents, "extents", &extents));
     for (int64_t p = 0; p < scene->count; p++) {
         skg_extent extent;
         int32_t own[4];
-        skg_extent_find(camera, scene->parts[p].mesh, scene->parts[p].pose, &extent);
+        skg_extent_find(camera, scene->parts[p].mesh, scene->parts[p].pose, last_bit, &extent);
         skg_extent_pixels(camera, &extent, own);
         for (int64_t c = request->first_contribution[p]; c < request->first_contribution[p + 1]; c++)
             skg_extent_join(extents + 4 * request->contributions[c].plane, own);
@@ -87,6 +88,7 @@ int64_t skg_scene_triangles(const skg_scene *scene) {
 }
 
 skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *strategy, const char **why) {
+    const double last_bit = request->precision == SKG_PRECISION_DOUBLE ? DBL_EPSILON : (double)FLT_EPSILON;
     skg_camera camera;
     int64_t pixels = 0;
     SKG_TRY(skg_camera_make(request->view, NULL, 0, 0, &camera));
@@ -97,13 +99,13 @@ skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *str
         *why = "precision half has no other";
     }
     if (*strategy != SKG_STRATEGY_AUTO) return SKG_OK;
-    SKG_TRY(reached_pixels(request, &camera, &pixels));
+    SKG_TRY(reached_pixels(request, &camera, last_bit, &pixels));
     const skg_strategy_facts facts = {
         .is_gpu = request->device->is_gpu,
         .workers = request->device->compute_units,
         .image_bytes = pixels * (request->precision == SKG_PRECISION_DOUBLE ? 8 : 4),
         .triangles = skg_scene_triangles(request->scene),
-        .triangle_pixels = mean_box(request->scene, &camera),
+        .triangle_pixels = mean_box(request->scene, &camera, last_bit),
     };
     *strategy = skg_strategy_choose(&facts, why);
     return SKG_OK;

@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 
 /* What effects are found from, and where they go. */
 typedef struct {
@@ -113,7 +114,8 @@ static skg_status find_places(const finding *f) {
     SKG_TRY(skg_camera_make(&recipe->view, NULL, 0, 0, &camera));
     SKG_TRY(skg_alloc(scene->count, sizeof *extents, "effects", &extents));
     for (int64_t i = 0; i < scene->count; i++) {
-        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, &extents[i]);
+        skg_extent_find(&camera, scene->parts[i].mesh, scene->parts[i].pose, skg_recipe_last_bit(recipe),
+                        &extents[i]);
         near += extents[i].near_source && extents[i].on_detector;
     }
     if (near)
@@ -195,13 +197,17 @@ static void find_compression(const finding *f) {
     const skg_plan_options *options = &f->recipe->options;
     const skg_model *model = &f->recipe->model;
     const int effect = SKG_EFFECT_COMPRESSION;
+    char logarithm[96] = "";
+    if (model->verified > 0 && options->quantity == SKG_QUANTITY_ATTENUATION)
+        snprintf(logarithm, sizeof logarithm, "; of -ln(I/I0) %.2g, at transmissions down to %.2g",
+                 model->log_error, model->least);
     if (model->verified > 0)
         skg_effect_set(f->outcome, effect, 1,
                        "%" PRId32 " of %" PRId32 " energies and %" PRId32 " %s for %" PRId32
-                       " %s; error of transmissions%s at most %.2g, verified on %" PRId64 " points",
+                       " %s; error of transmissions%s at most %.2g%s, verified on %" PRId64 " points",
                        model->nodes, model->bins, model->planes, skg_plural(model->planes, "plane", "planes"),
                        model->materials, skg_plural(model->materials, "material", "materials"),
-                       model->variances ? " and variances" : "", model->bound, model->verified);
+                       model->variances ? " and variances" : "", model->bound, logarithm, model->verified);
     else if (model->bins == 1)
         skg_effect_set(f->outcome, effect, 0, "the beam has one energy");
     else if (options->precision == SKG_PRECISION_HALF)
@@ -266,13 +272,20 @@ static void find_leaky(const finding *f) {
 }
 
 static void find_overlaps(const finding *f) {
-    const int64_t count = f->outcome->overlap_count;
+    const int64_t count = f->outcome->overlap_count, side = f->outcome->overlap_side;
+    char grid[128] = "";
+    if (side > 0 && side < SKG_OVERLAP_SIDE)
+        snprintf(grid, sizeof grid,
+                 "; looked for along %" PRId64 " x %" PRId64
+                 " columns instead of %d x %d, which would meet more than 10^7 surfaces",
+                 side, side, (int)SKG_OVERLAP_SIDE, (int)SKG_OVERLAP_SIDE);
     if (!f->recipe->options.overlaps)
         skg_effect_set(f->outcome, SKG_EFFECT_OVERLAPS, 0, "not asked for");
     else
-        skg_effect_set(f->outcome, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " %s", count,
+        skg_effect_set(f->outcome, SKG_EFFECT_OVERLAPS, 1, "%" PRId64 " %s%s", count,
                        skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
-                                  "pairs of parts overlap or leave their parent"));
+                                  "pairs of parts overlap or leave their parent"),
+                       grid);
 }
 
 skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,

@@ -9,6 +9,7 @@
 void skg_plan_options_init_sized(void *options, int32_t size) {
     const skg_plan_options defaults = {.precision = SKG_PRECISION_SINGLE,
                                        .overlaps = 1,
+                                       .falloff = SKG_FALLOFF_AUTO,
                                        .supersampling = 1,
                                        .swank = 1,
                                        .repair = SKG_REPAIR_NEIGHBOURS};
@@ -38,7 +39,7 @@ static skg_status check_flag(const char *name, int32_t flag) {
 static skg_status check_flags(const skg_plan_options *options) {
     SKG_TRY(check_flag("overlaps", options->overlaps));
     SKG_TRY(check_flag("profile", options->profile));
-    SKG_TRY(check_flag("falloff", options->falloff));
+    if (options->falloff != SKG_FALLOFF_AUTO) SKG_TRY(check_flag("falloff", options->falloff));
     SKG_TRY(check_flag("noise", options->noise));
     SKG_TRY(check_flag("oblique", options->oblique));
     return check_flag("clip", options->clip);

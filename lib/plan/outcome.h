@@ -55,11 +55,13 @@ enum { SKG_MOST_STAGES = 32 };
 typedef struct {
     skg_plan_report report;
     skg_effect_state effects[SKG_EFFECTS];
+    int64_t overlap_side; /* columns along each side of the grid on which they were looked for */
     int64_t overlap_count;
     skg_overlap_pair *overlaps;
     int64_t stage_count;
     skg_stage_time stages[SKG_MOST_STAGES];
-    int32_t warned_unseen; /* 1: that nothing falls on the detector */
+    int32_t warned_unseen;   /* 1: that nothing falls on the detector */
+    int32_t warned_infinite; /* 1: that pixels were not finite */
     int32_t side; /* passes of a frame that a worker draws side by side; 0: all workers are at each pass */
     int32_t *
         warned_bad; /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */

@@ -63,7 +63,8 @@ static skg_status check_overlaps(checking *c) {
     if (scene->count < 2) return SKG_OK;
     for (int64_t i = 0; i < scene->count; i++)
         SKG_TRY(place_solid(&scene->parts[i], &c->solids[i], &c->positions[i]));
-    return skg_overlaps_find(scene->count, c->solids, &c->found->pair_count, &c->found->pairs);
+    return skg_overlaps_find(scene->count, c->solids, &c->found->side, &c->found->pair_count,
+                             &c->found->pairs);
 }
 
 static skg_status check_mesh(void *user, int64_t mesh) {
@@ -98,6 +99,7 @@ void skg_plan_overlaps_release(skg_plan_overlaps *found) {
 skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *context,
                                   skg_plan_overlaps *found, skg_outcome *outcome) {
     if (!found->nestings) return SKG_OK;
+    outcome->overlap_side = found->side;
     outcome->overlap_count = found->pair_count;
     outcome->overlaps = found->pairs, found->pairs = NULL;
     SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, found->nestings, recipe->scene, context));

@@ -6,6 +6,7 @@
 
 /* What the check has found. */
 typedef struct {
+    int64_t side; /* columns along each side of the grid */
     int64_t pair_count;
     skg_overlap_pair *pairs;
     skg_mesh_nesting *nestings; /* [meshes]; NULL: the options do not ask for the check */

@@ -1,17 +1,29 @@
 #include "plan/recipe.h"
 #include "beam/spectrum.h"
 #include "device/device.h"
+#include "geometry/exposure.h"
 #include "geometry/priority.h"
 #include "plan/choose.h"
 #include "plan/options.h"
 #include "spectral/quantity.h"
 
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 
 enum { MOST_VIEWS = 1024 };
 
 int skg_recipe_averages(const skg_recipe *recipe) {
     return recipe->samples.spot.shape != SKG_SPOT_POINT || recipe->samples.shifts > 1;
+}
+
+/* Views whose exposures agree to this are alike: those of a turn around an object differ by the rounding of its sines. */
+static const double SAME_EXPOSURE = 1e-12;
+
+double skg_recipe_exposure(const skg_recipe *recipe, const skg_view *view) {
+    if (!(recipe->exposure > 0)) return 1;
+    const double ratio = skg_view_exposure(view) / recipe->exposure;
+    return fabs(ratio - 1) < SAME_EXPOSURE ? 1 : ratio;
 }
 
 int64_t skg_recipe_accumulators(const skg_recipe *recipe) {
@@ -22,8 +34,23 @@ int32_t skg_recipe_kernel_precision(const skg_recipe *recipe) {
     return recipe->options.precision == SKG_PRECISION_DOUBLE ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
 }
 
-skg_status skg_recipe_check_size(const skg_recipe *recipe, const skg_view *view) {
-    if (view->columns == recipe->view.columns && view->rows == recipe->view.rows) return SKG_OK;
+double skg_recipe_last_bit(const skg_recipe *recipe) {
+    return skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE ? DBL_EPSILON : (double)FLT_EPSILON;
+}
+
+/* The photons of an absolute beam are found from a distance, which a parallel beam has not. */
+static skg_status check_distance(const skg_recipe *recipe, const skg_view *view) {
+    const int has_distance = view->projection == SKG_PROJECTION_POINT,
+              had_distance = recipe->view.projection == SKG_PROJECTION_POINT;
+    if (!recipe->absolute || has_distance == had_distance) return SKG_OK;
+    return skg_fail(
+        SKG_STALE, "the plan is for a %s and an absolute beam, the view has a %s; make a plan for it",
+        had_distance ? "point source" : "parallel beam", has_distance ? "point source" : "parallel beam");
+}
+
+skg_status skg_recipe_check_view(const skg_recipe *recipe, const skg_view *view) {
+    if (view->columns == recipe->view.columns && view->rows == recipe->view.rows)
+        return check_distance(recipe, view);
     return skg_fail(SKG_STALE,
                     "the plan is for %" PRId64 " x %" PRId64 " pixels, the view has %" PRId64 " x %" PRId64
                     "; make a plan for it",
@@ -187,6 +214,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     const skg_plan_options *options = &recipe->options;
     const int parallel = recipe->view.projection != SKG_PROJECTION_POINT;
     SKG_TRY(skg_plan_options_check(options, device));
+    if (options->falloff == SKG_FALLOFF_AUTO) recipe->options.falloff = recipe->exposure > 0;
     SKG_TRY(skg_plan_meshes_create(recipe->scene, &recipe->meshes));
     SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
     SKG_TRY(skg_samples_make(parallel ? NULL : spot, options->supersampling, &recipe->samples));
@@ -197,6 +225,28 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     recipe->priority_possible = skg_priority_possible(recipe->scene, options->clip);
     SKG_TRY(check_half(recipe));
     return choose_layout(recipe, device);
+}
+
+/* Keeps the beam, in photons per pixel. */
+static skg_status resolve(skg_recipe *recipe, const skg_context *context, skg_spectrum *spectrum) {
+    if (!spectrum->absolute) {
+        recipe->spectrum = spectrum, skg_ref(&spectrum->refs);
+        return SKG_OK;
+    }
+    recipe->absolute = 1;
+    if (recipe->view.projection == SKG_PROJECTION_POINT) {
+        recipe->exposure = skg_view_exposure(&recipe->view);
+    } else {
+        skg_quality quality;
+        skg_quality_init(&quality);
+        SKG_TRY(skg_spectrum_quality_get(spectrum, &quality));
+        skg_log(
+            context, SKG_LOG_WARNING,
+            "a parallel beam has no distance from a tube, so mAs does not say how many photons arrive (a point "
+            "source would send %.4g to a mm2 at 1 m); the image is in units of that number per pixel",
+            quality.photons);
+    }
+    return skg_spectrum_create_resolved(spectrum, &recipe->view, &recipe->spectrum);
 }
 
 /* --- life */
@@ -210,13 +260,13 @@ skg_status skg_recipe_create(const skg_context *context, skg_scene *scene, const
     SKG_TRY(skg_alloc(1, sizeof *made, "plan", &made));
     skg_refs_init(&made->refs);
     made->scene = scene, skg_ref(&scene->refs);
-    made->spectrum = spectrum, skg_ref(&spectrum->refs);
     made->structure = scene->structure;
     made->materials = scene->materials;
     skg_plan_options_init(&made->options);
     skg_view_init(&made->view);
     if (options) SKG_TRY_CLEANUP(keep_options(made, options, &spot));
     SKG_TRY_CLEANUP(skg_struct_read(view, "skg_view", &made->view, sizeof made->view));
+    SKG_TRY_CLEANUP(resolve(made, context, spectrum));
     if (made->options.profile && !context->device->profiling) {
         status = skg_fail(SKG_ERR_UNSUPPORTED,
                           "profile is 1, but the context's queue keeps no times; make the queue with "

@@ -20,8 +20,9 @@ struct skg_recipe {
     int32_t owns_model; /* 1: the model is this recipe's own */
     int32_t linear;     /* 1: mean intensities alone, without noise, the stage `detect` and logarithms */
 
-    skg_scene *scene;         /* retained */
-    skg_spectrum *spectrum;   /* retained */
+    skg_scene *scene;       /* retained */
+    skg_spectrum *spectrum; /* retained; photons per pixel of the view that the plan was made for */
+    double exposure; /* of that view (geometry/exposure.h), if the caller's spectrum is absolute; else 0 */
     skg_plan_options options; /* its handles retained, its arrays copied; blur is NULL: see below */
     skg_view view;            /* of frames without a view of their own */
     int64_t structure;        /* of the scene; if it has another one the plan is stale */
@@ -36,10 +37,10 @@ struct skg_recipe {
     skg_samples samples;             /* of source and pixel */
     int32_t is_blurred;
     int32_t mixed; /* accumulators that the planes of images are mixed from; 0: they are not mixed */
-    int32_t priority_possible; /* 1: priorities differ, or children are clipped */
-    int32_t strategy;          /* SKG_STRATEGY_..., never AUTO */
-    int32_t leaky_strategy;    /* of the rasters of leaky parts */
-    int32_t reserved;
+    int32_t priority_possible;   /* 1: priorities differ, or children are clipped */
+    int32_t strategy;            /* SKG_STRATEGY_..., never AUTO */
+    int32_t leaky_strategy;      /* of the rasters of leaky parts */
+    int32_t absolute;            /* 1: the caller's spectrum is absolute */
     const char *strategy_reason; /* static storage */
     const char *fine_reason;     /* of samples.fine; static storage */
     int64_t leaky_count;
@@ -63,6 +64,9 @@ skg_status skg_recipe_copy(const skg_recipe *recipe, skg_recipe **copy);
  * ones. */
 skg_status skg_recipe_renew(const skg_recipe *recipe, skg_recipe **renewed);
 
+/* The photons per pixel of a view over those of `spectrum`. */
+double skg_recipe_exposure(const skg_recipe *recipe, const skg_view *view);
+
 /* Whether images are means over several passes: of samples of the source, or of a pixel. */
 int skg_recipe_averages(const skg_recipe *recipe);
 
@@ -75,7 +79,10 @@ int64_t skg_recipe_accumulators(const skg_recipe *recipe);
 /* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE: of vertices, tables and kernels. Half precision computes in single. */
 int32_t skg_recipe_kernel_precision(const skg_recipe *recipe);
 
-/* SKG_STALE if a view has another size than the recipe's. */
-skg_status skg_recipe_check_size(const skg_recipe *recipe, const skg_view *view);
+/* The last bit of the device's numbers relative to 1. */
+double skg_recipe_last_bit(const skg_recipe *recipe);
+
+/* SKG_STALE if a view has another size than the recipe's, or with an absolute beam, a distance where the recipe's has none. */
+skg_status skg_recipe_check_view(const skg_recipe *recipe, const skg_view *view);
 
 #endif

@@ -85,6 +85,7 @@ static void report_bad(const skg_recipe *recipe, const skg_context *context, int
             done[repair], places);
 }
 
+/* The status carries the sentence for each frame, the log once for each plan. */
 static skg_status report_infinite(const skg_recipe *recipe, const skg_context *context, int32_t values,
                                   skg_outcome *outcome) {
     const int half = recipe->options.precision == SKG_PRECISION_HALF;
@@ -94,7 +95,8 @@ static skg_status report_infinite(const skg_recipe *recipe, const skg_context *c
                    skg_plural(values, "pixel is", "pixels are"),
                    half ? "precision half (65,504; energies are in MeV)" : "the precision",
                    half ? "precision single, or fewer photons" : "fewer photons");
-    skg_log(context, SKG_LOG_WARNING, "%s", skg_last_error());
+    if (!outcome->warned_infinite) skg_log(context, SKG_LOG_WARNING, "%s", skg_last_error());
+    outcome->warned_infinite = 1;
     return SKG_RANGE;
 }
 

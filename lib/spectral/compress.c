@@ -31,7 +31,8 @@ typedef struct skg_compressing {
     const skg_scene *scene;
     double *mu;
     double tolerance, errors;
-    int is_ratio;
+    int is_ratio, is_log;
+    double log_error, least; /* of -ln, and of transmissions, on the rays that were traced */
     skg_polychromatic beam;
     skg_ranges ranges;
     double *shares, *sums; /* [nodes][sets], [sets] */
@@ -269,6 +270,8 @@ static void rewrite_nodes(const compressing *c, skg_model *model) {
     model->nodes = nodes->count;
     model->bound = c->found.bound;
     model->verified = c->found.verified;
+    model->log_error = c->errors * c->log_error;
+    model->least = c->least;
 }
 
 /* The planes from before; those of the basis go. */
@@ -304,6 +307,10 @@ static void find_nodes(void *user) {
     compressing *c = user;
     c->status =
         skg_nodes_find(&c->beam, c->basis.mu, c->tolerance, c->ranges.rays, c->ranges.lengths, &c->found);
+    const skg_rays rays = {c->ranges.rays, c->beam.materials, c->ranges.lengths};
+    if (c->status == SKG_OK && c->is_log && c->found.nodes.count > 0)
+        c->status =
+            skg_nodes_log_error(&c->beam, c->basis.mu, &c->found.nodes, &rays, &c->log_error, &c->least);
     if (c->status != SKG_OK) snprintf(c->message, sizeof c->message, "%s", skg_last_error());
 }
 
@@ -316,6 +323,7 @@ skg_status skg_compress_begin(const skg_scene *scene, const skg_view *view, cons
     /* A ratio to the transmission of the world and the shades has the errors of both. */
     c->errors = is_ratio && (model->world_plane >= 0 || model->shades.count > 0) ? 2 : 1;
     c->scene = scene, c->tolerance = options->tolerance / c->errors, c->is_ratio = is_ratio;
+    c->is_log = options->quantity == SKG_QUANTITY_ATTENUATION;
     c->mu = *mu, *mu = NULL;
     SKG_TRY_CLEANUP(skg_ranges_find(scene, view, options->view_count, options->views, model, &c->ranges));
     add_shades(model, &c->ranges);

@@ -36,7 +36,9 @@ typedef struct {
     /* [planes + shades.count][2] mm, the values of planes and shades for which the bound holds; NULL: any */
     double *range;
     struct skg_compressing *search; /* for fewer nodes, under way (compress.h); NULL: none */
-    double bound;     /* stated bound of the error by fewer nodes and planes; 0: every bin is used */
+    double bound; /* stated bound of the error by fewer nodes and planes; 0: every bin is used */
+    /* If -ln(I/I0) is shown: its absolute error, at most, and the smallest transmission, on the rays that were traced. */
+    double log_error, least;
     int64_t verified; /* points of the range of lengths on which the bound was verified */
 } skg_model;
 

@@ -4,6 +4,7 @@
 #include "core/vector.h"
 #include "geometry/extent.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@ enum { SIDE = SKG_TRACED_SIDE, MORE_SIDE = 24, OWN_SIDE = 16, ENOUGH_HITS = 128 
 enum { BATCH = 64 };
 
 /* The factor on lengths that leaves a margin for later views, meshes and poses, which may differ a little. */
-static const double MARGIN = 1.25;
+static const double MARGIN = SKG_TRACED_MARGIN;
 /* The share of its range by which a plane may fall below it. A closed mesh that folds over itself has negative
  * lengths in a few pixels, which rays as coarse as these seldom meet. A rib of the generated thorax has -0.5 mm
  * where the range is 180 mm. */
@@ -26,7 +27,9 @@ static const double FOLDS = 0.02;
 typedef struct {
     double least, most; /* mm along its own rays, or 0 */
     double hits;        /* mean per ray over the detector */
-    int seen;           /* it is on the detector, and has lengths there */
+    double low, high;   /* path parameter, from and to */
+    int32_t met;        /* most hits of a ray */
+    int32_t seen;       /* 1: it is on the detector, and has lengths there */
 } traced_part;
 
 /* One view of some parts. */
@@ -34,8 +37,9 @@ typedef struct {
     const skg_scene *scene;
     const skg_model *model;
     skg_camera camera;
-    int64_t side, first; /* rays along each side; the first part of the batch */
-    double *lengths;     /* [BATCH][side][side] mm over the detector */
+    const unsigned char *wanted; /* [parts]; NULL: all */
+    int64_t side, first;         /* rays along each side; the first part of the batch */
+    double *lengths;             /* [BATCH][side][side] mm over the detector */
     traced_part parts[BATCH];
 } looking;
 
@@ -60,13 +64,15 @@ static void trace_own(skg_tracer *tracer, const skg_scale_part *r, traced_part *
         for (int64_t k = 0; k < tracer->side * tracer->side; k++) {
             if (tracer->lengths[k] < traced->least) traced->least = tracer->lengths[k];
             if (tracer->lengths[k] > traced->most) traced->most = tracer->lengths[k];
+            if (tracer->met[k] > traced->met) traced->met = tracer->met[k];
         }
         if (tracer->side == 0) return;
     }
 }
 
-static int contributes(const skg_model *model, int64_t part) {
-    return model->first_contribution[part + 1] > model->first_contribution[part];
+static int contributes(const looking *look, int64_t part) {
+    const int64_t *first = look->model->first_contribution;
+    return first[part + 1] > first[part] && (!look->wanted || look->wanted[part]);
 }
 
 static skg_status trace_part(void *user, int64_t item) {
@@ -78,13 +84,14 @@ static skg_status trace_part(void *user, int64_t item) {
     skg_tracer tracer = {0};
     skg_status status = SKG_OK;
     *traced = (traced_part){0};
-    if (!contributes(look->model, look->first + item)) return SKG_OK;
-    skg_extent_find(&look->camera, part->mesh, part->pose, &extent);
+    if (!contributes(look, look->first + item)) return SKG_OK;
+    skg_extent_find(&look->camera, part->mesh, part->pose, DBL_EPSILON, &extent);
     if (!extent.on_detector) {
         traced->most = longest_edge(part);
         return SKG_OK;
     }
     traced->seen = 1;
+    traced->low = extent.scale.low_depth, traced->high = extent.scale.high_depth;
     SKG_TRY_CLEANUP(skg_tracer_open(&look->camera, part, extent.near_source, &tracer));
     trace_own(&tracer, &extent.scale, traced);
     skg_tracer_trace_detector(&tracer, look->side);
@@ -105,7 +112,7 @@ static skg_status trace_parts(looking *look, take_part *take, void *user) {
         const int64_t left = parts - look->first, count = left < BATCH ? left : BATCH;
         SKG_TRY(skg_parallel(count, trace_part, look));
         for (int64_t k = 0; k < count; k++)
-            if (contributes(look->model, look->first + k))
+            if (contributes(look, look->first + k))
                 take(user, look, look->first + k, &look->parts[k], look->lengths + k * side * side);
     }
     return SKG_OK;
@@ -187,8 +194,9 @@ cleanup:
 }
 
 typedef struct {
-    skg_traced_part *traced;
+    skg_take_trace *take;
     void *user;
+    double ray; /* mm, the longest for a path parameter of 1 */
 } telling;
 
 static void tell_part(void *user, const looking *look, int64_t part, const traced_part *traced,
@@ -197,15 +205,22 @@ static void tell_part(void *user, const looking *look, int64_t part, const trace
     double longest = traced->most;
     if (!traced->seen) return;
     for (int64_t r = 0; r < look->side * look->side; r++) longest = fmax(longest, lengths[r]);
-    t->traced(t->user, part, lengths, MARGIN * longest);
+    const skg_trace trace = {.part = part,
+                             .lengths = lengths,
+                             .longest = longest,
+                             .deepest = t->ray * (traced->high - traced->low),
+                             .farthest = t->ray * traced->high,
+                             .met = traced->met};
+    t->take(t->user, &trace);
 }
 
 skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const skg_model *model,
-                            skg_traced_part *traced, void *user) {
-    looking look = {.scene = scene, .model = model, .side = SIDE};
-    telling t = {traced, user};
+                            const unsigned char *wanted, skg_take_trace *take, void *user) {
+    looking look = {.scene = scene, .model = model, .wanted = wanted, .side = SIDE};
+    telling t = {.take = take, .user = user};
     skg_status status = SKG_OK;
     SKG_TRY(skg_camera_make(view, NULL, 0, 0, &look.camera));
+    t.ray = skg_ray_longest(&look.camera);
     SKG_TRY_CLEANUP(skg_alloc(BATCH * SIDE * SIDE, sizeof *look.lengths, "rays", &look.lengths));
     SKG_TRY_CLEANUP(trace_parts(&look, tell_part, &t));
 cleanup:

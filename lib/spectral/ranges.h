@@ -23,12 +23,24 @@ skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t
                            const skg_model *model, skg_ranges *ranges);
 void skg_ranges_release(skg_ranges *ranges);
 
-/* Receives the lengths of one part along the rays: [SKG_TRACED_SIDE][SKG_TRACED_SIDE] mm. longest: the longest that was
- * found, with a margin of a quarter. */
-typedef void skg_traced_part(void *user, int64_t part, const double *lengths, double longest);
+/* What the longest path may exceed the longest that was traced by. */
+#define SKG_TRACED_MARGIN 1.25
 
-/* Traces rays over the view's detector through each part that contributes to a plane and is seen. */
+/* One part along the rays of a view. */
+typedef struct {
+    int64_t part;
+    const double *lengths; /* [SKG_TRACED_SIDE][SKG_TRACED_SIDE] mm */
+    double longest;        /* mm, the longest that was found */
+    double deepest;        /* mm, its extent along the rays, at most */
+    double farthest;       /* mm from the source, at most */
+    int32_t met;           /* surfaces on a ray, at most */
+} skg_trace;
+typedef void skg_take_trace(void *user, const skg_trace *trace);
+
+/* Traces rays over the view's detector through each part that contributes to a plane and is seen.
+ *
+ * wanted   [parts] 1: this part is traced; NULL: all are */
 skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const skg_model *model,
-                            skg_traced_part *traced, void *user);
+                            const unsigned char *wanted, skg_take_trace *take, void *user);
 
 #endif

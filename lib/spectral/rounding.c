@@ -1,5 +1,7 @@
 #include "spectral/rounding.h"
 
+#include "core/vector.h"
+#include "mesh/mesh.h"
 #include "spectral/ranges.h"
 #include "spectral/verify.h"
 
@@ -7,22 +9,35 @@
 
 enum { RAYS = SKG_TRACED_SIDE * SKG_TRACED_SIDE };
 
-/* By how much a length may be wrong, as a share of the part's longest (docs/numerics.md, Precision). */
-static const double LENGTH_SINGLE = 3e-5, LENGTH_DOUBLE = 1e-11;
+/* By how much a precision may be wrong (docs/numerics.md, Precision). */
+typedef struct {
+    double longest, deepest; /* lengths: shares of the part's longest and of its extent along the rays */
+    double exponential;      /* an exponential and the sum of a few hundred of them; an image in 16 bits */
+    double
+        exponent; /* by its own size: rounded coefficients, planes and sums, half a unit in the last place each */
+    double image; /* absolute: the least step of an image, in its unit */
+} share;
 
-/* Of an exponential and the sum of a few hundred of them, and of an exponent by its own size: rounded coefficients,
- * planes and sums, each by half a unit in the last place of 24 or 53 bits. */
-static const double EXPONENTIAL_SINGLE = 1e-6, EXPONENTIAL_DOUBLE = 1e-14;
-static const double EXPONENT_SINGLE = 3 * 0x1p-24, EXPONENT_DOUBLE = 3 * 0x1p-53;
+static const share shares[] = {
+    [SKG_PRECISION_SINGLE] = {3e-5, 2e-6, 1e-6, 3 * 0x1p-24, 0},
+    /* A face counts as steep by the same share of the extent, but its coordinates have 29 bits more. */
+    [SKG_PRECISION_DOUBLE] = {1e-11, 2e-6 * 0x1p-29, 1e-14, 3 * 0x1p-53, 0},
+    [SKG_PRECISION_HALF] = {3e-5, 2e-6, 0x1p-11, 3 * 0x1p-24, 0x1p-25},
+};
+
+/* A part is thin if its lengths may be wrong by this share of the longest. */
+static const double THIN = 0.01;
 
 typedef struct {
     const skg_model *model;
-    double length, exponential, exponent; /* shares by which each may be wrong */
-    double *exponents;                    /* [RAYS][nodes] */
-    double *errors;                       /* [RAYS][nodes] of the exponents, of lengths alone */
-    double *mu;                           /* [nodes] of one part less that of its parent, 1/mm */
-    double *alone;                        /* [2][nodes] exponents and errors of one part */
+    share by;
+    int is_half;
+    double *exponents; /* [RAYS][nodes] */
+    double *errors;    /* [RAYS][nodes] of the exponents, of lengths alone */
+    double *mu;        /* [nodes] of one part less that of its parent, 1/mm */
+    double *alone;     /* [2][nodes] exponents and errors of one part */
     double worst;
+    skg_rounding *found;
 } rounding;
 
 /* The relative error of an intensity with these exponents and errors: [nodes] each. */
@@ -36,11 +51,11 @@ static double error_of(const rounding *r, const double *exponents, const double 
             const double intensity = weight * exp(-exponents[n]);
             flat += weight;
             passed += intensity;
-            wrong += intensity * (errors[n] + fabs(exponents[n]) * r->exponent);
+            wrong += intensity * expm1(errors[n] + fabs(exponents[n]) * r->by.exponent);
         }
-        if (flat > 0) worst = fmax(worst, wrong / fmax(passed, SKG_RELATIVE_FROM * flat));
+        if (flat > 0) worst = fmax(worst, (wrong + r->by.image) / fmax(passed, SKG_RELATIVE_FROM * flat));
     }
-    return worst + r->exponential;
+    return worst + r->by.exponential;
 }
 
 static void find_mu(rounding *r, int64_t part) {
@@ -54,45 +69,102 @@ static void find_mu(rounding *r, int64_t part) {
     }
 }
 
-static void add_part(void *user, int64_t part, const double *lengths, double longest) {
+/* Half a step of binary16 at a distance, mm: the distance in metres has 11 bits, and 2^-24 is the least step. */
+static double half_step(double mm) {
+    int exponent = 0;
+    frexp(mm * 1e-3, &exponent);
+    return 0.5 * fmax(0x1p-24, ldexp(1, exponent - 11)) * 1e3;
+}
+
+/* mm by which the lengths of a part may be wrong. */
+static double bar_of(const rounding *r, const skg_trace *trace) {
+    const double bar =
+        fmax(r->by.longest * SKG_TRACED_MARGIN * trace->longest, r->by.deepest * trace->deepest);
+    return r->is_half ? bar + trace->met * half_step(trace->farthest) : bar;
+}
+
+static void note_thin(skg_rounding *found, const skg_trace *trace, double bar) {
+    if (!(bar > THIN * trace->longest) || !(trace->longest > 0)) return;
+    found->thin_count++;
+    if (found->thin_count > 1 && bar * found->thin_longest <= found->thin_error * trace->longest) return;
+    found->thin = trace->part;
+    found->thin_error = bar;
+    found->thin_longest = trace->longest;
+}
+
+static void add_part(void *user, const skg_trace *trace) {
     rounding *r = user;
     const int32_t nodes = r->model->nodes;
-    find_mu(r, part);
+    const double bar = bar_of(r, trace);
+    note_thin(r->found, trace, bar);
+    if (!r->exponents) return; /* thin parts alone */
+    find_mu(r, trace->part);
     for (int64_t ray = 0; ray < RAYS; ray++)
-        for (int32_t n = 0; lengths[ray] != 0 && n < nodes; n++) {
-            r->exponents[ray * nodes + n] += r->mu[n] * lengths[ray];
-            r->errors[ray * nodes + n] += fabs(r->mu[n]) * r->length * longest;
+        for (int32_t n = 0; trace->lengths[ray] != 0 && n < nodes; n++) {
+            r->exponents[ray * nodes + n] += r->mu[n] * trace->lengths[ray];
+            r->errors[ray * nodes + n] += fabs(r->mu[n]) * bar;
         }
     /* A part that is too small for the rays counts by itself. */
     for (int32_t n = 0; n < nodes; n++) {
-        r->alone[n] = fabs(r->mu[n]) * longest;
-        r->alone[nodes + n] = r->alone[n] * r->length;
+        r->alone[n] = fabs(r->mu[n]) * SKG_TRACED_MARGIN * trace->longest;
+        r->alone[nodes + n] = fabs(r->mu[n]) * bar;
     }
     r->worst = fmax(r->worst, error_of(r, r->alone, r->alone + nodes));
 }
 
-skg_status skg_rounding_bound(const skg_scene *scene, const skg_view *view, const skg_model *model,
-                              int is_double, double *bound) {
+static rounding begin(const skg_model *model, const skg_plan_options *options, skg_rounding *found) {
+    *found = (skg_rounding){.thin = -1};
+    rounding r = {.model = model, .by = shares[options->precision], .found = found};
+    r.is_half = options->precision == SKG_PRECISION_HALF;
+    if (options->quantity == SKG_QUANTITY_ENERGY)
+        r.by.image *= 1e3; /* energies of an image in 16 bits are in MeV */
+    return r;
+}
+
+skg_status skg_rounding_find(const skg_scene *scene, const skg_view *view, const skg_model *model,
+                             const skg_plan_options *options, skg_rounding *found) {
     static const char what[] = "bound of the precision";
-    rounding r = {.model = model,
-                  .length = is_double ? LENGTH_DOUBLE : LENGTH_SINGLE,
-                  .exponential = is_double ? EXPONENTIAL_DOUBLE : EXPONENTIAL_SINGLE,
-                  .exponent = is_double ? EXPONENT_DOUBLE : EXPONENT_SINGLE};
+    rounding r = begin(model, options, found);
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc((int64_t)RAYS * model->nodes, sizeof *r.exponents, what, &r.exponents));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)RAYS * model->nodes, sizeof *r.errors, what, &r.errors));
     SKG_TRY_CLEANUP(skg_alloc(model->nodes, sizeof *r.mu, what, &r.mu));
     SKG_TRY_CLEANUP(skg_alloc(2 * (int64_t)model->nodes, sizeof *r.alone, what, &r.alone));
-    r.worst = r.exponential;
-    SKG_TRY_CLEANUP(skg_ranges_trace(scene, view, model, add_part, &r));
+    r.worst = r.by.exponential;
+    SKG_TRY_CLEANUP(skg_ranges_trace(scene, view, model, NULL, add_part, &r));
     for (int64_t ray = 0; ray < RAYS; ray++)
         r.worst =
             fmax(r.worst, error_of(&r, r.exponents + ray * model->nodes, r.errors + ray * model->nodes));
-    *bound = r.worst;
+    found->bound = r.worst;
 cleanup:
     skg_free(&r.exponents);
     skg_free(&r.errors);
     skg_free(&r.mu);
     skg_free(&r.alone);
+    return status;
+}
+
+/* Whether a part may be thin: its volume over the largest area of the box around it is less than its longest path, and the
+ * box's diagonal more than its extent. */
+static int may_be_thin(const skg_scene_part_data *part, const share *by) {
+    const float *low = part->mesh->lowest, *high = part->mesh->highest;
+    double edge[3];
+    for (int k = 0; k < 3; k++) edge[k] = (double)high[k] - (double)low[k];
+    const double area = edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0];
+    /* Rays to the rim of a detector are longer than that to its middle: at most twice as long. */
+    return 2 * by->deepest * skg_length(edge) * area > THIN * fabs(part->mesh->health.volume);
+}
+
+skg_status skg_rounding_find_thin(const skg_scene *scene, const skg_view *view, const skg_model *model,
+                                  const skg_plan_options *options, skg_rounding *found) {
+    rounding r = begin(model, options, found);
+    unsigned char *wanted = NULL;
+    int64_t count = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(scene->count, sizeof *wanted, "thin parts", &wanted));
+    for (int64_t p = 0; p < scene->count; p++)
+        count += wanted[p] = (unsigned char)may_be_thin(&scene->parts[p], &r.by);
+    if (count) status = skg_ranges_trace(scene, view, model, wanted, add_part, &r);
+    skg_free(&wanted);
     return status;
 }

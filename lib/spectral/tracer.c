@@ -47,6 +47,7 @@ skg_status skg_tracer_open(const skg_camera *camera, const skg_scene_part_data *
     SKG_TRY(skg_alloc(mesh->vertices, sizeof *tracer->seen, what, &tracer->seen));
     SKG_TRY(skg_alloc(SKG_TRACED_SIDE * SKG_TRACED_SIDE, sizeof *tracer->lengths, what, &tracer->lengths));
     SKG_TRY(skg_alloc(SKG_TRACED_SIDE * SKG_TRACED_SIDE, sizeof *tracer->counts, what, &tracer->counts));
+    SKG_TRY(skg_alloc(SKG_TRACED_SIDE * SKG_TRACED_SIDE, sizeof *tracer->met, what, &tracer->met));
     for (int64_t v = 0; v < mesh->vertices; v++) {
         double at[3], world[3], *h = tracer->seen[v];
         skg_mesh_vertex(mesh, v, at);
@@ -63,6 +64,7 @@ void skg_tracer_release(skg_tracer *tracer) {
     skg_free(&tracer->seen);
     skg_free(&tracer->lengths);
     skg_free(&tracer->counts);
+    skg_free(&tracer->met);
 }
 
 /* Whether the ray to (i, j) meets a triangle. The ray is a line through the origin of (x, y, w), so the signs of three
@@ -114,6 +116,7 @@ static void add_triangle(skg_tracer *grid, const double *const h[3]) {
             if (!camera->parallel && t < 0) continue; /* behind the source */
             grid->lengths[row * grid->side + column] += sign * fmin(fmax(t, start), 1);
             grid->counts[row * grid->side + column] += sign;
+            grid->met[row * grid->side + column]++;
             grid->hits++;
         }
 }
@@ -130,6 +133,7 @@ static void trace(skg_tracer *grid) {
     const int64_t rays = grid->side * grid->side;
     memset(grid->lengths, 0, (size_t)rays * sizeof *grid->lengths);
     memset(grid->counts, 0, (size_t)rays * sizeof *grid->counts);
+    memset(grid->met, 0, (size_t)rays * sizeof *grid->met);
     grid->hits = 0;
     for (int64_t t = 0; t < mesh->triangles; t++) {
         const double *const h[3] = {grid->seen[mesh->corners[3 * t]], grid->seen[mesh->corners[3 * t + 1]],
@@ -155,6 +159,14 @@ void skg_tracer_trace(skg_tracer *tracer, int64_t side, const double low[2], con
 void skg_tracer_trace_detector(skg_tracer *tracer, int64_t side) {
     lay_over_detector(tracer, side);
     trace(tracer);
+}
+
+double skg_ray_longest(const skg_camera *camera) {
+    double longest = 0;
+    for (int corner = 0; corner < 4; corner++)
+        longest = fmax(longest, unit_of(camera, corner & 1 ? (double)camera->columns - 0.5 : -0.5,
+                                        corner & 2 ? (double)camera->rows - 0.5 : -0.5));
+    return longest;
 }
 
 void skg_ways_find(const skg_camera *camera, int64_t side, double *ways) {

@@ -19,6 +19,7 @@ typedef struct {
     double column_step, row_step;
     double *lengths; /* [side][side] mm, signed; 0 where the signed hits of a leaky mesh do not cancel */
     int32_t *counts; /* [side][side] signed hits */
+    int32_t *met;    /* [side][side] hits */
     int64_t hits;
 } skg_tracer;
 
@@ -33,6 +34,9 @@ void skg_tracer_trace(skg_tracer *tracer, int64_t side, const double low[2], con
 
 /* The same over the whole detector. */
 void skg_tracer_trace_detector(skg_tracer *tracer, int64_t side);
+
+/* The longest ray to a pixel for a path parameter of 1, mm. */
+double skg_ray_longest(const skg_camera *camera);
 
 /* The way of the rays of such a grid over the detector in mm: [side][side]. */
 void skg_ways_find(const skg_camera *camera, int64_t side, double *ways);

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -190,6 +191,35 @@ double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const sk
         }
     }
     return worst;
+}
+
+/* By how much a logarithm changes with a relative change either way. */
+static double log_change(double relative) {
+    return relative > 1 ? log1p(relative) : -log1p(-relative);
+}
+
+skg_status skg_nodes_log_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
+                               const skg_rays *rays, double *error, double *least) {
+    skg_polychromatic relative = *beam;
+    double *lengths = NULL, *exact = NULL, *exponents = NULL;
+    skg_status status = SKG_OK;
+    relative.floor = DBL_MIN; /* errors are relative everywhere */
+    *error = 0, *least = 1;
+    SKG_TRY_CLEANUP(skg_alloc(beam->materials, sizeof *lengths, "lengths", &lengths));
+    SKG_TRY_CLEANUP(skg_alloc(beam->sets, sizeof *exact, "lengths", &exact));
+    SKG_TRY_CLEANUP(skg_alloc(beam->bins, sizeof *exponents, "lengths", &exponents));
+    for (int64_t r = 0; r < rays->count; r++) {
+        memcpy(lengths, rays->lengths + r * rays->width, (size_t)beam->materials * sizeof *lengths);
+        skg_transmit_exact(beam, lengths, exact, exponents);
+        for (int32_t s = 0; s < beam->sets; s++)
+            if (exact[s] > 0) *least = fmin(*least, exact[s]);
+        *error = fmax(*error, log_change(skg_nodes_error(&relative, mu, nodes, lengths, exact)));
+    }
+cleanup:
+    skg_free(&lengths);
+    skg_free(&exact);
+    skg_free(&exponents);
+    return status;
 }
 
 typedef struct {

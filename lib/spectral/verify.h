@@ -71,6 +71,13 @@ skg_status skg_lengths_fill(const skg_polychromatic *beam, const skg_sampling *s
 double skg_nodes_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
                        const double *lengths, const double *exact);
 
+/* The error of -ln of the transmission, and the smallest transmission of a set that rays meet.
+ *
+ * error   absolute, at most, over the rays and sets
+ * least   share of the flat field */
+skg_status skg_nodes_log_error(const skg_polychromatic *beam, const double *mu, const skg_nodes *nodes,
+                               const skg_rays *rays, double *error, double *least);
+
 /* The worst error over the points, and uphill from the worst ten of them within the range.
  *
  * checked   the number of points that were compared

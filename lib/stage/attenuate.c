@@ -257,8 +257,9 @@ skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_rast
 }
 
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                         const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
-                         const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log) {
+                         const skg_attenuation *attenuation, double factor, double share, double least,
+                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
+                         skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
     const kernel_key key = key_of(sums, camera, attenuation, place);
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
@@ -283,7 +284,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     skg_real_argument_set(&reals[0], is_double, factor);
     skg_real_argument_set(&reals[1], is_double, limit);
     skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_foot(camera) : 0);
-    skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * factor);
+    skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * share);
     const skg_argument arguments[SKG_ATTENUATE_ARGUMENTS] = {
         SKG_ARGUMENT(ATTENUATE, frame, frame),
         {SKG_ATTENUATE_ray, is_double ? sizeof ray : sizeof ray_single,
@@ -334,7 +335,8 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
     no_sums.raster = &nothing;
     quiet.noise = 0;
     quiet.range = (skg_buffer){0};
-    return skg_attenuate(attenuator, &no_sums, camera, &quiet, factor, -HUGE_VAL, negative, NULL, place, log);
+    return skg_attenuate(attenuator, &no_sums, camera, &quiet, factor, 1, -HUGE_VAL, negative, NULL, place,
+                         log);
 }
 
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,

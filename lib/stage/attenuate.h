@@ -73,14 +73,15 @@ typedef struct {
 
 /* Enqueues one image.
  *
- * factor    of intensities; with noise, of photons: the share of one ray. The draws of all samples
- *           add up to one draw of all photons.
+ * factor    of intensities; with noise, of photons. The draws of all samples add up to one draw of all photons.
+ * share     the share of one ray in the photons of its pixel
  * least     exponents below it are counted in negative[0]; pixels outside the attenuation's range in negative[1],
  *           values that are not finite in negative[2]
  * noise     the key of the noise, of the first of the rays of a pixel; NULL without noise */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                         const skg_attenuation *attenuation, double factor, double least, cl_mem negative,
-                         const skg_noise_args *noise, const skg_image_place *place, skg_stage_log *log);
+                         const skg_attenuation *attenuation, double factor, double share, double least,
+                         cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
+                         skg_stage_log *log);
 
 /* Expects the program of skg_attenuate (skg_expected_begin) with sums of a raster with these options. sums: without a
  * raster; attenuation: its shape; ranged: 1: it will have a range. */

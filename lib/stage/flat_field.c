@@ -21,8 +21,9 @@ static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view,
         else
             SKG_TRY(skg_camera_make(view, NULL, 0, 0, &camera));
         place.add = s > 0;
-        SKG_TRY(skg_attenuate_flat_field(work->attenuator, work->sums, &camera, attenuation, 1 / (double)rays,
-                                         work->negative, &place, &staging->log));
+        SKG_TRY(skg_attenuate_flat_field(work->attenuator, work->sums, &camera, attenuation,
+                                         work->exposure / (double)rays, work->negative, &place,
+                                         &staging->log));
     }
     return skg_layers_blur(work->layers, used, &place, image, view->columns, view->rows, channels,
                            &staging->log);

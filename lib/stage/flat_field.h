@@ -22,6 +22,7 @@ typedef struct {
     const skg_attenuation *attenuation;
     skg_layers *layers; /* and their blurs */
     cl_mem negative;    /* counters, which it leaves as they are */
+    double exposure;    /* what intensities are multiplied by for the view */
 } skg_flat_field_work;
 
 /* Enqueues the flat field of a view as float or double, if it is not known. */

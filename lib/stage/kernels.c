@@ -18,7 +18,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
     static const char *const headers[] = {"config.clh",   "types.clh",    "skg_shared.h",
                                           "scalar.clh",   "triangle.clh", "wide.clh",
                                           "triangle.clh", "parts.clh",    "sums.clh"};
-    enum { HEADERS = sizeof headers / sizeof *headers, MOST = 7 };
+    enum { HEADERS = sizeof headers / sizeof *headers, MOST = 8 };
     const char *all[HEADERS + MOST];
     char text[768];
     if (files > MOST) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", names[0]);
@@ -26,10 +26,10 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
     for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];
     snprintf(text, sizeof text,
              "-D SKG_DOUBLE=%d -D SKG_BITS=%d -D SKG_WIDE=%d -D SKG_PARALLEL=%d -D SKG_SOURCE_PLANE=%d "
-             "-D SKG_LISTED=%d -D SKG_HALF=%d -D SKG_CPU=%d %s",
+             "-D SKG_SEAMS=%d -D SKG_LISTED=%d -D SKG_HALF=%d -D SKG_CPU=%d %s",
              options->precision == SKG_PRECISION_DOUBLE, options->bits,
              skg_kernel_lanes(context, options->precision), options->parallel != 0,
-             options->source_plane != 0, options->listed != 0, options->half != 0,
+             options->source_plane != 0, options->seams != 0, options->listed != 0, options->half != 0,
              !context->device->info.is_gpu, more_options ? more_options : "");
     return skg_program_get(context, HEADERS + files, all, text, program);
 }
@@ -41,8 +41,8 @@ int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *
 }
 
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program) {
-    static const char *const files[] = {"project.cl",      "batch.clh",  "draw.clh",    "raster_copies.cl",
-                                        "exponential.clh", "planes.clh", "attenuate.cl"};
+    static const char *const files[] = {"fine.clh",         "project.cl",      "batch.clh",  "draw.clh",
+                                        "raster_copies.cl", "exponential.clh", "planes.clh", "attenuate.cl"};
     char more[64];
     snprintf(more, sizeof more, "-D SKG_RUNS=%d -D SKG_STRIP=%d", SKG_CPU_RUNS, SKG_CPU_STRIP);
     return skg_kernels_get(context, &first_options, (int32_t)(sizeof files / sizeof *files), files, more,

@@ -11,6 +11,7 @@ typedef struct {
     int32_t bits;         /* of an accumulator: 32 or 64 */
     int32_t parallel;     /* 1: parallel beam */
     int32_t source_plane; /* 1: some part may reach the source, or the plane where parallel paths start */
+    int32_t seams;        /* 1: parts may touch, so that edges are moved for coverage */
     int32_t half;         /* 1: distances are rounded to 16 bits; precision is single */
     int32_t listed;       /* 1: parts contribute as their lists say; 0: to one plane each, without bias */
 } skg_kernel_options;

@@ -37,6 +37,18 @@ static skg_status prepare(skg_placement *placement, skg_context *context, const 
     return get_kernel(placement, context, geometry->precision);
 }
 
+/* Of a fine mesh, what rounding the vertices has lost becomes 0. */
+static skg_status clear_lost(skg_context *context, const skg_geometry *geometry, int64_t index) {
+    const skg_mesh_layout *layout = &geometry->layouts[index];
+    const cl_float zero = 0;
+    const size_t size = (size_t)layout->vertices * 3 * sizeof zero;
+    const size_t first = ((size_t)geometry->mesh_vertex[index] + (size_t)layout->vertices) * 3 * sizeof zero;
+    if (!layout->fine || size == 0) return SKG_OK;
+    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->offsets.memory, &zero, sizeof zero,
+                                   first, size, 0, NULL, NULL));
+    return SKG_OK;
+}
+
 static skg_status run(skg_placement *placement, skg_context *context, const skg_geometry *geometry,
                       int64_t index, const skg_place_source *source) {
     const cl_int none = INT32_MAX;
@@ -69,6 +81,8 @@ skg_status skg_placement_place(skg_placement *placement, skg_context *context, s
     /* Of a leaky mesh, the host cannot see whether merged vertices are at one place in the caller's memory. */
     SKG_TRY(skg_geometry_part_vertices(context, geometry, mesh, index));
     SKG_TRY(list_taken(context, mesh, &geometry->layouts[index], &placed->taken));
+    /* Positions of the caller are floats. */
+    SKG_TRY(clear_lost(context, geometry, index));
     /* If the copy fails half way, the next frame uploads the positions of the host. */
     geometry->versions[index] = placed->version = 0;
     if (mesh->vertices > 0) SKG_TRY(run(placement, context, geometry, index, source));

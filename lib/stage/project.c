@@ -71,7 +71,8 @@ static skg_status upload_corners(skg_context *context, skg_geometry *geometry) {
 static skg_status number(skg_geometry *geometry, int64_t *first_triangle) {
     for (int64_t m = 0; m < geometry->meshes; m++) {
         const skg_mesh_layout *layout = &geometry->layouts[m];
-        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + layout->vertices + layout->copies;
+        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + layout->vertices + layout->copies +
+                                       (layout->fine ? layout->vertices : 0);
         geometry->mesh_triangle[m + 1] = geometry->mesh_triangle[m] + layout->triangles;
     }
     for (int64_t p = 0; p < geometry->parts; p++) {
@@ -118,6 +119,7 @@ static skg_status take_over(skg_geometry *geometry, skg_mesh_layout *layouts, co
     SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *geometry->layouts, "mesh table", &geometry->layouts));
     memcpy(geometry->layouts, layouts, (size_t)meshes * sizeof *layouts);
     memset(layouts, 0, (size_t)meshes * sizeof *layouts);
+    for (int64_t m = 0; m < meshes; m++) geometry->layouts[m].fine &= !is_double(geometry);
     SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_triangle));
     SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_vertex));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof(int64_t), "part table", &geometry->first_vertex));
@@ -220,10 +222,12 @@ static void round_entry(const skg_part_double *from, skg_part_float *to) {
     to->reference = (float)from->reference;
     to->highest = (float)from->highest;
     to->steepest = (float)fmin(from->steepest, (double)FLT_MAX);
+    to->shift = (float)from->shift;
     to->pixel_i = from->pixel_i;
     to->pixel_j = from->pixel_j;
     to->vertices = from->vertices;
     to->turned = from->turned;
+    to->fine = from->fine;
     to->first_contribution = from->first_contribution;
     to->contributions = from->contributions;
 }
@@ -244,12 +248,28 @@ static void set_contribution(const skg_geometry *geometry, void *contributions, 
  * that of the bars in docs/numerics.md: a length is held to be well defined if such a shift changes it by less. */
 static const double STEEP_SHARE = 1e-6;
 
-static double steepest(const skg_geometry *geometry, const skg_camera *camera,
-                       const skg_geometry_part *part) {
+/* A face of a thin part is steep from a smaller share on: only steep faces have the digits that its vertices have. */
+static const double FINE_SHARE = 0.25e-6;
+
+static double steepest(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part,
+                       int32_t fine) {
     const double last_bit = is_double(geometry) ? DBL_EPSILON : (double)FLT_EPSILON;
     const double z =
         camera->parallel ? part->depth : part->depth / part->reference; /* z = r / t, t about reference */
-    return STEEP_SHARE * fabs(z) / last_bit;
+    return (fine ? FINE_SHARE : STEEP_SHARE) * fabs(z) / last_bit;
+}
+
+/* The pixels by which kernels for parts that touch move the edges of a part for coverage (triangle.clh): more than what rounding leaves of its coordinates.
+ * Of these the greatest is rounded most; those of a part that reaches the plane of the source have no bound, but most edges that cross
+ * the detector end near it. Doubles that are small have what the world's coordinates, of which they are made, have lost. */
+static double shift_of(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part,
+                       const skg_part_double *entry) {
+    const double columns = fmax(entry->pixel_i - part->columns[0], part->columns[1] - entry->pixel_i);
+    const double rows = fmax(entry->pixel_j - part->rows[0], part->rows[1] - entry->pixel_j);
+    const double size = (double)(camera->columns > camera->rows ? camera->columns : camera->rows);
+    const double farthest = isfinite(columns + rows) ? fmax(columns, rows) : 16 * size;
+    if (!(farthest > 0)) return 0;
+    return is_double(geometry) ? 0x1p-44 * fmax(farthest, 256) : 2 * (double)FLT_EPSILON * farthest;
 }
 
 /* pass: of several that are drawn together; their contributions stand one behind the other. */
@@ -265,13 +285,18 @@ static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const 
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
         skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
-        entry->vertices = (SKG_INT)geometry->layouts[geometry->mesh_of_part[p]].vertices;
-        entry->steepest = steepest(geometry, camera, &part[p]);
+        const skg_mesh_layout *layout = &geometry->layouts[geometry->mesh_of_part[p]];
+        entry->vertices = (SKG_INT)layout->vertices;
+        entry->fine = layout->fine;
+        entry->steepest = steepest(geometry, camera, &part[p], layout->fine);
+        entry->shift = layout->flat ? shift_of(geometry, camera, &part[p], entry) : 0;
         entry->first_contribution = (SKG_INT)(pass * total + slot->contribution_count);
         entry->contributions = (SKG_INT)part[p].contributions;
         if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);
-        /* Kernels weigh q = r / reference; a parallel beam's q is r itself. */
-        const double factor = camera->parallel ? scale : scale * entry->reference;
+        /* Kernels weigh q = r / reference; a parallel beam's q is r itself. A part that lies on no path weighs nothing: its
+         * hits would cancel, but the scale does not consider them, so that they need not be integers of the device. */
+        const double depth_unit = camera->parallel ? scale : scale * entry->reference;
+        const double factor = part[p].depth > 0 ? depth_unit : 0;
         for (int32_t w = 0; w < part[p].contributions; w++)
             set_contribution(geometry, slot->contributions, slot->contribution_count++,
                              &part[p].contribution[w], factor);

@@ -20,8 +20,9 @@ typedef struct {
     /* The path parameter that the part's depths are measured from: the middle of those that lie on paths, so that no
      * term is larger than the part's extent. Above 0 with a point source. */
     double reference;
-    double depth;          /* the difference between its greatest and least path parameter */
-    int32_t contributions; /* how many; 0: the part is not drawn, but keeps its place in the tables */
+    double depth;               /* the difference between its greatest and least path parameter */
+    double columns[2], rows[2]; /* its rectangle on the detector, from and to; may be infinite */
+    int32_t contributions;      /* how many; 0: the part is not drawn, but keeps its place in the tables */
     const skg_contribution *contribution;
 } skg_geometry_part;
 
@@ -51,7 +52,7 @@ typedef struct {
     int32_t uploaded;            /* 1: the device has tables */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
-    skg_buffer projected; /* x, y, z, t of each vertex over all parts */
+    skg_buffer projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/fine.clh) */
     /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;
@@ -73,8 +74,7 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
 void skg_geometry_release(skg_geometry *geometry);
 
 /* Enqueues the upload of a mesh's vertices: offsets from its origin in the order of its layout, float or double by the
- * precision.
- * The offsets must stay until the device has read them. */
+ * precision; of a fine one then what rounding them has lost. The offsets must stay until the device has read them. */
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
                                const void *offsets, skg_stage_log *log);
 

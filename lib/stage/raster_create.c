@@ -154,11 +154,11 @@ typedef struct {
 static skg_status compile_files(skg_raster *raster, int32_t files, const char *const *names, int kernels,
                                 const named_kernel *kernel) {
     const char *more = skg_raster_side(raster) > 1 ? "-D SKG_SIDE=4" : NULL;
-    enum { MOST = 5 };
-    const char *all[MOST] = {"project.cl"};
+    enum { MOST = 6 };
+    const char *all[MOST] = {"fine.clh", "project.cl"};
     cl_program program = NULL;
-    for (int32_t i = 0; i < files; i++) all[i + 1] = names[i];
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 1, all, more,
+    for (int32_t i = 0; i < files; i++) all[i + 2] = names[i];
+    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 2, all, more,
                             raster->expected ? NULL : &program));
     if (raster->expected) return SKG_OK;
     SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));

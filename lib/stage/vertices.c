@@ -13,7 +13,8 @@ static size_t real_size(const skg_geometry *geometry) {
 
 skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
                                const void *offsets, skg_stage_log *log) {
-    const int64_t row = 3 * (int64_t)real_size(geometry), count = geometry->layouts[mesh].vertices;
+    const skg_mesh_layout *layout = &geometry->layouts[mesh];
+    const int64_t row = 3 * (int64_t)real_size(geometry), count = (1 + layout->fine) * layout->vertices;
     if (count == 0) return SKG_OK;
     return skg_stage_write(context, "upload", geometry->offsets.memory, geometry->mesh_vertex[mesh] * row,
                            count * row, offsets, log);
@@ -25,6 +26,17 @@ static void read_floats(const skg_mesh_layout *layout, const skg_mesh *mesh, flo
     for (int64_t i = 0; source && i < layout->vertices; i++) {
         const float *from = mesh->offsets + 3 * (int64_t)source[i];
         to[3 * i] = from[0], to[3 * i + 1] = from[1], to[3 * i + 2] = from[2];
+    }
+}
+
+/* What rounding the offsets has lost. */
+static void read_lost(const skg_mesh_layout *layout, const skg_mesh *mesh, float *to) {
+    double at[3];
+    for (int64_t i = 0; i < layout->vertices; i++) {
+        const int64_t vertex = layout->source ? layout->source[i] : i;
+        skg_mesh_vertex(mesh, vertex, at);
+        for (int k = 0; k < 3; k++)
+            to[3 * i + k] = (float)(at[k] - mesh->origin[k] - (double)mesh->offsets[3 * vertex + k]);
     }
 }
 
@@ -71,11 +83,13 @@ skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, 
         const skg_mesh_layout *layout = &geometry->layouts[m];
         if (geometry->versions[m] == meshes[m]->version) continue;
         SKG_TRY(keep_apart(staging->context, geometry, meshes[m], m));
-        SKG_TRY(skg_staging_take(staging, 3 * layout->vertices, real_size(geometry), "vertices", &offsets));
+        SKG_TRY(skg_staging_take(staging, (1 + layout->fine) * 3 * layout->vertices, real_size(geometry),
+                                 "vertices", &offsets));
         if (geometry->precision == SKG_PRECISION_DOUBLE)
             read_doubles(layout, meshes[m], offsets);
         else
             read_floats(layout, meshes[m], offsets);
+        if (layout->fine) read_lost(layout, meshes[m], (float *)offsets + 3 * layout->vertices);
         SKG_TRY(skg_geometry_upload(staging->context, geometry, m, offsets, &staging->log));
         geometry->versions[m] = meshes[m]->version;
     }

@@ -1,6 +1,9 @@
 /* The tests of a device, one by one. */
 #include "core/plain.h"
 #include "device/device.h"
+#include "device/identity.h"
+#include "device/store.h"
+#include "device/verdict.h"
 #include "trial/trial.h"
 
 #include <inttypes.h>
@@ -16,6 +19,18 @@ void skg_device_test_init_sized(void *result, int32_t size) {
 skg_status skg_device_test_count(int64_t *count) {
     SKG_NEEDS(count);
     *count = SKG_TRIALS;
+    return SKG_OK;
+}
+
+static skg_status check_test(int64_t test) {
+    if (test >= 0 && test < SKG_TRIALS) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "test %" PRId64 " of %d (counted from 0)", test, SKG_TRIALS);
+}
+
+skg_status skg_device_test_name_get(int64_t test, const char **name) {
+    SKG_NEEDS(name);
+    SKG_TRY(check_test(test));
+    *name = skg_trial_get((skg_trial_number)test)->name;
     return SKG_OK;
 }
 
@@ -53,8 +68,7 @@ skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *re
     struct timespec start, end;
     skg_device_info info;
     skg_device_test ours;
-    if (test < 0 || test >= SKG_TRIALS)
-        return skg_fail(SKG_ERR_ARGUMENT, "test %" PRId64 " of %d (counted from 0)", test, SKG_TRIALS);
+    SKG_TRY(check_test(test));
     skg_device_info_init(&info);
     skg_device_test_init(&ours);
     SKG_TRY(skg_device_get(device, &info));
@@ -64,4 +78,27 @@ skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *re
     clock_gettime(CLOCK_MONOTONIC, &end);
     ours.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
     return skg_struct_write(&ours, sizeof ours, "skg_device_test", result);
+}
+
+skg_status skg_device_test_keep(const char *config, int64_t test, const skg_device_test *result) {
+    SKG_PLAIN;
+    char store[SKG_STORE_PATH];
+    cl_platform_id platform = NULL;
+    cl_device_id device = NULL;
+    skg_device_info info;
+    skg_device_test ours;
+    SKG_TRY(check_test(test));
+    SKG_NEEDS(result);
+    skg_device_test_init(&ours);
+    SKG_TRY(skg_struct_read(result, "skg_device_test", &ours, sizeof ours));
+    if (ours.verdict != SKG_TEST_WRONG && ours.verdict != SKG_TEST_FAILED)
+        return skg_fail(SKG_ERR_ARGUMENT, "a verdict of %" PRId32 " is not kept; only WRONG and FAILED are",
+                        ours.verdict);
+    SKG_TRY(skg_device_locate(config, &platform, &device, &info));
+    skg_verdict verdict = {.failed = ours.verdict == SKG_TEST_FAILED};
+    snprintf(verdict.reason, sizeof verdict.reason, "%.*s", (int)sizeof ours.reason - 1, ours.reason);
+    const skg_digest identity = skg_identity_of(platform, device);
+    skg_store_find(store);
+    skg_verdict_keep(store, &identity, skg_trial_get((skg_trial_number)test)->name, &verdict);
+    return SKG_OK;
 }

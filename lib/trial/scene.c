@@ -53,9 +53,11 @@ static int has_energies(const skg_trial_scene *scene) {
     return scene->number == SKG_TRIAL_ENERGIES || scene->number == SKG_TRIAL_HEEL;
 }
 
-/* The kernels of blur and detector have a way of their own for the last pixels of a row that fill no vector. */
+/* The last pixels of a row that fill no vector, and vectors that end before those that are read with them, have code paths of
+ * their own. A row of 83 pixels has both, with vectors of 1, 4, 8 and 16 of which four are read together. */
 static int has_odd_rows(skg_trial_number number) {
-    return number == SKG_TRIAL_BLUR || number == SKG_TRIAL_DETECTOR || number == SKG_TRIAL_DEPTHS;
+    return number == SKG_TRIAL_CORE || number == SKG_TRIAL_BLUR || number == SKG_TRIAL_DETECTOR ||
+           number == SKG_TRIAL_DEPTHS;
 }
 
 /* One large box, smaller ones of all sizes on a spiral around it, and one that pierces the large one. Their places and
@@ -161,7 +163,7 @@ skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number,
     *scene = (skg_trial_scene){.number = number};
     skg_view *view = &scene->view;
     skg_view_init(view);
-    view->columns = has_odd_rows(number) ? pixels - 3 : pixels;
+    view->columns = has_odd_rows(number) ? pixels - 13 : pixels;
     view->rows = pixels;
     view->source[2] = -1000;
     view->centre[2] = 200;

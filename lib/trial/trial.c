@@ -1,5 +1,6 @@
 #include "trial/trial.h"
 #include "device/device.h"
+#include "device/platforms.h"
 #include "device/verdict.h"
 #include "trial/exact.h"
 #include "trial/picture.h"
@@ -14,16 +15,16 @@ static skg_verdict verdict_of(const skg_finding *finding) {
     return verdict;
 }
 
-static skg_status refuse(const skg_device *device, skg_trial_number number, const char *reason) {
-    return skg_fail(
-        SKG_ERR_DEVICE,
-        "%s (%s, driver %s) computes wrongly with the kernels of %s: %s. Choose another device, or update the "
-        "driver; `skiagraph devices --test` tests all",
-        device->info.name, device->info.platform_name, device->info.driver, skg_trial_get(number)->name,
-        reason);
+static skg_status refuse(const skg_device *device, skg_trial_number number, const skg_verdict *verdict) {
+    return skg_fail(SKG_ERR_DEVICE,
+                    "%s (%s, driver %s) %s with the kernels of %s: %s. Choose another device, or update the "
+                    "driver; `skiagraph devices --test` tests all",
+                    device->info.name, device->info.platform_name, device->info.driver,
+                    verdict->failed ? "fails" : "computes wrongly", skg_trial_get(number)->name,
+                    verdict->reason);
 }
 
-skg_status skg_trial_run(skg_context *context, skg_trial_number number, skg_finding *finding) {
+static skg_status run_test(skg_context *context, skg_trial_number number, skg_finding *finding) {
     switch (number) {
     case SKG_TRIAL_PARALLEL:
         return skg_exact_judge(context, finding);
@@ -34,11 +35,22 @@ skg_status skg_trial_run(skg_context *context, skg_trial_number number, skg_find
     }
 }
 
+/* The scenes of the tests are usable. A call that finds one unusable has read wrong numbers from the device. */
+skg_status skg_trial_run(skg_context *context, skg_trial_number number, skg_finding *finding) {
+    const skg_status status = run_test(context, number, finding);
+    if (status != SKG_ERR_MESH && status != SKG_ERR_SCENE) return status;
+    *finding = (skg_finding){0};
+    snprintf(finding->reason, sizeof finding->reason, "%s", skg_last_error());
+    return SKG_OK;
+}
+
 skg_status skg_trial_again(skg_context *context, skg_trial_number number, skg_finding *finding) {
     skg_device *device = context->device;
     SKG_TRY(skg_trial_run(context, number, finding));
     const skg_verdict verdict = verdict_of(finding);
     skg_verdict_keep(device->store, &device->identity, skg_trial_get(number)->name, &verdict);
+    if (finding->good && number == SKG_TRIAL_CORE && !device->info.known)
+        skg_platform_trust(device->store, device->platform);
     if (finding->good) device->passed |= UINT32_C(1) << number;
     return SKG_OK;
 }
@@ -50,10 +62,12 @@ skg_status skg_trial_need(skg_context *context, skg_trial_number number) {
     /* Kernels that are being developed are their author's own to test; a simulator is slow, and runs our own tests. */
     if (device->kernel_dir || device->simulates || device->passed >> number & 1) return SKG_OK;
     if (skg_verdict_known(device->store, &device->identity, skg_trial_get(number)->name, &known)) {
-        if (!known.good) return refuse(device, number, known.reason);
+        if (!known.good) return refuse(device, number, &known);
         device->passed |= UINT32_C(1) << number;
         return SKG_OK;
     }
     SKG_TRY(skg_trial_again(context, number, &finding));
-    return finding.good ? SKG_OK : refuse(device, number, finding.reason);
+    if (finding.good) return SKG_OK;
+    known = verdict_of(&finding);
+    return refuse(device, number, &known);
 }

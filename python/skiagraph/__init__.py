@@ -13,15 +13,20 @@
 Lengths are in mm, energies in keV, attenuation coefficients in 1/cm, densities in g/cm3, angles in degrees. A failure of
 the library is an Error, with a subclass for each status.
 """
+from typing import Any as _Any
+
 from ._device import Device, RangeWarning, SkiagraphWarning, devices
+from ._distance import distance
+from ._fit import fit
 from ._interface import *
 from ._interface import __all__ as _errors
 from ._library import lib as _lib, text as _text
+from ._reconstruct import reconstruct
 from .beam import Beam, Response
 from .material import Material, element_number, materials
 from .matrices import rotate, translate
 from .mesh import Mesh
-from .part import Part
+from .part import LabelError, Part
 from .report import Report
 from .scan import Scan
 from .scene import Scene
@@ -29,5 +34,14 @@ from .thorax import thorax
 from .view import View
 
 __version__ = _text(_lib.skg_version())
-__all__ = [*_errors, "Beam", "Device", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scan", "Scene",
-           "SkiagraphWarning", "View", "devices", "element_number", "materials", "rotate", "thorax", "translate"]
+__all__ = [*_errors, "Beam", "Device", "LabelError", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scan", "Scene",
+           "SkiagraphWarning", "View", "devices", "distance", "element_number", "fit", "materials", "reconstruct", "rotate", "thorax", "translate"]
+
+
+def __getattr__(name: str) -> _Any:
+    """gVXR's modules beside its calls: `from skiagraph import gvxr, json2gvxr, gvxr2json`."""
+    if name in ("gvxr", "json2gvxr", "gvxr2json"):
+        import importlib
+
+        return importlib.import_module(f"{__name__}.gvxr" + ("" if name == "gvxr" else f".{name}"))
+    raise AttributeError(f"skiagraph has no {name!r}")

@@ -10,6 +10,7 @@ import sys
 import tempfile
 from typing import Any
 
+from . import _pocl
 from ._interface import OutputError, UnsupportedError
 from ._source import Source
 
@@ -29,20 +30,25 @@ def cost(source: Source, quick: bool, within: float, frames: int) -> dict[str, A
         if scene is None:
             scene = os.path.join(folder, "scene.json")
             pathlib.Path(scene).write_bytes(source.text)
-        words = [path(), "cost", scene, "--json", "--within", f"{within:g}", "--frames", str(frames)]
+        words = ["cost", scene, "--json", "--within", f"{within:g}", "--frames", str(frames)]
         if quick:
             words.append("--quick")
         if source.lenient:
             words.append("--lenient")
         for setting in source.settings:
             words += ["--set", setting]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise OutputError(done.stderr.strip() or done.stdout.strip() or f"skiagraph cost ended with {done.returncode}")
-    found: dict[str, Any] = json.loads(done.stdout)
+        found: dict[str, Any] = json.loads(run(*words))
     return found
+
+
+def run(*words: str) -> str:
+    """What the command prints. Raises OutputError with its sentence if it fails."""
+    done = subprocess.run([path(), *words], capture_output=True, text=True, check=False, env=_pocl.environment())
+    if done.returncode:
+        raise OutputError(done.stderr.strip() or done.stdout.strip() or f"skiagraph {words[0]} ended with {done.returncode}")
+    return done.stdout
 
 
 def main() -> int:
     """The command as a script of the package."""
-    return subprocess.call([path(), *sys.argv[1:]])
+    return subprocess.call([path(), *sys.argv[1:]], env=_pocl.environment())

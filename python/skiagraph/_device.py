@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Any
 
-from ._interface import ArgumentError, ENUMS
+from . import _pocl
+from ._interface import ArgumentError, ENUMS, Error, NoDeviceError
 from ._library import as_dict, call, encode, ffi, filled, integer, lib, make, release, struct, text
 
 _log = logging.getLogger("skiagraph")
@@ -31,7 +32,7 @@ class RangeWarning(SkiagraphWarning):
 def warn(sentence: str, category: type[Warning] = SkiagraphWarning) -> None:
     """Warns at the line outside of this package that called it."""
     level, frame = 1, sys._getframe()
-    while frame.f_back and (os.path.dirname(frame.f_code.co_filename) == _package
+    while frame.f_back and (frame.f_code.co_filename.startswith(_package + os.sep)
                             or frame.f_code.co_filename == contextlib.__file__):
         level, frame = level + 1, frame.f_back
     warnings.warn(sentence, category, stacklevel=level)
@@ -48,22 +49,25 @@ class Log:
 
         self.function = ffi.callback("skg_log_function", receive)
 
-    def deliver(self) -> None:
-        """Warnings become Python's; notes and progress go to the logger "skiagraph"."""
+    def deliver(self, said: set[str] | None = None) -> None:
+        """Warnings become Python's; notes and progress go to the logger "skiagraph". said: what was warned of already."""
         lines, self._lines = self._lines, []
         for level, sentence in lines:
             if level != ENUMS["log_level"]["warning"]:
                 _log.log(logging.INFO if level == ENUMS["log_level"]["note"] else logging.DEBUG, "%s", sentence)
         for level, sentence in lines:
-            if level == ENUMS["log_level"]["warning"]:
+            if level == ENUMS["log_level"]["warning"] and (said is None or sentence not in said):
+                if said is not None:
+                    said.add(sentence)
                 warn(sentence)
 
 
 class Device:
     """An OpenCL device. Scenes share one unless they are given their own.
 
-    config: words such as "device=gpu", "device=cpu threads=4" or a part of a device's name; None: the environment
-    variable SKG_DEVICE, or else the best device.
+    config: words such as "device=gpu", "device=cpu threads=4", "driver=/opt/pocl/libpocl.so.2" or a part of a device's name;
+    None: the environment variable SKG_DEVICE, or else the best device. Where OpenCL offers no device, the driver of the
+    package pocl-binary-distribution is used, if it is installed and no other driver= is named.
 
     Calls on scenes of a device queue: one thread computes at a time. Give scenes devices of their own to compute in
     several threads at once. A device does not survive os.fork(): start processes with multiprocessing's "spawn".
@@ -82,8 +86,14 @@ class Device:
         self._log = Log()
         self._handle = ffi.NULL
         _all.add(self)
-        word = ffi.NULL if config is None else encode(config, "config")
-        self._handle = make("skg_context_create", "skg_context", word)
+        words = _pocl.configuration(config)
+        try:
+            self._handle = make("skg_context_create", "skg_context",
+                                ffi.NULL if words is None else encode(words, "config"))
+        except NoDeviceError as error:
+            if _pocl.names_driver(words) or integer("skg_device_count") > 0:
+                raise
+            raise NoDeviceError(f"{error}. {_pocl.advice()}") from None
         call("skg_context_log_set", self._handle, self._log.function, ffi.NULL)
 
     @property
@@ -99,8 +109,8 @@ class Device:
         return self._handle
 
     @contextlib.contextmanager
-    def calls(self) -> Iterator[None]:
-        """Inside of it this thread alone calls the library with this device."""
+    def calls(self, said: set[str] | None = None) -> Iterator[None]:
+        """Inside of it this thread alone calls the library with this device. said: warnings that are not repeated."""
         with self._lock:
             self._depth += 1
             try:
@@ -111,7 +121,7 @@ class Device:
                 self._depth -= 1
                 outermost = self._depth == 0
         if outermost:
-            self._log.deliver()
+            self._log.deliver(said)
 
     def __enter__(self) -> Device:
         return self
@@ -174,6 +184,9 @@ def devices() -> list[dict[str, Any]]:
     >>> all("name" in device for device in devices())
     True
     """
+    if integer("skg_device_count") == 0:
+        with contextlib.suppress(Error):  # a driver that SKG_DEVICE or a package names is listed once it is open
+            device_of(None)
     found = []
     for i in range(integer("skg_device_count")):
         info = struct("skg_device_info")

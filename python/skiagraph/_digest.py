@@ -49,6 +49,8 @@ def _changes(scene: Scene) -> dict[str, Any]:
             found[f"material {number}"] = part.material
         if added or mesh._changed:
             found[f"vertices {number}"] = mesh
+    if scene._removed:
+        found["removed"] = scene._removed
     if "beam" in scene._changed:
         found["beam"] = scene.beam
     return found
@@ -69,7 +71,7 @@ def _add(made: Any, value: Any, kev: Any) -> None:
     elif isinstance(value, Material):
         made.update(value.attenuation(kev).tobytes())
     elif isinstance(value, Beam):
-        made.update(value.energies.tobytes() + value.photons.tobytes())
+        made.update(value.energies.tobytes() + value.photons.tobytes() + b"absolute" * value.absolute)
     elif isinstance(value, Response):
         made.update(np.array([value.at(float(e)) for e in kev]).tobytes())
     elif isinstance(value, np.ndarray):

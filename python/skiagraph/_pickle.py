@@ -21,10 +21,10 @@ def content(scene: Scene) -> dict[str, Any]:
     return {
         "source": scene._source.content(), "device": scene._device._config, "view": scene._view,
         "beam": scene._beam if "beam" in scene._changed else None, "changed": scene._changed,
-        "poses": [part.pose for part in old],
+        "removed": scene._removed, "poses": [part.pose for part in old],
         "materials": {number: material for number, material in scene._materials.items() if number < len(old)},
         "vertices": moved, "breath": scene._breath,
-        "trajectory": scene._trajectory,
+        "trajectory": scene._trajectory, "frames": scene._frames,
         "added": [{"label": part.label, "mesh": part.mesh, "material": part.material, "inside": part.inside,
                    "pose": part.pose, "priority": part.priority} for part in new],
     }
@@ -34,6 +34,9 @@ def restore(scene: Scene, state: dict[str, Any]) -> None:
     kept = Kept(state["source"])
     scene._open(kept.source, state["device"], kept.elsewhere)
     scene._kept = kept  # its files stay as long as the scene
+    for label in state["removed"]:
+        if label in scene:  # not one that was added and removed again
+            scene.remove(label)
     for part, pose in zip(scene, state["poses"]):
         part.pose = pose
     for number, material in state["materials"].items():
@@ -43,7 +46,7 @@ def restore(scene: Scene, state: dict[str, Any]) -> None:
     for part in state["added"]:
         scene.add(part.pop("label"), part.pop("mesh"), **part)
     scene._view, scene._changed = state["view"], state["changed"]
-    scene._trajectory = state["trajectory"]
+    scene._trajectory, scene._frames = state["trajectory"], state["frames"]
     if state["beam"] is not None:
         scene.beam = state["beam"]
     if state["breath"]:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from ._device import Log
 from ._interface import ArgumentError
-from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, retained, struct
+from ._library import call, choice, doubles, encode, ffi, fill, filled, integer, make, owned, retained, struct
 from .material import Material, as_material
+from .view import View
 
 #: mm of each material, by its name or the material.
 Layers = Union[Mapping[str, float], Mapping[Material, float]]
@@ -20,15 +21,20 @@ Layers = Union[Mapping[str, float], Mapping[Material, float]]
 class Beam:
     """Photons by energy: how many would reach a pixel if nothing were in the way.
 
+    The photons of an absolute beam, such as that of a tube with a load in mAs, are those per mm2 at a distance of 1 m. A
+    scene finds out from its view how many of them a pixel receives, and lets them fall off with the distance.
+
     >>> Beam.mono(60, 1000)
     <Beam: 1 energy, 60 keV on average, 1000 photons>
     >>> beam = Beam.tube(100, filters={"Al": 2.5})
     >>> 3 < beam.quality["hvl1_mm_al"] < 4
     True
+    >>> Beam.tube(100, filters={"Al": 2.5}, mas=2).absolute
+    True
     """
 
-    def __init__(self, kev: Any, photons: Any) -> None:
-        """energies in keV and photons per pixel, two lists alike."""
+    def __init__(self, kev: Any, photons: Any, absolute: bool = False) -> None:
+        """energies in keV and photons per pixel, two lists alike. absolute: photons are per mm2 at 1 m."""
         energies, counts = np.atleast_1d(kev), np.atleast_1d(photons)
         if energies.shape != counts.shape or energies.ndim != 1:
             raise ArgumentError(f"kev has the shape {energies.shape} and photons {counts.shape}; give two lists alike")
@@ -36,6 +42,8 @@ class Beam:
         self._handle = owned("skg_spectrum", make(
             "skg_spectrum_create_bins", "skg_spectrum", len(energies), doubles(energies, "kev", keep),
             doubles(counts, "photons", keep)))
+        if absolute:
+            self._handle = owned("skg_spectrum", make("skg_spectrum_create_absolute", "skg_spectrum", self._handle))
 
     @classmethod
     def _of(cls, handle: Any) -> Beam:
@@ -66,8 +74,9 @@ class Beam:
              target_angle: float | None = None, mas: float | None = None, **fields: Any) -> Beam:
         """The spectrum of an X-ray tube.
 
-        kvp: kV. filters: mm of each material, all that are in the beam. target_angle: degrees. mas: mA s.
-        fields: others of the library's skg_tube, such as anode, model, distance_mm and pixel_mm2.
+        kvp: kV. filters: mm of each material, all that are in the beam. target_angle: degrees. mas: the load in mA s,
+        with which the beam is absolute; without it, the photons of 1 mA s per mm2 at 1 m count as those of a pixel.
+        fields: others of the library's skg_tube, such as anode, model and output_ugy_mas.
         """
         keep: list[Any] = []
         tube, log = struct("skg_tube"), Log()
@@ -104,8 +113,19 @@ class Beam:
 
     @property
     def photons(self) -> NDArray[np.float64]:
-        """Photons per pixel at each energy."""
+        """Photons at each energy: per pixel, or per mm2 at 1 m if the beam is absolute."""
         return self._bins()[1]
+
+    @property
+    def absolute(self) -> bool:
+        """Whether photons are counted per mm2 at 1 m, not per pixel."""
+        found = ffi.new("int32_t *")
+        call("skg_spectrum_absolute_get", self._handle, found)
+        return bool(found[0])
+
+    def resolved(self, view: View) -> Beam:
+        """The beam in photons per pixel of a view: at the foot of the perpendicular from the source to the detector."""
+        return Beam._made("skg_spectrum_create_resolved", self._handle, view._write(struct("skg_view")))
 
     @property
     def quality(self) -> dict[str, float]:
@@ -133,10 +153,10 @@ class Beam:
         kev, photons = self._bins()
         plural = "energy" if len(kev) == 1 else "energies"
         return (f"<Beam: {len(kev)} {plural}, {np.average(kev, weights=photons):g} keV on average, "
-                f"{photons.sum():g} photons>")
+                f"{photons.sum():g} photons{' per mm2 at 1 m' if self.absolute else ''}>")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Beam, self._bins()
+        return Beam, (*self._bins(), self.absolute)
 
 
 def _filters(layers: Layers, keep: list[Any]) -> Any:
@@ -156,16 +176,23 @@ class Response:
     53
     """
 
-    def __init__(self, kev: Any, recorded_kev: Any, efficiency: Any = None) -> None:
-        """A table at rising energies; efficiency: by default recorded_kev / kev."""
+    def __init__(self, kev: Any, recorded_kev: Any, efficiency: Any = None, swank: Any = None, meaning: str = "signal") -> None:
+        """A table at rising energies. efficiency: the share of the photons that are recorded; without it, each is, or with
+        the meaning "absorbed" recorded_kev / kev. swank: Swank factors of the signals, by default 1.
+
+        >>> Response([10, 100], [5, 50]).at(40)
+        (20.0, 1.0)
+        >>> Response([10, 100], [5, 50], meaning="absorbed").at(40)
+        (20.0, 0.5)
+        """
+        given = {"energies_kev": kev, "recorded_kev": recorded_kev, "efficiency": efficiency, "swank": swank}
+        lists = {name: np.atleast_1d(values) for name, values in given.items() if values is not None}
+        if len({a.shape for a in lists.values()}) > 1 or lists["energies_kev"].ndim != 1:
+            raise ArgumentError(f"the lists have the shapes {[a.shape for a in lists.values()]}; give lists alike")
         keep: list[Any] = []
-        lists = [np.atleast_1d(a) for a in (kev, recorded_kev, kev if efficiency is None else efficiency)]
-        if len({a.shape for a in lists}) > 1 or lists[0].ndim != 1:
-            raise ArgumentError(f"the lists have the shapes {[a.shape for a in lists]}; give lists alike")
-        pointers = [doubles(a, "a response", keep) for a in lists]
-        if efficiency is None:
-            pointers[2] = ffi.NULL
-        self._make("skg_response_create_table", len(lists[0]), *pointers)
+        table = fill(struct("skg_response_table"), "skg_response_table",
+                     {**lists, "count": len(lists["energies_kev"]), "meaning": choice("response_meaning", meaning, "meaning")}, keep, "the field of a response")
+        self._make("skg_response_create_table", table)
 
     def _make(self, name: str, *arguments: Any) -> None:
         self._handle = owned("skg_response", make(name, "skg_response", *arguments))

@@ -202,6 +202,15 @@ def element_number(element: str | int) -> int:
     return int(z[0])
 
 
+def element_symbol(element: str | int) -> str:
+    """The symbol of an element by symbol, name or number.
+
+    >>> element_symbol(26)
+    'Fe'
+    """
+    return string("skg_element_symbol_get", element_number(element))
+
+
 def as_material(value: Any) -> Material:
     """A material, or the one of this name."""
     if isinstance(value, Material):

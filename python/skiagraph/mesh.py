@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from . import _arrays
 from ._interface import ArgumentError
-from ._library import call, encode, ffi, filled, integer, make, owned, string
+from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, string, struct
 
 
 class Mesh:
@@ -75,6 +75,104 @@ class Mesh:
     def step_wedge(cls, x: float, y: float, z: float, steps: int) -> Mesh:
         """A step wedge about the origin, with steps along x up to the height z; lengths in mm."""
         return cls._made("skg_mesh_create_step_wedge", float(x), float(y), float(z), int(steps))
+
+    @classmethod
+    def steps(cls, x: float, y: float, heights: Any) -> Mesh:
+        """A step wedge about the origin, with steps along x of these heights, which rise; lengths in mm.
+
+        >>> Mesh.steps(30, 10, [1, 5, 7]).health["bounds"]
+        (-15.0, -5.0, -3.5, 15.0, 5.0, 3.5)
+        """
+        keep: list[Any] = []
+        wanted = np.atleast_1d(_arrays.numbers(heights, "heights"))
+        if wanted.ndim != 1:
+            raise ArgumentError(f"heights has {_arrays.describe(wanted)}; give a list of heights")
+        return cls._made("skg_mesh_create_steps", float(x), float(y), len(wanted), doubles(wanted, "heights", keep))
+
+    @classmethod
+    def spheres(cls, centres: Any, radii: Any, segments: int = 12) -> Mesh:
+        """Spheres as one mesh: centres [n, 3] and radii [n], or one for all, in mm."""
+        keep: list[Any] = []
+        places = _arrays.rows(centres, "centres", (np.float64,))
+        sizes = np.broadcast_to(_arrays.numbers(radii, "radii"), (len(places),))
+        return cls._made("skg_mesh_create_spheres", len(places), doubles(places, "centres", keep),
+                         doubles(sizes, "radii", keep), int(segments))
+
+    @classmethod
+    def _of_struct(cls, kind: str, maker: str, fields: dict[str, Any], what: str) -> Mesh:
+        given = {name: value for name, value in fields.items() if value is not None}
+        return cls._made(maker, fill(struct(kind), kind, given, [], what))
+
+    @classmethod
+    def foam(cls, box: Any, radius: float, fraction: float | None = None, *, spread: float | None = None,
+             gap: float | None = None, count: int | None = None, seed: int | None = None, segments: int | None = None) -> Mesh:
+        """Spheres in a box that do not overlap: the pores of a foam, or grains. The same seed gives the same.
+
+        box: (x, y, z) in mm. radius: mean, mm. fraction: the share of the box that they fill, 0.1 by default, or count:
+        their number. spread: standard deviation of the radius as a share of it. gap: least distance, mm.
+
+        >>> Mesh.foam((20, 20, 20), 2, 0.2, seed=1)
+        <Mesh "spheres": 2976 vertices, 5760 triangles, closed>
+        """
+        return cls._of_struct("skg_foam", "skg_mesh_create_foam", {
+            "box": box, "radius_mm": radius, "fraction": fraction, "spread": spread, "gap_mm": gap, "count": count,
+            "seed": seed, "segments": segments}, "the parameter of a foam")
+
+    @classmethod
+    def fibres(cls, box: Any, radius: float, count: int, *, tilt: float | None = None, gap: float | None = None,
+               seed: int | None = None, segments: int | None = None) -> Mesh:
+        """Straight fibres through a box that do not touch, from its lower to its upper face across z.
+
+        box: (x, y, z) in mm. tilt: greatest angle to z, degrees. gap: least distance, mm.
+
+        >>> Mesh.fibres((20, 20, 10), 0.5, 30, tilt=20).health["components"]
+        30
+        """
+        return cls._of_struct("skg_fibres", "skg_mesh_create_fibres", {
+            "box": box, "radius_mm": radius, "count": count, "tilt_deg": tilt, "gap_mm": gap, "seed": seed,
+            "segments": segments}, "the parameter of fibres")
+
+    @classmethod
+    def isosurface(cls, values: Any, level: float, spacing: Any = 1.0) -> Mesh:
+        """The surface of a volume where it crosses a level, about the origin; what is at or above it is inside.
+
+        values: [z, y, x]. spacing: mm from one value to the next, or (x, y, z). Beyond the volume nothing is inside.
+
+        >>> z, y, x = np.mgrid[-10:11, -10:11, -10:11]
+        >>> ball = Mesh.isosurface(8 - np.sqrt(x ** 2 + y ** 2 + z ** 2), 0)
+        >>> ball.health["closed"], round(ball.health["volume"] / (4 / 3 * np.pi * 8 ** 3), 1)
+        (1, 1.0)
+        """
+        keep: list[Any] = []
+        volume = np.ascontiguousarray(_arrays.numbers(values, "values"), dtype=np.float32)
+        if volume.ndim != 3:
+            raise ArgumentError(f"values has {_arrays.describe(volume)}; give [z, y, x]")
+        steps = np.ones(3) * np.asarray(spacing, dtype=float)
+        return cls._made("skg_mesh_create_isosurface", ffi.new("int64_t[3]", list(volume.shape[::-1])),
+                         doubles(steps, "spacing", keep), ffi.cast("float *", ffi.from_buffer(volume)), float(level))
+
+    @classmethod
+    def gyroid(cls, box: Any, period: float, level: float = 0.3, cells: int = 24) -> Mesh:
+        """A sheet of a gyroid in a box: where |sin x cos y + sin y cos z + sin z cos x| is below level.
+
+        box: (x, y, z) in mm. period: mm. cells: of the grid along a period.
+        """
+        keep: list[Any] = []
+        return cls._made("skg_mesh_create_gyroid", doubles(np.ones(3) * np.asarray(box, dtype=float), "box", keep),
+                         float(period), float(level), int(cells))
+
+    @classmethod
+    def line_pairs(cls, per_mm: Any, bars: int, length: float, thickness: float) -> Mesh:
+        """Groups of bars side by side along x, one group for each number of line pairs per mm; lengths in mm."""
+        keep: list[Any] = []
+        wanted = np.atleast_1d(_arrays.numbers(per_mm, "per_mm"))
+        return cls._made("skg_mesh_create_line_pairs", len(wanted), doubles(wanted, "per_mm", keep), int(bars), float(length),
+                         float(thickness))
+
+    @classmethod
+    def star(cls, radius: float, inner: float, spokes: int, thickness: float) -> Mesh:
+        """A Siemens star about z, of spokes that are as wide as the spaces between them; lengths in mm."""
+        return cls._made("skg_mesh_create_star", float(radius), float(inner), int(spokes), float(thickness))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes an STL file, or PLY, which keeps every bit."""

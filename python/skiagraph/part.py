@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays
+from ._interface import SceneError
 from ._library import call, ffi, struct, text
 from .material import Material, as_material
 from .mesh import Mesh
@@ -15,12 +16,27 @@ if TYPE_CHECKING:
     from .scene import Scene
 
 
+class LabelError(SceneError, KeyError):
+    """There is no part with this label. The text names those that there are."""
+
+    def __str__(self) -> str:
+        return Exception.__str__(self)  # that of KeyError has quotes
+
+
 class Part:
     """A part of a scene: a mesh with its material, where it stands, and what it lies inside."""
 
     def __init__(self, scene: Scene, number: int) -> None:
         self._scene = scene
-        self._number = number
+        self._name = scene._names[number]
+
+    @property
+    def _number(self) -> int:
+        """Its number, which grows smaller when a part before it is removed."""
+        try:
+            return self._scene._names.index(self._name)
+        except ValueError:
+            raise SceneError("the part was removed from its scene") from None
 
     def _get(self) -> Any:
         part = struct("skg_part")

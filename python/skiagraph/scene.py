@@ -11,7 +11,7 @@ from typing import Any, ContextManager, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _pickle, _projections, _source
+from . import _arrays, _command, _edit, _look, _pickle, _projections, _save, _show, _source
 from ._device import Device, device_of
 from ._frames import Batch, Stale, run
 from ._interface import ArgumentError, SceneError
@@ -64,12 +64,15 @@ class Scene:
     def _open(self, source: _source.Source, device: Device | str | None, elsewhere: Mapping[str, str] | None) -> None:
         self._device = device_of(device)
         self._source = source
-        self._setup = self._motion = ffi.NULL
+        self._setup = self._motion = self._own_parts = ffi.NULL
+        self._removed: list[str] = []
+        self._said: set[str] = set()
         self._meshes: dict[Any, Mesh] = {}
         self._materials: dict[int, Material] = {}
         self._breath: dict[str, float] | None = None
         self._changed: set[str] = set()
         self._trajectory: Scan | None = None
+        self._frames = 0
         with self._calls():
             self._setup = source.load(self._device.handle, elsewhere)
             handle = ffi.new("skg_scene **")
@@ -82,13 +85,14 @@ class Scene:
             self._view = View._read(view) if view.columns else None
             self._plans = Plans(self._device)
             self._file_parts = len(self)
+            self._names = list(range(len(self)))
             self._read_view = copy.deepcopy(self._view)
             self._read_poses = [part.pose for part in self]
 
     def _calls(self) -> ContextManager[None]:
         if self._setup == ffi.NULL and hasattr(self, "_plans"):
             raise ArgumentError("the scene was closed")
-        return self._device.calls()
+        return self._device.calls(self._said)
 
     # Parts
 
@@ -101,6 +105,11 @@ class Scene:
     def __getitem__(self, label: str) -> Part:
         return Part(self, self._number(label))
 
+    @property
+    def parts(self) -> list[Part]:
+        """The parts, in their order."""
+        return list(self)
+
     def __contains__(self, label: object) -> bool:
         return isinstance(label, str) and any(part.label == label for part in self)
 
@@ -108,7 +117,10 @@ class Scene:
         if not isinstance(label, str):
             raise ArgumentError(f"the label of a part is a {type(label).__name__}; give its text")
         with self._calls():
-            return integer("skg_scene_find", self._parts_handle, encode(label, "label"))
+            try:
+                return integer("skg_scene_find", self._parts_handle, encode(label, "label"))
+            except SceneError:
+                raise _edit.unknown_label(label, [part.label for part in self]) from None
 
     def add(self, label: str, mesh: Any, *, material: Material | str, inside: str | Part | None = None,
             pose: Any = None, priority: int = 0, unit_mm: float = 1) -> Part:
@@ -127,11 +139,27 @@ class Scene:
             if pose is not None:
                 part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
             number = integer("skg_scene_add", self._parts_handle, part)
+            self._names.append(max(self._names, default=-1) + 1)
             self._materials[number] = matter
             self._meshes[_address(made._handle)] = made
             self._plans.clear()
             self._forget_motion()
         return Part(self, number)
+
+    def remove(self, label: str) -> None:
+        """Removes a part. What lies inside it lies inside what it lay in from then on. A scene from which parts were
+        removed does not breathe.
+
+        >>> from skiagraph import Mesh, Scene
+        >>> scene = Scene()
+        >>> scene.add("cup", Mesh.cube(40), material="water")
+        <Part 'cup': Water, Liquid>
+        >>> scene.remove("cup")
+        >>> scene.parts
+        []
+        """
+        with self._calls():
+            _edit.remove(self, self._number(label))
 
     def _mesh(self, handle: Any) -> Mesh:
         """One object for each mesh, so that it knows whether it was changed."""
@@ -177,43 +205,65 @@ class Scene:
     # Images
 
     def image(self, quantity: str | None = None, *, unit: str | None = None, precision: str | None = None,
-              tolerance: float | None = None, index: int = 0, out: Any = None, **options: Any) -> NDArray[Any]:
+              tolerance: float | None = None, index: int | None = None, out: Any = None, **options: Any) -> NDArray[Any]:
         """One image, [row, column]; energy bands are a leading axis.
 
         quantity: "energy" (keV per pixel, the default), "fluence", "photons", "transmission" or "attenuation".
         unit: "eV", "keV" or "MeV", of an energy. precision: "single", "double" or "half". tolerance: the error that
-        fewer energies may make. index: number of the frame for the noise. out: an array to write to.
+        fewer energies may make. index: number of the frame for the noise; without it, noisy frames of a scene are
+        counted from 0 on, so that each has noise of its own, and with noise_seed, frames of each call, so that a call
+        with a seed can be repeated. out: an array to write to.
         options: others of the library's skg_plan_options, such as noise=True, supersampling=2, bands=[20, 40, 60]
         (edges in keV), spot={"shape": "disc", "extent": 0.6}, response=, world=, repair="exact".
         """
-        batch = Batch(1, index=index)
+        batch = Batch(1, index=self._number_frames(1, index, options))
         found = self._render(batch, out, False, True, unit, quantity=quantity, precision=precision,
                              tolerance=tolerance, **options)
         return found
 
     def images(self, quantity: str | None = None, *, poses: Mapping[str, Any] | None = None,
                views: Sequence[View] | None = None, unit: str | None = None, precision: str | None = None,
-               tolerance: float | None = None, index: int = 0, out: Any = None, progress: Progress = False,
+               tolerance: float | None = None, index: int | None = None, out: Any = None, progress: Progress = False,
                **options: Any) -> NDArray[Any]:
         """A batch of images, [n, row, column]; energy bands are an axis behind the first.
 
         poses: for each label n matrices, [n, 4, 4], or one for all. views: n Views. index: number of the first frame,
-        for the noise. progress: True for a line on standard error, or a function of (done, n). The rest is as in
+        for the noise, as of image(). progress: True for a line on standard error, or a function of (done, n). The rest is as in
         image(). An interrupt (Ctrl-C) ends the batch at once.
         """
-        batch = self._batch(poses, views, index)
+        batch = self._batch(poses, views, 0)
+        batch.index = self._number_frames(batch.count, index, options)
         if batch.views and tolerance and "views" not in options:
             options["views"] = batch.views
         return self._render(batch, out, progress, False, unit, quantity=quantity, precision=precision,
                             tolerance=tolerance, **options)
 
+    @overload
     def lengths(self, label: str, kind: str = "net", *, poses: Mapping[str, Any] | None = None,
                 views: Sequence[View] | None = None, out: Any = None, progress: Progress = False,
-                precision: str | None = None, **options: Any) -> NDArray[Any]:
+                precision: str | None = None, **options: Any) -> NDArray[Any]: ...
+
+    @overload
+    def lengths(self, label: Sequence[str] | None = None, kind: str = "net", *, poses: Mapping[str, Any] | None = None,
+                views: Sequence[View] | None = None, progress: Progress = False, precision: str | None = None,
+                **options: Any) -> dict[str, NDArray[Any]]: ...
+
+    def lengths(self, label: Any = None, kind: str = "net", *, poses: Mapping[str, Any] | None = None,
+                views: Sequence[View] | None = None, out: Any = None, progress: Progress = False,
+                precision: str | None = None, **options: Any) -> Any:
         """Path lengths through a part in mm, [row, column], or [n, row, column] with poses or views.
 
-        kind: "net", without what lies inside the part, or "surface", between the surfaces of its mesh.
+        label: of a part; several, or none for all: then {label: lengths}. kind: "net", without what lies inside the part,
+        or "surface", between the surfaces of its mesh.
         """
+        if not isinstance(label, str):
+            if out is not None:
+                raise ArgumentError("out= takes the lengths of one part; give one label")
+            wanted = [part.label for part in self] if label is None else list(label)
+            given = {"poses": poses, "views": views, "progress": progress, "precision": precision, **options}
+            for name in wanted:  # all of them, before the first is computed
+                self._number(name)
+            return {name: self.lengths(name, kind, **given) for name in wanted}
         one = poses is None and views is None
         batch = Batch(1) if one else self._batch(poses, views, 0)
         part, what = self._number(label), choice("lengths", kind, "kind")
@@ -291,6 +341,22 @@ class Scene:
                 return _projections.write(self, self.trajectory, wanted, out, (int(flats), int(darks)), overwrite)
             return _projections.compute(self, self.trajectory, wanted, out)
 
+    def _number_frames(self, count: int, index: int | None, options: Mapping[str, Any]) -> int:
+        """The number of the first of these frames: that of the caller, or the next one of a scene with noise."""
+        if index is not None:
+            return int(index)
+        if options.get("noise_seed") is not None:
+            return 0
+        with self._calls():
+            file = self._plans.options(self._setup, {}, [])
+        given = [options.get("noise"), options.get("electronic_kev")]
+        noise, electronic = (own if value is None else value for own, value in zip((file.noise, file.electronic_kev), given))
+        first = self._frames
+        if noise or electronic:
+            self._frames += count
+            return first
+        return 0
+
     def _batch(self, poses: Mapping[str, Any] | None, views: Sequence[View] | None, index: int) -> Batch:
         count: int | None = None
         source = ""
@@ -361,13 +427,20 @@ class Scene:
         with self._calls():
             return Report(self._plan(options), [part.label for part in self])
 
-    def save(self, path: str | os.PathLike[str], image: Any, quantity: str = "energy", *, display: str = "radiograph",
+    def save(self, path: str | os.PathLike[str], image: Any = None, quantity: str = "energy", *, display: str = "radiograph",
              range: tuple[float, float] | None = None, **options: Any) -> None:
-        """Writes an image of this scene as .png, .tif or .mha.
+        """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif or .mha.
+
+        (Where vertices were moved, images of floats agree to their rounding, those of doubles bit for bit.) Meshes that were added or changed are written as PLY into a folder beside the file, NAME-parts. Other files that
+        the scene names stay where they are. A scene that breathe() posed is written in this pose, without its breath.
 
         quantity: what it holds, or "lengths" for path lengths. display: "radiograph" or "transmission", and range: the
         values of black and white, of a .png. options: those that the image was computed with.
         """
+        if image is None:
+            with self._calls():
+                _save.save(self, path)
+            return
         with self._calls():
             view = self.view
             if quantity == "lengths":
@@ -376,6 +449,25 @@ class Scene:
             channels = listed("skg_channel", "skg_plan_channel", self._plan({"quantity": quantity, **options}))
             write_picture(path, image, names=[c["name"] for c in channels], unit=channels[0]["unit"],
                           flat_field=channels[0]["flat_field"], quantity=quantity, view=view, display=display, range=range)
+
+    def picture(self, pixels: Sequence[int] = (1024, 768), *, direction: Any = None, up: Any = None,
+                orthographic: bool = False, image: Any = None, colours: Mapping[str, Any] | None = None) -> NDArray[np.uint8]:
+        """Source, detector and parts from outside, [row, column, red green blue], 0 to 255.
+
+        pixels: (columns, rows). direction: from the scene to the eye; by default obliquely from the side of the source.
+        up: what is up in the picture. image: an image to show on the detector. colours: of parts by label, (red, green,
+        blue) or with opacity, 0 to 1.
+        """
+        with self._calls():
+            return _look.picture(self, pixels, direction, up, orthographic, image, colours or {})
+
+    def show(self, *, height: int = 600) -> _show.Page:
+        """The scene as a page that turns with the mouse, for a cell of a notebook; the command `skiagraph view` makes it.
+
+        height: of the cell, in pixels. The page has save("scene.html"), and the command has to be installed.
+        """
+        with self._calls():
+            return _show.page(self, height)
 
     # Breath
 
@@ -395,6 +487,9 @@ class Scene:
 
     def _linked(self) -> Any:
         """The motion of the scene."""
+        if self._removed:
+            raise SceneError(f"{', '.join(map(repr, self._removed))} was removed, and the breath links the parts of the file; "
+                             "take it out of the file instead")
         if self._motion == ffi.NULL:
             self._motion = make("skg_motion_create", "skg_motion", self._device.handle, self._setup)
         return self._motion
@@ -434,7 +529,7 @@ class Scene:
     def _is_changed(self) -> bool:
         moved = any(mesh._changed for mesh in self._meshes.values()) or any(
             (part.pose != pose).any() for part, pose in zip(self, self._read_poses))
-        return bool(self._changed or self._materials or len(self) > self._file_parts or moved or self._breath
+        return bool(self._changed or self._removed or self._materials or len(self) > self._file_parts or moved or self._breath
                     or self._view != self._read_view)
 
     # Life
@@ -447,8 +542,11 @@ class Scene:
             self._plans.clear()
         self._forget_motion()
         setup, self._setup = self._setup, ffi.NULL
+        own, self._own_parts = self._own_parts, ffi.NULL
         self._meshes.clear()
         self._materials.clear()
+        if own != ffi.NULL:
+            self._device.drop("skg_scene", own)
         self._device.drop("skg_setup", setup)
 
     def __enter__(self) -> Scene:

@@ -6,11 +6,11 @@ import os
 from ._library import call, encode, fill, make, release, struct
 
 
-def thorax(folder: str | os.PathLike[str], triangles: int | None = None) -> str:
+def thorax(folder: str | os.PathLike[str], triangles: int | None = None, simple: bool = False) -> str:
     """Writes the meshes and the scene file of a thorax into a folder, which is made if need be; returns the
     path of the file.
 
-    triangles: about how many, 10,000 or more.
+    triangles: about how many, 10,000 or more. simple: without muscle, vessels, marrow, shoulder blades and bowel.
 
     >>> import tempfile
     >>> from skiagraph import Scene
@@ -20,7 +20,7 @@ def thorax(folder: str | os.PathLike[str], triangles: int | None = None) -> str:
     """
     os.makedirs(folder, exist_ok=True)
     options = struct("skg_thorax_options")
-    fill(options, "skg_thorax_options", {"triangles": triangles}, [], "option")
+    fill(options, "skg_thorax_options", {"triangles": triangles, "simple": simple}, [], "option")
     made = make("skg_thorax_create", "skg_thorax", options)
     try:
         call("skg_thorax_save", made, encode(folder, "folder"))

@@ -110,7 +110,7 @@ static double expected(const skg_plan_options *options, double behind, double be
     case SKG_QUANTITY_FLUENCE:
         behind /= 16;
     }
-    return options->falloff ? behind / (longer * longer * longer) : behind;
+    return options->falloff == SKG_FALLOFF_ON ? behind / (longer * longer * longer) : behind;
 }
 
 /* Makes the image and compares the pixels of the inner shadow. tolerance: relative. */

@@ -17,10 +17,9 @@ static void note(double deviation, const char *name, double *most, char *at) {
     snprintf(at, 32, "%s", name);
 }
 
-/* IEC qualities: RQR and RQA, half-value layers in mm Al. */
-static void iec(int32_t model, const char *label, double first_bar, double second_bar, double ratio_bar) {
-    FILE *file;
-    open_data(file, "physics/beam_qualities.csv");
+/* IEC qualities, closes the file: RQR and RQA, half-value layers in mm Al. */
+static void iec(FILE *file, int32_t model, const char *label, double first_bar, double second_bar,
+                double ratio_bar) {
     char line[512];
     worst w = {0};
     int rows = 0;
@@ -49,12 +48,16 @@ static void iec(int32_t model, const char *label, double first_bar, double secon
 }
 
 START_TEST(ebel_agrees_with_ptb) {
-    iec(SKG_TUBE_MODEL_EBEL, "Ebel", 0.03, 0.03, 0.025);
+    FILE *file;
+    open_data(file, "physics/beam_qualities.csv");
+    iec(file, SKG_TUBE_MODEL_EBEL, "Ebel", 0.03, 0.03, 0.025);
 }
 END_TEST
 
 START_TEST(birch_agrees_with_ptb) {
-    iec(SKG_TUBE_MODEL_BIRCH, "Birch", 0.07, 0.05, 0.025);
+    FILE *file;
+    open_data(file, "physics/beam_qualities.csv");
+    iec(file, SKG_TUBE_MODEL_BIRCH, "Birch", 0.07, 0.05, 0.025);
 }
 END_TEST
 

@@ -125,12 +125,58 @@ START_TEST(bad_fields_are_named) {
 }
 END_TEST
 
+/* Breaths of 3 and 5 s with a shallow turn between them, which is no breath. */
+static const double recorded[] = {0, 0.2, 1, 1, 2, 0.1, 2.5, 0.3, 3, 0, 4, 0.9, 6, 0, 9, 1, 10, 0.5};
+
+START_TEST(a_signal_replaces_the_waveform_in_time) {
+    skg_breath b = of_kind(SKG_WAVEFORM_SINE);
+    b.signal = recorded, b.signal_count = 9;
+    b.diaphragmatic = 2, b.thoracic_lag = 0.25; /* of 4 s: 1 s */
+    ck_skg(skg_breath_check(&b));
+    static const double expected[][3] = {
+        /* time, amplitude, phase */
+        {-1, 0.2, 0.5}, {0, 0.2, 0.75},      {1, 1, 0}, {1.5, 0.55, 0.5 / 3}, {2.5, 0.3, 0.5},
+        {4, 0.9, 0},    {6.5, 1.0 / 6, 0.5}, {9, 1, 0}, {10, 0.5, 0.25},      {20, 0.5, 0.75}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        const double *e = expected[i];
+        const skg_breath_state s = at_time(&b, e[0]), late = at_time(&b, e[0] + 1);
+        ck_assert_double_eq_tol(s.amplitude, e[1], 8 * DBL_EPSILON); /* one interpolation */
+        ck_assert_double_eq_tol(s.phase, e[2], 8 * DBL_EPSILON);
+        ck_assert_double_eq_tol(s.diaphragmatic, 2 * e[1], 16 * DBL_EPSILON);
+        ck_assert_double_eq_tol(late.thoracic, e[1], 16 * DBL_EPSILON);
+    }
+    ck_assert_double_eq(at_phase(&b, 0.25).amplitude, 0.5 * (1 + cos(0.5 * acos(-1)))); /* the sine's */
+    skg_breath_hold hold;
+    skg_breath_hold_init(&hold);
+    hold.start_s = 1, hold.end_s = 4;
+    b.holds = &hold, b.hold_count = 1;
+    ck_assert_double_eq(at_time(&b, 3).amplitude, 1);
+    ck_assert_double_eq_tol(at_time(&b, 5.5).amplitude, 0.3, 8 * DBL_EPSILON);
+}
+END_TEST
+
+START_TEST(bad_signals_are_refused) {
+    static const double falls[] = {0, 0, 1, 1, 1, 0}, leaves[] = {0, 0, 1, 1.5};
+    skg_breath b = of_kind(SKG_WAVEFORM_SINE);
+    b.signal = falls, b.signal_count = 3;
+    ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "point 2 of the signal is at 1 s");
+    b.signal_count = 1;
+    ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "at least 2 points");
+    b.signal = leaves, b.signal_count = 2;
+    ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "amplitudes 0 to 1");
+    b.signal = NULL;
+    ck_skg_fails(skg_breath_check(&b), SKG_ERR_BREATHING, "at least 2 points");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, phase_zero_is_end_inspiration, 0, 4);
     tcase_add_test(tests, closed_forms);
     tcase_add_test(tests, channels);
     tcase_add_test(tests, holds_stop_the_clock);
     tcase_add_test(tests, bad_fields_are_named);
+    tcase_add_test(tests, a_signal_replaces_the_waveform_in_time);
+    tcase_add_test(tests, bad_signals_are_refused);
 }
 
 SKG_SUITE_MAIN("breath", add_tests)

@@ -15,10 +15,11 @@ static void tear_down_scene(void) {
     tear_down();
 }
 
-/* `image` with this setting fails so. */
+/* `image` and `plan` with this setting fail so. */
 #define ck_setting_fails(expected, text, setting)                                                            \
     do {                                                                                                     \
         ck_run_fails(expected, text, "image scene.json -o a.mha --set '%s'", setting);                       \
+        ck_run_fails(expected, text, "plan scene.json --set '%s'", setting);                                 \
         ck_assert_int_eq(look_at_folder(0), 1);                                                              \
     } while (0)
 
@@ -42,6 +43,40 @@ START_TEST(usage) {
     ck_run_fails(2, "the extension .jpg is no image format; use .png, .tif or .mha",
                  "image scene.json -o a.jpg");
     ck_run_fails(2, "SCENE|MESH... is missing", "image -o a.mha");
+}
+END_TEST
+
+/* A comma too many is a warning. With --strict it is the exit status, and the image is there all the same. */
+START_TEST(warnings_are_errors_on_demand) {
+    char text[sizeof scene + 4], path[512];
+    snprintf(text, sizeof text, "%s", scene);
+    char *end = strrchr(text, '}');
+    strcpy(end, ", }");
+    write_text("comma.json", text);
+    ck_run(0, "image comma.json -o b.mha");
+    ck_assert_ptr_nonnull(strstr(complained, "warning: "));
+    ck_run(1, "image comma.json -o b.mha --strict");
+    ck_assert_ptr_nonnull(strstr(complained, "1 warning, which --strict makes an error"));
+    ck_run(1, "image comma.json -o b.mha --strict --quiet");
+    ck_assert(has_file("b.mha"));
+    ck_run(0, "image scene.json -o b.mha --strict");
+    ck_run(5, "image comma.json -o none/b.mha --strict");
+    snprintf(path, sizeof path, "%s/b.mha", folder);
+    ck_assert_int_eq(unlink(path), 0);
+}
+END_TEST
+
+/* Each image of precision half overflows; there is one warning. */
+START_TEST(an_overflow_is_one_warning) {
+    static const char bright[] =
+        "--precision half --set Source.Shape=PointSource --set Source.Beam.0.PhotonCount=1e9 --set 'Samples.0.Type=outer'";
+    char path[512];
+    ck_run(0, "image scene.json -o b.mha --repeat 3 %s", bright);
+    const char *first = strstr(complained, "not finite");
+    ck_assert_msg(first != NULL, "%s", complained);
+    ck_assert_msg(strstr(first + 1, "not finite") == NULL, "%s", complained);
+    snprintf(path, sizeof path, "%s/b.mha", folder);
+    ck_assert_int_eq(unlink(path), 0);
 }
 END_TEST
 
@@ -168,6 +203,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down_scene);
     tcase_add_test(tests, usage);
+    tcase_add_test(tests, an_overflow_is_one_warning);
+    tcase_add_test(tests, warnings_are_errors_on_demand);
     tcase_add_test(tests, outputs_that_cannot_be_written);
     tcase_add_test(tests, files_of_the_user_stay);
     tcase_add_test(tests, no_device);

@@ -264,7 +264,8 @@ START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(2, "--triangles", "thorax -o . --triangles 9");
     ck_run_fails(2, "-o DIR", "breathe thorax.json");
     ck_run_fails(2, "above 0", "breathe thorax.json -o f --fps 0");
-    ck_run_fails(2, "not a number", "breathe thorax.json -o a.png --phase x");
+    ck_run_fails(2, "--phase x: a phase is a number from 0 to below 1",
+                 "breathe thorax.json -o a.png --phase x");
     ck_run_fails(2, "not a number", "breathe thorax.json -o a.png --at nan");
     ck_run_fails(2, "one of them", "breathe thorax.json -o a.png --phase 0 --at 1");
     ck_run_fails(2, "no part", "breathe thorax.json %s -o f --quiet --outline hats", SMALL);

@@ -20,10 +20,11 @@ static inline char *read_page(const char *name) {
 }
 
 /* Ends the test if there is no browser. */
-static inline void need_browser(void) {
-    if (system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") != 0)
-        skip_test("no chromium; CHROMIUM names another browser of that kind");
-}
+#define need_browser()                                                                                       \
+    do {                                                                                                     \
+        if (system("command -v \"${CHROMIUM:-chromium}\" >/dev/null 2>&1") != 0)                             \
+            skip_test("no chromium; CHROMIUM names another browser of that kind");                           \
+    } while (0)
 
 /* Adds texts to the end of the body of a page, lets the browser work on it, and returns what the script wrote to the body's
  * attribute data-verdict. The caller frees the text.

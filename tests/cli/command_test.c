@@ -118,6 +118,12 @@ END_TEST
 START_TEST(no_device_is_status_4) {
     ck_run_fails(4, "no OpenCL device fits device=no-such-device", "devices --device no-such-device");
     ck_run_fails(4, "no OpenCL device on this machine", "OCL_ICD_VENDORS=/dev/null |devices");
+    ck_run_fails(4, "driver=/no/such/driver.so cannot be loaded",
+                 "devices --device driver=/no/such/driver.so");
+    ck_run_fails(4, "driver=/no/such/driver.so cannot be loaded",
+                 "SKG_DEVICE=driver=/no/such/driver.so |devices");
+    ck_run_fails(4, "driver=/no/such/driver.so cannot be loaded",
+                 "devices --test --device driver=/no/such/driver.so");
     ck_run_fails(2, "threads=none is not a number", "devices --device 'cpu threads=none'");
     ck_run_fails(2, "SKG_DEVICE=colour=blue", "SKG_DEVICE=colour=blue |devices");
 }

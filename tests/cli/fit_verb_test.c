@@ -105,6 +105,8 @@ START_TEST(mistakes_are_named) {
                  "fit thorax.json --target liver=liver.ply --phase 0 --parameters tenon -o f.json");
     ck_run_fails(2, "give NAME=LOW:HIGH",
                  "fit thorax.json --target liver=liver.ply --phase 0 --bounds tendon-z=3 -o f.json");
+    ck_run_fails(2, "with the coupling \"Anatomical\"",
+                 "fit thorax.json --target liver=liver.ply --phase 0 --parameters plane-offset -o f.json");
     ck_run_fails(3, "nothere.stl", "fit thorax.json --target liver=nothere.stl --phase 0 -o fitted.json");
     ck_assert_int_eq(has_file("fitted.json"), 0);
 }
@@ -122,9 +124,11 @@ START_TEST(the_scene_chooses) {
     ck_assert_uint_eq(json_array_size(list), 3);
     ck_assert_double_eq(json_number_value(json_object_get(json_array_get(list, 2), "low")), -30);
     json_decref(object);
-    ck_run(0, "fit thorax.json " TARGET
-              "--set 'Breathing.Fit={\"Parameters\": [\"tendon\"]}' --parameters links "
-              "--bounds diaphragm-ribs=5:20 --lenient --set Breathing.Moon=1 --json");
+    ck_run(
+        0,
+        "fit thorax.json " TARGET
+        "--set 'Breathing.Fit={\"Parameters\": [\"tendon\"]}' --parameters links --set Breathing.Coupling=Paper "
+        "--bounds diaphragm-ribs=5:20 --lenient --set Breathing.Moon=1 --json");
     object = said_json(), list = member(object, "parameters");
     ck_assert_uint_eq(json_array_size(list), 2);
     ck_assert_double_eq(json_number_value(json_object_get(json_array_get(list, 0), "high")), 20);

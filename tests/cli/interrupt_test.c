@@ -44,7 +44,7 @@ static int stop_within_a_file(pid_t child, const char *place) {
 }
 
 START_TEST(nothing_unfinished_is_left) {
-    static const int numbers[3] = {SIGINT, SIGTERM, SIGHUP};
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU};
     const int number = numbers[_i];
     int status = 0;
     const pid_t child = start(folder);
@@ -72,7 +72,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
-    tcase_add_loop_test(tests, nothing_unfinished_is_left, 0, 3);
+    tcase_add_loop_test(tests, nothing_unfinished_is_left, 0, 5);
     tcase_add_test(tests, what_was_ignored_stays_so);
 }
 

@@ -83,6 +83,22 @@ static pid_t find_rank(pid_t parent) {
     return found;
 }
 
+/* Open MPI 4.1 may wait for ever if a rank is killed while the ranks find each other. Whatever it started is then killed, too:
+ * what counts is what the next job finds. */
+static void end_job(pid_t child) {
+    enum { TENTHS = 300 };
+    const struct timespec tenth = {.tv_nsec = 100000000};
+    for (int k = 0; k < TENTHS; k++) {
+        const pid_t ended = waitpid(child, NULL, WNOHANG);
+        ck_assert(ended == 0 || ended == child);
+        if (ended == child) return;
+        nanosleep(&tenth, NULL);
+    }
+    for (pid_t rank; (rank = find_rank(child)) > 0; nanosleep(&tenth, NULL)) kill(rank, SIGKILL);
+    kill(child, SIGKILL);
+    wait_for(child);
+}
+
 START_TEST(two_ranks_make_the_scan_of_one) {
     ck_run(0, "scan scene.json %s -o whole.mha --quiet", scan);
     const int status = wait_for(start("shared.mha"));
@@ -105,7 +121,7 @@ START_TEST(a_killed_rank_loses_nothing) {
         nanosleep(&pause, NULL);
         const pid_t rank = find_rank(child);
         if (rank > 0) kill(rank, SIGKILL);
-        wait_for(child);
+        end_job(child);
     }
     const int status = wait_for(start("shared.mha"));
     ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "mpirun: %d", status);

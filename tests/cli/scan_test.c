@@ -168,6 +168,91 @@ START_TEST(kills_leave_no_trace) {
 }
 END_TEST
 
+/* Starts the command on a scan of many projections, and waits until some of them are finished. */
+static pid_t start_scan(const char *name) {
+    char line[1024];
+    snprintf(line, sizeof line,
+             "cd %s && exec %s scan scene.json --quiet -o %s --set \"Scan={\\\"NumberOfProjections\\\":20000,"
+             "\\\"FinalAngle\\\":360}\" 2>.complained",
+             folder, SKG_COMMAND, name);
+    fflush(NULL);
+    const pid_t child = fork();
+    ck_assert_int_ge(child, 0);
+    if (child == 0) {
+        execl("/bin/sh", "sh", "-c", line, (char *)NULL);
+        _exit(127);
+    }
+    return child;
+}
+
+static int64_t finished_in(const char *name) {
+    int64_t count = 0;
+    char path[512], text[256 + 20000];
+    snprintf(path, sizeof path, "%s/%s.progress", folder, name);
+    FILE *stream = fopen(path, "rb");
+    const size_t got = stream ? fread(text, 1, sizeof text, stream) : 0;
+    for (size_t i = 256; i < got; i++) count += text[i] == 1;
+    if (stream) fclose(stream);
+    return count;
+}
+
+/* A signal of a job manager: the command ends by itself, what it has is whole, and its parent sees the signal. */
+START_TEST(a_signal_ends_a_scan_in_order) {
+    static const int numbers[] = {SIGTERM, SIGUSR1, SIGXCPU};
+    const struct timespec pause = {.tv_nsec = 5000000};
+    int status = 0;
+    const pid_t child = start_scan("scan.mha");
+    while (finished_in("scan.mha") < 3) {
+        ck_assert_int_eq(waitpid(child, &status, WNOHANG), 0);
+        nanosleep(&pause, NULL);
+    }
+    kill(child, numbers[_i]);
+    ck_assert_int_eq(waitpid(child, &status, 0), child);
+    ck_assert(WIFSIGNALED(status) && WTERMSIG(status) == numbers[_i]);
+    ck_assert(has_file("scan.mha.progress") &&
+              !has_file("scan.mha.lock")); /* it had time to give up its lock */
+    read_back(".complained", complained, sizeof complained);
+    ck_assert_msg(strstr(complained, "what is done is kept") != NULL, "%s", complained);
+    ck_assert_int_ge(finished_in("scan.mha"), 3);
+}
+END_TEST
+
+/* A byte of a finished .h5, and of an unfinished .mha, is changed. */
+START_TEST(damage_is_found_and_mended) {
+    const char *name = _i == 0 ? "scan.mha" : "scan.h5";
+    char path[512];
+    if (_i == 1 && !SKG_HAS_HDF5) return;
+    ck_run_fails(3, "no output of this scan to verify", "scan scene.json %s -o %s --verify", SCAN, name);
+    ck_assert(!has_file(name));
+    ck_run(0, "scan scene.json %s -o whole.mha --quiet", SCAN);
+    const size_t stack = read_file("whole.mha", before), image = COLUMNS * ROWS * sizeof(float);
+    const char *third = before + stack - (COUNT - 3) * image;
+    ck_run(0, "scan scene.json %s -o %s --quiet %s", SCAN, name, _i == 0 ? "--to 7" : "");
+    ck_run(_i == 0, "scan scene.json %s -o %s --verify", SCAN, name);
+    ck_assert_msg(strstr(said, " 0 are damaged") != NULL, "%s", said);
+    const size_t size = read_file(name, bytes);
+    size_t at = 0;
+    while (at + image < size && memcmp(bytes + at, third, image) != 0) at++;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "r+b");
+    ck_assert(stream && fseek(stream, (long)(at + image / 3), SEEK_SET) == 0);
+    fputc(bytes[at + image / 3] ^ 1, stream);
+    fclose(stream);
+    ck_run(1, "scan scene.json %s -o %s --verify --json", SCAN, name);
+    json_t *object = said_json();
+    /* the .mha is unfinished, so that opening it has marked the projection already */
+    ck_assert_int_eq(json_integer_value(member(object, "damaged")), 1);
+    ck_assert_int_eq(json_integer_value(member(object, "intact")), _i == 0 ? 7 : COUNT - 1);
+    json_decref(object);
+    ck_run(0, "scan scene.json %s -o %s", SCAN, name);
+    const size_t again = read_file(name, bytes);
+    ck_assert_uint_eq(again, size);
+    at = 0;
+    while (at + image < size && memcmp(bytes + at, third, image) != 0) at++;
+    ck_assert_uint_le(at + image, size);
+}
+END_TEST
+
 /* A cylinder of 0.2 per cm with a ball of 0.5 per cm: scanned, written, read, reconstructed. The middle plane has these
  * values within 1 %, two voxels from the surfaces. */
 START_TEST(a_volume_has_the_coefficients) {
@@ -310,6 +395,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, each_projection_has_its_own_time);
     tcase_add_test(tests, phases_have_their_projections);
     tcase_add_loop_test(tests, kills_leave_no_trace, 0, 4);
+    tcase_add_loop_test(tests, a_signal_ends_a_scan_in_order, 0, 3);
+    tcase_add_loop_test(tests, damage_is_found_and_mended, 0, 2);
 }
 
 SKG_SUITE_MAIN("scan", add_tests)

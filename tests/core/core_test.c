@@ -3,6 +3,7 @@
 #include "core/maths.h"
 #include "core/names.h"
 #include "core/output.h"
+#include "core/part_name.h"
 #include "suite.h"
 
 #include <string.h>
@@ -100,6 +101,40 @@ START_TEST(output_appears_whole_or_not_at_all) {
 }
 END_TEST
 
+/* Two files of one name at once, and what a killed process of the same number left: both have a name of their own. Only
+ * where every name is taken there is a sentence, which names the file in the way. */
+START_TEST(unfinished_files_have_names_of_their_own) {
+    enum { TRIES = 100 };
+    char folder[] = "/tmp/skg-core-XXXXXX", path[64], old[128], ending[SKG_PART_ENDING], line[128];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.txt", folder);
+    snprintf(old, sizeof old, "%s.part-%ld", path, (long)getpid());
+    fclose(fopen(old, "wb"));
+    skg_output_file first, second;
+    ck_skg(skg_output_open(path, &first));
+    ck_skg(skg_output_open(path, &second));
+    ck_assert_str_ne(first.temporary, second.temporary);
+    fputs("second", second.stream);
+    ck_skg(skg_output_commit(&second));
+    skg_output_discard(&first);
+    ck_assert_int_eq(access(path, F_OK), 0);
+    skg_part_ending(ending);
+    for (int n = 0; n < TRIES; n++) {
+        char number[16] = "";
+        if (n > 0) snprintf(number, sizeof number, "-%d", n);
+        snprintf(old, sizeof old, "%s%s%s", path, ending, number);
+        fclose(fopen(old, "wbx"));
+    }
+    ck_skg_fails(skg_output_open(path, &first), SKG_ERR_OUTPUT, old);
+    ck_assert(skg_part_is_of("scan.h5.part-17-00ab12ef", ".h5") &&
+              skg_part_is_of("scan.h5.part-17", "scan.h5"));
+    ck_assert(!skg_part_is_of("scan.h5.part-17-mine", ".h5") && !skg_part_is_of("scan.h5.part-", ".h5"));
+    ck_assert(!skg_part_is_of("scan.h5", ".h5") && !skg_part_is_of("scan.mha.part-1", ".h5"));
+    snprintf(line, sizeof line, "rm -rf %s", folder);
+    ck_assert_int_eq(system(line), 0);
+}
+END_TEST
+
 static skg_status needs_a_mesh(const void *mesh) {
     SKG_NEEDS(mesh);
     return SKG_OK;
@@ -192,6 +227,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, arrays_step_by_their_first_element);
     tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
     tcase_add_test(tests, output_appears_whole_or_not_at_all);
+    tcase_add_test(tests, unfinished_files_have_names_of_their_own);
     tcase_add_test(tests, a_missing_argument_is_named);
     tcase_add_test(tests, rounding_up_stays_where_it_is_exact);
     tcase_add_test(tests, a_mailbox_is_bounded);

@@ -1,3 +1,4 @@
+#include "core/crc.h"
 #include "core/digest.h"
 #include "suite.h"
 
@@ -51,7 +52,23 @@ START_TEST(texts_do_not_run_together) {
 }
 END_TEST
 
+/* The examples of RFC 3720, appendix B.4, and every length and alignment by both ways. */
+START_TEST(checksums_of_the_standard) {
+    unsigned char bytes[96] = {0};
+    ck_assert_uint_eq(skg_crc32c("123456789", 9), 0xE3069283u);
+    ck_assert_uint_eq(skg_crc32c(bytes, 32), 0x8A9136AAu);
+    memset(bytes, 255, 32);
+    ck_assert_uint_eq(skg_crc32c(bytes, 32), 0x62A8AB43u);
+    for (int i = 0; i < 96; i++) bytes[i] = (unsigned char)i;
+    ck_assert_uint_eq(skg_crc32c(bytes, 32), 0x46DD794Eu);
+    for (size_t from = 0; from < 8; from++)
+        for (size_t count = 0; count + from <= 96; count++)
+            ck_assert_uint_eq(skg_crc32c(bytes + from, count), skg_crc32c_by_tables(bytes + from, count));
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, checksums_of_the_standard);
     tcase_add_test(tests, examples_of_the_standard);
     tcase_add_test(tests, a_million_letters_in_pieces);
     tcase_add_test(tests, texts_do_not_run_together);

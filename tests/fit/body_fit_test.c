@@ -54,7 +54,7 @@ static const char nine[] = "tendon,diaphragm,liver";
 
 /* The bars of recovery_test.c hold for 14 parameters and 8000 evaluations; these are 9 and 700. */
 START_TEST(hidden_parameters_are_found) {
-    skg_setup *setup = load(0, NULL);
+    skg_setup *setup = load(1, hidden);
     skg_fit *fit = prepare(setup, 700, nine, 0);
     const skg_fit_state state = run(fit);
     ck_assert_int_le(state.evaluations, 700);
@@ -73,7 +73,7 @@ START_TEST(hidden_parameters_are_found) {
 END_TEST
 
 START_TEST(threads_and_checkpoints_do_not_change_bits) {
-    skg_setup *setup = load(0, NULL);
+    skg_setup *setup = load(1, hidden);
     skg_fit *fits[3];
     char path[160];
     snprintf(path, sizeof path, "%s/checkpoint", folder);
@@ -106,7 +106,7 @@ END_TEST
 
 /* The file poses the organs as the fit did, and finds its meshes from another folder too. */
 START_TEST(the_scene_is_what_was_fitted) {
-    skg_setup *setup = load(0, NULL), *fitted;
+    skg_setup *setup = load(1, hidden), *fitted;
     skg_fit *fit = prepare(setup, 60, NULL, 0);
     run(fit);
     ck_skg(skg_fit_finish(fit));
@@ -140,7 +140,7 @@ END_TEST
 /* Noise of 0.5 mm leaves an error of that order, and the tendon's motion is found all the same. What the targets do not
  * see is called so: nothing was linked with liver at another phase. */
 START_TEST(noise_and_what_is_not_determined) {
-    skg_setup *setup = load(0, NULL);
+    skg_setup *setup = load(1, hidden);
     skg_fit *fit = prepare(setup, 500, "tendon,diaphragm-alpha-max,liver-alpha-min", 0.5);
     run(fit);
     ck_skg(skg_fit_finish(fit));
@@ -187,7 +187,7 @@ END_TEST
 
 /* A body with the organs that the targets depend on moves as the whole scene does. */
 START_TEST(left_out_organs_change_nothing) {
-    skg_setup *setup = load(0, NULL);
+    skg_setup *setup = load(1, hidden);
     skg_fit *fit = prepare(setup, 20, NULL, 0);
     skg_fit_body some, all;
     ck_skg(skg_fit_body_create(NULL, setup, fit->goals, 2, &some));
@@ -210,13 +210,14 @@ END_TEST
 /* Breathing.Fit chooses parameters and ranges; calls change both. */
 START_TEST(the_scene_chooses) {
     static const char *const settings[] = {
+        "Breathing.Coupling=Paper",
         "Breathing.Fit={\"Parameters\": [\"tendon-z\", \"links\"], \"Bounds\": {\"tendon-z\": [-3, -1, \"cm\"], "
         "\"plane-elevation\": [30, 80]}}"};
-    skg_setup *setup = load(1, settings);
+    skg_setup *setup = load(2, settings);
     skg_fit *fit;
     skg_fit_parameter one;
     ck_skg(skg_fit_create(NULL, setup, NULL, &fit));
-    for (int p = 0; p < BODY_PARAMETERS; p++) {
+    for (int p = 0; p < BODY_DOMES; p++) {
         skg_fit_parameter_init(&one);
         ck_skg(skg_fit_parameter_get(fit, p, &one));
         ck_assert_int_eq(one.is_chosen, p == 2 || p == BODY_RIBS || p == BODY_REACH);
@@ -246,7 +247,7 @@ END_TEST
 
 /* Points of the search are parameters, and back; where the normal points upward too, though its azimuth is lost. */
 START_TEST(points_are_parameters) {
-    skg_setup *setup = load(0, NULL);
+    skg_setup *setup = load(1, hidden);
     skg_fit *fit;
     uint64_t state = 3;
     ck_skg(skg_fit_create(NULL, setup, NULL, &fit));
@@ -257,7 +258,7 @@ START_TEST(points_are_parameters) {
         if (i == 0) values[BODY_ELEVATION] = 90;
         skg_fit_point_of(fit, values, point);
         skg_fit_values_at(fit, point, again);
-        for (int p = i > 0 ? 0 : BODY_ELEVATION; p < BODY_PARAMETERS; p++) {
+        for (int p = i > 0 ? 0 : BODY_ELEVATION; p < BODY_DOMES; p++) {
             ck_assert(point[p] >= 0 && point[p] <= 1);
             /* Rounding, divided by the sine of the angle between normal and z where i > 0. */
             ck_assert_double_eq_tol(again[p], values[p], 1e-6);
@@ -269,7 +270,7 @@ START_TEST(points_are_parameters) {
 END_TEST
 
 START_TEST(bad_arguments) {
-    skg_setup *setup = load(0, NULL);
+    skg_setup *setup = load(1, hidden);
     skg_fit_options options;
     skg_fit *fit;
     skg_mesh *cube;

@@ -147,4 +147,35 @@ static inline skg_fit_target target_of(const skg_fit *fit, int64_t index) {
     return target;
 }
 
+static inline skg_fit *begin(const skg_setup *setup, int64_t evaluations, double enough_mm,
+                             const char *parameters) {
+    skg_fit_options options;
+    skg_fit *fit;
+    skg_fit_options_init(&options);
+    options.evaluations = evaluations;
+    options.enough_mm = enough_mm;
+    ck_skg(skg_fit_create(NULL, setup, &options, &fit));
+    if (parameters) ck_skg(skg_fit_parameters_choose(fit, parameters));
+    return fit;
+}
+
+static inline void add_target(skg_fit *fit, const skg_setup *setup, const surface_of *from) {
+    skg_mesh *mesh = surface(from);
+    ck_skg(skg_fit_target_add(fit, part_of(setup, from->label), from->phase, mesh));
+    skg_mesh_release(&mesh);
+}
+
+/* The bars: 0.1 mm, and 2 % of the motion. */
+static inline void check_found(skg_fit *fit) {
+    int64_t count;
+    ck_skg(skg_fit_finish(fit));
+    ck_skg(skg_fit_target_count(fit, &count));
+    for (int64_t t = 0; t < count; t++) {
+        const skg_fit_target target = target_of(fit, t);
+        const double most = fmin(0.1, 0.02 * target.motion_mm);
+        ck_assert_msg(target.after_mean_mm <= most, "%s at %g: %g mm of %g mm", target.label, target.phase,
+                      target.after_mean_mm, target.motion_mm);
+    }
+}
+
 #endif

@@ -120,10 +120,11 @@ static void from_scene(int which, hard_solid *s) {
     memcpy(s->pose, h.pose, sizeof s->pose);
 }
 
-static const hard_function *const tables[3] = {hard_images, hard_meshes, hard_bodies};
+enum { TABLES = 4 };
+static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies, hard_bounds};
 
 static hard_function find(int which) {
-    for (int t = 0; t < 3; t++)
+    for (int t = 0; t < TABLES; t++)
         for (int n = 0; tables[t][n]; n++)
             if (which-- == 0) return tables[t][n];
     return NULL;

@@ -62,6 +62,9 @@ static const char body_text[] =
     "  \"Events\": [{\"Hold\": [1, 2]}, {\"Contrast\": \"inside\", \"Share\": [[0, 0.5]]}]}}\n";
 static const char response_text[] = "1 1\n60 58\n200 150\n";
 static const char bone_text[] = "v -5 -5 -5\nv 8 0 0\nv 0 8 0\nv 0 0 8\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+/* So thin that its vertices keep what rounding has lost. */
+static const char plate_text[] =
+    "v -5 -5 0\nv 8 0 0\nv 0 8 0\nv 0 0 0.01\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 static const char sheet_text[] =
     "solid s\nfacet normal 0 0 0\nouter loop\nvertex 5 0 5\nvertex 5 9 5\nvertex 9 0 5\n"
     "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 5 9 5\nvertex 9 9 5\nvertex 9 0 5\n"
@@ -91,24 +94,26 @@ static void set_up(void) {
     write_text("body.json", body_text);
     write_text("response.txt", response_text);
     write_text("bone.obj", bone_text);
+    write_text("plate.obj", plate_text);
     write_text("sheet.stl", sheet_text);
     json_set_alloc_funcs(malloc, free); /* of this program: those that may fail */
 }
 
 /* Removes results (or all files); returns how many files there were beside the inputs and whole results. */
 static int clear(int all) {
-    static const char *const inputs[] = {"scene.json", "body.json", "response.txt", "bone.obj", "sheet.stl"};
+    static const char *const inputs[] = {"scene.json", "body.json", "response.txt",
+                                         "bone.obj",   "plate.obj", "sheet.stl"};
     static const char *const results[] = {"image.mha", "image.tif",   "image.png",  "bone.ply",
                                           "map.ply",   "fitted.json", "checkpoint", "scan.mha",
                                           "scan.tif",  "scan.h5",     "packed.h5",  "geometry.csv"};
-    const int result_count = sizeof results / sizeof *results;
+    const int result_count = sizeof results / sizeof *results, input_count = sizeof inputs / sizeof *inputs;
     int strange = 0;
     DIR *files = opendir(folder);
     for (struct dirent *one; (one = readdir(files));) {
         char path[400];
         int input = 0, result = 0;
         if (one->d_name[0] == '.' && (!one->d_name[1] || one->d_name[1] == '.')) continue;
-        for (int n = 0; n < 5; n++) input |= strcmp(one->d_name, inputs[n]) == 0;
+        for (int n = 0; n < input_count; n++) input |= strcmp(one->d_name, inputs[n]) == 0;
         for (int n = 0; n < result_count; n++) result |= strcmp(one->d_name, results[n]) == 0;
         strange += !input && !result;
         snprintf(path, sizeof path, "%s/%s", folder, one->d_name);
@@ -164,10 +169,11 @@ static const effects runs[] = {
     {.file = "scene.json",
      .settings = {"Precision=half", "World=Vacuum", "Samples.sheet.Path=bone.obj", "Detector.Oversampling=2",
                   "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"}},
-    /* samples of the source as their tolerance asks for; a table of attenuation; the caller's OpenCL objects; vertices of an open
-     * mesh that part */
+    /* samples of the source as their tolerance asks for; a table of attenuation; the caller's OpenCL objects; a thin mesh;
+     * vertices of an open mesh that part */
     {.file = "scene.json",
-     .settings = {"Samples.skin.Material=[\"Table\",\"response.txt\",\"keV\"]"},
+     .settings = {"Samples.skin.Material=[\"Table\",\"response.txt\",\"keV\"]",
+                  "Samples.bone.Path=plate.obj"},
      .strategy = SKG_STRATEGY_COPIES,
      .spot = {.shape = SKG_SPOT_DISC, .extent = {0.2, 0, 0}, .tolerance = 0.2, .samples_max = 8},
      .shared = 1},
@@ -255,8 +261,8 @@ static skg_status draw_view(const run *r) {
     return skg_view_picture(r->context, r->scene, &r->view, &look, rgba);
 }
 
-/* The parts that get positions from device memory: a closed one, and an open one with vertices that are merged till then. */
-static const int64_t placed_parts[] = {0, 2};
+/* The parts that get positions from device memory: a thin one, and an open one with vertices that are merged till then. */
+static const int64_t placed_parts[] = {1, 2};
 
 /* Frames with positions from device memory: what happens to be in the buffer, within bounds. */
 static skg_status place_and_draw(const run *r) {

@@ -144,7 +144,7 @@ START_TEST(a_rank_on_one_core) {
 END_TEST
 
 /* Run with OMP_PROC_BIND=true: OpenMP has bound this thread to one of its places, and the driver uses them all. */
-static void bound(void) {
+START_TEST(bound_by_openmp) {
     static thread_state states[THREADS_MOST];
     cpu_set_t all, one;
     skg_context *context = NULL;
@@ -162,10 +162,6 @@ static void bound(void) {
     cpu_set_t now;
     ck_assert_int_eq(sched_getaffinity(0, sizeof now, &now), 0);
     ck_assert(CPU_EQUAL(&now, &all));
-}
-
-START_TEST(bound_by_openmp) {
-    bound();
 }
 END_TEST
 

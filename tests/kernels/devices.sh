@@ -2,7 +2,9 @@
 # devices.sh BUILD INTEL: runs the suites of the kernels on every OpenCL device, and prints what each of them says. INTEL is yes
 # to install Intel's CPU runtime first, into BUILD/intel: a second implementation of OpenCL, independent of PoCL. Exit status 1
 # if a suite fails on a device that computes rightly. A device that computes wrongly is refused by the library, and is named.
+# Mesa's Rusticl on llvmpipe, where it is installed, is such a device.
 set -eu
+export RUSTICL_ENABLE="${RUSTICL_ENABLE:-llvmpipe}"
 build=$1 intel=$2
 bin=$build/bin
 export SKG_CACHE_DIR="$build/program-cache" POCL_CACHE_DIR="$build/kernel-cache" CK_DEFAULT_TIMEOUT=1200

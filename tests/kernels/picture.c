@@ -159,7 +159,7 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
         if (same < b) continue;
         const shape *s = of[b].shape;
         skg_mesh_layout *layout = &meshes[count++];
-        *layout = (skg_mesh_layout){.vertices = s->vertices, .triangles = s->triangles};
+        *layout = (skg_mesh_layout){.vertices = s->vertices, .triangles = s->triangles, .flat = 1};
         if (skg_alloc(3 * s->triangles, sizeof *layout->corners, "corners", &layout->corners) == SKG_OK)
             memcpy(layout->corners, s->corners, (size_t)s->triangles * 3 * sizeof *layout->corners);
     }
@@ -205,6 +205,8 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
                                 .origin = origin,
                                 .reference = middle_depth(camera, &of[b]),
                                 .depth = 0.1, /* of the path: what is steep is nearly the same for all */
+                                .columns = {0, (double)camera->columns},
+                                .rows = {0, (double)camera->rows},
                                 .contributions = 1,
                                 .contribution = &weights[b]};
     }
@@ -270,8 +272,9 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
         status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
                                         &attenuation);
         if (status == SKG_OK)
-            status = skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale, .fine = 1},
-                                   camera, &attenuation, 1, -HUGE_VAL, negative.memory, NULL, &place, NULL);
+            status =
+                skg_attenuate(attenuator, &(skg_sums){.raster = raster, .scale = scale, .fine = 1}, camera,
+                              &attenuation, 1, 1, -HUGE_VAL, negative.memory, NULL, &place, NULL);
         skg_attenuation_release(&attenuation);
         if (status != SKG_OK) break;
         SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, output.memory, CL_TRUE, 0,

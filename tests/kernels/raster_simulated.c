@@ -16,7 +16,7 @@ static uint64_t hash_of(skg_context *context, int32_t strategy, int32_t shape_of
     skg_view view = view_make(40, 24, 4);
     if (source) view.source[0] = 3, view.source[2] = 5;
     const skg_raster_options options = {
-        .kernels = {.bits = bits, .precision = precision, .source_plane = source, .listed = 1},
+        .kernels = {.bits = bits, .precision = precision, .source_plane = source, .seams = 1, .listed = 1},
         .strategy = strategy,
         .shape = shape_of_tile,
         .tile = shape_of_tile ? 16 : 0,

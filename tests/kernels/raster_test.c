@@ -91,6 +91,7 @@ START_TEST(strategies_give_the_same_bits) {
         skg_raster_options options = options_of(n == 1 ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE, 0);
         skg_view view = view_make(75, 49, 1.7);
         if (n == 2) options.kernels.bits = 64;
+        options.kernels.seams = n % 2;
         options.kernels.parallel = n == 3;
         options.kernels.source_plane = n >= 3;
         view.projection = n == 3 ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
@@ -157,17 +158,19 @@ END_TEST
 
 /* --- no seam --------------------------------------------------------------------------------------------- */
 
-/* Signed hits of a closed shape cancel in every pixel, by copies (wide) and by atomics (scalar). */
+/* Signed hits of a closed shape cancel in every pixel, by copies (wide) and by atomics (scalar), with edges that are moved for
+ * coverage and without. */
 static void check_cancels(const char *what, const skg_view *view, const shape *s, const double *pose,
                           int32_t source) {
     for (int32_t precision = SKG_PRECISION_SINGLE; precision <= SKG_PRECISION_DOUBLE; precision++) {
         if (precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
-        for (int v = 0; v < 2; v++) {
+        for (int v = 0; v < 4; v++) {
             skg_raster_options options = options_of(precision, 0);
             options.kernels.listed = 1;
+            options.kernels.seams = v / 2;
             options.kernels.source_plane = source;
             options.kernels.parallel = view->projection != SKG_PROJECTION_POINT;
-            options = variant(&options, v);
+            options = variant(&options, v % 2);
             body b = body_make(s, 0);
             b.weight = 0;
             b.bias = 1;

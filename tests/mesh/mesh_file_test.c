@@ -264,6 +264,19 @@ START_TEST(nothing_is_left_where_nothing_can_be_written) {
     ck_skg_fails(skg_mesh_save(mesh, in_folder("no/such/folder.ply")), SKG_ERR_OUTPUT, "folder.ply");
     ck_skg_fails(skg_mesh_save(mesh, folder), SKG_ERR_OUTPUT, folder); /* a folder is there */
     ck_skg_fails(skg_mesh_save(mesh, NULL), SKG_ERR_ARGUMENT, "path is NULL");
+    static const char *const others[] = {"scene.json", "mesh.obj", "mesh", "mesh.stl.txt"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        FILE *stream = fopen(in_folder(others[i]), "wb");
+        ck_assert_ptr_nonnull(stream);
+        fputs("{}", stream);
+        fclose(stream);
+        ck_skg_fails(skg_mesh_save(mesh, path), SKG_ERR_ARGUMENT, "use .ply or .stl");
+        char still[3] = "";
+        stream = fopen(path, "rb");
+        ck_assert(stream && fread(still, 1, 2, stream) == 2 && fgetc(stream) == EOF);
+        fclose(stream);
+        ck_assert_str_eq(still, "{}");
+    }
     ck_skg_fails(skg_mesh_save(NULL, "a.ply"), SKG_ERR_ARGUMENT, "mesh is NULL");
     skg_mesh_release(&mesh);
 }

@@ -102,6 +102,20 @@ START_TEST(step_wedge_has_its_steps) {
 }
 END_TEST
 
+/* Every step is 20 x 10; risers have the height from one to the next. */
+START_TEST(steps_have_the_heights_that_are_asked) {
+    const double heights[3] = {1, 5, 7}, falling[2] = {2, 2};
+    skg_mesh *mesh;
+    ck_skg(skg_mesh_create_steps(60, 10, 3, heights, &mesh));
+    check_perfect(mesh, 20 * 10 * (1 + 5 + 7), 2 * 60 * 10 + 2 * 10 * 7 + 2 * 20 * (1 + 5 + 7));
+    ck_assert_double_eq(health_of(mesh).bounds[5], 3.5);
+    skg_mesh_release(&mesh);
+    ck_skg_fails(skg_mesh_create_steps(60, 10, 2, falling, &mesh), SKG_ERR_ARGUMENT, "step 1 is 2 mm high");
+    ck_skg_fails(skg_mesh_create_steps(60, 10, 0, heights, &mesh), SKG_ERR_ARGUMENT, "0 steps");
+    ck_skg_fails(skg_mesh_create_steps(60, 10, 3, NULL, &mesh), SKG_ERR_ARGUMENT, "heights");
+}
+END_TEST
+
 START_TEST(makers_refuse_what_is_no_length_or_count) {
     skg_mesh *mesh;
     ck_skg_fails(skg_mesh_create_cube(0, &mesh), SKG_ERR_ARGUMENT, "cube: edge 0 mm");
@@ -131,6 +145,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, sphere_has_its_vertices_on_the_sphere);
     tcase_add_test(tests, cylinder_is_a_prism);
     tcase_add_test(tests, step_wedge_has_its_steps);
+    tcase_add_test(tests, steps_have_the_heights_that_are_asked);
     tcase_add_test(tests, makers_refuse_what_is_no_length_or_count);
     tcase_add_test(tests, many_triangles_at_one_vertex);
 }

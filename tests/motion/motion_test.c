@@ -198,6 +198,73 @@ START_TEST(parts_move_as_they_are_set) {
 }
 END_TEST
 
+/* A table beside the scene; the scene that names it. */
+static skg_status load_signal(const char *text, const char *more) {
+    char file[160], breathing[256];
+    snprintf(file, sizeof file, "%s/signal.csv", folder);
+    FILE *stream = fopen(file, "w");
+    ck_assert_ptr_nonnull(stream);
+    fputs(text, stream);
+    ck_assert_int_eq(fclose(stream), 0);
+    snprintf(breathing, sizeof breathing, "{\"Signal\": \"signal.csv\"%s}", more);
+    const skg_status status = load(breathing);
+    unlink(file);
+    return status;
+}
+
+/* As recorders write it: a heading, a clock of its own, and millimetres. */
+START_TEST(a_signal_is_read) {
+    ck_skg(load_signal("time,marker\n# belt\n1000.5, 12\n1001.5; 16\n1002.0 14\n1003.0,12\n", ""));
+    const skg_breath *breath = &setup->breathing.breath;
+    static const double points[] = {0, 0, 1, 1, 1.5, 0.5, 2.5, 0};
+    ck_assert_int_eq(breath->signal_count, 4);
+    for (int i = 0; i < 8; i++) ck_assert_double_eq(breath->signal[i], points[i]);
+    int64_t files = 0;
+    ck_skg(skg_setup_file_count(setup, &files));
+    ck_assert_int_eq(files, 1); /* so that it is part of the set-up's hash */
+}
+END_TEST
+
+START_TEST(bad_signal_files_are_refused) {
+    static const char *const wrong[][3] = {
+        {"0,1\n1\n", "", "signal.csv: line 2: two numbers were expected"},
+        {"0,1\n1,2,3\n", "", "line 2: there are more than two numbers"},
+        {"0,1\nx,2\n", "", "line 2"},
+        {"# nothing\n", "", "no line with two numbers"},
+        {"0,1\n", "", "has one row"},
+        {"0,1\n2,2\n1,3\n", "", "row 3 is at 1 s, the one before at 2 s; sort the rows"},
+        {"0,1\n1e999,2\n", "", "row 2: a number is too large"},
+        {"0,3\n1,3\n", "", "the amplitude is 3 everywhere"},
+        {"0,1\n1,2\n", ", \"Hysteresis\": 0.5", "needs Hysteresis 0"}};
+    for (size_t w = 0; w < sizeof wrong / sizeof *wrong; w++) {
+        const skg_status status = load_signal(wrong[w][0], wrong[w][1]);
+        ck_assert_int_ne(status, SKG_OK);
+        ck_assert_msg(strstr(skg_last_error(), wrong[w][2]) && strstr(skg_last_error(), "Signal"), "%s",
+                      skg_last_error());
+    }
+    ck_skg_fails(load("{\"Signal\": \"nowhere.csv\"}"), SKG_ERR_FILE, "nowhere.csv");
+    ck_skg_fails(load("{\"Signal\": 3}"), SKG_ERR_FORMAT, "Signal");
+    ck_skg_fails(load("{\"Signal\": \"/dev/zero\"}"), SKG_ERR_FILE, "/dev/zero");
+}
+END_TEST
+
+/* The parts of the anatomical coupling that a scene can set, and values that no body accepts. */
+START_TEST(anatomy_is_read) {
+    static const char *const wrong[][2] = {
+        {"{\"Domes\": [80, 0, 0, \"mm\"]}", "Domes"}, {"{\"MuscleLength\": 0}", "MuscleLength"},
+        {"{\"RibAngles\": [60, 0]}", "RibAngles"},    {"{\"RibAngles\": [14, 9]}", "RibAngles"},
+        {"{\"LiverFollows\": -1}", "LiverFollows"},   {"{\"LiverHeld\": 2}", "LiverHeld"}};
+    ck_skg(load("{\"Domes\": [0.4, -0.2, 0.1, \"cm\"], \"MuscleLength\": 0.7, \"RibAngles\": [18, 0.5],"
+                "\"LiverFollows\": 0.9, \"LiverHeld\": 0.1}"));
+    const skg_body_options *body = &setup->breathing.body;
+    ck_assert(body->dome_left_mm == 4 && body->dome_right_mm == -2 && body->dome_back_mm == 1);
+    ck_assert(body->muscle_length == 0.7 && body->liver_follows == 0.9 && body->liver_held == 0.1);
+    ck_assert(body->rib_angle_rad == 18 * degree && body->rib_fall_rad == 0.5 * degree);
+    for (size_t w = 0; w < sizeof wrong / sizeof *wrong; w++)
+        ck_skg_fails(load(wrong[w][0]), SKG_ERR_BREATHING, wrong[w][1]);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, the_key_is_read);
@@ -206,6 +273,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, its_options_can_be_asked_for);
     tcase_add_test(tests, what_the_key_cannot_say);
     tcase_add_test(tests, parts_move_as_they_are_set);
+    tcase_add_test(tests, a_signal_is_read);
+    tcase_add_test(tests, bad_signal_files_are_refused);
+    tcase_add_test(tests, anatomy_is_read);
 }
 
 SKG_SUITE_MAIN("motion", add_tests)

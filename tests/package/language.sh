@@ -1,5 +1,6 @@
 #!/bin/sh
-# The installed tree that run.sh left behind, used from another language. usage: language.sh fortran|cpp|mpi|python SOURCE BUILD
+# The installed tree that run.sh left behind, used from another language. usage:
+# language.sh fortran|cpp|mpi|python SOURCE BUILD PYTHON
 set -eu
 source=$2
 stage=$3/package-test
@@ -26,7 +27,7 @@ fortran)
     done
     ./every_call_f
     gfortran -fc-prototypes -fsyntax-only -J. "$module" >prototypes.h
-    python3 "$source/tests/package/fortran_signatures.py" "$source/lib/bindings/interface.json" "$module" prototypes.h
+    "$4" "$source/tests/package/fortran_signatures.py" "$source/lib/bindings/interface.json" "$module" prototypes.h
     ./first_image_f
     sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/scenes/phantom.json" >small.json
     ./thousand_images_f small.json marker
@@ -37,6 +38,28 @@ cpp)
     g++ -std=c++20 -Wall -Wextra -Wpedantic -Werror "$source/examples/first_image.cpp" $(pkg-config --cflags --libs skiagraph) \
         -o first_image_cpp
     ./first_image_cpp
+    echo '#include <skiagraph/skiagraph.hpp>' >old.cpp
+    # shellcheck disable=SC2046
+    if g++ -std=c++17 -fsyntax-only old.cpp $(pkg-config --cflags skiagraph) 2>old.log; then
+        echo "skiagraph.hpp compiles as C++17"
+        exit 1
+    fi
+    grep -q 'needs C++20' old.log
+    if command -v cmake >/dev/null 2>&1; then
+        mkdir -p cpp
+        cp "$source/examples/first_image.cpp" cpp/
+        # No standard is set: the target asks for its own.
+        cat >cpp/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.21)
+project(first_image CXX)
+find_package(skiagraph REQUIRED)
+add_executable(first_image first_image.cpp)
+target_link_libraries(first_image PRIVATE skiagraph::skiagraph)
+END
+        cmake -S cpp -B cpp/build "-Dskiagraph_DIR=$lib/cmake/skiagraph" >cpp.log
+        cmake --build cpp/build >>cpp.log
+        cpp/build/first_image
+    fi
     ;;
 mpi)
     need mpicc
@@ -54,7 +77,7 @@ mpi)
     grep -c degrees projections-1.txt
     ;;
 python)
-    need python3
-    python3 "$source/examples/first_image.py" "$(ls "$lib"/libskiagraph.so.?)"
+    need "${4-python3}"
+    "$4" "$source/examples/first_image.py" "$(ls "$lib"/libskiagraph.so.?)"
     ;;
 esac

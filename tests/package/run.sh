@@ -29,6 +29,18 @@ cmake --build cmake >>cmake.log
 cmake/first_image
 
 if [ -e "$lib/libskiagraph.a" ]; then
+    # But for the locks of OpenMP, which are common to a whole program.
+    echo "the static library has the public symbols only:"
+    nm -D --defined-only "$lib/libskiagraph.so" | sed 's/.* //; s/@.*//' | sort >public
+    nm -g --defined-only "$lib/libskiagraph.a" | sed -n 's/^[0-9a-f]* [A-Z] //p' | sed '/^\.gomp_critical_user_skg_/d' | sort |
+        diff public - || exit 1
+    # A program may have functions with the names of private ones.
+    printf '#include <skiagraph/skiagraph.h>\nint skg_fail(void);\nint skg_fail(void) { return 0; }\nint main(void) {\n%s\n}\n' \
+        'skg_mesh *mesh = 0; return skg_mesh_create_cube(-1, &mesh) == SKG_ERR_ARGUMENT ? skg_fail() : 1;' >same_name.c
+    # shellcheck disable=SC2046
+    cc -std=c11 same_name.c $(pkg-config --cflags skiagraph) \
+        $(pkg-config --static --libs skiagraph | sed 's/-lskiagraph/-l:libskiagraph.a/') -o same_name
+    ./same_name
     echo "the static library, by pkg-config and by CMake:"
     # shellcheck disable=SC2046
     cc -std=c11 "$source/examples/first_image.c" $(pkg-config --cflags skiagraph) \

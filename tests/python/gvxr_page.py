@@ -3,11 +3,10 @@ from skiagraph.gvxr.calls import CALLS
 
 HEAD = """# Scripts of gVXR
 
-`from skiagraph import gvxr` instead of `from gvxrPython3 import gvxr` runs a script that was written for gVXR 2.1, as far as
-its tutorials go. The module was written from gVXR's documentation. Its values are in gVXR's units: MeV per pixel, cm of path
-length, matrices of 16 numbers column by column in mm. A call that is refused raises `skiagraph.UnsupportedError` with the
-reason. `from skiagraph.gvxr import json2gvxr` has `initGVXR` and the other `init...` calls that read a scene file;
-`json2gvxr.doCTScan` is refused, `gvxr.computeCTAcquisition` takes the angles.
+`from skiagraph import gvxr` instead of `from gvxrPython3 import gvxr` runs a script that was written for gVXR 2.1. Where a
+script names the package, `gvxrPython3` becomes `skiagraph`, and `gvxrPython3.NAME` becomes `skiagraph.gvxr.NAME`. The module
+was written from gVXR's documentation. Its values are in gVXR's units: MeV per pixel, cm of path length, matrices of 16
+numbers column by column in mm. A call that is refused raises `skiagraph.UnsupportedError` with the reason.
 
 ```python
 from skiagraph import gvxr
@@ -26,14 +25,46 @@ gvxr.setHU("dragon", 1000)
 image = gvxr.computeXRayImage()                  # NumPy, [row, column], MeV
 ```
 
-An unknown label, a missing material and a missing beam are errors here, where gVXR goes on. With one outer surface, the inner
-ones displace it; two outer surfaces are refused.
+## Where it behaves otherwise
+| what | here | in gVXR 2.1 |
+|---|---|---|
+| a scene without meshes | renders the open beam | gives an empty image |
+| no beam yet | an image of zeros, with a warning; no energies | an image of zeros, or an error |
+| the last image before the first one | zeros | zeros, or an error |
+| an unknown label | an error that names those that there are | goes on, or an error |
+| a missing material | an error | an error |
+| a mixture whose weights do not sum to 1 | scaled to 1, with a warning | scaled to 1 |
+| a label that is made again | the mesh is replaced; surface and material stay | two children with one label |
+| inner and outer surfaces | the inner ones displace the one outer surface; two outer ones are refused | several outer ones |
+| photons of a tube without an exposure | those of 1 mAs | a spectrum with a total energy of 80 eV |
 
+## The modules beside it
+| module | |
+|---|---|
+| `skiagraph.gvxr.utils` | every function. Spectra (`loadSpectrumSpekpy`, `loadXpecgenSpectrum` and the others) are those of Skiagraph's own tube, which is calibrated with SpekPy; neither package is needed. `visualise` gives Skiagraph's page of the scene instead of a plot of K3D: it has `display()`, `save(path)`, `fetch_screenshot()` and `screenshot`. The flags `has_...` of packages that are not needed are true |
+| `skiagraph.json2gvxr` | every function, and `params`, which a script may change. A tube is Skiagraph's own. Energies count photons per pixel |
+| `skiagraph.gvxr2json` | `saveJSON`. Meshes that were made are written as PLY beside the file |
+| `skiagraph.gvxr.JSON2gVXRDataReader`, `skiagraph.gvxr.gVXRDataReader` | the readers for CIL, which has to be installed. Lengths are in mm |
+| `skiagraph.gvxr.tests` | `test_gvxr` and `test_offscreen` |
+| `twins`, `benchmark` | are not there |
+
+The tutorials load a dragon from the folder of the module. It is not part of Skiagraph:
+<!-- not run: it fetches 23 MB -->
+```sh
+python3 -m skiagraph.gvxr.dragon
+```
+asks pip for the wheel of gVXR 2.1.0 and copies the mesh beside the module; with the path of a wheel it takes that one.
+
+`python3 tests/python/gvxr_scripts.py FOLDER` runs the scripts and notebooks of a folder with the import alone changed, and counts
+those that end without an error.
+
+## Compared with gVXR
 The test `tests/python/test_gvxr.py` runs one script with both modules, where the wheel `gvxr` is installed with an OpenGL
-that works without a window. On 2026-11-22, with gVXR 2.1.0 on Mesa 22.3.6 (llvmpipe), 95 % of the pixels of an image agreed
+that works without a window. On 2026-11-23, with gVXR 2.1.0 on Mesa 22.3.6 (llvmpipe), 95 % of the pixels of an image agreed
 within 1e-6 of the greatest value, after a blur within 3e-5, in a scan within 2e-4. Attenuation coefficients agreed within 2e-4 at 30, 60 and 120 keV. The pixels that differ
 by up to 0.7 % of the open beam belong to rays that pass an edge of a cube: there gVXR's path lengths are too long, by 0.5 mm
-of 20.4 mm. In the scan, two of 49152 pixels, on edges of the cube, differ by 15 %.
+of 20.4 mm. In the scan, two of 49152 pixels, on edges of the cube, differ by 15 %. Distances, magnification, matrices and
+numbers of photons agreed to the digits of floats.
 
 ## Every call
 "same": the same arguments, values and units. "does nothing": it concerns windows, display or the repair of meshes.

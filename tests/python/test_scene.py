@@ -1,5 +1,6 @@
 """Scenes and their parts: reading, changing, failing, breathing."""
 import json
+import pathlib
 import shutil
 
 import numpy as np
@@ -196,3 +197,15 @@ def test_the_declarations_are_the_librarys():
 def test_a_scene_without_organs_does_not_breathe(scene):
     with pytest.raises(sk.BreathingError):
         scene.breathe(phase=0)
+
+
+def test_a_warning_is_said_once(scene):
+    import warnings
+
+    scene["ball"].pose = sk.translate(200, 0, 0)
+    with pytest.warns(sk.SkiagraphWarning, match="ball leaves block") as caught:
+        scene.image()
+    assert pathlib.Path(caught[0].filename).name == "test_scene.py"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene.image(supersampling=2)  # another plan of the same scene

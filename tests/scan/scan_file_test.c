@@ -4,7 +4,9 @@
 #include <skiagraph/skiagraph.h>
 
 #include <dirent.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
@@ -207,6 +209,170 @@ START_TEST(one_writer_at_a_time) {
 }
 END_TEST
 
+/* A second writer of this process is refused too, also by another way to the folder, and its end takes no lock away. The
+ * child of a fork neither has its parent's lock nor ends it. */
+START_TEST(one_writer_within_a_process) {
+    char link[80], through[256];
+    skg_scan_file *second = NULL;
+    for (int n = 0; n < KINDS; n++) {
+        int status = 0;
+        if (!is_possible(names[n])) continue;
+        ck_skg(skg_scan_file_open(in_folder(names[n]), &options, &file));
+        ck_skg_fails(skg_scan_file_open(path, &options, &second), SKG_ERR_OUTPUT, "locked: this process");
+        snprintf(link, sizeof link, "%s-link", folder);
+        snprintf(through, sizeof through, "%s/%s", link, names[n]);
+        ck_assert_int_eq(symlink(folder, link), 0);
+        ck_skg_fails(skg_scan_file_open(through, &options, &second), SKG_ERR_OUTPUT, "locked: this process");
+        ck_assert_int_eq(unlink(link), 0);
+        snprintf(through, sizeof through, "%s/link-%s", folder, names[n]); /* a link to the output itself */
+        if (through[strlen(through) - 1] == '/') through[strlen(through) - 1] = '\0';
+        ck_assert_int_eq(symlink(path, through), 0);
+        ck_skg_fails(skg_scan_file_open(through, &options, &second), SKG_ERR_OUTPUT, "locked: this process");
+        ck_assert_int_eq(unlink(through), 0);
+        fflush(NULL);
+        const pid_t child = fork();
+        ck_assert_int_ge(child, 0);
+        if (child == 0) {
+            const int refused = skg_scan_file_open(path, &options, &second) == SKG_ERR_OUTPUT;
+            skg_scan_file_release(&file);
+            _exit(refused && skg_scan_file_open(path, &options, &second) == SKG_ERR_OUTPUT ? 0 : 1);
+        }
+        ck_assert_int_eq(waitpid(child, &status, 0), child);
+        ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+        skg_scan_file_release(&file);
+        ck_skg(skg_scan_file_open(path, &options, &file));
+        skg_scan_file_release(&file);
+    }
+}
+END_TEST
+
+/* What a killed writer left goes when the next one has the lock; files of other names stay. */
+START_TEST(leftovers_are_removed) {
+    static const struct {
+        const char *scan, *left;
+    } cases[] = {{"scan.mha", "scan.mha.part-1-0badcafe"},
+                 {"scan.mha", "scan.mha.progress.part-1-0badcafe"},
+                 {"scan.raw", "scan.raw.part-1"},
+                 {"scan.raw", "scan.mhd.part-1-0badcafe-3"},
+                 {"scan.tif", "scan.tif.part-1-0badcafe"},
+                 {"scan.h5", "scan.h5.part-1-0badcafe"},
+                 {"folder", "folder/scan.txt.part-1-0badcafe"},
+                 {"folder", "folder/projection-00003.tif.part-1-0badcafe"}};
+    static const char *const others[] = {"scan.mha.part-of-mine", "other.mha.part-1-0badcafe",
+                                         "scan.mha.partly", "folder/mine.part-1-0badcafe"};
+    ck_assert_int_eq(mkdir(in_folder("folder"), 0777), 0);
+    for (size_t o = 0; o < sizeof others / sizeof *others; o++) fclose(fopen(in_folder(others[o]), "wb"));
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        if (!is_possible(cases[c].scan)) continue;
+        fclose(fopen(in_folder(cases[c].left), "wb"));
+        ck_skg(skg_scan_file_open(in_folder(cases[c].scan), &options, &file));
+        skg_scan_file_release(&file);
+        ck_assert_msg(!has(cases[c].left), "%s is left", cases[c].left);
+    }
+    for (size_t o = 0; o < sizeof others / sizeof *others; o++)
+        ck_assert_msg(has(others[o]), "%s", others[o]);
+}
+END_TEST
+
+/* A scan that cannot be laid out leaves nothing. */
+START_TEST(a_full_disk_leaves_nothing) {
+    const struct rlimit small = {1 << 10, 1 << 10};
+    for (int n = 0; n < KINDS; n++) {
+        int status = 0;
+        if (strcmp(names[n], "folder") == 0 || !is_possible(names[n])) continue;
+        fflush(NULL);
+        const pid_t child = fork();
+        ck_assert_int_ge(child, 0);
+        if (child == 0) {
+            signal(SIGXFSZ, SIG_IGN);
+            setrlimit(RLIMIT_FSIZE, &small);
+            _exit(skg_scan_file_open(in_folder(names[n]), &options, &file) == SKG_ERR_OUTPUT ? 0 : 1);
+        }
+        ck_assert_int_eq(waitpid(child, &status, 0), child);
+        ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "%s", names[n]);
+        ck_assert_msg(files_in_folder() == 0, "%s leaves a file", names[n]);
+    }
+}
+END_TEST
+
+/* Changes one byte of a projection, as a bad disk would. */
+static void flip(const char *name, int64_t index) {
+    const size_t image = PIXELS * sizeof(float);
+    FILE *stream = fopen(in_folder(name), "r+b");
+    ck_assert_ptr_nonnull(stream);
+    static char text[1 << 20];
+    const size_t size = fread(text, 1, sizeof text, stream);
+    size_t at = 0;
+    while (at + image <= size && memcmp(text + at, images[index], image) != 0) at++;
+    ck_assert_uint_le(at + image, size);
+    ck_assert_int_eq(fseek(stream, (long)(at + image / 2), SEEK_SET), 0);
+    fputc(text[at + image / 2] ^ 4, stream);
+    fclose(stream);
+}
+
+static int is_done(int64_t index) {
+    int32_t done = -1;
+    ck_skg(skg_scan_file_done_get(file, index, &done));
+    return done;
+}
+
+/* A flipped byte is found when a scan continues, and only that projection is missing then. */
+START_TEST(a_damaged_projection_is_missing) {
+    const char *name = names[_i];
+    int64_t damaged = -1;
+    if (strcmp(name, "folder") == 0 || !is_possible(name)) return;
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    for (int64_t k = 0; k < COUNT - 1; k++) put(k);
+    skg_scan_file_release(&file);
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_skg(skg_scan_file_damaged_count(file, &damaged));
+    ck_assert_int_eq(damaged, 0);
+    skg_scan_file_release(&file);
+    flip(name, 3);
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_skg(skg_scan_file_damaged_count(file, &damaged));
+    ck_assert_int_eq(damaged, 1);
+    for (int64_t k = 0; k < COUNT; k++) ck_assert_int_eq(is_done(k), k != 3 && k != COUNT - 1);
+    put(3);
+    put(COUNT - 1);
+    ck_skg(skg_scan_file_verify(file));
+    ck_assert_int_eq(done_count(), COUNT);
+    ck_skg(skg_scan_file_finish(file));
+    skg_scan_file_release(&file);
+    if (strcmp(name, "scan.h5") != 0) {
+        ck_values(name);
+        ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+        ck_skg_fails(skg_scan_file_verify(file), SKG_ERR_UNSUPPORTED, "has no checksums");
+        return;
+    }
+    flip(name, 5); /* a finished .h5 keeps its checksums, and is read on demand */
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_assert_int_eq(done_count(), COUNT);
+    ck_skg(skg_scan_file_verify(file));
+    ck_assert_int_eq(done_count(), COUNT - 1);
+    ck_assert_int_eq(is_done(5), 0);
+    skg_scan_file_release(&file);
+    ck_skg(skg_scan_file_open(in_folder(name), &options, &file));
+    ck_assert_int_eq(is_done(5), 0); /* the next one computes it */
+}
+END_TEST
+
+/* Damaged projections of a part do not reach the whole. */
+START_TEST(joining_leaves_damage_out) {
+    skg_scan_file *part = NULL;
+    if (!is_possible("part.h5")) return;
+    ck_skg(skg_scan_file_open(in_folder("part.h5"), &options, &file));
+    for (int64_t k = 0; k < COUNT; k++) put(k);
+    skg_scan_file_release(&file);
+    flip("part.h5", 2);
+    ck_skg(skg_scan_file_open(in_folder("part.h5"), &options, &part));
+    ck_skg(skg_scan_file_open(in_folder("whole.h5"), &options, &file));
+    ck_skg(skg_scan_file_join(file, part));
+    for (int64_t k = 0; k < COUNT; k++) ck_assert_int_eq(is_done(k), k != 2);
+    skg_scan_file_release(&part);
+}
+END_TEST
+
 START_TEST(what_is_missing_is_refused) {
     options.hash = "short";
     ck_skg_fails(skg_scan_file_open(in_folder("scan.mha"), &options, &file), SKG_ERR_ARGUMENT,
@@ -274,6 +440,11 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, what_is_no_scan_is_refused);
     tcase_add_test(tests, a_file_of_another_length_is_refused);
     tcase_add_test(tests, one_writer_at_a_time);
+    tcase_add_loop_test(tests, a_damaged_projection_is_missing, 0, KINDS);
+    tcase_add_test(tests, joining_leaves_damage_out);
+    tcase_add_test(tests, one_writer_within_a_process);
+    tcase_add_test(tests, leftovers_are_removed);
+    tcase_add_test(tests, a_full_disk_leaves_nothing);
     tcase_add_test(tests, what_is_missing_is_refused);
 }
 

@@ -3,6 +3,8 @@
 #include "scene/scene.h"
 #include "setup/setup_files.h"
 
+#include <skiagraph/plan.h>
+
 #include <float.h>
 #include <math.h>
 
@@ -85,6 +87,14 @@ START_TEST(asides_are_ignored) {
 }
 END_TEST
 
+START_TEST(a_line_spread_of_the_source_is_passed_over) {
+    load_edited("\"Source\": {", "\"Source\": {\"LSF\": [0.1, 0.8, 0.1],");
+    ck_assert_int_eq(warning_count, 1);
+    ck_assert_ptr_nonnull(strstr(warnings[0], "Source.LSF"));
+    ck_assert_ptr_nonnull(strstr(warnings[0], "belongs to Detector"));
+}
+END_TEST
+
 START_TEST(size_and_spacing_that_agree) {
     load_edited("\"Size\": [6.4, 9.6, \"cm\"]", "\"Size\": [6.4, 9.6, \"cm\"], \"Spacing\": [1, 2, \"mm\"]");
     ck_assert_double_eq(skg_length(setup->view.column_step), 1);
@@ -93,26 +103,86 @@ START_TEST(size_and_spacing_that_agree) {
 }
 END_TEST
 
-/* With mAs, a tube gives photons per mm2 at 1 m, which a parallel beam keeps as its unit. */
+/* With mAs, a tube gives photons per mm2 at 1 m, which a parallel beam keeps as its unit: absolute_test has the warning of the
+ * plan. */
 START_TEST(parallel_beams_have_no_mas) {
     const char *settings[] = {"Source.Shape=Parallel",
                               "Source.Beam={\"kVp\": 85, \"mAs\": 2, \"Filter\": [[\"Al\", 2.5]]}"};
     skg_quality parallel, tube;
+    skg_spectrum *per_pixel = NULL;
     skg_quality_init(&parallel);
     skg_quality_init(&tube);
     write_file("scene.json", good);
     ck_skg(skg_setup_load(context, path, 2, settings, &setup));
-    ck_skg(skg_spectrum_quality_get(setup->spectrum, &parallel));
-    ck_assert_int_eq(setup->falloff, 0);
-    ck_assert_int_eq(warning_count, 1);
-    ck_assert_ptr_nonnull(strstr(warnings[0], "mAs does not say how many photons arrive"));
+    ck_skg(skg_spectrum_create_resolved(setup->spectrum, &setup->view, &per_pixel));
+    ck_skg(skg_spectrum_quality_get(per_pixel, &parallel));
+    skg_spectrum_release(&per_pixel);
+    ck_assert_int_eq(warning_count, 0);
     skg_setup_release(&setup);
     settings[0] = "Detector.Position=[0, 600, 0, \"mm\"]"; /* 1 m from the source */
     ck_skg(skg_setup_load(context, path, 2, settings, &setup));
-    ck_skg(skg_spectrum_quality_get(setup->spectrum, &tube));
+    ck_skg(skg_spectrum_create_resolved(setup->spectrum, &setup->view, &per_pixel));
+    ck_skg(skg_spectrum_quality_get(per_pixel, &tube));
+    skg_spectrum_release(&per_pixel);
     /* a pixel of 1 mm by 2 mm; some roundings in each of a hundred energies */
     ck_assert_double_eq_tol(tube.photons / 2 / parallel.photons, 1, 64 * DBL_EPSILON);
-    ck_assert_int_eq(setup->falloff, 1);
+}
+END_TEST
+
+/* Where the projections of a scan go is said if the file does not say it. */
+START_TEST(scans_without_an_end) {
+    static const struct {
+        const char *scan, *warning;
+        int64_t count;
+        double source[2]; /* x and y of projection 1; that of projection 0 is at -400 */
+    } cases[] = {
+        {"\"NumberOfProjections\": 4",
+         "neither FinalAngle nor AngleStep: the projections go once around, FinalAngle 360",
+         4,
+         {-400, 0}},
+        {"\"NumberOfProjections\": 3, \"IncludeFinalAngle\": true", "once around", 3, {0, 400}},
+        {"\"NumberOfProjections\": 4, \"StartAngle\": -90", "FinalAngle 270", 4, {0, -400}},
+        {"\"AngleStep\": 90", "has no FinalAngle: the projections go once around", 4, {-400, 0}},
+        {"\"AngleStep\": -90", "FinalAngle -360", 4, {400, 0}},
+        {"\"NumberOfProjections\": 4, \"AngleStep\": 90", NULL, 4, {-400, 0}},
+        {"\"NumberOfProjections\": 4, \"FinalAngle\": 360", NULL, 4, {-400, 0}},
+        {"\"NumberOfProjections\": 4, \"AngleStep\": 90, \"FinalAngle\": 360", NULL, 4, {-400, 0}},
+        {"\"NumberOfProjections\": 5, \"AngleStep\": 90, \"FinalAngle\": 360, \"IncludeFinalAngle\": true",
+         NULL,
+         5,
+         {-400, 0}},
+        {"\"NumberOfProjections\": 4, \"AngleStep\": 90, \"FinalAngle\": 180",
+         "end at 360 degrees, but FinalAngle is 180",
+         4,
+         {-400, 0}},
+        {"\"NumberOfProjections\": 4, \"AngleStep\": 0", NULL, 4, {0, -400}},
+        {"\"NumberOfProjections\": 4, \"FinalAngle\": 0", NULL, 4, {0, -400}},
+        {"\"NumberOfProjections\": 4, \"StartTime\": 0, \"Interval\": 1", "nothing turns", 4, {0, -400}},
+        {"\"NumberOfProjections\": 3, \"SourceTravel\": [40, 0, 0, \"mm\"]", NULL, 3, {0, -400}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char with[256];
+        skg_scan *scan = NULL;
+        skg_view view;
+        int64_t count = 0;
+        warning_count = 0;
+        snprintf(with, sizeof with, "\"Scan\": {%s, \"RotationAxis\": [0, 0, 1]}, \"Samples\"",
+                 cases[k].scan);
+        load_edited("\"Samples\"", with);
+        ck_assert_msg(warning_count == (cases[k].warning != NULL), "%s: %d warnings", cases[k].scan,
+                      warning_count);
+        if (cases[k].warning)
+            ck_assert_msg(strstr(warnings[0], cases[k].warning) != NULL, "%s: %s", cases[k].scan,
+                          warnings[0]);
+        ck_skg(skg_setup_scan_get(setup, &scan));
+        ck_skg(skg_scan_projection_count(scan, &count));
+        ck_assert_int_eq(count, cases[k].count);
+        skg_view_init(&view);
+        ck_skg(skg_scan_view_get(scan, 1, &view));
+        for (int i = 0; i < 2; i++)
+            ck_assert_msg(fabs(view.source[i] - cases[k].source[i]) < 1e-9 /* roundings of 400 mm */,
+                          "%s: %g %g", cases[k].scan, view.source[0], view.source[1]);
+    }
 }
 END_TEST
 
@@ -226,8 +296,10 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, labels_are_numbered);
     tcase_add_test(tests, a_taken_number_is_passed_over);
     tcase_add_test(tests, asides_are_ignored);
+    tcase_add_test(tests, a_line_spread_of_the_source_is_passed_over);
     tcase_add_test(tests, size_and_spacing_that_agree);
     tcase_add_test(tests, parallel_beams_have_no_mas);
+    tcase_add_test(tests, scans_without_an_end);
     tcase_add_test(tests, a_line_spread_function_from_a_file);
     tcase_add_test(tests, a_scene_graph_of_one_file);
     tcase_add_test(tests, lenient_reading);

@@ -72,7 +72,6 @@ static const struct {
     {"\"Samples\"", "\"Repair\": \"neighbors\", \"Samples\"", SKG_ERR_FORMAT, "did you mean neighbours"},
     /* missing */
     {"\"Samples\": [", "\"Scan\": {}, \"Window_Size\": [", SKG_ERR_FORMAT, "Samples is missing"},
-    {"\"Shape\": \"PointSource\",", "", SKG_ERR_FORMAT, "line 3: Source: Shape is missing"},
     {"\"Position\": [0, -40, 0, \"cm\"],", "", SKG_ERR_FORMAT, "Source: Position is missing"},
     {"\"Unit\": \"MeV\", ", "", SKG_ERR_FORMAT, "Source.Beam[0]: Unit is missing"},
     {"\"UpVector\": [0, 0, -1],", "", SKG_ERR_FORMAT, "Detector: UpVector is missing"},
@@ -207,8 +206,8 @@ static const struct {
     {"[1, 2, 3, \"cm\"]", "[1, -2, 3, \"cm\"]", SKG_ERR_FORMAT, "Samples[1].Cuboid: "},
     {"\"Cuboid\": [1, 2, 3, \"cm\"]",
      "\"StepWedge\": {\"NumberOfSteps\": 5, \"TotalLength\": 5, \"Width\": 2, \"FirstStepHeight\": 1, "
-     "\"OtherStepHeight\": 0.5, \"Unit\": \"cm\"}",
-     SKG_ERR_UNSUPPORTED, "first step"},
+     "\"OtherStepHeight\": 0, \"Unit\": \"cm\"}",
+     SKG_ERR_FORMAT, "heights have to rise"},
     {"\"Cuboid\": [1, 2, 3, \"cm\"]", "\"Path\": \"none.stl\", \"Unit\": \"mm\"", SKG_ERR_FILE,
      "line 21: Samples[1].Path: "},
     {"\"Cuboid\": [1, 2, 3, \"cm\"]", "\"Path\": \"none.stl\"", SKG_ERR_FORMAT, "Unit is missing"},

@@ -1,6 +1,8 @@
 /* Materials, beams and detector responses of scene files. */
 #include "setup/setup_files.h"
 
+#include <skiagraph/plan.h>
+
 #include <float.h>
 #include <math.h>
 
@@ -137,9 +139,13 @@ static skg_plan_options options(void) {
 static skg_quality quality(int32_t *absolute) {
     int64_t count = 0;
     skg_quality q;
+    skg_spectrum *per_pixel = NULL;
     skg_quality_init(&q);
-    ck_skg(skg_spectrum_quality_get(spectrum(&count), &q));
-    *absolute = options().falloff;
+    ck_skg(skg_spectrum_absolute_get(spectrum(&count), absolute));
+    ck_skg(skg_spectrum_create_resolved(spectrum(&count), &setup->view, &per_pixel));
+    ck_skg(skg_spectrum_quality_get(per_pixel, &q));
+    skg_spectrum_release(&per_pixel);
+    ck_assert_int_eq(options().falloff, SKG_FALLOFF_AUTO);
     return q;
 }
 

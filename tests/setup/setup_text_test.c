@@ -56,6 +56,54 @@ START_TEST(settings_apply_to_a_text) {
 }
 END_TEST
 
+/* What a program writes of a scene it changed: the text, steps of the detector and bins as they are. */
+START_TEST(a_text_goes_around) {
+    const char *const settings[] = {
+        "Detector={\"Position\": [1, 2, 30, \"cm\"], \"NumberOfPixels\": [8, 4], \"ColumnStep\": [0.1, 0.30000000000000004, "
+        "0, \"mm\"], \"RowStep\": [0, 0, -0.7, \"mm\"]}",
+        "Source.Beam={\"Bins\": [[30, 0.1], [60.5, 7]], \"At1m\": true}", "Source.Shape=null"};
+    const char *text = NULL;
+    char copy[8192];
+    skg_spectrum *spectrum = NULL;
+    int32_t absolute = 0;
+    double kev = 0, photons = 0;
+    source.settings = settings;
+    source.setting_count = 3;
+    ck_skg(skg_setup_create(NULL, &source, &setup));
+    ck_skg(skg_setup_text_get(setup, &text));
+    ck_assert_uint_lt(strlen(text), sizeof copy);
+    strcpy(copy, text);
+    const skg_view view = setup->view;
+    skg_setup_release(&setup);
+    skg_setup_source_init(&source);
+    source.text = copy;
+    ck_skg(skg_setup_create(NULL, &source, &setup));
+    ck_assert_mem_eq(&setup->view, &view, sizeof view);
+    ck_assert_double_eq(view.column_step[1], 0.30000000000000004);
+    ck_assert_int_eq(view.projection, SKG_PROJECTION_POINT);
+    ck_skg(skg_setup_spectrum_get(setup, &spectrum));
+    ck_skg(skg_spectrum_absolute_get(spectrum, &absolute));
+    ck_skg(skg_spectrum_bin_get(spectrum, 1, &kev, &photons));
+    ck_assert_int_eq(absolute, 1);
+    ck_assert_double_eq(kev, 60.5);
+    ck_assert_double_eq(photons, 7);
+    ck_skg_fails(skg_setup_text_get(NULL, &text), SKG_ERR_ARGUMENT, "setup");
+}
+END_TEST
+
+START_TEST(steps_exclude_what_they_say_already) {
+    const char *const both[] = {"Detector.ColumnStep=[1, 0, 0, \"mm\"]"};
+    const char *const half[] = {
+        "Detector={\"Position\": [1, 2, 30, \"cm\"], \"NumberOfPixels\": [8, 4], \"ColumnStep\": [1, 0, 0, \"mm\"]}"};
+    source.setting_count = 1;
+    source.settings = both;
+    ck_skg_fails(skg_setup_create(NULL, &source, &setup), SKG_ERR_FORMAT,
+                 "ColumnStep and RowStep say it already");
+    source.settings = half;
+    ck_skg_fails(skg_setup_create(NULL, &source, &setup), SKG_ERR_FORMAT, "RowStep is missing");
+}
+END_TEST
+
 START_TEST(a_partial_text_leaves_sections_out) {
     skg_spectrum *spectrum = NULL;
     skg_view view, plain;
@@ -135,6 +183,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_text_is_read_like_a_file);
     tcase_add_test(tests, messages_begin_with_the_path);
     tcase_add_test(tests, settings_apply_to_a_text);
+    tcase_add_test(tests, a_text_goes_around);
+    tcase_add_test(tests, steps_exclude_what_they_say_already);
     tcase_add_test(tests, a_partial_text_leaves_sections_out);
     tcase_add_test(tests, files_are_listed_and_found_elsewhere);
 }

@@ -36,10 +36,10 @@ static const struct {
     const char *options;
     int32_t half;
 } programs[] = {
-    {{"project.cl"}, "", 0},
+    {{"fine.clh", "project.cl"}, "", 0},
     {{"place.cl"}, "", 0},
     {{"batch.clh", "draw.clh", "raster_copies.cl"}, "", 0},
-    {{"project.cl", "batch.clh", "draw.clh", "raster_passes.cl"}, "", 0},
+    {{"fine.clh", "project.cl", "batch.clh", "draw.clh", "raster_passes.cl"}, "", 0},
     {{"pixel.clh", "raster_atomics.cl"}, "", 0},
     {{"pixel.clh", "tiles.cl", "raster_squares.cl"}, "", 0},
     {{"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"}, "", 0},

@@ -1,8 +1,10 @@
 /* The tests that a device is put to: they pass on a device that computes rightly, and kernels that were made wrong do
- * not pass. */
+ * not pass. Each of these is compiled, so all of them make a test of their own: SKG_WRONG_KERNELS 1. */
 #include "device/cache_folder.h"
 #include "device/device.h"
 #include "device/verdict.h"
+#include "skg_shared.h"
+#include "stage/kernels.h"
 #include "suite.h"
 #include "trial/trial.h"
 
@@ -234,6 +236,13 @@ static const struct {
     {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_TRIAL_PICTURE},
 };
 
+/* Extents end at multiples of SKG_EXTENT_COLUMNS, so that a device whose vectors read together are not wider never calls the
+ * function that reads at their edge. */
+static int is_reached(int number, const skg_device_info *device) {
+    return strcmp(errors[number].file, "planes.clh") != 0 ||
+           SKG_CPU_RUNS * device->float_width > SKG_EXTENT_COLUMNS;
+}
+
 START_TEST(wrong_kernels_are_found) {
     char more[96];
     skg_finding finding;
@@ -243,8 +252,10 @@ START_TEST(wrong_kernels_are_found) {
     /* Squares are the tiles of GPUs. */
     context->device->info.is_gpu |= strstr("raster_squares.cl tiles.cl", errors[_i].file) != NULL;
     ck_skg(skg_trial_again(context, errors[_i].test, &finding));
-    ck_assert_int_eq(finding.good, 0);
-    ck_assert_msg(strstr(finding.reason, "pixel") != NULL, "%s", finding.reason);
+    if (is_reached(_i, &context->device->info)) {
+        ck_assert_int_eq(finding.good, 0);
+        ck_assert_msg(strstr(finding.reason, "pixel") != NULL, "%s", finding.reason);
+    }
     skg_context_release(&context);
     remove_kernels();
 }
@@ -406,11 +417,13 @@ START_TEST(bad_numbers_are_refused) {
 END_TEST
 
 static void add_tests(TCase *tests) {
+    const int wrong = (int)(sizeof errors / sizeof *errors);
     tcase_add_checked_fixture(tests, make_cache_folder, remove_cache_folder);
+    tcase_add_loop_test(tests, wrong_kernels_are_found, 0, SKG_WRONG_KERNELS ? wrong : 2);
+    if (SKG_WRONG_KERNELS) return;
     tcase_add_test(tests, boxes_have_known_lengths);
     tcase_add_test(tests, meshes_of_boxes_are_closed_unless_split);
     tcase_add_test(tests, a_right_device_passes);
-    tcase_add_loop_test(tests, wrong_kernels_are_found, 0, (int)(sizeof errors / sizeof *errors));
     tcase_add_test(tests, a_verdict_is_found_once_and_kept);
     tcase_add_test(tests, a_device_that_failed_is_refused);
 #ifdef SKG_COMMAND

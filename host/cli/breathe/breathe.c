@@ -66,7 +66,9 @@ static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *
     int exit_status = read_positive(arguments, &cli_flag_breathe_seconds, &s->seconds);
     if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &cli_flag_breathe_fps, &s->fps);
     if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &f->low, &f->high);
-    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_phase, &s->phase);
+    const char *phase = cli_value(arguments, &cli_flag_breathe_phase);
+    s->phase = (double)NAN;
+    if (exit_status == CLI_DONE && phase) exit_status = cli_phase("--phase", phase, &s->phase);
     if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_at, &s->at);
     if (exit_status == CLI_DONE && is_film(s)) return film_check(s->place, s->fps);
     if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
@@ -198,8 +200,8 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
     }
     if (cli_is_quiet()) return CLI_DONE;
     if (is_one(s)) {
-        printf("%s %.6g%s; wrote %s\n", isnan(s->at) ? "phase" : "at", isnan(s->at) ? s->phase : s->at,
-               isnan(s->at) ? "" : " s", s->place);
+        cli_print("%s %.6g%s; wrote %s\n", isnan(s->at) ? "phase" : "at", isnan(s->at) ? s->phase : s->at,
+                  isnan(s->at) ? "" : " s", s->place);
         return CLI_DONE;
     }
     printf("%" PRId64
@@ -208,11 +210,11 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
            s->frames, (double)s->frames / s->fps, rate, s->sequence_ms / (double)s->frames,
            s->pose_ms / (double)s->frames, f->low, f->high);
     if (is_film(s)) {
-        printf("wrote %s: %" PRId64 " frames, %g per second\n", s->place, s->frames, s->fps);
+        cli_print("wrote %s: %" PRId64 " frames, %g per second\n", s->place, s->frames, s->fps);
         return CLI_DONE;
     }
-    printf("wrote %s/frame-0000.png to frame-%04" PRId64 ".png, contact.png, motion.csv\n", s->place,
-           s->frames - 1);
+    cli_print("wrote %s/frame-0000.png to frame-%04" PRId64 ".png, contact.png, motion.csv\n", s->place,
+              s->frames - 1);
     return CLI_DONE;
 }
 

@@ -62,13 +62,13 @@ static int write_part(const fluoroscopy *f, int64_t part, const char *label, con
     skg_status status = skg_mesh_count(mesh, &vertices, &triangles);
     double *now = malloc((size_t)vertices * 6 * sizeof *now);
     int32_t *corners = malloc((size_t)triangles * 3 * sizeof *corners);
-    char *path = cli_path_in(folder, "%s-%04" PRId64 ".ply", label, frame);
+    char name[CLI_NAME_OF_PART];
+    cli_name_of_part(label, part, name);
+    char *path = cli_path_in(folder, "%s-%04" PRId64 ".ply", name, frame);
     int exit_status = CLI_DONE;
     if (!now || !corners || !path) {
         exit_status = cli_error(CLI_DEVICE, "out of host memory for %s", label);
     } else {
-        for (char *c = path + strlen(folder) + 1; *c; c++)
-            if (*c == '/' || *c == ' ') *c = '-';
         exit_status = cli_check_overwrite(f->arguments, path);
         if (status == SKG_OK) status = skg_mesh_positions_get(mesh, now, 0);
         if (status == SKG_OK) status = skg_motion_rest_get(f->motion, part, now + 3 * vertices);

@@ -41,10 +41,8 @@ static void add_border(const fluoroscopy *f, const float *lengths) {
 
 int outline_find(fluoroscopy *f, const char *wanted) {
     const char *at = strrchr(wanted, '@');
-    char *end = NULL;
-    const double phase = at ? strtod(at + 1, &end) : 0;
-    if (at && (end == at + 1 || *end || !isfinite(phase)))
-        return cli_error(CLI_USAGE, "--outline %s: no phase follows the @", wanted);
+    double phase = 0;
+    if (at && cli_phase("--outline: @", at + 1, &phase) != CLI_DONE) return CLI_USAGE;
     const size_t length = at ? (size_t)(at - wanted) : strlen(wanted);
     int64_t parts = 0, found = 0;
     skg_output output;

@@ -1,10 +1,12 @@
 #include "breathe/table.h"
 
+#include "common/csv.h"
 #include "common/say.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 int table_open(const char *path, motion_table *table) {
@@ -17,18 +19,17 @@ int table_open(const char *path, motion_table *table) {
     return CLI_DONE;
 }
 
-/* "liver: tendon, rib 8 left" in quotes, with quotes in labels doubled; empty if there is no conflict. */
+/* "liver: tendon, rib 8 left"; empty if there is no conflict. */
 static void write_conflict(const skg_body_measure *m, FILE *stream) {
     static const char *const before[3] = {"", ": ", ", "};
-    if (m->conflict[0]) fputc('"', stream);
-    for (int i = 0; i < 3 && m->conflict[i]; i++) {
-        fputs(before[i], stream);
-        for (const char *c = m->conflict[i]; *c; c++) {
-            if (*c == '"') fputc('"', stream);
-            fputc(*c, stream);
-        }
-    }
-    fputs(m->conflict[0] ? "\"\n" : "\n", stream);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *words = open_memstream(&text, &size);
+    for (int i = 0; words && i < 3 && m->conflict[i]; i++) fprintf(words, "%s%s", before[i], m->conflict[i]);
+    if (words) fclose(words);
+    if (text && size > 0) cli_csv_text(text, stream);
+    free(text);
+    fputc('\n', stream);
 }
 
 int table_add(const fluoroscopy *f, double time_s, motion_table *table) {

@@ -20,7 +20,30 @@ int cli_unknown(const char *what, const char *name, const char *const *known, in
     return cli_error(CLI_USAGE, "unknown %s %s; `skiagraph %s` lists all", what, name, help);
 }
 
+/* Flags that no verb has, or not this one, and where what they ask for is said. */
+static const struct {
+    const char *flag, *advice;
+} elsewhere[] = {
+    {"--projections",
+     "the key Scan of the scene says it: --set Scan.NumberOfProjections=90, for the verb scan"},
+    {"--angles", "the key Scan of the scene says it: --set Scan.NumberOfProjections=90, for the verb scan"},
+    {"--noise", "the scene says it: --set Noise=true"},
+    {"--threads", "they belong to the device: --device \"device=cpu threads=4\""},
+    {"--seconds", "only breathe and view make films; cost has --within SECONDS"},
+    {"--size", "the scene says it: --set Detector.NumberOfPixels=[640,480]"},
+    {"--kv", "give --kvp, with meshes instead of a scene; a scene says it: --set Source.Beam.kVp=120"},
+};
+
+/* The advice on a flag; NULL: there is none. */
+static const char *advice_on(const char *name) {
+    for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
+        if (strcmp(elsewhere[i].flag, name) == 0) return elsewhere[i].advice;
+    return NULL;
+}
+
 static int unknown_flag(const cli_manual *manual, const char *name) {
+    const char *advice = advice_on(name);
+    if (advice) return cli_error(CLI_USAGE, "%s has no flag %s: %s", manual->name, name, advice);
     const char *names[MOST_NAMES];
     char help[64];
     int count = 0;
@@ -163,6 +186,13 @@ int cli_number(const cli_arguments *arguments, const cli_flag *flag, double leas
         return cli_error(CLI_USAGE, "%s %s is not a number from %g to %g", flag->name, value, least, most);
     *number = found;
     return CLI_DONE;
+}
+
+int cli_phase(const char *given, const char *value, double *phase) {
+    char *end = NULL;
+    *phase = strtod(value, &end);
+    if (end != value && !*end && *phase >= 0 && *phase < 1) return CLI_DONE;
+    return cli_error(CLI_USAGE, "%s %s: a phase is a number from 0 to below 1", given, value);
 }
 
 int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high) {

@@ -41,6 +41,9 @@ int cli_number(const cli_arguments *arguments, const cli_flag *flag, double leas
                double *number);
 int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high);
 
+/* Reads a phase of the breath, from 0 to below 1. given: what the user wrote, for the message. */
+int cli_phase(const char *given, const char *value, double *phase);
+
 /* Reports an unknown name with the nearest known one. what: "verb", "flag"; help: the words after `skiagraph`
  * that list all. */
 int cli_unknown(const char *what, const char *name, const char *const *known, int count, const char *help);

@@ -31,11 +31,10 @@ int cli_has_program(const char *name) {
 }
 
 /* The child has a process group of its own: Ctrl-C goes to this process alone, whose handler kills the child. */
-static int spawn(const char *const *words, int input, cli_child *child) {
+static int spawn(const char *const *words, int input, int output, int complaints, pid_t *process) {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
     sigset_t none;
-    pid_t process = 0;
     int reason = posix_spawn_file_actions_init(&files);
     if (reason) return reason;
     reason = posix_spawnattr_init(&attributes);
@@ -45,33 +44,51 @@ static int spawn(const char *const *words, int input, cli_child *child) {
         posix_spawnattr_setpgroup(&attributes, 0);
         posix_spawnattr_setsigmask(&attributes, &none);
         reason = posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
-        if (!reason)
+        if (!reason && output >= 0) reason = posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
+        if (!reason && output < 0)
             reason = posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+        if (!reason) reason = posix_spawn_file_actions_adddup2(&files, complaints, STDERR_FILENO);
         if (!reason)
-            reason = posix_spawn_file_actions_adddup2(&files, fileno(child->complaints), STDERR_FILENO);
-        if (!reason)
-            reason = posix_spawnp(&process, words[0], &files, &attributes, (char *const *)(uintptr_t)words,
+            reason = posix_spawnp(process, words[0], &files, &attributes, (char *const *)(uintptr_t)words,
                                   environ);
         posix_spawnattr_destroy(&attributes);
     }
     posix_spawn_file_actions_destroy(&files);
-    if (!reason) child->process = process;
     return reason;
+}
+
+/* Starts it with signals blocked: one that came before the guard is set would leave the child alone. */
+int cli_process_start(const char *const *words, int input, int output, int complaints, pid_t *process) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int reason = spawn(words, input, output, complaints, process);
+    if (!reason) cli_guard_child(*process);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return reason;
+}
+
+int cli_process_end(pid_t process) {
+    int status = 0;
+    siginfo_t ended;
+    sigset_t all, before;
+    while (waitid(P_PID, (id_t)process, &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) continue;
+    sigfillset(&all); /* the handler must not kill a process that has ended: its number may be another's */
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    waitpid(process, &status, 0);
+    cli_guard_child(0);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 int cli_child_start(const char *const *words, cli_child *child) {
     int ends[2];
-    sigset_t all, before;
     *child = (cli_child){0};
     /* A socket, because MSG_NOSIGNAL spares this process the SIGPIPE of a child that has ended. */
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return errno;
     child->complaints = tmpfile();
     int reason = child->complaints ? 0 : errno;
-    sigfillset(&all); /* a signal between the start and the guard would leave the child alone */
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    if (!reason) reason = spawn(words, ends[1], child);
-    if (!reason) cli_guard_child(child->process);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (!reason) reason = cli_process_start(words, ends[1], -1, fileno(child->complaints), &child->process);
     close(ends[1]);
     child->input = ends[0];
     if (reason) {
@@ -107,20 +124,12 @@ static void read_complaints(FILE *complaints, char *said, size_t size) {
 }
 
 int cli_child_end(cli_child *child, char *said, size_t size) {
-    int status = 0;
-    siginfo_t ended;
-    sigset_t all, before;
     close(child->input);
-    while (waitid(P_PID, (id_t)child->process, &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) continue;
-    sigfillset(&all); /* the handler must not kill a process that has ended: its number may be another's */
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    waitpid(child->process, &status, 0);
-    cli_guard_child(0);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    const int status = cli_process_end(child->process);
     read_complaints(child->complaints, said, size);
     fclose(child->complaints);
     *child = (cli_child){0};
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    return status;
 }
 
 void cli_child_kill(cli_child *child) {

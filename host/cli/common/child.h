@@ -1,4 +1,4 @@
-/* A program that reads its standard input from this process. */
+/* Processes that this one starts, one at a time. */
 #ifndef SKG_CLI_CHILD_H
 #define SKG_CLI_CHILD_H
 
@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <sys/types.h>
 
+/* A program that reads its standard input from this process. */
 typedef struct {
     pid_t process;    /* 0: none */
     int input;        /* its standard input; what it prints on standard output is dropped */
@@ -14,6 +15,14 @@ typedef struct {
 
 /* Whether a folder of the environment variable PATH has this program. */
 int cli_has_program(const char *name);
+
+/* Starts words[0], searched on PATH, with the words up to NULL, as leader of a process group. A signal that ends this process also
+ * ends the child. input, output, complaints: descriptors that become its standard streams; output may be -1: dropped.
+ * Returns 0 or a value of errno. */
+int cli_process_start(const char *const *words, int input, int output, int complaints, pid_t *process);
+
+/* Waits for its end. Returns its exit status, or minus the number of the signal that ended it. */
+int cli_process_end(pid_t process);
 
 /* Starts words[0], searched on PATH, with the words up to NULL. A signal that ends this process also ends the child.
  * Returns 0 or a value of errno. */

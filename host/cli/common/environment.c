@@ -80,6 +80,9 @@ static void decide_cache(void) {
 }
 
 void cli_prepare_environment(void) {
+    static int prepared;
+    if (prepared) return; /* it would take its own settings for the user's */
+    prepared = 1;
     affinity_reason = host_pin_threads();
     decide_cache();
 }

@@ -1,8 +1,10 @@
 #include "common/file.h"
 
 #include "common/say.h"
+#include "core/part_name.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,22 +24,33 @@ static void forget(cli_file *file) {
 }
 
 int cli_file_open(const char *path, cli_file *file) {
-    const size_t length = strlen(path) + 1, longest = length + 32;
+    const size_t length = strlen(path) + 1;
     struct stat there;
     *file = (cli_file){0};
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) /* rename() would replace the device */
         return cli_file_fail(path, "it is a folder or a device; name a file");
     file->path = malloc(length);
-    file->temporary = malloc(longest);
+    file->temporary = malloc(length + SKG_PART_ENDING);
     if (!file->path || !file->temporary) {
         forget(file);
         return cli_error(CLI_DEVICE, "out of host memory for %s", path);
     }
     memcpy(file->path, path, length);
-    snprintf(file->temporary, longest, "%s.part-%ld", path, (long)getpid());
-    file->stream = fopen(file->temporary, "wbx");
+    const int descriptor = skg_part_open(path, file->temporary);
+    file->stream = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     if (file->stream) return CLI_DONE;
     const int reason = errno;
+    if (descriptor >= 0) {
+        close(descriptor);
+        unlink(file->temporary);
+    } else if (reason == EEXIST) {
+        cli_error(
+            CLI_OUTPUT,
+            "%s: cannot be written: unfinished files of this name are in the way, such as %s; remove them",
+            path, file->temporary);
+        forget(file);
+        return CLI_OUTPUT;
+    }
     forget(file);
     return cli_file_fail(path,
                          reason == ENOENT ? "its folder does not exist; make it first" : strerror(reason));
@@ -114,6 +127,23 @@ int cli_make_folder(const char *folder) {
     int reason = errno;
     if (stat(folder, &found) == 0 && S_ISDIR(found.st_mode)) return CLI_DONE;
     return cli_error(CLI_OUTPUT, "%s: cannot be made: %s", folder, strerror(reason));
+}
+
+void cli_name_of_part(const char *label, int64_t part, char name[CLI_NAME_OF_PART]) {
+    enum { LONGEST = 120 };
+    size_t length = strlen(label);
+    int is_mended = length > LONGEST || *label == '.' || !*label;
+    if (length > LONGEST) length = LONGEST;
+    if (length == LONGEST) /* not within a character of UTF-8 */
+        while (length > 0 && ((unsigned char)label[length] & 0xC0) == 0x80) length--;
+    for (size_t i = 0; i < length; i++) {
+        const unsigned char c = (unsigned char)label[i];
+        const int is_bad = c < ' ' || c == 127 || c == '/' || (i == 0 && c == '.');
+        is_mended |= is_bad;
+        name[i] = (char)(is_bad || c == ' ' ? '-' : c);
+    }
+    name[length] = '\0';
+    if (is_mended) snprintf(name + length, CLI_NAME_OF_PART - length, "-%" PRId64, part);
 }
 
 char *cli_path_in(const char *folder, const char *format, ...) {

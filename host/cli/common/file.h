@@ -3,9 +3,10 @@
 #define SKG_CLI_FILE_H
 
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
-/* A file that appears whole or not at all: it is written as NAME.part-PID in the same folder, synced and renamed. */
+/* A file that appears whole or not at all: it is written as NAME.part-PID-TAG in the same folder, synced and renamed. */
 typedef struct {
     FILE *stream;           /* write by cli_file_write */
     char *path, *temporary; /* the name at the end, and until then */
@@ -39,6 +40,12 @@ int cli_has_extension(const char *path, const char *extension);
 /* Makes a folder if it does not exist, but not those above it. A new name that ends like a film or a picture is
  * refused. */
 int cli_make_folder(const char *folder);
+
+enum { CLI_NAME_OF_PART = 160 };
+
+/* A file name of a part's label, without extension. Blanks and slashes become hyphens. A label that is long, begins with a
+ * dot or has control characters is shortened and mended, and gets the number of its part, so that names stay apart. */
+void cli_name_of_part(const char *label, int64_t part, char name[CLI_NAME_OF_PART]);
 
 /* "folder/name" from a printf format, which the caller frees; NULL if memory is exhausted. */
 char *cli_path_in(const char *folder, const char *format, ...) __attribute__((format(printf, 2, 3)));

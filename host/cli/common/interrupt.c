@@ -3,6 +3,8 @@
 #define _GNU_SOURCE /* getdents64 */
 #include "common/interrupt.h"
 
+#include "core/part_name.h"
+
 #include <dirent.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -19,13 +21,13 @@ enum { MOST_FOLDERS = 64, LONGEST_PATH = 4096, ENTRY_BYTES = 16384 };
 static pthread_t writer;
 static char folders[MOST_FOLDERS][LONGEST_PATH];
 static volatile sig_atomic_t folder_count;
-static char suffix[32]; /* of unfinished files */
+static char suffix[SKG_PART_ENDING]; /* of unfinished files; a number may follow */
 static volatile sig_atomic_t guarded_child;
 
 /* Two sentences, so that the handler reads a whole one while the other is written. */
 static char kept[2][LONGEST_PATH] = {"no output was written", ""};
 static volatile sig_atomic_t kept_now;
-static volatile sig_atomic_t is_gentle, is_asked;
+static volatile sig_atomic_t is_gentle, is_asked; /* is_asked: the signal; 0: none */
 
 void cli_keep(const char *format, ...) {
     va_list arguments;
@@ -51,12 +53,18 @@ void cli_stop_gently(void) {
 }
 
 int cli_stop_asked(void) {
-    return is_asked;
+    return is_asked != 0;
+}
+
+void cli_end_by_signal(void) {
+    fflush(NULL);
+    signal(is_asked, SIG_DFL);
+    raise(is_asked);
 }
 
 static int is_unfinished(const char *name) {
-    const size_t length = strlen(name), its = strlen(suffix);
-    return length > its && memcmp(name + length - its, suffix, its) == 0;
+    const char *found = strstr(name, suffix), *end = found ? found + strlen(suffix) : NULL;
+    return found && found > name && end[strspn(end, "-0123456789")] == '\0';
 }
 
 static void clear_folder(const char *path) {
@@ -80,7 +88,7 @@ static void end(int number) {
         return;
     }
     if (is_gentle && !is_asked) {
-        is_asked = 1;
+        is_asked = number;
         say("\nskiagraph: stopping; what is done is kept (a second signal ends at once)\n");
         return;
     }
@@ -94,13 +102,15 @@ static void end(int number) {
 }
 
 void cli_catch_signals(void) {
-    static const int numbers[3] = {SIGINT, SIGTERM, SIGHUP};
+    /* SIGUSR1 and SIGXCPU: job managers send them before their limit */
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU};
+    const int count = sizeof numbers / sizeof *numbers;
     struct sigaction action = {.sa_handler = end, .sa_flags = SA_RESTART}, before;
     writer = pthread_self();
-    snprintf(suffix, sizeof suffix, ".part-%ld", (long)getpid());
+    skg_part_ending(suffix);
     sigemptyset(&action.sa_mask);
-    for (int n = 0; n < 3; n++) sigaddset(&action.sa_mask, numbers[n]);
-    for (int n = 0; n < 3; n++)
+    for (int n = 0; n < count; n++) sigaddset(&action.sa_mask, numbers[n]);
+    for (int n = 0; n < count; n++)
         if (sigaction(numbers[n], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaction(numbers[n], &action, NULL);
 }

@@ -4,7 +4,7 @@
 
 #include <sys/types.h>
 
-/* SIGINT, SIGTERM and SIGHUP, unless they were ignored before, remove the unfinished files (NAME.part-PID) of
+/* SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU, unless they were ignored before, remove the unfinished files (NAME.part-PID-TAG) of
  * guarded outputs and then end the process. Call it once, in the thread that writes. */
 void cli_catch_signals(void);
 
@@ -20,6 +20,9 @@ void cli_stop_gently(void);
 
 /* Whether a signal asked the computation to stop. */
 int cli_stop_asked(void);
+
+/* Ends the process by the signal that asked the computation to stop, so that its parent learns of it. */
+void cli_end_by_signal(void);
 
 /* What the handler says after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
  * written". */

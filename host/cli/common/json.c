@@ -29,6 +29,24 @@ json_t *cli_json_numbers(const double *numbers, int count) {
     return list;
 }
 
+char *cli_json_for_page(const json_t *object) {
+    static const char escaped[] = "\\u003c";
+    char *plain = json_dumps(object, JSON_COMPACT | JSON_ENSURE_ASCII), *text = NULL;
+    size_t count = 0;
+    for (const char *c = plain; c && *c; c++) count += *c == '<'; /* in texts only: JSON itself has none */
+    if (plain) text = malloc(strlen(plain) + count * (sizeof escaped - 2) + 1);
+    char *to = text;
+    for (const char *c = plain; text && *c; c++) {
+        if (*c == '<')
+            memcpy(to, escaped, sizeof escaped - 1), to += sizeof escaped - 1;
+        else
+            *to++ = *c;
+    }
+    if (text) *to = '\0';
+    free(plain);
+    return text;
+}
+
 static int is_printed; /* 1: standard output has its object */
 
 int cli_json_print(json_t *object) {

@@ -12,6 +12,10 @@ json_t *cli_json_text(const char *text);
 
 json_t *cli_json_numbers(const double *numbers, int count);
 
+/* The text of an object for a script within a page, which the caller frees; NULL if memory is exhausted. No text in it can
+ * end the script or begin a comment: "<" is written as \u003c. */
+char *cli_json_for_page(const json_t *object);
+
 /* Prints an object on standard output and releases it. Returns an exit status. */
 int cli_json_print(json_t *object);
 

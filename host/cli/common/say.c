@@ -2,14 +2,18 @@
 
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { WIDTH = 78 };
 
 static int is_quiet, is_verbose;
-static int has_line; /* 1: a line is shown; guarded by `terminal`, as is standard error */
+static atomic_int warnings;
+static char last_warning[1024]; /* guarded by `terminal` */
+static int has_line;            /* 1: a line is shown; guarded by `terminal`, as is standard error */
 static pthread_mutex_t terminal = PTHREAD_MUTEX_INITIALIZER;
 static cli_failure first; /* of this run */
 
@@ -47,14 +51,52 @@ void cli_show_line(const char *line) {
     pthread_mutex_unlock(&terminal);
 }
 
+/* Labels and names of files must not command a terminal: control characters of ASCII and, in UTF-8, of Latin-1 are written as
+ * \\xNN. New lines stay, which logs of compilers have. */
+static void print_plain(const char *text, FILE *to) {
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
+        if ((*c < ' ' && *c != '\n') || *c == 127)
+            fprintf(to, "\\x%02x", *c);
+        else if (c[0] == 0xC2 && c[1] >= 0x80 && c[1] < 0xA0)
+            fprintf(to, "\\x%02x", *++c);
+        else
+            fputc(*c, to);
+}
+
+/* NULL: no memory. */
+static char *format_text(const char *format, va_list arguments) {
+    va_list again;
+    va_copy(again, arguments);
+    const int length = vsnprintf(NULL, 0, format, again);
+    va_end(again);
+    char *text = length >= 0 ? malloc((size_t)length + 1) : NULL;
+    if (text) vsnprintf(text, (size_t)length + 1, format, arguments);
+    return text;
+}
+
+static void print_sentence(const char *begin, const char *format, va_list arguments) {
+    char *text = format_text(format, arguments);
+    begin_sentence();
+    fputs(begin, stderr);
+    print_plain(text ? text : "out of host memory", stderr);
+    end_sentence();
+    free(text);
+}
+
+void cli_print(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    char *text = format_text(format, arguments);
+    va_end(arguments);
+    if (text) print_plain(text, stdout);
+    free(text);
+}
+
 void cli_tell(const char *format, ...) {
     if (!is_verbose) return;
     va_list arguments;
     va_start(arguments, format);
-    begin_sentence();
-    fputs("skiagraph: ", stderr);
-    vfprintf(stderr, format, arguments);
-    end_sentence();
+    print_sentence("skiagraph: ", format, arguments);
     va_end(arguments);
 }
 
@@ -75,10 +117,7 @@ int cli_error(int exit_status, const char *given, ...) {
     const char *format = given ? given : ""; /* gcc's sanitizer build takes a null format for possible */
     va_list arguments;
     va_start(arguments, given);
-    begin_sentence();
-    fputs("skiagraph: ", stderr);
-    vfprintf(stderr, format, arguments); /* whole, whatever its length */
-    end_sentence();
+    print_sentence("skiagraph: ", format, arguments);
     va_end(arguments);
     va_start(arguments, given);
     if (vsnprintf(sentence, sizeof sentence, format, arguments) < 0) *sentence = '\0';
@@ -118,14 +157,31 @@ int cli_fail(skg_status status) {
     return cli_error(cli_exit_status(status), "%.*s", length, sentence);
 }
 
+int cli_warning_count(void) {
+    return warnings;
+}
+
+int cli_was_warned(const char *sentence) {
+    static const char digits[] = "0123456789";
+    pthread_mutex_lock(&terminal);
+    const char *last = last_warning + strspn(last_warning, digits),
+               *its = sentence + strspn(sentence, digits);
+    const int is_same = strcmp(last, its) == 0;
+    pthread_mutex_unlock(&terminal);
+    return is_same;
+}
+
 void cli_warn(const char *format, ...) {
-    if (is_quiet) return;
     va_list arguments;
+    warnings++;
+    pthread_mutex_lock(&terminal);
     va_start(arguments, format);
-    begin_sentence();
-    fputs("skiagraph: warning: ", stderr);
-    vfprintf(stderr, format, arguments);
-    end_sentence();
+    vsnprintf(last_warning, sizeof last_warning, format, arguments);
+    va_end(arguments);
+    pthread_mutex_unlock(&terminal);
+    if (is_quiet) return;
+    va_start(arguments, format);
+    print_sentence("skiagraph: warning: ", format, arguments);
     va_end(arguments);
 }
 
@@ -133,10 +189,7 @@ void cli_note(const char *format, ...) {
     if (is_quiet) return;
     va_list arguments;
     va_start(arguments, format);
-    begin_sentence();
-    fputs("skiagraph: note: ", stderr);
-    vfprintf(stderr, format, arguments);
-    end_sentence();
+    print_sentence("skiagraph: note: ", format, arguments);
     va_end(arguments);
 }
 

@@ -1,4 +1,4 @@
-/* Sentences on standard error, and the exit status that goes with each. */
+/* Sentences on standard error, and the exit status that goes with each. Control characters are written as \xNN. */
 #ifndef SKG_CLI_SAY_H
 #define SKG_CLI_SAY_H
 
@@ -27,11 +27,20 @@ int cli_exit_status(skg_status status);
 /* Prints "skiagraph: warning: sentence", unless --quiet. */
 void cli_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Whether the last warning was this one, but for a number at its beginning. */
+int cli_was_warned(const char *sentence);
+
+/* The number of warnings so far, printed or not. */
+int cli_warning_count(void);
+
 /* Prints "skiagraph: note: sentence", unless --quiet. */
 void cli_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* A skg_log_function that prints warnings and notes, unless --quiet. */
 void cli_log(int32_t level, const char *sentence, void *user);
+
+/* As printf, for texts with labels or names of files: control characters are written as \xNN. */
+void cli_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 void cli_set_quiet(int quiet);
 int cli_is_quiet(void);

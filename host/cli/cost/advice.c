@@ -5,6 +5,7 @@
 #include "cost/command.h"
 #include "cost/compare.h"
 #include "cost/measure.h"
+#include "cost/sources.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -173,8 +174,25 @@ static void blame(const cost_study *study, int point, double error, double bar, 
                 error);
 }
 
+/* Appends a source of which no point was measured, if its coarse error is above the bar or not known. */
+static void blame_coarse(const cost_study *study, int source, int point, double bar, char *text,
+                         size_t size) {
+    const cost_coarse *coarse = &study->coarse[source];
+    const int has_dial = source == COST_SOURCE_TRIANGLES ? study->has_round
+                         : source == COST_SOURCE_SAMPLES ? study->has_spot
+                                                         : 1;
+    if (point >= 0 || !has_dial || cost_why_absent(study, source)) return;
+    const char *separator = *text ? "; " : "";
+    if (coarse->state != COST_COARSE)
+        cost_append(text, size, "%sthe error of %s was not measured", separator, cost_source_names[source]);
+    else if (coarse->error > bar)
+        cost_append(text, size, "%sthe error of %s is about %.1e", separator, cost_source_names[source],
+                    coarse->error);
+}
+
 /* Why the tolerance is not reached. */
 static void give_reason(const cost_study *study, cost_advice *advice) {
+    static const int sources[] = {COST_SOURCE_SAMPLES, COST_SOURCE_SUPERSAMPLING, COST_SOURCE_TRIANGLES};
     const int sampled[] = {advice->samples, advice->supersampling, advice->triangles};
     char *text = advice->reason;
     const size_t size = sizeof advice->reason;
@@ -187,6 +205,8 @@ static void give_reason(const cost_study *study, cost_advice *advice) {
     for (int k = 0; k < 3; k++)
         blame(study, sampled[k], sampled[k] < 0 ? 0 : study->points[sampled[k]].rms_flat, advice->bar, text,
               size);
+    for (int k = 0; k < 3; k++) blame_coarse(study, sources[k], sampled[k], advice->bar, text, size);
+    blame_coarse(study, COST_SOURCE_REPAIR, advice->repair, advice->bar, text, size);
     if (*text && study->left_out)
         cost_append(text, size, "; %" PRId64 " settings did not fit in the given time", study->left_out);
 }

@@ -121,8 +121,9 @@ static int measure(cost_study *study) {
     if (exit_status == CLI_DONE) exit_status = find_commands(study);
     if (exit_status != CLI_DONE) return exit_status;
     cost_find_frontier(study);
-    cost_find_trust(study);
+    cost_find_unrest(study);
     exit_status = cost_find_sources(study);
+    cost_find_trust(study);
     cost_summarise(study);
     study->stopped = cli_stop_asked();
     study->ended_ms = cli_now_ms();

@@ -31,7 +31,7 @@ char *cost_csv(const cost_study *study) {
     fputs(
         "dial,precision,tolerance,max_bins,samples,supersampling,repair,triangles,relaxation,hysteresis,"
         "nodes,planes,runs,plan_ms,min_ms,median_ms,spread_ms,total_rms,max_open,rms_open,max_ref,rms_ref,max_mm,rms_mm,"
-        "frontier\n",
+        "frontier,priced\n",
         stream);
     for (int i = 0; i < study->count; i++) {
         const cost_point *p = &study->points[i];
@@ -45,7 +45,7 @@ char *cost_csv(const cost_study *study) {
         fprintf(stream, "%.6g,%.6g,%.6g,%.6g,", p->max_flat, p->rms_flat, p->max_ref, p->rms_ref);
         put_number(stream, p->max_mm);
         put_number(stream, p->rms_mm);
-        fprintf(stream, "%d\n", p->on_frontier);
+        fprintf(stream, "%d,%d\n", p->on_frontier, study->priced);
     }
     if (fclose(stream) == 0) return text;
     free(text);

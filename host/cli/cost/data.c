@@ -74,12 +74,19 @@ static json_t *shot_json(const cost_study *study, const cost_shot *shot) {
     return object;
 }
 
+static const char *const states[] = {[COST_ABSENT] = "absent",
+                                     [COST_NOT_KNOWN] = "not known",
+                                     [COST_NOT_MEASURED] = "not measured",
+                                     [COST_COARSE] = "coarse",
+                                     [COST_FINE] = "measured"};
+
 static json_t *source_json(const cost_study *study, int number) {
     const cost_source *source = &study->sources[number];
     char today[160];
     json_t *object = json_object();
     cost_describe_source(study, number, today, sizeof today);
     json_object_set_new(object, "name", cli_json_text(cost_source_names[number]));
+    json_object_set_new(object, "state", cli_json_text(states[source->state]));
     json_object_set_new(object, "error", cli_json_number(source->error));
     json_object_set_new(object, "max", cli_json_number(source->max));
     json_object_set_new(object, "today", *today ? cli_json_text(today) : json_null());
@@ -146,6 +153,8 @@ static void add_run(const cost_study *study, json_t *object) {
     json_object_set_new(object, "stopped", json_boolean(study->stopped));
     json_object_set_new(object, "left_out", json_integer(study->left_out));
     json_object_set_new(object, "unrest", cli_json_number(study->unrest));
+    json_object_set_new(object, "most_unrest", cli_json_number(cost_most_unrest));
+    json_object_set_new(object, "priced", json_boolean(study->priced));
     json_object_set_new(object, "reference_error", cli_json_number(study->reference_error));
     json_object_set_new(object, "grey_levels",
                         study->grey_levels > 0 ? cli_json_number(study->grey_levels) : json_null());

@@ -88,7 +88,10 @@ void cost_close(cost_study *study) {
         free(study->shots[i].small);
         free(study->shots[i].command);
     }
-    for (int i = 0; i < COST_SOURCES; i++) free(study->sources[i].command);
+    for (int i = 0; i < COST_SOURCES; i++) {
+        free(study->sources[i].command);
+        free(study->coarse[i].difference);
+    }
     free(study->batch);
     free(study->pulse_ms);
     for (int i = 0; i < COST_TOLERANCES; i++) {

@@ -140,19 +140,20 @@ static int add_shot_pictures(const cost_study *study, json_t *shots) {
 static int add_source_pictures(const cost_study *study, json_t *sources) {
     int exit_status = CLI_DONE;
     for (int i = 0; exit_status == CLI_DONE && i < COST_SOURCES; i++) {
-        const int own = study->sources[i].own;
-        if (own < 0 || !(study->sources[i].error > 0)) continue;
-        exit_status =
-            add_difference(study, study->points[own].difference, json_array_get(sources, (size_t)i));
+        const cost_source *source = &study->sources[i];
+        const float *difference =
+            source->state == COST_FINE ? study->points[source->own].difference : study->coarse[i].difference;
+        if (!difference || !(source->error > 0)) continue;
+        exit_status = add_difference(study, difference, json_array_get(sources, (size_t)i));
     }
     return exit_status;
 }
 
-/* The page with the data instead of its mark. "/" is escaped so that no text can end the script. */
+/* The page with the data instead of its mark. */
 static char *fill_page(json_t *object) {
     static const char mark[] = "\"STUDY\"";
     const char *place = strstr(cost_page, mark);
-    char *data = json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_ENSURE_ASCII), *text = NULL;
+    char *data = cli_json_for_page(object), *text = NULL;
     size_t size = 0;
     FILE *stream = data && place ? open_memstream(&text, &size) : NULL;
     if (stream) {

@@ -114,29 +114,29 @@ static int name_halving(const cost_study *study, int number, cost_source *source
     return source->command ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }
 
-static const char *why_not_measured(const cost_study *study, int source) {
-    const skg_spot *spot = study->session.options.spot;
-    const int has_spot = spot && spot->shape != SKG_SPOT_POINT;
-    switch (source) {
-    case COST_SOURCE_TRIANGLES:
-        return "the body that the triangles stand for is not known, so that no finer mesh can be made";
-    case COST_SOURCE_PRECISION:
-        return study->session.device.has_double ? "" : "the device has no double precision";
-    case COST_SOURCE_SAMPLES:
-        return has_spot && spot->grid > 0 ? "the scene fixes the samples by a grid" : "";
-    default:
-        return "";
-    }
+int cost_source_dial(int source) {
+    return families[source].dial;
 }
 
-/* Why the source makes no error at all; NULL: it may. */
-static const char *why_none(const cost_study *study, int source) {
+const char *cost_why_not(const cost_study *study, int source) {
+    const skg_spot *spot = study->session.options.spot;
+    if (source == COST_SOURCE_TRIANGLES && *study->triangles_reason) return study->triangles_reason;
+    if (source == COST_SOURCE_TRIANGLES && !study->has_round)
+        return "the body that the triangles stand for is not known, so that no finer mesh can be made";
+    if (source == COST_SOURCE_PRECISION && !study->session.device.has_double)
+        return "not measured: the device has no double precision";
+    if (source == COST_SOURCE_SAMPLES && spot && spot->shape != SKG_SPOT_POINT && spot->grid > 0)
+        return "not measured: the scene fixes the samples by a grid";
+    return cost_time_reason();
+}
+
+const char *cost_why_absent(const cost_study *study, int source) {
     const char *label;
     switch (source) {
     case COST_SOURCE_TRIANGLES:
     case COST_SOURCE_SURFACE:
-        if (source == COST_SOURCE_SURFACE && !study->has_round) return "see triangles";
         if (cost_count_unknown(study, &label) > 0 && !study->is_thorax) return NULL;
+        if (source == COST_SOURCE_SURFACE && study->is_thorax < 0) return NULL;
         if (source == COST_SOURCE_SURFACE) return "every part is a body whose surface is known";
         return study->has_round ? NULL : "cuboids and step wedges are exact";
     case COST_SOURCE_PRECISION:
@@ -158,17 +158,11 @@ static const char *why_none(const cost_study *study, int source) {
     }
 }
 
-static int measure_source(cost_study *study, int number) {
+/* The error against the reference of the dial, and what halves it. */
+static int take_fine(cost_study *study, int number) {
     cost_source *source = &study->sources[number];
-    const cost_setting setting = alone(study, number);
-    source->own = find_point(study, families[number].reference, &setting);
-    if (source->own < 0) {
-        const char *reason = why_not_measured(study, number);
-        snprintf(source->reason, sizeof source->reason, "%s",
-                 *reason ? reason : "not measured: the time did not suffice");
-        return CLI_DONE;
-    }
     const cost_point *today = &study->points[source->own];
+    source->state = COST_FINE;
     source->error = today->rms_flat;
     source->max = today->max_flat;
     source->halving = find_halving(study, number, source->own);
@@ -178,8 +172,31 @@ static int measure_source(cost_study *study, int number) {
                                    : "nothing is left to halve");
         return CLI_DONE;
     }
-    price(study, source);
+    if (study->priced) price(study, source);
     return name_halving(study, number, source);
+}
+
+static void take_coarse(cost_study *study, int number) {
+    const cost_coarse *coarse = &study->coarse[number];
+    cost_source *source = &study->sources[number];
+    source->state = coarse->state;
+    snprintf(source->reason, sizeof source->reason, "%s", coarse->reason);
+    if (coarse->state != COST_COARSE) {
+        if (number == COST_SOURCE_TRIANGLES && !study->has_round) source->state = COST_NOT_KNOWN;
+        return;
+    }
+    source->error = coarse->error;
+    source->max = coarse->max;
+    snprintf(source->reason, sizeof source->reason, "coarsely: beside %s", coarse->compared);
+}
+
+static int measure_source(cost_study *study, int number) {
+    cost_source *source = &study->sources[number];
+    const cost_setting setting = alone(study, number);
+    source->own = find_point(study, families[number].reference, &setting);
+    if (source->own >= 0) return take_fine(study, number);
+    take_coarse(study, number);
+    return CLI_DONE;
 }
 
 /* What no setting of the scene changes, and which therefore no run can measure. */
@@ -189,6 +206,9 @@ static void name_unknown(const cost_study *study, int number, cost_source *sourc
     if (number == COST_SOURCE_SCATTER)
         snprintf(source->reason, sizeof source->reason,
                  "the image has directly transmitted photons only: scattered ones are not simulated here");
+    else if (study->is_thorax < 0)
+        snprintf(source->reason, sizeof source->reason,
+                 "not known while the time does not suffice to measure the triangles");
     else
         snprintf(source->reason, sizeof source->reason,
                  "the body behind the triangles of %" PRId64 " part%s (%.40s%s) is not known", parts,
@@ -200,8 +220,9 @@ int cost_find_sources(cost_study *study) {
     study->largest = -1;
     for (int number = 0; number < COST_SOURCES && exit_status == CLI_DONE; number++) {
         cost_source *source = &study->sources[number];
-        const char *none = why_none(study, number);
-        *source = (cost_source){.error = (double)NAN,
+        const char *none = cost_why_absent(study, number);
+        *source = (cost_source){.state = COST_ABSENT,
+                                .error = (double)NAN,
                                 .max = (double)NAN,
                                 .own = -1,
                                 .halving = -1,
@@ -211,6 +232,7 @@ int cost_find_sources(cost_study *study) {
             source->error = source->max = 0;
             snprintf(source->reason, sizeof source->reason, "%s", none);
         } else if (number >= COST_SOURCE_SURFACE) {
+            source->state = COST_NOT_KNOWN;
             name_unknown(study, number, source);
         } else {
             exit_status = measure_source(study, number);
@@ -238,7 +260,8 @@ static double error_near(const cost_study *study, int source, const cost_setting
     for (int i = 0; i < study->count; i++) {
         const cost_point *point = &study->points[i];
         if (point->reference != families[source].reference || point->dial != families[source].dial) continue;
-        if (point->setting.samples > best->samples || point->setting.supersampling > best->supersampling)
+        if (point->setting.samples > best->samples || point->setting.supersampling > best->supersampling ||
+            cost_triangles(study, &point->setting) > cost_triangles(study, best))
             continue;
         if (!(point->rms_flat >= least)) least = point->rms_flat;
     }
@@ -269,15 +292,25 @@ void cost_find_trust(cost_study *study) {
     const cost_setting *best = &study->references[COST_OF_ALL].setting;
     double squares = 0;
     for (int k = 0; k < 3; k++) {
-        const double error = error_near(study, sampled[k], best);
-        if (!isnan(error)) squares += error * error;
+        /* Where no point of the dial was measured, the best image may err as much as the scene's; NaN: nothing is known. */
+        const double near = error_near(study, sampled[k], best), own = study->sources[sampled[k]].error;
+        const double error = isnan(near) ? own : near;
+        if (study->sources[sampled[k]].state != COST_NOT_KNOWN) squares += error * error;
     }
     study->reference_error = study->references[COST_OF_ALL].image ? sqrt(squares) : (double)NAN;
     study->grey_levels = find_grey_levels(study);
+}
+
+void cost_find_unrest(cost_study *study) {
     study->unrest = (double)NAN;
     if (study->pulse_count < 4) return;
     qsort(study->pulse_ms, (size_t)study->pulse_count, sizeof *study->pulse_ms, ascending);
     const double *ms = study->pulse_ms;
     const int64_t n = study->pulse_count;
     study->unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
+    study->priced = study->unrest <= cost_most_unrest;
+    for (int i = 0; i < study->shot_count; i++) {
+        cost_shot *shot = &study->shots[i];
+        if (isnan(shot->spread_ms)) shot->spread_ms = study->unrest * shot->min_ms;
+    }
 }

@@ -20,10 +20,20 @@ const char *const cost_repair_names[3] = {
 const char *const cost_reference_names[COST_REFERENCES] = {
     "precision, tolerance, bins", "source samples",    "supersampling", "repair", "triangles",
     "relaxation, hysteresis",     "all dials together"};
+const double cost_most_unrest = 0.5; /* above it, prices would be those of the other processes */
 const double cost_tolerances[COST_TOLERANCES] = {1e-2, 1e-3, 1e-4, 1e-6};
 
 double cost_left_ms(const cost_study *study, double share) {
     return cli_stop_asked() ? 0 : study->begun_ms + share * study->within_ms - cli_now_ms();
+}
+
+double cost_coarse_left_ms(const cost_study *study) {
+    return cost_left_ms(study, 0.85);
+}
+
+const char *cost_time_reason(void) {
+    return cli_stop_asked() ? "not measured: the measurement was stopped"
+                            : "not measured: the time did not suffice";
 }
 
 const char *cost_dial_name(int dial) {

@@ -89,7 +89,8 @@ typedef struct {
     int64_t runs, visits;
     double run_ms[COST_MOST_RUNS], visit_ms[COST_MOST_VISITS];
     double min_ms, median_ms;
-    double spread_ms; /* the median of visit_ms minus min_ms; NaN: a single visit */
+    /* The median of visit_ms minus min_ms; of a single visit, the unrest's share of min_ms, and NaN until that is known. */
+    double spread_ms;
     /* Errors against the reference COST_OF_ALL, as fractions of the flat field. NaN: not compared. */
     double total_rms, total_max;
     /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels the difference from
@@ -130,13 +131,31 @@ enum {
     COST_SOURCES
 };
 
+enum {
+    COST_ABSENT,       /* the scene has no such error */
+    COST_NOT_KNOWN,    /* no run can measure it */
+    COST_NOT_MEASURED, /* for want of time, double precision or memory */
+    COST_COARSE,       /* against a setting that is somewhat better, or of another mesh */
+    COST_FINE          /* against the reference of the dial */
+};
+
+/* A source of error in the coarse pass, which measures no times. */
 typedef struct {
-    double error, max; /* root mean square and largest, as fractions of the flat field; NaN: not known */
+    int state;         /* COST_NOT_MEASURED or COST_COARSE */
+    double error, max; /* as of a source */
+    float *difference; /* as of a shot */
+    char compared[96]; /* with what: "84000 triangles" */
+    char reason[192];  /* why it is not measured */
+} cost_coarse;
+
+typedef struct {
+    int state;         /* COST_ABSENT ... */
+    double error, max; /* root mean square and largest, as fractions of the flat field; NaN: not measured */
     int own, halving;  /* points: of today's setting and of the fastest with half of its error; -1: none */
-    double halving_ms, halving_spread_ms; /* what `halving` adds to the time of an image; NaN: not known */
+    double halving_ms, halving_spread_ms; /* what `halving` adds to the time of an image; NaN: no price */
     char buys[96];                        /* the dial's value that halves it: "84000 triangles" */
-    char reason[192];                     /* why something is not known, or why the error is 0 */
-    char *command;                        /* NULL: none */
+    char reason[192]; /* why something is not known or not measured, or why the error is 0 */
+    char *command;    /* NULL: none */
 } cost_source;
 
 enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
@@ -153,7 +172,7 @@ typedef struct {
     int whole_state;            /* COST_WHOLE_... */
     cost_point whole;           /* all of these together, against the best rays of the same number */
     char *rays_command, *whole_command;
-    char reason[256]; /* why the tolerance is not reached; empty: it is */
+    char reason[512]; /* why the tolerance is not reached; empty: it is */
 } cost_advice;
 
 typedef struct {
@@ -186,9 +205,14 @@ typedef struct {
     double plan_ms;                            /* of the scene's setting */
     cost_meshing meshings[COST_MOST_MESHINGS]; /* rising in triangles; the last one is the reference */
     int meshing_count;
-    int is_thorax, has_round; /* 1: the generated thorax; a sphere or cylinder */
-    double thorax_ms;         /* that generating it took */
-    int thorax_is_simple;     /* 1: the thorax of the scene is that of `thorax --simple` */
+    int is_thorax;    /* 1: the scene is the generated thorax; -1: the time did not suffice to find out */
+    int has_round;    /* 1: it is, may be, or has a sphere or a cylinder */
+    double thorax_ms; /* that generating one with this number of triangles took */
+    int64_t thorax_made;
+    int thorax_is_simple; /* 1: the thorax of the scene is that of `thorax --simple` */
+    char triangles_reason
+        [192]; /* why no finer mesh was made; empty: there are finer ones, or no round parts */
+    cost_coarse coarse[COST_SOURCES];
     cost_reference references[COST_REFERENCES];
     cost_point points[COST_MOST_POINTS];
     int count;
@@ -199,13 +223,14 @@ typedef struct {
     double *pulse_ms; /* [pulse_count] times of the scene's own image between visits: the machine's unrest */
     int64_t pulse_count, pulse_capacity;
     double unrest; /* their interquartile range over their median; NaN: fewer than 4 */
+    int priced;    /* 1: the unrest is at most cost_most_unrest; 0: neither times nor prices are given */
     double
         reference_error; /* of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known */
     double grey_levels; /* of 256 in a PNG of transmission, for a whole flat field; 0: not known */
     cost_source sources[COST_SOURCES];
     int largest;     /* the source with the largest error; -1: none is known */
     int buy, saving; /* shots that are worth changing to; -1: none */
-    char summary[640];
+    char summary[1024];
     char notes[COST_MOST_NOTES][512];
     int note_count;
     cost_advice advice[COST_TOLERANCES];
@@ -213,6 +238,7 @@ typedef struct {
 
 extern const char *const cost_source_names[COST_SOURCES];
 extern const char *const cost_repair_names[3]; /* by SKG_REPAIR_ value */
+extern const double cost_most_unrest;          /* for prices */
 extern const double cost_tolerances[COST_TOLERANCES];
 
 /* The dials that are compared with a reference: "precision, tolerance, bins". */
@@ -223,6 +249,12 @@ const char *cost_precision_name(const cost_setting *setting);
 
 /* Milliseconds until the share of the given time has passed; 0 or less: it has, or a signal asked to stop. */
 double cost_left_ms(const cost_study *study, double share);
+
+/* The same for the coarse pass, which must leave time for the reference that everything needs. */
+double cost_coarse_left_ms(const cost_study *study);
+
+/* Why something was not measured, if the time or a signal is the reason. */
+const char *cost_time_reason(void);
 
 /* Whether two settings mean the same image. */
 int cost_is_same(const cost_study *study, const cost_setting *a, const cost_setting *b);

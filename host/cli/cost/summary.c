@@ -31,20 +31,26 @@ const char *cost_percent(double share, char *text, size_t size) {
 const char *cost_ms(double ms, double spread_ms, char *text, size_t size) {
     char number[32], spread[32];
     put_number(ms, number, sizeof number);
-    put_number(spread_ms, spread, sizeof spread);
-    if (spread_ms > 0.05 * fabs(ms))
-        snprintf(text, size, "%s +- %s ms", number, spread);
+    put_number(ms + spread_ms, spread, sizeof spread);
+    if (spread_ms > 0.05 * ms)
+        snprintf(text, size, "%s to %s ms", number, spread);
     else
         snprintf(text, size, "%s ms", number);
     return text;
 }
 
 const char *cost_more(double ms, double spread_ms, char *text, size_t size) {
-    char number[64];
-    if (fabs(ms) <= spread_ms)
-        snprintf(text, size, "in the same time");
+    char number[32], spread[32];
+    put_number(ms, number, sizeof number);
+    put_number(spread_ms, spread, sizeof spread);
+    if (isnan(ms))
+        snprintf(text, size, "no price");
+    else if (fabs(ms) <= spread_ms)
+        snprintf(text, size, "the same time within +- %s ms", spread);
+    else if (spread_ms > 0.05 * fabs(ms))
+        snprintf(text, size, "%s%s +- %s ms", ms > 0 ? "+" : "", number, spread);
     else
-        snprintf(text, size, "%s%s", ms > 0 ? "+" : "", cost_ms(ms, spread_ms, number, sizeof number));
+        snprintf(text, size, "%s%s ms", ms > 0 ? "+" : "", number);
     return text;
 }
 
@@ -135,46 +141,102 @@ static void add_change(cost_study *study, const char *what, int number) {
                     cost_percent(shot->total_rms, percent, sizeof percent));
 }
 
-static void name_largest(cost_study *study) {
-    char percent[48];
-    if (study->largest < 0) {
-        cost_append(study->summary, sizeof study->summary,
-                    " No source of error that was measured is above 0.");
-        return;
-    }
-    cost_append(study->summary, sizeof study->summary, " Largest error: %s (%s).",
-                cost_source_names[study->largest],
-                cost_percent(study->sources[study->largest].error, percent, sizeof percent));
+/* The sources that could be measured and were not: "triangles, repair". Returns their number. */
+static int list_missing(const cost_study *study, char *text, size_t size) {
+    int count = 0;
+    *text = '\0';
+    for (int i = 0; i < COST_SOURCES; i++)
+        if (study->sources[i].state == COST_NOT_MEASURED)
+            cost_append(text, size, "%s%s", count++ ? ", " : "", cost_source_names[i]);
+    return count;
 }
 
-void cost_summarise(cost_study *study) {
+static int count_measured(const cost_study *study) {
+    int count = 0;
+    for (int i = 0; i < COST_SOURCES; i++) count += study->sources[i].state >= COST_COARSE;
+    return count;
+}
+
+static void name_largest(cost_study *study) {
+    char percent[48], missing[160];
+    const int misses = list_missing(study, missing, sizeof missing), measured = count_measured(study);
+    const cost_source *largest = study->largest < 0 ? NULL : &study->sources[study->largest];
+    if (largest)
+        cost_append(study->summary, sizeof study->summary, " Largest error%s: %s (%s%s).",
+                    misses ? " of those measured" : "", cost_source_names[study->largest],
+                    largest->state == COST_COARSE ? "about " : "",
+                    cost_percent(largest->error, percent, sizeof percent));
+    else if (measured)
+        cost_append(study->summary, sizeof study->summary,
+                    " No source of error that was measured is above 0.");
+    else
+        cost_append(study->summary, sizeof study->summary, " No source of error was measured.");
+    if (misses) cost_append(study->summary, sizeof study->summary, " Not measured: %s.", missing);
+}
+
+/* What an image costs, and how far it is off. */
+static void state_here(cost_study *study) {
     const cost_shot *here = &study->shots[study->here];
-    char ms[64], percent[48], sure[48];
-    study->buy = choose_buy(study);
-    study->saving = choose_saving(study);
-    if (study->buy >= 0 && study->shots[study->buy].min_ms < here->min_ms)
-        study->saving = -1; /* it saves time as well */
     const char *each = study->frames > 1 ? "a frame in batches" : "an image";
-    cost_append(study->summary, sizeof study->summary, "This scene: %s %s",
-                cost_ms(here->min_ms, here->spread_ms, ms, sizeof ms), each);
-    if (!isnan(here->total_rms))
-        cost_append(study->summary, sizeof study->summary, ", %s%s off",
-                    study->reference_error > here->total_rms ? "at least " : "",
+    char ms[64], percent[48], sure[48];
+    cost_append(study->summary, sizeof study->summary, "This scene: ");
+    if (study->priced)
+        cost_append(study->summary, sizeof study->summary, "%s %s",
+                    cost_ms(here->min_ms, here->spread_ms, ms, sizeof ms), each);
+    if (study->priced && !isnan(here->total_rms)) cost_append(study->summary, sizeof study->summary, ", ");
+    if (!isnan(
+            here->total_rms)) /* a best image that is known less well than its distance gives a lower bound */
+        cost_append(study->summary, sizeof study->summary, "%s%s off",
+                    study->reference_error <= here->total_rms ? "" : "at least ",
                     cost_percent(here->total_rms, percent, sizeof percent));
+    else if (!study->priced)
+        cost_append(study->summary, sizeof study->summary, "neither its error nor its time is known");
     if (study->reference_error > 0.1 * here->total_rms && study->reference_error <= here->total_rms)
         cost_append(study->summary, sizeof study->summary, " (+- %s)",
                     cost_percent(study->reference_error, sure, sizeof sure));
     cost_append(study->summary, sizeof study->summary, ".");
+}
+
+/* Why there are no times and prices, and what halves the largest error. */
+static void refuse_prices(cost_study *study) {
+    const cost_source *largest = study->largest < 0 ? NULL : &study->sources[study->largest];
+    study->buy = study->saving = -1;
+    if (largest && largest->halving >= 0)
+        cost_append(study->summary, sizeof study->summary, " %s would halve it.", largest->buys);
+    if (isnan(study->unrest))
+        cost_append(
+            study->summary, sizeof study->summary,
+            " No price: the time of the same image was measured too rarely to know how much it varies.");
+    else
+        cost_append(
+            study->summary, sizeof study->summary,
+            " No price: the time of the same image varied by %.0f %%, more than the %.0f %% up to which prices "
+            "are given; repeat this on an idle machine.",
+            100 * study->unrest, 100 * cost_most_unrest);
+}
+
+void cost_summarise(cost_study *study) {
+    const cost_shot *here = &study->shots[study->here];
+    char percent[48];
+    study->buy = choose_buy(study);
+    study->saving = choose_saving(study);
+    if (study->buy >= 0 && study->shots[study->buy].min_ms < here->min_ms)
+        study->saving = -1; /* it saves time as well */
+    state_here(study);
     name_largest(study);
     if (study->noise > 10 * here->total_rms) {
         cost_append(study->summary, sizeof study->summary,
                     " The scene's noise is %s, so nothing needs to be bought.",
                     cost_percent(study->noise, percent, sizeof percent));
         study->buy = -1;
-    } else if (study->buy >= 0) {
-        add_change(study, "Best buy", study->buy);
-    } else {
-        cost_append(study->summary, sizeof study->summary, " No setting that was measured errs less.");
     }
+    if (!study->priced) {
+        refuse_prices(study);
+        return;
+    }
+    if (study->buy >= 0)
+        add_change(study, "Best buy", study->buy);
+    else if (!(study->noise > 10 * here->total_rms) && study->shot_count > 1)
+        cost_append(study->summary, sizeof study->summary, " No setting that was measured errs less.");
     if (study->saving >= 0) add_change(study, "To save time", study->saving);
 }

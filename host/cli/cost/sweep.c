@@ -2,11 +2,13 @@
 
 #include "common/progress.h"
 #include "common/say.h"
+#include "cost/coarse.h"
 #include "cost/combine.h"
 #include "cost/measure.h"
 #include "cost/meshing.h"
 #include "cost/points.h"
 #include "cost/settings.h"
+#include "cost/thorax.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,15 +16,22 @@
 /* Shares of the given time: after them no other setting of the kind is begun. The rest is for the recommended settings and
  * for writing. */
 static const double SWEPT = 0.6, COMBINED = 0.72, TIMED = 0.86;
-static const double ALL = 6; /* an image of COST_OF_ALL may take so many times the time of a setting's */
+static const double ALL = 6;    /* an image of COST_OF_ALL may take so many times the time of a setting's */
+static const double LEFT = 0.3; /* and this share of the time that is left */
+
+static double making_ms(const cost_study *study, const cost_setting *setting) {
+    return setting->meshing < 0 ? 0 : cost_making_ms(study, &study->meshings[setting->meshing]);
+}
 
 /* What measuring a point takes, with its reference if that is not made yet. */
 static double effort_ms(const cost_study *study, const cost_point *point) {
     const cost_reference *reference = &study->references[point->reference];
     const double phases = point->reference == COST_OF_BREATH ? COST_PHASES : 1;
     double ms = phases * cost_effort_ms(study, &point->setting);
-    if (!reference->image) ms += study->plan_ms + cost_estimate_ms(study, &reference->setting);
-    return ms;
+    if (!reference->image)
+        ms += study->plan_ms + cost_estimate_ms(study, &reference->setting) +
+              making_ms(study, &reference->setting);
+    return ms + making_ms(study, &point->setting);
 }
 
 /* The next point to measure: the smallest priority, then the least effort. -1: none is left. */
@@ -101,7 +110,8 @@ static int find_noise(cost_study *study, const double *image) {
 static int make_best(cost_study *study, const double *own) {
     cost_reference *best = &study->references[COST_OF_ALL];
     const cost_reference *rays = &study->references[COST_OF_RAYS];
-    best->setting = cost_best_of_all(study, ALL * cost_patience_ms(study));
+    best->setting =
+        cost_best_of_all(study, fmin(ALL * cost_patience_ms(study), LEFT * cost_left_ms(study, 1)));
     const int exit_status = cost_make_reference(study, COST_OF_ALL);
     if (exit_status != CLI_DONE) return exit_status;
     for (int64_t i = 0; i < study->pixels; i++) best->image[i] += rays->image[i] - own[i];
@@ -126,10 +136,11 @@ static int measure_in_turn(cost_study *study, double *image) {
     cli_progress_forecast("timing the scene as it is", 0, 0, study->within_ms);
     int exit_status = look_at_own(study, image);
     if (exit_status == CLI_DONE) exit_status = find_noise(study, image);
-    cli_progress_forecast("making meshes with other numbers of triangles", 0, 0, cost_left_ms(study, 1));
-    if (exit_status == CLI_DONE) exit_status = cost_find_meshings(study);
+    cli_progress_forecast("measuring every source of error coarsely", 0, 0, fmax(cost_left_ms(study, 1), 0));
+    if (exit_status == CLI_DONE) exit_status = cost_measure_coarsely(study, image);
+    cost_limit_meshings(study);
     cli_progress_forecast("computing the best image, with which others are compared", 0, 0,
-                          cost_left_ms(study, 1));
+                          fmax(cost_left_ms(study, 1), 0));
     if (exit_status == CLI_DONE) exit_status = make_first_references(study, image);
     if (exit_status != CLI_DONE) return exit_status;
     cost_choose_settings(study);

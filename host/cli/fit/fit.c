@@ -63,7 +63,7 @@ static int print(const fit_work *work) {
     if (cli_is_quiet()) return CLI_DONE;
     fit_print(work);
     for (int i = 0; (path = cli_nth_value(work->arguments, &cli_flag_fit_output, i)); i++)
-        printf("wrote %s\n", path);
+        cli_print("wrote %s\n", path);
     return CLI_DONE;
 }
 

@@ -88,13 +88,6 @@ static int add_target(fit_work *work, const char *word, double phase, double uni
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-static int read_phase(const char *value, double *phase) {
-    char *end = NULL;
-    *phase = strtod(value, &end);
-    if (end != value && !*end && *phase >= 0 && *phase < 1) return CLI_DONE;
-    return cli_error(CLI_USAGE, "--phase %s: a phase is a number from 0 to below 1", value);
-}
-
 /* A phase holds for the targets after it; the first also for those before it. */
 static int add_targets(fit_work *work) {
     const cli_arguments *arguments = work->arguments;
@@ -104,10 +97,10 @@ static int add_targets(fit_work *work) {
         return cli_error(CLI_USAGE,
                          "fit: give at least one target and its phase: --target liver=liver.stl --phase 0");
     int exit_status = cli_mesh_unit(arguments, &unit_mm);
-    if (exit_status == CLI_DONE) exit_status = read_phase(first, &phase);
+    if (exit_status == CLI_DONE) exit_status = cli_phase("--phase", first, &phase);
     for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++) {
         const struct cli_given *given = arguments->given + i;
-        if (given->flag == &cli_flag_fit_phase) exit_status = read_phase(given->value, &phase);
+        if (given->flag == &cli_flag_fit_phase) exit_status = cli_phase("--phase", given->value, &phase);
         if (given->flag == &cli_flag_fit_target) exit_status = add_target(work, given->value, phase, unit_mm);
     }
     return exit_status;

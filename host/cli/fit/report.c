@@ -1,5 +1,6 @@
 #include "fit/report.h"
 
+#include "common/csv.h"
 #include "common/file.h"
 #include "common/json.h"
 #include "common/say.h"
@@ -104,9 +105,9 @@ void fit_print(const fit_work *work) {
         skg_fit_target one;
         skg_fit_target_init(&one);
         if (skg_fit_target_get(work->fit, t, &one) != SKG_OK) continue;
-        printf("%-20s %6.3g %8.3g | %8.3g %8.3g %8.3g | %8.3g %8.3g %8.3g\n", one.label, one.phase,
-               one.motion_mm, one.before_mean_mm, one.before_rms_mm, one.before_max_mm, one.after_mean_mm,
-               one.after_rms_mm, one.after_max_mm);
+        cli_print("%-20s %6.3g %8.3g | %8.3g %8.3g %8.3g | %8.3g %8.3g %8.3g\n", one.label, one.phase,
+                  one.motion_mm, one.before_mean_mm, one.before_rms_mm, one.before_max_mm, one.after_mean_mm,
+                  one.after_rms_mm, one.after_max_mm);
     }
     printf("%" PRId64 " evaluations in %.3g s\n", work->state.evaluations, work->seconds);
 }
@@ -125,9 +126,10 @@ int fit_write_csv(const fit_work *work, const char *path) {
         skg_fit_target one;
         skg_fit_target_init(&one);
         if (skg_fit_target_get(work->fit, t, &one) != SKG_OK) continue;
-        fprintf(stream, "\"%s\",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", one.label, one.phase,
-                one.motion_mm, one.before_mean_mm, one.before_rms_mm, one.before_max_mm, one.after_mean_mm,
-                one.after_rms_mm, one.after_max_mm);
+        cli_csv_text(one.label, stream);
+        fprintf(stream, ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", one.phase, one.motion_mm,
+                one.before_mean_mm, one.before_rms_mm, one.before_max_mm, one.after_mean_mm, one.after_rms_mm,
+                one.after_max_mm);
     }
     int exit_status = fclose(stream) == 0 ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
     if (exit_status == CLI_DONE) exit_status = cli_write_file(path, text, size);

@@ -50,11 +50,11 @@ static const char *const text[] = {
     "null.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_beam_kvp,   &cli_flag_beam_filter,   &cli_flag_beam_angle,
-                                        &cli_flag_beam_anode, &cli_flag_beam_model,    &cli_flag_beam_bin,
-                                        &cli_flag_beam_mas,   &cli_flag_beam_distance, &cli_flag_beam_output,
-                                        &cli_flag_beam_file,  &cli_flag_beam_unit,     &cli_flag_plot,
-                                        &cli_flag_json,       &cli_flag_quiet,         NULL};
+static const cli_flag *const flags[] = {
+    &cli_flag_beam_kvp,    &cli_flag_beam_filter, &cli_flag_beam_angle, &cli_flag_beam_anode,
+    &cli_flag_beam_model,  &cli_flag_beam_bin,    &cli_flag_beam_mas,   &cli_flag_beam_distance,
+    &cli_flag_beam_output, &cli_flag_beam_file,   &cli_flag_beam_unit,  &cli_flag_plot,
+    &cli_flag_json,        &cli_flag_strict,      &cli_flag_quiet,      NULL};
 
 static const cli_item examples[] = {
     {"skiagraph beam --kvp 90 --filter Al:2.5 --filter Cu:0.1", "prints the quality of a filtered beam"},

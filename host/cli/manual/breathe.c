@@ -13,7 +13,7 @@ const cli_flag cli_flag_breathe_fps = {
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_breathe_phase = {
     "--phase", "P",
-    "Makes one picture at this phase of the breath: 0 is end-inspiration, 0.5 is about end-expiration. Events are "
+    "Makes one picture at this phase of the breath: from 0, end-inspiration, to below 1; 0.5 is about end-expiration. Events are "
     "left out: they happen at a time, and a phase comes back in every breath.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_breathe_at = {
@@ -58,6 +58,7 @@ static const cli_flag *const flags[] = {&cli_flag_breathe_output,
                                         &cli_flag_lenient,
                                         &cli_flag_json,
                                         &cli_flag_verbose,
+                                        &cli_flag_strict,
                                         &cli_flag_quiet,
                                         NULL};
 

@@ -10,8 +10,8 @@ const cli_flag cli_flag_cost_quick = {"--quick", NULL, "Measures fewer settings,
 
 const cli_flag cli_flag_cost_within = {
     "--within", "SECONDS",
-    "Measures for about SECONDS, 1 to 86400 (default 60): the settings that say most come first, and those that do not fit "
-    "are left out.",
+    "Measures for about SECONDS, 1 to 86400 (default 60): every source of error coarsely, then the settings that say most. What "
+    "does not fit is left out, and said.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_cost_frames = {
     "--frames", "N",
@@ -27,16 +27,26 @@ static const char *const text[] = {
     "Prints first one sentence: what an image costs, how far it is off, which error is the largest, and what to change. Then a "
     "line for each source of error, and the settings for errors of 1e-2, 1e-3, 1e-4 and 1e-6 of the flat field. The page and "
     "the .csv have every setting. Times are the fastest runs of visits that alternate between the settings; the unrest is the "
-    "spread of the times of one image that is computed again and again meanwhile.",
+    "spread of the times of one image that is computed again and again meanwhile. Above an unrest of 50 % no price is given; errors need "
+    "no quiet machine.",
     "Ctrl-C stops the measurement, and what is done is kept and written.",
-    "--json prints {summary, sources, unrest, settings, references, points, advice, notes, ...}; advice names points by their "
+    "--json prints {summary, sources, unrest, priced, settings, references, points, advice, notes, ...}; advice names points by their "
     "number.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_cost_output, &cli_flag_cost_within, &cli_flag_cost_frames,
-                                        &cli_flag_cost_quick,  &cli_flag_device,      &cli_flag_strategy,
-                                        &cli_flag_set,         &cli_flag_lenient,     &cli_flag_json,
-                                        &cli_flag_verbose,     &cli_flag_quiet,       NULL};
+static const cli_flag *const flags[] = {&cli_flag_cost_output,
+                                        &cli_flag_cost_within,
+                                        &cli_flag_cost_frames,
+                                        &cli_flag_cost_quick,
+                                        &cli_flag_device,
+                                        &cli_flag_strategy,
+                                        &cli_flag_set,
+                                        &cli_flag_lenient,
+                                        &cli_flag_json,
+                                        &cli_flag_verbose,
+                                        &cli_flag_strict,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item examples[] = {
     {"skiagraph cost scene.json -o cost.html", "writes cost.html and cost.csv and prints the result"},

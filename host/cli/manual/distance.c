@@ -38,6 +38,7 @@ static const cli_flag *const flags[] = {&cli_flag_distance_map,
                                         &cli_flag_distance_spacing,
                                         &cli_flag_mesh_unit,
                                         &cli_flag_json,
+                                        &cli_flag_strict,
                                         &cli_flag_quiet,
                                         NULL};
 

@@ -16,9 +16,12 @@ const cli_flag cli_flag_fit_output = {
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_fit_parameters = {
     "--parameters", "NAMES",
-    "What is fitted, separated by commas: tendon-x, tendon-y, tendon-z, plane-azimuth, plane-elevation, plane-offset, "
-    "diaphragm-alpha-min, diaphragm-alpha-max, diaphragm-beta, liver-alpha-min, liver-alpha-max, liver-beta, diaphragm-ribs, "
-    "diaphragm-liver, or the groups tendon, plane, diaphragm, liver and links. If it is not given: what Breathing.Fit of the scene says, or all.",
+    "What is fitted, separated by commas: tendon-x, tendon-y, tendon-z, dome-left, dome-right, dome-back, muscle-length, "
+    "rib-angle, rib-fall, liver-follows, liver-held, or the groups tendon, domes, muscle, ribs and follow; tissues "
+    "(diaphragm-alpha-min, -alpha-max, -beta, liver-alpha-min, ...) or the groups diaphragm and liver. With the coupling "
+    "\"Paper\" also plane-azimuth, plane-elevation, plane-offset, diaphragm-ribs, diaphragm-liver, or the groups plane and "
+    "links, instead of those from dome-left to liver-held. If it is not given: what Breathing.Fit of the scene says, or all but tissues; with the coupling "
+    "\"Paper\" all.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_fit_bounds = {"--bounds", "NAME=LOW:HIGH",
                                       "The range of a parameter. May be given several times.", NULL,
@@ -51,11 +54,10 @@ static const char *const text[] = {
     NULL};
 
 static const cli_flag *const flags[] = {
-    &cli_flag_fit_target,     &cli_flag_fit_phase,  &cli_flag_fit_output,
-    &cli_flag_fit_parameters, &cli_flag_fit_bounds, &cli_flag_fit_evaluations,
-    &cli_flag_fit_seed,       &cli_flag_fit_method, &cli_flag_fit_checkpoint,
-    &cli_flag_mesh_unit,      &cli_flag_set,        &cli_flag_lenient,
-    &cli_flag_json,           &cli_flag_quiet,      NULL};
+    &cli_flag_fit_target,     &cli_flag_fit_phase,       &cli_flag_fit_output, &cli_flag_fit_parameters,
+    &cli_flag_fit_bounds,     &cli_flag_fit_evaluations, &cli_flag_fit_seed,   &cli_flag_fit_method,
+    &cli_flag_fit_checkpoint, &cli_flag_mesh_unit,       &cli_flag_set,        &cli_flag_lenient,
+    &cli_flag_json,           &cli_flag_strict,          &cli_flag_quiet,      NULL};
 
 static const cli_item files[] = {{"FILE.json", "a scene that every verb takes"},
                                  {"FILE.html", "tables, errors and maps on one page"},

@@ -6,7 +6,8 @@ const cli_flag cli_flag_help = {"--help", NULL, "Prints this text.", NULL, CLI_N
 const cli_flag cli_flag_device = {
     "--device", "NAME",
     "The OpenCL device: cpu, gpu, PLATFORM:DEVICE by numbers, or part of a device's name. \"cpu threads=4\" "
-    "also limits the number of threads. The default is the environment variable SKG_DEVICE, then the best "
+    "also limits the number of threads. \"driver=PATH\" opens the library of an OpenCL driver that is not "
+    "installed, and chooses among its devices; a path with blanks stands in double quotes. The default is the environment variable SKG_DEVICE, then the best "
     "device that there is.",
     NULL, CLI_NAMES_NOTHING};
 
@@ -50,6 +51,10 @@ const cli_flag cli_flag_lenient = {
     "contradicts Spacing: these are warnings.",
     NULL, CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_strict = {
+    "--strict", NULL,
+    "Makes an error of warnings: the exit status is 1 if there was one, also with --quiet. Outputs are written all the same.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_quiet = {"--quiet", NULL, "Prints errors only.", NULL, CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_verbose = {

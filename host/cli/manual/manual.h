@@ -43,8 +43,8 @@ void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
     cli_manual_distance, cli_manual_fit, cli_manual_image, cli_manual_lbuffer, cli_manual_material,
-    cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct, cli_manual_scan, cli_manual_thorax,
-    cli_manual_view;
+    cli_manual_make, cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct, cli_manual_scan,
+    cli_manual_thorax, cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -76,6 +76,11 @@ extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_f
 extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_angle, cli_flag_beam_anode,
     cli_flag_beam_model, cli_flag_beam_bin, cli_flag_beam_mas, cli_flag_beam_distance, cli_flag_beam_output,
     cli_flag_beam_file, cli_flag_beam_unit;
+extern const cli_flag cli_flag_make_output, cli_flag_make_box, cli_flag_make_radius, cli_flag_make_fraction,
+    cli_flag_make_count, cli_flag_make_spread, cli_flag_make_gap, cli_flag_make_tilt, cli_flag_make_seed,
+    cli_flag_make_segments, cli_flag_make_period, cli_flag_make_level, cli_flag_make_cells,
+    cli_flag_make_per_mm, cli_flag_make_bars, cli_flag_make_length, cli_flag_make_width,
+    cli_flag_make_thickness, cli_flag_make_heights, cli_flag_make_inner, cli_flag_make_spokes;
 extern const cli_flag cli_flag_thorax_output, cli_flag_thorax_triangles, cli_flag_thorax_simple;
 extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_flag_breathe_fps,
     cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
@@ -86,6 +91,7 @@ extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cl
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,
     cli_flag_scan_overwrite, cli_flag_scan_breathing, cli_flag_scan_subframes, cli_flag_scan_geometry,
     cli_flag_scan_flats, cli_flag_scan_darks, cli_flag_scan_shard, cli_flag_scan_join, cli_flag_scan_mixed,
-    cli_flag_scan_grey16, cli_flag_scan_packed, cli_flag_scan_packed_grey16, cli_flag_scan_phases;
+    cli_flag_scan_grey16, cli_flag_scan_packed, cli_flag_scan_packed_grey16, cli_flag_scan_phases,
+    cli_flag_scan_verify, cli_flag_strict;
 
 #endif

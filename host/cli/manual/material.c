@@ -36,6 +36,7 @@ static const cli_flag *const flags[] = {&cli_flag_material_energy,
                                         &cli_flag_material_naive,
                                         &cli_flag_material_list,
                                         &cli_flag_json,
+                                        &cli_flag_strict,
                                         &cli_flag_quiet,
                                         NULL};
 

@@ -25,8 +25,13 @@ static const char *const text[] = {
     "inverted_components, leaving_cavities, ...}]}.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_mesh_unit, &cli_flag_mesh_fix, &cli_flag_mesh_output,
-                                        &cli_flag_json,      &cli_flag_quiet,    NULL};
+static const cli_flag *const flags[] = {&cli_flag_mesh_unit,
+                                        &cli_flag_mesh_fix,
+                                        &cli_flag_mesh_output,
+                                        &cli_flag_json,
+                                        &cli_flag_strict,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item examples[] = {
     {"skiagraph mesh liver.stl lungs.ply", "reports the health of two meshes"},

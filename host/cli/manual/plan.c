@@ -6,7 +6,7 @@ static const char *const text[] = {
     "parts that overlap; and what is not simulated.",
     cli_text_meshes,
     "--json prints {effects, nodes, planes, strategy, tiles, bound, bound_precision, stages_ns, ...}: bound is "
-    "the error that fewer energies and planes make, bound_precision that of rounding in the precision (null with half); "
+    "the error that fewer energies and planes make, bound_precision that of rounding in the precision; "
     "both add up. Each node is [keV, photons per "
     "pixel]; the nodes can be given as the Beam of a scene with a Tolerance of 0.",
     NULL};
@@ -25,6 +25,7 @@ static const cli_flag *const flags[] = {&cli_flag_meshes_material,
                                         &cli_flag_lenient,
                                         &cli_flag_json,
                                         &cli_flag_verbose,
+                                        &cli_flag_strict,
                                         &cli_flag_quiet,
                                         NULL};
 

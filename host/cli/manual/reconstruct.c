@@ -31,6 +31,7 @@ static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
                                         &cli_flag_reconstruct_voxel,
                                         &cli_flag_reconstruct_filter,
                                         &cli_flag_json,
+                                        &cli_flag_strict,
                                         &cli_flag_quiet,
                                         NULL};
 

@@ -61,6 +61,12 @@ const cli_flag cli_flag_scan_packed_grey16 = {
     "--packed-grey16", NULL,
     "With --packed: the copy has grey values of 16 bits, 60000 where the mean flat field is strongest.", NULL,
     CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_verify = {
+    "--verify", NULL,
+    "Computes nothing: reads the projections of the output and compares them with their checksums. Damaged ones are marked as "
+    "missing, so that the same command without --verify computes them again. The exit status is 1 if one is damaged or "
+    "missing.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
@@ -71,7 +77,10 @@ static const char *const text[] = {
     "Computes the projections of the scene's key Scan and writes them while the next ones are computed. "
     "While a scan is written, FILE.progress holds which projections are finished (an .h5 holds it itself). If the command is stopped, even by "
     "force, the same command continues with the projections that are missing. The bytes of the output do not depend on "
-    "that.",
+    "that. With each projection its checksum (CRC-32C) is written. When an unfinished scan is continued, its projections are read, "
+    "and damaged ones are computed again.",
+    "SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU, which job managers send before their limit, end the command after the "
+    "projections under way; a second signal ends it at once, and under MPI the first one does.",
     "An output that is finished is left as it is. One that holds another scan is refused: a scan is another one if the "
     "scene, a file that it names, the quantity, the precision, the tolerance or the version differs.",
     "A CTSimU scenario is a scene, too. A folder then has its layout: NAME_0000.tif, NAME_flat_0000.tif, NAME_dark.tif and "
@@ -100,6 +109,7 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_scan_grey16,
                                         &cli_flag_scan_packed,
                                         &cli_flag_scan_packed_grey16,
+                                        &cli_flag_scan_verify,
                                         &cli_flag_device,
                                         &cli_flag_precision,
                                         &cli_flag_tolerance,
@@ -107,6 +117,7 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_set,
                                         &cli_flag_lenient,
                                         &cli_flag_json,
+                                        &cli_flag_strict,
                                         &cli_flag_quiet,
                                         NULL};
 

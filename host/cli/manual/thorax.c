@@ -20,9 +20,13 @@ static const char *const text[] = {
     "The scene file names tissues, the beam of a tube, and a percutaneous cholangiography for `breathe`.",
     "--json prints {parts, triangles, folder}.", NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_thorax_output, &cli_flag_thorax_triangles,
-                                        &cli_flag_thorax_simple, &cli_flag_json,
-                                        &cli_flag_quiet,         NULL};
+static const cli_flag *const flags[] = {&cli_flag_thorax_output,
+                                        &cli_flag_thorax_triangles,
+                                        &cli_flag_thorax_simple,
+                                        &cli_flag_json,
+                                        &cli_flag_strict,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item files[] = {
     {"DIR/thorax.json", "the scene file"}, {"DIR/*.ply", "a mesh for each part"}, {NULL, NULL}};

@@ -16,8 +16,8 @@ const cli_flag cli_flag_view_size = {"--size", "W,H", "Columns and rows of the p
 const cli_flag cli_flag_view_orthographic = {
     "--orthographic", NULL, "Keeps parallel lines parallel, without perspective.", NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_view_phase = {
-    "--phase", "P", "Shows the scene at this phase of its breath: 0 is end-inspiration, 1 the next one.",
-    NULL, CLI_NAMES_NOTHING};
+    "--phase", "P", "Shows the scene at this phase of its breath: from 0, end-inspiration, to below 1.", NULL,
+    CLI_NAMES_NOTHING};
 const cli_flag cli_flag_view_at = {"--at", "SECONDS", "Shows the scene at this time of its breath.", NULL,
                                    CLI_NAMES_NOTHING};
 
@@ -43,11 +43,23 @@ static const char *const text[] = {
     "column and row are where the centre of a part is in the picture.",
     NULL};
 
-static const cli_flag *const flags[] = {
-    &cli_flag_view_output, &cli_flag_view_from, &cli_flag_view_size,    &cli_flag_view_orthographic,
-    &cli_flag_view_phase,  &cli_flag_view_at,   &cli_flag_view_seconds, &cli_flag_breathe_fps,
-    &cli_flag_device,      &cli_flag_tolerance, &cli_flag_set,          &cli_flag_lenient,
-    &cli_flag_json,        &cli_flag_verbose,   &cli_flag_quiet,        NULL};
+static const cli_flag *const flags[] = {&cli_flag_view_output,
+                                        &cli_flag_view_from,
+                                        &cli_flag_view_size,
+                                        &cli_flag_view_orthographic,
+                                        &cli_flag_view_phase,
+                                        &cli_flag_view_at,
+                                        &cli_flag_view_seconds,
+                                        &cli_flag_breathe_fps,
+                                        &cli_flag_device,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_set,
+                                        &cli_flag_lenient,
+                                        &cli_flag_json,
+                                        &cli_flag_verbose,
+                                        &cli_flag_strict,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "draws the scene"},
                                     {"skiagraph view thorax/thorax.json --seconds 4 -o view.html",

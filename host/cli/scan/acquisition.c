@@ -1,6 +1,7 @@
 #include "scan/acquisition.h"
 
 #include "common/file.h"
+#include "common/interrupt.h"
 #include "common/say.h"
 #include "scan/batches.h"
 #include "scan/grey.h"
@@ -9,6 +10,7 @@
 #include "scan/phases.h"
 #include "scan/shards.h"
 #include "scan/shared.h"
+#include "scan/verify.h"
 #include "session/explain.h"
 
 #include <inttypes.h>
@@ -68,11 +70,13 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
 }
 
 /* A scan that is continued has the number of source samples with which it was begun. */
-static int choose_samples(cli_acquisition *a) {
+static int choose_samples(const cli_arguments *arguments, cli_acquisition *a) {
     skg_plan_options *options = &a->session.options;
     int64_t samples = 0;
     const skg_status status = skg_scan_file_samples_get(a->place, a->hash, &samples);
     if (status != SKG_OK) return cli_fail(status);
+    const int exit_status = verify_check(arguments, a, samples);
+    if (exit_status != CLI_DONE) return exit_status;
     if (samples == 0 || !options->spot || options->spot->samples > 0 || options->spot->grid > 0)
         return CLI_DONE;
     a->spot = *options->spot;
@@ -202,7 +206,7 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE) exit_status = grey_decide(arguments, a);
     if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
-    if (exit_status == CLI_DONE) exit_status = choose_samples(a);
+    if (exit_status == CLI_DONE) exit_status = choose_samples(arguments, a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
     return exit_status == CLI_DONE ? grey_prepare(a) : exit_status;
 }
@@ -233,8 +237,10 @@ int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
     if (a->ranks.rank == 0 && a->found > 0 && a->found < a->projections && !cli_is_quiet())
         cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
     a->options.file = a->file;
+    if (a->ranks.rank == 0) verify_note(a);
+    if (a->ranks.count == 1) cli_stop_gently();
     const int exit_status = a->ranks.count > 1 ? shared_run(arguments, a) : run_alone(a);
-    if (exit_status != CLI_DONE || a->ranks.rank > 0) return exit_status;
+    if (exit_status != CLI_DONE || a->ranks.rank > 0 || a->is_stopped) return exit_status;
     const skg_status status = skg_scan_file_finish(a->file);
     if (status != SKG_OK) return cli_fail(status);
     const int packed = packed_write(arguments, a);

@@ -1,5 +1,6 @@
 #include "scan/batches.h"
 
+#include "common/interrupt.h"
 #include "common/progress.h"
 #include "scan/grey.h"
 #include "session/frames.h"
@@ -27,10 +28,11 @@ skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
     int64_t all = 0, count = 1;
     skg_status status = skg_scan_run_projection_count(run, &all);
     cli_progress_begin("projections", all);
-    while (status == SKG_OK && count > 0) {
+    while (status == SKG_OK && count > 0 && !cli_stop_asked()) {
         status = write_batch(a, run, &count);
         cli_progress_step(a->computed);
     }
+    a->is_stopped = a->computed < all && cli_stop_asked();
     cli_progress_end();
     a->seconds = 1e-3 * (cli_now_ms() - start);
     return status;

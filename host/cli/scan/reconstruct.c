@@ -23,12 +23,26 @@ typedef struct {
     double seconds;
 } reconstruction;
 
+/* A file of projections alone, which does not say where source and detector were. */
+static int is_bare(const char *path) {
+    static const char *const bare[] = {".mha", ".mhd", ".raw", ".tif", ".tiff"};
+    for (size_t i = 0; i < sizeof bare / sizeof *bare; i++)
+        if (cli_has_extension(path, bare[i])) return 1;
+    return 0;
+}
+
 static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t *size) {
     r->place = cli_value(arguments, &cli_flag_reconstruct_output);
     if (!r->place) return cli_error(CLI_USAGE, "reconstruct: no volume is named; add -o FILE.mha");
     if (!cli_has_extension(r->place, ".mha"))
         return cli_error(CLI_USAGE, "reconstruct: %s is no .mha; give -o FILE.mha", r->place);
     int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, MOST_VOXELS, size);
+    if (exit_status == CLI_DONE && is_bare(arguments->operands[0]))
+        return cli_error(
+            CLI_INPUT,
+            "%s: holds projections without the places of source and detector; write the scan as .h5 "
+            "(scan SCENE -o scan.h5), and reconstruct that",
+            arguments->operands[0]);
     if (exit_status == CLI_DONE)
         exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
     if (exit_status == CLI_DONE)

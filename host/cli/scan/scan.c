@@ -1,8 +1,10 @@
 #include "scan/scan.h"
 
+#include "common/interrupt.h"
 #include "common/json.h"
 #include "common/say.h"
 #include "scan/acquisition.h"
+#include "scan/verify.h"
 #include "session/explain.h"
 
 #include <inttypes.h>
@@ -27,11 +29,11 @@ static int print(const cli_arguments *arguments, const cli_acquisition *a) {
     }
     if (cli_is_quiet()) return CLI_DONE;
     if (a->found == a->projections) {
-        printf("%s is finished: it has all %" PRId64 " projections\n", a->place, a->projections);
+        cli_print("%s is finished: it has all %" PRId64 " projections\n", a->place, a->projections);
         return CLI_DONE;
     }
-    printf("%" PRId64 " projections in %.1f s, %.3g per second; %s has %" PRId64 " of %" PRId64 "\n",
-           a->computed, a->seconds, rate, a->place, there, a->projections);
+    cli_print("%" PRId64 " projections in %.1f s, %.3g per second; %s has %" PRId64 " of %" PRId64 "\n",
+              a->computed, a->seconds, rate, a->place, there, a->projections);
     return CLI_DONE;
 }
 
@@ -40,9 +42,12 @@ int cli_scan(const cli_arguments *arguments) {
     int exit_status = acquisition_read_flags(arguments, &a);
     if (exit_status == CLI_DONE) exit_status = ranks_open(&a.ranks);
     if (exit_status == CLI_DONE) exit_status = acquisition_open(arguments, &a);
-    if (exit_status == CLI_DONE) exit_status = acquisition_run(arguments, &a);
-    if (exit_status == CLI_DONE && a.ranks.rank == 0) exit_status = print(arguments, &a);
+    const int verifies = cli_given(arguments, &cli_flag_scan_verify);
+    if (exit_status == CLI_DONE)
+        exit_status = verifies ? verify_run(arguments, &a) : acquisition_run(arguments, &a);
+    if (exit_status == CLI_DONE && !verifies && a.ranks.rank == 0) exit_status = print(arguments, &a);
     acquisition_close(&a);
     ranks_close(&a.ranks);
+    if (exit_status == CLI_DONE && a.is_stopped) cli_end_by_signal();
     return exit_status;
 }

@@ -22,6 +22,7 @@ typedef struct {
     int64_t projections, found, computed, flats, darks;
     double plan_ms, seconds;
     int range_warned;
+    int is_stopped;        /* 1: a signal ended it before its last projection */
     int64_t shard, shards; /* from 1; 0: none is asked for */
     char *shard_place;
     int64_t part_from, part_count; /* of a shard; 0 and 0: the whole scan */

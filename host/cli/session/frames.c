@@ -35,7 +35,8 @@ static skg_status note_stages(const skg_plan *plan, cli_times *times) {
 }
 
 int cli_end_image(skg_status status, int *warned) {
-    if (status == SKG_RANGE && !(warned && *warned)) cli_warn("%s", skg_last_error());
+    if (status == SKG_RANGE && !(warned && *warned) && !cli_was_warned(skg_last_error()))
+        cli_warn("%s", skg_last_error());
     if (status == SKG_RANGE && warned) *warned = 1;
     return status == SKG_OK || status == SKG_RANGE ? CLI_DONE : cli_fail(status);
 }

@@ -135,7 +135,7 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
     print_values(&rendering->picture);
     cli_times_print(times);
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
-        printf("wrote %s", path);
+        cli_print("wrote %s", path);
         if (has_window(rendering) && cli_has_extension(path, ".png"))
             printf(
                 ", %s from %.4g (black) to %.4g (white): percentiles %g and %g of the pixels, --range changes that",

@@ -61,6 +61,7 @@ static int read_output(const char *text, skg_tube *tube) {
 
 static int read_tube(const cli_arguments *arguments, beam *b) {
     skg_tube *tube = &b->tube;
+    tube->mas = 1, tube->distance_mm = 1000, tube->pixel_mm2 = 1;
     int exit_status = cli_number(arguments, &cli_flag_beam_kvp, 10, 450, &tube->kvp);
     if (exit_status == CLI_DONE)
         exit_status = cli_number(arguments, &cli_flag_beam_angle, 3, 60, &tube->angle_deg);

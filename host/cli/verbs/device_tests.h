@@ -2,7 +2,8 @@
 #ifndef SKG_CLI_DEVICE_TESTS_H
 #define SKG_CLI_DEVICE_TESTS_H
 
-/* Tests and prints a table, or with json an object. Returns an exit status. */
-int cli_device_tests(int json);
+/* Tests and prints a table, or with json an object. config: the value of --device, or NULL; a driver that it names is tested,
+ * too. Returns an exit status. */
+int cli_device_tests(const char *config, int json);
 
 #endif

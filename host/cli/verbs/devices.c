@@ -3,6 +3,7 @@
 #include "common/device.h"
 #include "common/environment.h"
 #include "common/json.h"
+#include "common/probe.h"
 #include "common/say.h"
 #include "manual/list.h"
 #include "verbs/device_tests.h"
@@ -24,6 +25,7 @@ static json_t *device_json(const skg_device_info *device, int chosen, const char
     json_object_set_new(object, "device", cli_json_text(number));
     json_object_set_new(object, "name", cli_json_text(device->name));
     json_object_set_new(object, "platform", cli_json_text(device->platform_name));
+    json_object_set_new(object, "known", json_boolean(device->known));
     json_object_set_new(object, "kind", cli_json_text(kind_of(device)));
     json_object_set_new(object, "chosen", json_boolean(chosen));
     json_object_set_new(object, "refused", refused[0] ? cli_json_text(refused) : json_null());
@@ -49,7 +51,7 @@ static void print_device(const skg_device_info *device, int chosen, const char *
     printf("       precision double: %s; division correctly rounded: %s\n",
            device->has_double ? "yes" : "no (no fp64)",
            device->correct_division ? "yes (same bits as other such devices)"
-                                    : "no (bits differ from other devices)");
+                                    : "not promised by the driver (bits may differ from other devices)");
     printf("       %s, driver %s\n", device->version, device->driver);
     if (refused[0]) printf("       refused: %s\n", refused);
 }
@@ -85,12 +87,36 @@ static void ask_device(const skg_device_info *device, char *refused, size_t size
     skg_context_release(&context);
 }
 
+/* What the children have found of devices whose platform is not known. */
+typedef struct {
+    int64_t count;
+    char (*refused)[CLI_REFUSED]; /* of each device; "" if it is known, or can be opened */
+    int any;                      /* 1: one of them is refused */
+} findings;
+
+/* Lists the devices in a child, then opens each that is not known in a child. After that this process may ask all drivers. */
+static int ask_children(const char *config, findings *all) {
+    const int exit_status = cli_probe_all(config, &all->count);
+    if (exit_status != CLI_DONE) return exit_status;
+    all->refused = calloc((size_t)all->count + 1, sizeof *all->refused);
+    if (!all->refused) return cli_error(CLI_DEVICE, "out of host memory for the list of devices");
+    for (int64_t k = 0; k < all->count; k++) {
+        skg_device_info info;
+        char words[64];
+        skg_device_info_init(&info);
+        if (skg_device_get(k, &info) != SKG_OK || info.known) continue;
+        snprintf(words, sizeof words, "device=%d:%d", info.platform, info.device);
+        if (cli_probe_device(config, words, all->refused[k]) != CLI_DONE) all->any = 1;
+    }
+    return CLI_DONE;
+}
+
 /* best: the device that is chosen; NULL if all that were asked for are refused. */
-static int list_devices(int64_t count, const skg_device_info *best, int json) {
+static int list_devices(const findings *all, const skg_device_info *best, int json) {
     json_t *list = json ? json_array() : NULL;
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = 0; i < all->count; i++) {
         skg_device_info device;
-        char refused[1024] = "";
+        char *refused = all->refused[i];
         skg_device_info_init(&device);
         skg_status status = skg_device_get(i, &device);
         if (status != SKG_OK) {
@@ -98,7 +124,7 @@ static int list_devices(int64_t count, const skg_device_info *best, int json) {
             return cli_fail(status);
         }
         const int chosen = best && device.platform == best->platform && device.device == best->device;
-        if (!best) ask_device(&device, refused, sizeof refused);
+        if (!best && device.known) ask_device(&device, refused, CLI_REFUSED);
         if (json)
             json_array_append_new(list, device_json(&device, chosen, refused));
         else
@@ -118,17 +144,23 @@ static int list_devices(int64_t count, const skg_device_info *best, int json) {
 int cli_devices(const cli_arguments *arguments) {
     skg_context *context = NULL;
     skg_device_info best;
-    int64_t count = 0;
+    findings all = {0};
+    const char *config = cli_value(arguments, &cli_flag_device);
     const int json = cli_given(arguments, &cli_flag_json);
-    if (cli_given(arguments, &cli_flag_devices_test)) return cli_device_tests(json);
     if (cli_given(arguments, &cli_flag_devices_warm)) return cli_warm(arguments);
-    int exit_status = cli_open_context(arguments, &context, &best);
+    if (cli_given(arguments, &cli_flag_devices_test)) return cli_device_tests(config, json);
+    cli_prepare_environment();
+    int exit_status = ask_children(config, &all);
+    if (exit_status != CLI_DONE) return exit_status;
+    exit_status = cli_open_context(arguments, &context, &best);
     /* There are devices, but they are refused: the sentence has been printed, the list follows. */
-    const int refused = exit_status == CLI_DEVICE && cli_first_failure()->status != SKG_ERR_NO_DEVICE;
-    if (exit_status != CLI_DONE && !refused) return exit_status;
-    skg_status status = skg_device_count(&count);
-    const int listed =
-        status == SKG_OK ? list_devices(count, refused ? NULL : &best, json) : cli_fail(status);
+    const int refused =
+        exit_status == CLI_DEVICE && (all.any || cli_first_failure()->status != SKG_ERR_NO_DEVICE);
+    if (exit_status == CLI_DONE || refused) {
+        const int listed = list_devices(&all, refused ? NULL : &best, json);
+        if (exit_status == CLI_DONE) exit_status = listed;
+    }
+    free(all.refused);
     skg_context_release(&context);
-    return refused ? exit_status : listed;
+    return exit_status;
 }

@@ -137,7 +137,7 @@ static int print(const work *w) {
     const char *outputs[] = {cli_value(w->arguments, &cli_flag_distance_map),
                              cli_value(w->arguments, &cli_flag_distance_output)};
     for (int i = 0; i < 2; i++)
-        if (outputs[i]) printf("wrote %s\n", outputs[i]);
+        if (outputs[i]) cli_print("wrote %s\n", outputs[i]);
     return CLI_DONE;
 }
 

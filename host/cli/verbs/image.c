@@ -44,6 +44,8 @@ int cli_image(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_display, &display);
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_band_weight, &weight);
     if (exit_status == CLI_DONE) exit_status = read_bands(arguments, edges, &bands);
+    if (exit_status == CLI_DONE && weight >= 0 && bands == 0)
+        exit_status = cli_error(CLI_USAGE, "--band-weight weighs the photons of bands; add --bands");
     if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &rendering.session);
     if (exit_status == CLI_DONE) {

@@ -41,8 +41,8 @@ static json_t *health_json(const char *path, const skg_mesh_health *health, cons
 
 static void print_health(const char *path, const skg_mesh_health *health) {
     const double *b = health->bounds, *p = health->first_open_position;
-    printf("%s: %s%s\n", path, health->closed ? "closed" : "LEAKY",
-           health->flipped ? ", wound inward (turned outward)" : "");
+    cli_print("%s: %s%s\n", path, health->closed ? "closed" : "LEAKY",
+              health->flipped ? ", wound inward (turned outward)" : "");
     if (!health->closed)
         printf("  %" PRId64 " open edges, first at vertex %" PRId64 " (%.6g, %.6g, %.6g) mm\n",
                health->open_edges, health->first_open_vertex, p[0], p[1], p[2]);
@@ -118,7 +118,7 @@ int cli_mesh(const cli_arguments *arguments) {
             json_array_append_new(list, health_json(path, &health, &nesting));
         else if (!cli_is_quiet())
             print_health(path, &health), print_nesting(&nesting);
-        if (fixed && !list && !cli_is_quiet()) printf("wrote %s\n", fixed);
+        if (fixed && !list && !cli_is_quiet()) cli_print("wrote %s\n", fixed);
     }
     if (list) {
         json_t *object = json_object();

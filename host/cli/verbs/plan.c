@@ -24,7 +24,7 @@ int cli_plan(const cli_arguments *arguments) {
     cli_session session;
     skg_plan *plan = NULL;
     double plan_ms;
-    int exit_status = cli_open_session(arguments, 1, &session);
+    int exit_status = cli_open_session(arguments, 0, &session);
     session.options.profile = 1;
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&session, &plan, &plan_ms);
     if (exit_status == CLI_DONE) exit_status = measure(plan, &session.view);

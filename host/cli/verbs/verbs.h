@@ -13,5 +13,6 @@ int cli_material(const cli_arguments *arguments);
 int cli_mesh(const cli_arguments *arguments);
 int cli_plan(const cli_arguments *arguments);
 int cli_thorax(const cli_arguments *arguments);
+int cli_make(const cli_arguments *arguments);
 
 #endif

@@ -250,10 +250,7 @@ int view_page_write(const view_page *page, const char *path) {
     blob data = {0};
     json_t *object = json_object();
     int exit_status = scene_json(page, &data, object);
-    /* "/" is escaped so that no text can end the script */
-    char *scene = exit_status == CLI_DONE
-                      ? json_dumps(object, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_ENSURE_ASCII)
-                      : NULL;
+    char *scene = exit_status == CLI_DONE ? cli_json_for_page(object) : NULL;
     char *bytes = exit_status == CLI_DONE ? cli_base64("", data.bytes, data.count) : NULL;
     if (exit_status == CLI_DONE && (!scene || !bytes)) exit_status = fail_memory();
     if (exit_status == CLI_DONE) exit_status = write_page(scene, bytes, path);

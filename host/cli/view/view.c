@@ -115,8 +115,8 @@ static int read_flags(view_work *w) {
         return cli_error(CLI_USAGE, "view: no output is named; add -o FILE.png or -o FILE.html");
     int exit_status = read_side(w);
     if (exit_status == CLI_DONE) exit_status = read_size(w);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_number(w->arguments, &cli_flag_view_phase, -1e9, 1e9, &w->phase);
+    const char *phase = cli_value(w->arguments, &cli_flag_view_phase);
+    if (exit_status == CLI_DONE && phase) exit_status = cli_phase("--phase", phase, &w->phase);
     if (exit_status == CLI_DONE) exit_status = cli_number(w->arguments, &cli_flag_view_at, -1e9, 1e9, &w->at);
     if (exit_status == CLI_DONE && !isnan(w->phase) && !isnan(w->at))
         return cli_error(CLI_USAGE, "--phase and --at both choose one moment; give one of them");
@@ -216,7 +216,7 @@ static int print(const view_work *w) {
         json_object_set_new(object, "parts", parts_json(w));
         return cli_json_print(object);
     }
-    for (int i = 0; !cli_is_quiet() && (path = nth_output(w, i)); i++) printf("wrote %s\n", path);
+    for (int i = 0; !cli_is_quiet() && (path = nth_output(w, i)); i++) cli_print("wrote %s\n", path);
     return CLI_DONE;
 }
 

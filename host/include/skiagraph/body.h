@@ -87,6 +87,27 @@ typedef struct {
     double diaphragm_ribs_mm;
     /** How near to the tendon the liver goes with it, mm, up to 1000; 0, the default, is 9. */
     double diaphragm_liver_mm;
+    /** With SKG_COUPLING_ANATOMICAL, at diaphragmatic weight 1: by how much farther down the top of the left dome goes than
+     * the middle of the tendon, mm, -57 to 57; 0 by default. */
+    double dome_left_mm;
+    /** The same of the right dome. */
+    double dome_right_mm;
+    /** By how much farther down the back goes than the middle, and the front less, mm, -57 to 57; 0 by default. */
+    double dome_back_mm;
+    /** Length of the diaphragm's muscle from the rim to the tendon, as a part of the greatest distance from the rim, 0.1 to
+     * 1; 0.8 by default. Without effect where tendon_plane is given. */
+    double muscle_length;
+    /** Angle by which the plane of rib 5 turns from relaxed expiration to full inspiration, rad, 0 to 1; the others' are
+     * in proportion. By default what Wilson measured, 0.255. */
+    double rib_angle_rad;
+    /** By how much more than in Wilson's table the angles fall from each rib to the next, rad, -0.1 to 0.1; 0 by
+     * default. */
+    double rib_fall_rad;
+    /** With SKG_COUPLING_ANATOMICAL: the part of the dome's motion with which the liver goes, 0 to 2; 1 by default. */
+    double liver_follows;
+    /** With SKG_COUPLING_ANATOMICAL: by which part of the tendon's motion the liver's lower end goes less than its top, 0
+     * to 1; 0.25 by default. */
+    double liver_held;
 } skg_body_options;
 
 /** Prepares the options of a body, of `size` bytes (export.h). */

@@ -75,6 +75,12 @@ typedef struct {
     const skg_breath_hold *holds;
     /** Number of holds. */
     int64_t hold_count;
+    /** [signal_count][2] recorded: time in s, which rises, and f from 0 to 1. It replaces the waveform wherever a time is
+     * asked for, linear between its points and constant beyond them; the phase then goes from one end-inspiration to the
+     * next. A phase that is asked for is the waveform's. NULL: none. */
+    const double *signal;
+    /** At least 2, or 0. */
+    int64_t signal_count;
 } skg_breath;
 
 /** Prepares a breath of `size` bytes (export.h). */

@@ -77,14 +77,17 @@ SKG_API void skg_fit_release(skg_fit **fit);
 SKG_API skg_status skg_fit_target_add(skg_fit *fit, int64_t part, double phase, skg_mesh *mesh);
 
 /** Chooses the parameters; all others stay as the scene has them. Call it before the first step. By
- * default those of the scene's key Breathing.Fit, or all.
+ * default those of the scene's key Breathing.Fit, or all; with SKG_COUPLING_ANATOMICAL all but tissues.
  *
- *     names    separated by commas: tendon-x, tendon-y, tendon-z (displacement at weight 1), plane-azimuth,
- *              plane-elevation, plane-offset (of the tendon's plane: direction of its normal, and its depth below the top
- *              of the diaphragm), diaphragm-alpha-min, diaphragm-alpha-max, diaphragm-beta, liver-alpha-min,
- *              liver-alpha-max, liver-beta (tissues), diaphragm-ribs, diaphragm-liver (reach of links); or the groups
- *              tendon, plane, diaphragm, liver, links
- *     errors   SKG_ERR_ARGUMENT with the known names */
+ *     names    separated by commas: tendon-x, tendon-y, tendon-z (displacement at weight 1); diaphragm-alpha-min,
+ *              diaphragm-alpha-max, diaphragm-beta, liver-alpha-min, liver-alpha-max, liver-beta (tissues). With
+ *              SKG_COUPLING_ANATOMICAL: dome-left, dome-right, dome-back, muscle-length, rib-angle, rib-fall,
+ *              liver-follows, liver-held (body.h). With SKG_COUPLING_PAPER: plane-azimuth, plane-elevation,
+ *              plane-offset (of the tendon's plane: direction of its normal, and its depth below the top of the
+ *              diaphragm), diaphragm-ribs, diaphragm-liver (reach of links). Or the groups tendon, diaphragm, liver,
+ *              domes, muscle, ribs, follow, plane, links, of which those count that have an effect
+ *     errors   SKG_ERR_ARGUMENT with the known names, if there is no such parameter or it has no effect with the body's
+ *              coupling */
 SKG_API skg_status skg_fit_parameters_choose(skg_fit *fit, const char *names);
 
 /** Sets the range of a parameter. Its start is moved into it. Call it before the first step.

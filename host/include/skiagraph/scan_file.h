@@ -79,7 +79,13 @@ SKG_API skg_status skg_scan_file_samples_get(const char *path, const char *hash,
  *              there, the disk is full
  *
  * While it is written, NAME.lock beside the file names who writes it, and NAME.progress holds which projections are
- * finished (except for HDF5, where /process/done does, and for folders). Both disappear when the file is finished. */
+ * finished, with their checksums (except for HDF5, where /process/done and /process/checksum do, and for folders). Both
+ * disappear when the file is finished.
+ *
+ * One writer: a file has one writer at a time, in this process or in another one; a second one is refused. The lock goes with
+ * its process, however that ends, and does not pass to the child of a fork. Parts of the output that a killed writer has left
+ * under temporary names (NAME.part-...) are removed. Projections of an unfinished file are read and compared with their
+ * checksums; damaged ones count as missing (skg_scan_file_damaged_count). */
 SKG_API skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *options,
                                       skg_scan_file **file);
 
@@ -93,6 +99,17 @@ SKG_API skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *
  *
  *     done   result: 1 or 0 */
 SKG_API skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t index, int32_t *done);
+
+/** Reads every projection that a file has and compares it with the CRC-32C that was written with it. Those that do not fit
+ * are marked as missing, so that they are computed again. skg_scan_file_open does so with every file that is not finished
+ * (is_helper 0); the flat and dark fields have no checksums.
+ *
+ *     errors   SKG_ERR_UNSUPPORTED: the file has no checksums, which are in the .h5, or in the NAME.progress of an
+ *              unfinished .mha, .raw or .tif; SKG_ERR_FILE; SKG_ERR_OUTPUT */
+SKG_API skg_status skg_scan_file_verify(skg_scan_file *file);
+
+/** Number of projections that were found damaged since the file was opened. */
+SKG_API skg_status skg_scan_file_damaged_count(const skg_scan_file *file, int64_t *count);
 
 /** Writes the flat and dark fields of an HDF5 file or a folder with a stem; others have none, and ignore them.
  *

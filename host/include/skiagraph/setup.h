@@ -78,6 +78,12 @@ static inline void skg_setup_source_init(skg_setup_source *source) {
 /** Makes a set-up from a text or file; otherwise as skg_setup_load. */
 SKG_API skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup);
 
+/** Gets the JSON text of a set-up: the scene file after its settings, with its keys in order, as skg_setup_create takes it. A
+ * CTSimU scenario is the scene file that it was read as.
+ *
+ *     text   result: valid as long as the set-up */
+SKG_API skg_status skg_setup_text_get(const skg_setup *setup, const char **text);
+
 /** Number of the files that the scene names and that were read: meshes, spectra, responses, materials. */
 SKG_API skg_status skg_setup_file_count(const skg_setup *setup, int64_t *count);
 
@@ -94,7 +100,8 @@ SKG_API void skg_setup_release(skg_setup **setup);
 /** Gets the scene, which is valid as long as the set-up and not retained for the caller. */
 SKG_API skg_status skg_setup_scene_get(const skg_setup *setup, skg_scene **scene);
 
-/** Gets the spectrum, NULL if a partial text has none, which is valid as long as the set-up and not retained for the caller. */
+/** Gets the spectrum, NULL if a partial text has none, which is valid as long as the set-up and not retained for the caller. It is
+ * absolute (beam.h) if the file gives mAs. */
 SKG_API skg_status skg_setup_spectrum_get(const skg_setup *setup, skg_spectrum **spectrum);
 
 /** Gets the view; of a scan, that of the first projection. */
@@ -175,8 +182,8 @@ SKG_API skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_
  *
  *     options   in and out: prepared with skg_plan_options_init; fields of which the file says nothing stay
  *
- * Response, world, spot, heel, bow-tie, grid, blurs, DQE and views are valid as long as the set-up. Falloff is on if the file gives mAs
- * or has the key Falloff. The views are a sample of those of the scan. */
+ * Response, world, spot, heel, bow-tie, grid, blurs, DQE and views are valid as long as the set-up. Falloff is as the key
+ * Falloff says; without the key it follows the beam. The views are a sample of those of the scan. */
 SKG_API skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options);
 
 #ifdef __cplusplus

@@ -14,6 +14,7 @@
 #define SKIAGRAPH_H
 
 #include <skiagraph/beam.h>
+#include <skiagraph/bodies.h>
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
 #include <skiagraph/context.h>

@@ -2,6 +2,11 @@
  * Beams: how many photons of which energy would reach a pixel if nothing were in the way, and what the
  * detector records of them.
  *
+ * The photons of a spectrum are those of a pixel, unless the spectrum is absolute: then they are photons per
+ * microsteradian at the source, that is, per mm2 at a distance of 1 m. Absolute are the spectra of tubes with a
+ * load (skg_tube.mas), those of skg_spectrum_create_absolute, and what is made of these by filters and factors. A
+ * plan finds out from its view how many of these photons a pixel receives.
+ *
  * A spectrum or response never changes and may be shared by threads. Functions that make one return
  * SKG_ERR_BEAM unless they say otherwise; the caller releases the result. Energies are 1 keV to 20 MeV. */
 #ifndef SKIAGRAPH_BEAM_H
@@ -70,6 +75,15 @@ SKG_API skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, in
 SKG_API skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double factor,
                                               skg_spectrum **scaled);
 
+/** Makes an absolute spectrum: the photons of `spectrum` are taken as photons per microsteradian at the source, that
+ * is, per mm2 at a distance of 1 m. */
+SKG_API skg_status skg_spectrum_create_absolute(const skg_spectrum *spectrum, skg_spectrum **absolute);
+
+/** Gets whether a spectrum is absolute.
+ *
+ *     absolute   result: 1 if photons are per microsteradian at the source, 0 if they are per pixel */
+SKG_API skg_status skg_spectrum_absolute_get(const skg_spectrum *spectrum, int32_t *absolute);
+
 /** Models of the spectrum of an X-ray tube. Both have the same characteristic lines and the same output. */
 enum skg_tube_model {
     /** H. Ebel, X-Ray Spectrom. 28 (1999) 255: continuum and lines of a reflection target, calibrated. */
@@ -106,11 +120,14 @@ typedef struct {
     int32_t reserved;
     /** Width of a bin in keV, 0.1 to 10; 1 by default. Energies are the middles of the bins. */
     double bin_kev;
-    /** Tube current times time in mAs; 1 by default. */
+    /** Tube load: current times time in mAs. Above 0, the spectrum is absolute. 0 (default): the load is not known;
+     * the spectrum has the photons that 1 mAs sends to a mm2 at 1 m, and counts them as photons of a pixel. */
     double mas;
-    /** From the focal spot to the pixel, mm; 1000 by default. */
+    /** With pixel_mm2: from the focal spot to the pixel, mm; see there. 0 by default. */
     double distance_mm;
-    /** Area of a pixel in mm2; 1 by default, which gives photons per mm2. */
+    /** 0 (default): the plan finds out from its view what a pixel receives. Above 0, which needs mas and
+     * distance_mm: photons are those of a pixel of this area in mm2 at this distance, and the spectrum is not
+     * absolute. */
     double pixel_mm2;
     /** Measured air kerma per mAs behind the filters, uGy/mAs, instead of the model's; 0: the model's. */
     double output_ugy_mas;
@@ -148,7 +165,8 @@ SKG_API void skg_spectrum_release(skg_spectrum **spectrum);
 /** Number of energies in a spectrum. */
 SKG_API skg_status skg_spectrum_bin_count(const skg_spectrum *spectrum, int64_t *count);
 
-/** Gets energy 0 <= index < count in keV, in rising order, and its photons per pixel. */
+/** Gets energy 0 <= index < count in keV, in rising order, and its photons: per pixel, or per microsteradian if the
+ * spectrum is absolute. */
 SKG_API skg_status skg_spectrum_bin_get(const skg_spectrum *spectrum, int64_t index, double *energy_kev,
                                         double *photons);
 
@@ -161,7 +179,7 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Photons per pixel. */
+    /** Photons, per pixel or per microsteradian as the spectrum's. */
     double photons;
     /** Energy of all photons together, keV. */
     double energy_kev;
@@ -177,7 +195,7 @@ typedef struct {
     double hvl2_mm_cu;
     /** First over second half-value layer in aluminium. */
     double homogeneity;
-    /** Air kerma in uGy, if photons are per mm2. */
+    /** Air kerma in uGy, if photons are per mm2. That of an absolute spectrum is at 1 m. */
     double air_kerma_ugy;
 } skg_quality;
 

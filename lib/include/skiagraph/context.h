@@ -19,6 +19,8 @@
  * would use it (skg_context_create, skg_device_count, and calls on a context made before) returns SKG_ERR_FORK;
  * releasing such a context frees host memory only. Start the child by exec or spawn, or fork before the first
  * call. The library cannot know whether another library has started OpenCL before the fork; then its calls hang.
+ * Neither does OpenMP survive it, which the library uses for the thorax, bodies, fits, distances and reconstruction: in a child
+ * of a process that has made such a call with more than one thread, they return SKG_ERR_FORK too.
  *
  * Start: the first call that uses OpenCL starts the drivers of all platforms, in a thread made for this. The
  * threads that drivers make then have the default floating-point environment, and no signals sent to the process
@@ -51,17 +53,37 @@ typedef struct skg_context skg_context;
  *     config    words separated by blanks, or NULL:
  *                 device=cpu | gpu | PLATFORM:DEVICE | part of a device's name
  *                              (numbers as in skg_device_info)
+ *                 driver=PATH  choose among the devices of this OpenCL driver, which the OpenCL loader need
+ *                              not know: its library, such as /opt/pocl/lib/libpocl.so.2, or a name that the
+ *                              dynamic linker finds
  *                 threads=N    use N compute units, through a sub-device where the platform offers them;
  *                              without it work is divided for the CPUs that the process may run on (see
  *                              Start); if the driver has made 8 or more threads for each of these, the log
  *                              has a warning that names the driver's environment variable
  *                 kernels=DIR  read the kernels from DIR instead of those built in, for development
+ *               A value that holds blanks stands in double quotes: driver="/opt/my drivers/libpocl.so"
  *     context   result; the caller releases it
- *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE, SKG_ERR_DEVICE, SKG_ERR_FORK
+ *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE (also: PATH is no driver), SKG_ERR_DEVICE,
+ *               SKG_ERR_FORK
  *
- * Without device= the environment variable SKG_DEVICE decides; it holds such words, or the value of device=
- * alone. Without either the best device is taken: GPUs before CPUs, then the faster one if both were measured,
- * otherwise the one with more compute units. The environment variable SKG_KERNEL_DIR stands for kernels=.
+ * The environment variable SKG_DEVICE holds such words, or the value of device= alone. It gives what config does
+ * not; but its driver= is ignored if config has device= and no driver=. Without device= the best device is taken:
+ * GPUs before CPUs, then the faster one if both were measured, otherwise the one with more compute units. The
+ * environment variable SKG_KERNEL_DIR stands for kernels=.
+ *
+ * A driver that driver= opens stays loaded until the process ends, because its threads run. From then on
+ * skg_device_count and skg_device_get list its devices behind the others, and device=PLATFORM:DEVICE may name them;
+ * other words choose them only with driver=. A driver that the loader knows as well is not listed twice. Drivers that
+ * need a loader of cl_khr_icd version 2 are refused.
+ *
+ * Some drivers end, crash or block the process that calls them. Therefore a device of a platform that this version of the
+ * library does not know (skg_device_info.known) is chosen without being named, or for device=cpu or device=gpu, only if
+ * it has passed its test on this machine and the verdict is kept in SKG_CACHE_DIR; until then the library reads no
+ * more of such a platform than its name. `skiagraph devices` tests such devices in processes of their own, each for 30 s at
+ * most. Naming one by number or name is the caller's decision: if it was not tested (skg_device_untested), its driver is tested in
+ * the caller's process, and may end or block it. The same holds for skg_device_count, skg_device_get and
+ * skg_device_test_run, which ask every platform. The OpenCL loader itself loads every driver that is installed, and asks it
+ * for its platforms and devices; the environment variable OCL_ICD_VENDORS restricts it to one driver.
  *
  * Some drivers compute wrongly and report no error. The first time that a device with its driver is used, a small
  * scene whose path lengths are known is rendered, its speed is measured, and the verdict is kept in SKG_CACHE_DIR.
@@ -128,12 +150,13 @@ typedef struct {
     int32_t compute_units;
     /** 1: has fp64, which SKG_PRECISION_DOUBLE and SKG_TYPE_FLOAT64 need. */
     int32_t has_double;
-    /** 1: float division is correctly rounded, so images have the same bits as on other such devices. */
+    /** 1: the driver promises that float division is correctly rounded, so images have the same bits as on other such devices.
+     * Without the promise they may have the same bits, too. */
     int32_t correct_division;
     /** Native vector width of float. */
     int32_t float_width;
-    /** 0 */
-    int32_t reserved;
+    /** 1: of a platform that this version of the library knows: PoCL, or the vendor's own for Intel, NVIDIA or AMD. */
+    int32_t known;
     /** Bytes, as the driver reports them now. */
     int64_t memory;
     /** Largest buffer in bytes, as the driver reports it now. */
@@ -158,7 +181,23 @@ static inline void skg_device_info_init(skg_device_info *info) {
     skg_device_info_init_sized(info, (int32_t)sizeof *info);
 }
 
-/** Number of devices over all platforms. None is no failure. Errors: SKG_ERR_FORK. */
+/** The device that skg_context_create would open first for these words. It is neither opened nor tested.
+ * Errors: those of skg_context_create. */
+SKG_API skg_status skg_device_find(const char *config, skg_device_info *info);
+
+/** Whether skg_context_create would run the first test of an unknown driver in this process.
+ *
+ *     config     as for skg_context_create
+ *     untested   result; 1: the words name a device of a platform that this version does not know, and no verdict on it is
+ *                kept. Run the test in a child process first (skg_device_test_run), as the command does
+ *     errors     SKG_ERR_ARGUMENT, SKG_ERR_FORK
+ *
+ * Platforms that skg_context_create would not choose by itself are not asked for their devices. A driver that driver= names is
+ * opened. */
+SKG_API skg_status skg_device_untested(const char *config, int32_t *untested);
+
+/** Number of devices over all platforms, those that are not known and those of drivers that driver= has opened included.
+ * None is no failure. Errors: SKG_ERR_FORK. */
 SKG_API skg_status skg_device_count(int64_t *count);
 
 /** The device with number 0 <= index < count. Errors: SKG_ERR_ARGUMENT, SKG_ERR_FORK. */
@@ -203,6 +242,9 @@ static inline void skg_device_test_init(skg_device_test *result) {
 /** Number of tests that a device can be put to. */
 SKG_API skg_status skg_device_test_count(int64_t *count);
 
+/** The name of a test, such as "strategy tiles": static storage. Errors: SKG_ERR_ARGUMENT. */
+SKG_API skg_status skg_device_test_name_get(int64_t test, const char **name);
+
 /** Tests a device now, whatever was found before, and keeps the verdict.
  *
  *     device   number of the device, as for skg_device_get
@@ -212,6 +254,15 @@ SKG_API skg_status skg_device_test_count(int64_t *count);
  *              columns; of the 3D view, a picture of two boxes
  *     errors   SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *result);
+
+/** Keeps what a test in another process found out, for instance that the driver ended it. A passing verdict is kept by the
+ * process that tests.
+ *
+ *     config   the words of skg_context_create that name the device
+ *     test     0 <= test < count
+ *     result   verdict SKG_TEST_WRONG or SKG_TEST_FAILED, and the reason
+ *     errors   SKG_ERR_ARGUMENT, SKG_ERR_NO_DEVICE, SKG_ERR_FORK. A folder that cannot be written is no error */
+SKG_API skg_status skg_device_test_keep(const char *config, int64_t test, const skg_device_test *result);
 
 /** The device of a context. */
 SKG_API skg_status skg_context_device_get(skg_context *context, skg_device_info *info);

@@ -57,14 +57,20 @@ SKG_API skg_status skg_mesh_create_float(skg_context *context, const char *name,
  * first corner, which does not change path lengths if the face is plane. Points and lines are left out with a
  * warning. The order of the file is kept: vertex i is the i-th "v" line of an OBJ file, the i-th vertex of a
  * PLY file (doubles stay doubles), the i-th corner of an STL file. In other formats Assimp decides the order,
- * and positions are floats. Numbers in text are read alike in every locale. */
+ * and positions are floats. Numbers in text are read alike in every locale.
+ *
+ * The file, and every file that it refers to, is a regular file of at most 64 GiB: pipes and devices are refused. A file
+ * that is an archive, such as .3mf, unpacks to at most 1 GiB. Assimp, in the build of Debian, ends the process where it meets
+ * some kinds of damage; parts and relationships of archives are checked before. Load damaged files of other formats than STL, OBJ
+ * and PLY in a process of its own, such as the command's. */
 SKG_API skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh);
 
 /** Writes a mesh to a file, whole or not at all. Positions are in mm, corners as given.
  *
- *     path     ".stl": binary STL, in floats. Otherwise binary PLY, in floats if they hold every position
+ *     path     ".stl": binary STL, in floats. ".ply": binary PLY, in floats if they hold every position
  *              exactly and in doubles if not, so that skg_mesh_load gives back the same bits
- *     errors   SKG_ERR_OUTPUT; SKG_ERR_MESH if a vertex is not finite */
+ *     errors   SKG_ERR_OUTPUT; SKG_ERR_ARGUMENT if the extension is another; SKG_ERR_MESH if a vertex is not
+ *              finite */
 SKG_API skg_status skg_mesh_save(const skg_mesh *mesh, const char *path);
 
 /** Makes a cube, centred at the origin, closed, outward. Edge in mm, above 0. */
@@ -92,6 +98,12 @@ SKG_API skg_status skg_mesh_create_cylinder(double radius, double height, int64_
  *                                    is (k + 1) / steps of height_z high */
 SKG_API skg_status skg_mesh_create_step_wedge(double length_x, double length_y, double height_z,
                                               int64_t steps, skg_mesh **mesh);
+
+/** Makes a step wedge with steps of any height; otherwise as skg_mesh_create_step_wedge.
+ *
+ *     heights   [steps] mm, rising */
+SKG_API skg_status skg_mesh_create_steps(double length_x, double length_y, int64_t steps,
+                                         const double *heights, skg_mesh **mesh);
 
 /** Adds an owner to a mesh. */
 SKG_API skg_status skg_mesh_retain(skg_mesh *mesh);

@@ -30,7 +30,9 @@ SKG_API skg_status skg_context_create_cl(cl_context cl, cl_device_id device, cl_
  *     buffer      receives the images
  *     offset      byte of the buffer at which they begin, a multiple of an element's size
  *     waits       number of events in wait_list
- *     wait_list   [waits] the work starts after these; NULL if waits is 0
+ *     wait_list   [waits] the work starts after these; NULL if waits is 0. None of them may fail: PoCL aborts the
+ *                 process if the status of a user event in a wait list is set to an error. End it with CL_COMPLETE
+ *                 instead, and discard the images
  *     done        result: an event of the last image, which the caller releases; may be NULL */
 SKG_API skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
                                       const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
@@ -54,7 +56,7 @@ SKG_API skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kin
  *     lowest      [3] bounds of all positions, mm from the mesh's origin; copied. Narrow bounds are faster and finer
  *     highest     [3]
  *     waits       number of events in wait_list
- *     wait_list   [waits] the copy is made after these; NULL if waits is 0
+ *     wait_list   [waits] the copy is made after these; NULL if waits is 0. None of them may fail (skg_plan_submit_cl)
  *     done        result: an event of the copy, which the caller releases; may be NULL
  *     errors      SKG_ERR_ARGUMENT (part, buffer, bounds); SKG_ERR_UNSUPPORTED for a leaky mesh with SKG_REPAIR_EXACT,
  *                 which traces rays through the positions on the host

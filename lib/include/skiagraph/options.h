@@ -322,6 +322,18 @@ static inline void skg_grid_init(skg_grid *grid) {
 SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy_kev, double oblique,
                                              double tilt, double *transmission);
 
+/** Falloff: intensity falls with the cube of the distance from the source (inverse square and obliquity). Photons per
+ * pixel of the spectrum are then those at the foot of the perpendicular from the source to the plane of the detector,
+ * whether or not a pixel lies there. */
+enum skg_falloff {
+    /** On if the spectrum is absolute (beam.h), off otherwise. */
+    SKG_FALLOFF_AUTO = -1,
+    /** Every pixel of the open beam receives the same. */
+    SKG_FALLOFF_OFF = 0,
+    /** On. */
+    SKG_FALLOFF_ON = 1
+};
+
 /** Options of a plan. Prepare with skg_plan_options_init: single precision, energy per pixel, every energy of
  * the spectrum, point source, ideal detector, no noise. Arrays and structs that it points to are copied by
  * skg_plan_create, handles are retained. */
@@ -340,9 +352,7 @@ typedef struct {
     int32_t overlaps;
     /** 1: time the stages of each job, which makes frames a little slower. */
     int32_t profile;
-    /** 1: intensity falls with the cube of the distance from the source (inverse square and obliquity);
-     * photons per pixel of the spectrum are those at the foot of the perpendicular from the source to the
-     * plane of the detector, whether or not a pixel lies there. */
+    /** enum skg_falloff; SKG_FALLOFF_AUTO by default */
     int32_t falloff;
     /** Of the detector; NULL: ideal. */
     skg_response *response;

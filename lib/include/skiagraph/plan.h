@@ -20,7 +20,9 @@ extern "C" {
  *                positions
  *     view       copied. Its numbers of rows and columns are fixed; frames may have other positions of source
  *                and detector
- *     spectrum   retained
+ *     spectrum   retained. If it is absolute, the plan finds the photons of a pixel from the view, and for frames of
+ *                other views, from theirs. A parallel beam has no distance: its photons per mm2 at 1 m count as those
+ *                of a pixel, with a warning
  *     options    NULL: the defaults of skg_plan_options_init
  *     plan       result; the caller releases it
  *     errors     SKG_ERR_SCENE (no parts, a view that cannot be imaged), SKG_ERR_UNSUPPORTED (double
@@ -35,8 +37,18 @@ SKG_API skg_status skg_plan_retain(skg_plan *plan);
 /** Removes an owner. The plan is freed with the last owner and the last of its jobs. */
 SKG_API void skg_plan_release(skg_plan **plan);
 
-/** Sets the view of frames that have none of their own. Returns SKG_STALE, and changes nothing, if the view
- * has other numbers of rows and columns than the plan's. */
+/** Makes the spectrum of photons per pixel with which a plan of a view computes. Where the spectrum is absolute, the
+ * photons are those of a pixel at the foot of the perpendicular from the source to the plane of the detector.
+ *
+ *     spectrum   one that is not absolute, or of a parallel beam, keeps its numbers
+ *     view       where the source and the pixels are
+ *     resolved   result; it is not absolute; the caller releases it
+ *     errors     SKG_ERR_SCENE if the view cannot be imaged, SKG_ERR_BEAM */
+SKG_API skg_status skg_spectrum_create_resolved(const skg_spectrum *spectrum, const skg_view *view,
+                                                skg_spectrum **resolved);
+
+/** Sets the view of frames without their own. Returns SKG_STALE, and changes nothing, if the view has another size than the
+ * plan's, or if the spectrum is absolute and one of the two is parallel and the other is not. */
 SKG_API skg_status skg_plan_move(skg_plan *plan, const skg_view *view);
 
 #ifdef __cplusplus

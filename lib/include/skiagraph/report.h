@@ -119,11 +119,13 @@ SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *re
  *     bound    result: of intensities, in the sense of skg_plan_options.tolerance: relative where more than
  *              1e-6 of the flat field arrives, else in units of 1e-6 of the flat field. An attenuation,
  *              -ln(I/I0), is off by as much. The rounding of what is shown to float is not part of it.
- *     errors   SKG_ERR_UNSUPPORTED for SKG_PRECISION_HALF, for which no bound is known
  *     method   rays from the plan's view to 64 x 64 points of its detector. Each part that a ray meets may
- *              be wrong by the share of its longest path that docs/numerics.md states for the precision.
- *              It does not hold at pixels whose ray lies in a face or passes a silhouette so closely that
- *              rounding decides on which side. Takes as long as tracing these rays on the host. */
+ *              be wrong by what docs/numerics.md states for the precision: a share of its longest path, or
+ *              of its extent along the rays where that is more; with SKG_PRECISION_HALF by half a step of
+ *              the distance in metres for each surface, and images are rounded, too.
+ *              The bound is verified, not proved. At pixels whose ray lies in a face or passes a silhouette
+ *              so closely that rounding decides on which side, it holds for a ray that is shifted by 4 units
+ *              in the last place of a coordinate. Takes as long as tracing these rays on the host. */
 SKG_API skg_status skg_plan_precision_bound_get(const skg_plan *plan, double *bound);
 
 /** Number of energies that a plan uses. */

@@ -4,6 +4,10 @@
 #ifndef SKIAGRAPH_HPP
 #define SKIAGRAPH_HPP
 
+#if __cplusplus < 202002L
+#error "skiagraph.hpp needs C++20: give -std=c++20 to gcc or clang; skiagraph.h works with every C++"
+#endif
+
 #include <skiagraph/skiagraph.h>
 
 #include <cstdint>

@@ -32,12 +32,20 @@ from typing import Any
 from .._interface import UnsupportedError
 from .beam import *
 from .calls import CALLS as _CALLS
+from .compare import *
 from .detector import *
+from .display import *
 from .images import *
+from .implicit import *
 from .life import *
 from .matter import *
 from .meshes import *
 from .places import *
+from .response import *
+from .scans import *
+from .shapes import *
+from .space import *
+from .tube import *
 
 
 def __getattr__(name: str) -> Any:

@@ -1,23 +1,17 @@
-"""Source and beam."""
+"""The source, and spectra that are given."""
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ..beam import Beam
-from ..material import element_number
 from .._interface import SceneError
-from .state import ENERGIES, VOLTAGES, millimetres, three, unit, world
+from .state import ENERGIES, millimetres, three, unit, world
 
 __all__ = [
     "addEnergyBinToSpectrum", "addEnergyBinToSpectrumPerCm2At1m", "addEnergyBinToSpectrumPerPixelAtSDD",
-    "addFilter", "clearFiltration", "getEnergyBins", "getPhotonCountEnergyBins", "getPhotonCountsPerPixelAtSDD",
-    "getSourcePosition", "getTotalEnergyWithDetectorResponse", "getTotalEnergyWithoutDetectorResponse",
-    "getmAs", "isUsingConeBeam", "isUsingFocalSpot", "isUsingParallelBeam", "isUsingParallelSource",
-    "isUsingPointSource", "loadSpectrumFromTSV", "loadSpectrumFromTSVPerCm2At1m",
-    "loadSpectrumFromTSVPerPixelAtSDD", "resetBeamSpectrum", "setFiltration", "setFocalSpot",
+    "getSourcePosition", "getSourceShape", "isUsingConeBeam", "isUsingFocalSpot", "isUsingParallelBeam",
+    "isUsingParallelSource", "isUsingPointSource", "loadSpectrumFromTSV", "loadSpectrumFromTSVPerCm2At1m",
+    "loadSpectrumFromTSVPerPixelAtSDD", "resetBeamSpectrum", "setFocalSpot", "setFocalSpotAsRectangle",
     "setFocalSpotAsSquare", "setMonoChromatic", "setMonoChromaticPerCm2At1m", "setMonoChromaticPerPixelAtSDD",
-    "setSourcePosition", "setTubeAngle", "setVoltage", "setmAs", "useConeBeam", "useParallelBeam",
-    "useParallelSource", "usePointSource",
+    "setSourcePosition", "useConeBeam", "useParallelBeam", "useParallelSource", "usePointSource",
 ]
 
 
@@ -34,6 +28,13 @@ def usePointSource() -> None:
 
 
 useConeBeam = usePointSource
+
+
+def getSourceShape() -> str:
+    """POINT, PARALLEL, SQUARE, RECTANGLE or CUBE."""
+    if isinstance(world.shape, str):
+        return "POINT" if world.shape == "PointSource" else "PARALLEL"
+    return "CUBE" if world.shape[0] == "Cube" else "SQUARE" if world.shape[1] == world.shape[2] else "RECTANGLE"
 
 
 def useParallelBeam() -> None:
@@ -71,6 +72,13 @@ def setFocalSpotAsSquare(x: float, y: float, z: float, l: float, aUnitOfLength: 
     """A square, sampled at i x i points."""
     setSourcePosition(x, y, z, aUnitOfLength)
     world.shape, world.grid = ["Rectangle", l, l, aUnitOfLength], int(i)
+
+
+def setFocalSpotAsRectangle(x: float, y: float, z: float, l: float, k: float, aUnitOfLength: str, i: int,
+                            j: int) -> None:
+    """A rectangle, l across the detector's up vector and k along it, sampled at n x n points, n the larger of i and j."""
+    setSourcePosition(x, y, z, aUnitOfLength)
+    world.shape, world.grid = ["Rectangle", l, k, aUnitOfLength], max(int(i), int(j))
 
 
 def _fresh_spectrum(per_cm2: bool) -> None:
@@ -129,58 +137,3 @@ def resetBeamSpectrum(aClearTubeParameterFlag: bool = True) -> None:
     world.per_cm2 = False
     if aClearTubeParameterFlag:
         world.tube = {}
-
-
-def setVoltage(aVoltage: float, aUnitOfElectriPotential: str) -> None:
-    world.spectrum = {}
-    world.tube["kVp"] = aVoltage * unit(aUnitOfElectriPotential, VOLTAGES)
-
-
-def setTubeAngle(anAngle: float) -> None:
-    world.tube["TubeAngle"] = float(anAngle)
-
-
-def setmAs(an_mAs: float) -> None:
-    world.tube["mAs"] = float(an_mAs)
-
-
-def getmAs() -> float:
-    return float(world.tube.get("mAs", 0))
-
-
-def addFilter(aMaterial: int | str, aThickness: float, aUnitOfLength: str) -> None:
-    world.filters.append((element_number(aMaterial), aThickness * millimetres(aUnitOfLength)))
-
-
-def setFiltration(aSetOfFilters: Sequence[tuple[int, float]], aUnitOfLength: str) -> None:
-    clearFiltration()
-    for material, thickness in aSetOfFilters:
-        addFilter(material, thickness, aUnitOfLength)
-
-
-def clearFiltration() -> None:
-    world.filters = []
-
-
-def getEnergyBins(aUnitOfEnergy: str) -> tuple[float, ...]:
-    return tuple((world.scene().beam.energies / unit(aUnitOfEnergy, ENERGIES)).tolist())
-
-
-def getPhotonCountEnergyBins(anApplyFiltrationFlag: bool = True) -> tuple[float, ...]:
-    """Photons per pixel, behind the filters."""
-    return tuple(world.scene().beam.photons.tolist())
-
-
-getPhotonCountsPerPixelAtSDD = getPhotonCountEnergyBins
-
-
-def getTotalEnergyWithoutDetectorResponse(anApplyFiltrationFlag: bool = True) -> float:
-    """MeV per pixel."""
-    beam = world.scene().beam
-    return float(beam.energies @ beam.photons) / unit("MeV", ENERGIES)
-
-
-def getTotalEnergyWithDetectorResponse(anApplyFiltrationFlag: bool = True) -> float:
-    """MeV per pixel that the detector records of the open beam, without falloff."""
-    scene = world.scene()
-    return float(scene.plan()["channels"][0]["flat_field"]) / unit("MeV", ENERGIES)

@@ -5,156 +5,239 @@ concerns windows or display and does nothing. "refused": it raises UnsupportedEr
 """
 from __future__ import annotations
 
-_NO_WINDOW = "there is no window"
-_NO_SURFACES = "implicit surfaces and volumes are not simulated"
-_NO_GAIN = "gain, bias and their deviations are not simulated"
-_UNKNOWN = "not part of the calls that the tutorials use"
-_RESULT = "compute it from the images with NumPy"
-_TUBE = "read it from the spectrum, getEnergyBins and getPhotonCountEnergyBins"
-_GL = "OpenGL is not used"
-
 _SAME = """
-addEnergyBinToSpectrum addEnergyBinToSpectrumPerCm2At1m addEnergyBinToSpectrumPerPixelAtSDD addFilter addMesh
-addPolygonMeshAsInnerSurface applyCurrentLocalTransformation clearDetectorEnergyResponse clearFiltration clearLSF
-destroy destroyAllWindows disablePoissonNoise emptyMesh getAngleSetCT getChildLabel getDensityFromElement
-getDetectorNumberOfPixels getDetectorPixelSpacing getDetectorPosition getDetectorRightVector getDetectorSize
-getDetectorUpVector getElementAtomicNumber getElementSymbol getEnergyBins getLastLBuffer getLastProjectionSet
-getLastXRayImage getLocalTransformationMatrix getNodeWorldTransformationMatrix getNumberOfChildren
-getNumberOfPrimitives getPhotonCountEnergyBins getPhotonCountsPerPixelAtSDD getSDD getSceneTransformationMatrix
-getSourceDetectorDistance getSourcePosition getTotalEnergyWithoutDetectorResponse getUnitOfEnergy getUnitOfLength
-getmAs isInnerSurface isOuterSurface isUsingConeBeam isUsingFocalSpot isUsingParallelBeam isUsingParallelSource
-isUsingPointSource loadDetectorEnergyResponse loadMeshFile loadSpectrumFromTSV loadSpectrumFromTSVPerCm2At1m
-loadSpectrumFromTSVPerPixelAtSDD makeCube makeCuboid makeCylinder makeTriangularMesh removeMeshAndChildren
-removePolygonMeshesFromSceneGraph removePolygonMeshesFromXRayRenderer resetBeamSpectrum resetSceneTransformation
-rotateNode rotateScene saveSTLfile scaleNode scaleScene setDensity setDetectorEnergyResponse setDetectorNumberOfPixels
-setDetectorPixelPitch setDetectorPixelSize setDetectorPosition setDetectorRightVector setDetectorSize
-setDetectorUpVector setElement setFiltration setLSF setLinearAttenuationCoefficient setLocalTransformationMatrix
-setMixture setMonoChromatic setMonoChromaticPerCm2At1m setMonoChromaticPerPixelAtSDD setMu setNodeTransformationMatrix
-setSourcePosition setTubeAngle terminate translateNode translateScene useConeBeam useParallelBeam useParallelSource
-usePointSource usePoissonNoise
+addEnergyBinToSpectrum addEnergyBinToSpectrumPerCm2At1m addEnergyBinToSpectrumPerPixelAtSDD addFilter
+addInherentFilter addMesh addPolygonMeshAsInnerSurface applyCurrentLocalTransformation autoAlignDetector
+clearDetectorEnergyResponse clearFiltration clearInherentFiltration clearLSF computeZNCC destroy destroyAllWindows
+disablePoissonNoise emptyMesh getAmbientColour getAngleSetCT getBestSOD getCentreOfRotationPositionCT getChildLabel
+getDensityFromElement getDetectorNumberOfPixels getDetectorPixelArea getDetectorPixelSpacing getDetectorPosition
+getDetectorPositionSet getDetectorRightVector getDetectorSize getDiffuseColour getEffectiveAtomicNumber
+getEffectiveMolarMass getEffectiveZNumber getElementAtomicNumber getElementMolarMass getElementName getElementSymbol
+getEnergyBins getEnergyBinSize getFieldOfView getFiltrationMaterial getFiltrationThickness getFirstAngleCT getFOV
+getIdentityMatrix4 getImageHeght getImageRow getImageWidth getIncludeLastAngleFlagCT getIndexNumber
+getInherentFiltrationMaterial getInherentFiltrationThickness getLastAngleCT getLastProjectionSet
+getLocalTransformationMatrix getLSF getMagnification getmAs getMaxValue getMean getMeshFilename getMeshUnitOfLength
+getMinValue getMixtureElementSet getMixtureWeightSet getNodeLocalTransformationMatrix getNodeWorldTransformationMatrix
+getNumberOfChildren getNumberOfPhotonCountingBands getNumberOfPhotons getNumberOfPhotonsPerCm2At1m
+getNumberOfPhotonsPerPixelAtSDD getNumberOfPrimitives getNumberOfProjectionsCT getNumberOfVertexNormalVectors
+getObjectDetectorDistance getODD getOptimalNumberOfProjectionsCT getOversamplingFactor getPhotonCountEnergyBins
+getPhotonCountsPerCm2At1m getPhotonCountsPerPixelAtSDD getProjectionOutputPathCT getProjectionPixelSize
+getRotationAxisCT getSceneRotationMatrix getSceneTransformationMatrix getScintillatorMaterial getScintillatorThickness
+getScreenshotOutputPathCT getSDD getShininess getSOD getSourceDetectorDistance getSourceObjectDistance
+getSourcePosition getSourcePositionSet getSourceShape getSpecularColour getStddev getSupportedScintillatorMaterials
+getTotalEnergyWithoutDetectorResponse getTubeAngle getUnitOfElectriPotential getUnitOfEnergy getUnitOfLength
+getVertexNumber getWhiteImagesInFlatFieldCT getWindowSize getZoom hasNormalVectorsInverted isInnerSurface
+isOuterSurface isUsingConeBeam isUsingFocalSpot isUsingParallelBeam isUsingParallelSource isUsingPointSource
+lineariseTest loadDetectorEnergyResponse loadMeshFile loadReference loadSpectrumFromTSV loadSpectrumFromTSVPerCm2At1m
+loadSpectrumFromTSVPerPixelAtSDD loadTest makeCube makeCuboid makeCylinder makeStepWedge makeTriangularMesh
+mergePhotonCountingBands radian2degree removeMeshAndChildren removePolygonMeshesFromSceneGraph
+removePolygonMeshesFromXRayRenderer resetBeamSpectrum resetSceneTransformation rotateDetector rotateNode rotateScene
+saveSTLfile scaleNode scaleScene setAmbiantColour setColor setColour setDensity setDetectorEnergyResponse
+setDetectorNumberOfPixels setDetectorPixelPitch setDetectorPixelSize setDetectorPosition setDetectorRightVector
+setDetectorSize setDetectorUpVector setDiffuseColour setElement setFiltration setLinearAttenuationCoefficient
+setLocalTransformationMatrix setMonoChromatic setMonoChromaticPerCm2At1m setMonoChromaticPerPixelAtSDD setMu
+setNodeTransformationMatrix setNumberOfPhotons setNumberOfPhotonsPerCm2At1m setNumberOfPhotonsPerPixelAtSDD
+setSceneTransformationMatrix setSourcePosition setSpecularColour setTubeAngle shearNode terminate translateNode
+translateScene useConeBeam useParallelBeam useParallelSource usePointSource usePoissonNoise
 """
 
 _DIFFERS = {
-    "addPolygonMeshAsOuterSurface": "one outer surface; the inner ones displace it where they are",
-    "computeCTAcquisition": "projections are written as TIFF; no screenshots; angles divide the range evenly in both cases",
-    "computeLBuffer": "float32 instead of float64; exact at silhouettes, where gVXR is not; of an outer surface without the inner ones "
-                      "as they stand, in gVXR as they stood in the last image; an unknown label is an error",
-    "computePathLength": "as computeLBuffer",
-    "getNodeAndChildrenBoundingBox": "the bounds of the vertices as they stand; gVXR's may be larger for turned meshes",
-    "getNodeAndChildrenBoundingBoxCenter": "the middle of these bounds",
-    "getNodeAndChildrenBoundingBoxCentre": "the middle of these bounds",
-    "getNodeOnlyBoundingBox": "the bounds of the vertices as they stand; gVXR's may be larger for turned meshes",
-    "getNodeOnlyBoundingBoxCenter": "the middle of these bounds",
-    "getNodeOnlyBoundingBoxCentre": "the middle of these bounds",
-    "getVertexSet": "an array of float64; meshes that are made have their vertices in another order",
-    "getIndexSet": "an array of int32; meshes that are made have their triangles in another order",
-    "moveToCentre": "by the bounds of the vertices as they stand",
-    "moveToCenter": "by the bounds of the vertices as they stand",
-    "computeSpectralImage": "[band, row, column]; needs setPhotonCountingBands",
-    "computeXRayImage": "float32 instead of float64; photons per pixel counted by the quantity `photons`",
-    "enablePoissonNoise": "other random numbers; an exposure in mAs does not turn it on",
-    "getDensity": "0 instead of a negative number where it has no meaning",
-    "getDensityFromHU": "the same tables (Schneider 2000), -1050 to 3000",
-    "getLinearAttenuationCoefficient": "cross sections of NIST XCOM 8.1: some 0.1 % from gVXR's of xraylib",
-    "getMassAttenuationCoefficient": "cross sections of NIST XCOM 8.1: some 0.1 % from gVXR's of xraylib",
-    "getMaterialLabel": "the words of a mixture given as a list are its elements",
-    "getMuFromHU": "cross sections of NIST XCOM 8.1, and the composition of Schneider 2000",
-    "getTotalEnergyWithDetectorResponse": "of the response as Skiagraph has it (setScintillator)",
-    "getWhiteImage": "with photon counting too, where gVXR refuses it",
-    "makeSphere": "half as many rings as sectors, whatever is asked",
-    "saveLastLBuffer": ".png, .tif or .mha; not compressed",
-    "saveLastPathLength": ".png, .tif or .mha; not compressed",
-    "saveLastProjectionSet": ".tif or .mha; not compressed",
-    "saveLastXRayImage": ".png, .tif or .mha; not compressed",
-    "setCompound": "a name of the tables has no effect: formulas by atoms only",
-    "setFocalSpot": "the middles of i x i x i equal pieces",
-    "setFocalSpotAsSquare": "the middles of i x i equal pieces, across the line to the detector",
-    "setHU": "-1050 to 3000; cross sections of NIST XCOM 8.1",
-    "setHounsfieldUnit": "-1050 to 3000; cross sections of NIST XCOM 8.1",
-    "setHounsfieldValue": "-1050 to 3000; cross sections of NIST XCOM 8.1",
-    "setOversamplingFactor": "1 to 16; rays at the middles of the pieces of a pixel",
-    "setPhotonCountingBands": "bands of equal width from the least to the greatest energy",
-    "setScintillator": "every photon that interacts is recorded with all its energy, an upper bound; materials by formula or "
-                       "by a name of the tables",
-    "setSeed": "other random numbers",
-    "setVoltage": "the tube model of Ebel, calibrated (docs/physics.md)",
-    "setmAs": "photons are counted absolutely and fall off with the distance; noise only by enablePoissonNoise",
+    "marching tetrahedra; the mesh is closed where it meets the border of the volume":
+        """createMeshFromImplicitSurface""",
+    "lengths of the parameters are in mm":
+        """addControlLineSegment addControlPoint createImplicitSurface destroyAllImplicitSurfaces
+        destroyImplicitSurface getImplicitSurfaceLabelSet getImplicitSurfaceLastVoxelisation
+        getImplicitSurfaceLastVoxelization getNumberOfControlLineSegments getNumberOfControlPoints
+        getNumberOfImplicitSurfaces implicitSurfaceExists setControlLineSegmentParameters setControlPointParameters
+        voxeliseImplicitSurface voxelizeImplicitSurface""",
+    "exact spheres that do not overlap; voxels and the name of the volume have no effect":
+        """makeFoamInCuboid""",
+    "what is at or above the value is inside; the surface is closed where it meets the border of the volume":
+        """makeIsoSurface""",
+    "spheres lie in the cylinder, do not overlap, and fill the percentage; half as many rings as sectors":
+        """makeSpheresInCylinder""",
+    "the mesh stands at this distance along the beam; gVXR 2.1 moves it as if it stood at the origin":
+        """applySOD""",
+    "one outer surface; the inner ones displace it where they are":
+        """addPolygonMeshAsOuterSurface""",
+    "returns the projections; no screenshots; angles divide the range evenly in both cases; a folder of TIFF,"
+    " or one file":
+        """computeCTAcquisition""",
+    "float32 instead of float64; exact at silhouettes, where gVXR is not; of an outer surface without the "
+    "inner ones as they stand, in gVXR as they stood in the last image; an unknown label is an error":
+        """computeLBuffer""",
+    "as computeLBuffer":
+        """computePathLength""",
+    "the root of the mean, as gVXR documents it; gVXR 2.1 takes the root of the sum":
+        """computeRMSE""",
+    "[band, row, column]; needs setPhotonCountingBands":
+        """computeSpectralImage""",
+    "float32 instead of float64; photons per pixel counted by the quantity `photons`; without meshes the open"
+    " beam, where gVXR gives nothing":
+        """computeXRayImage""",
+    "cross sections of NIST XCOM 8.1: some 0.1 % from gVXR's of xraylib":
+        """convertHU2mu getLinearAttenuationCoefficient getMassAttenuationCoefficient getMassAttenuationFromCompound
+        getMassAttenuationFromElement getMassAttenuationFromHU getMassAttenuationFromMixture""",
+    "other random numbers; an exposure in mAs does not turn it on":
+        """enablePoissonNoise""",
+    "the formula that was set; an empty text for other materials, where gVXR fails":
+        """getCompound""",
+    "0 instead of a negative number where it has no meaning":
+        """getDensity""",
+    "the same tables (Schneider 2000), -1050 to 3000":
+        """getDensityFromHU""",
+    "unit vectors; gVXR 2.1 moves them as if they were positions":
+        """getDetectorRightVectorSet getDetectorUpVectorSet""",
+    "0, 0, 1 until it is set":
+        """getDetectorUpVector""",
+    "the four corners in this order: the two triangles may be cut along the other diagonal":
+        """getDetectorVertices""",
+    "every photon that interacts is recorded with all its energy, an upper bound; 1000 energies from 1 to 300"
+    " keV":
+        """getEnergyResponse""",
+    "there is one for each triangle; gVXR 2.1 has none":
+        """getFaceNormalVectorSet getNumberOfFaceNormalVectors""",
+    "an array of int32; meshes that are made have their triangles in another order":
+        """getIndexSet""",
+    "zeros before the first one":
+        """getLastLBuffer getLastXRayImage""",
+    "Skiagraph's own picture of the scene":
+        """getLatestScreenshot takeScreenshot""",
+    "2, 1, 0: the gVXR whose calls these are":
+        """getMajorVersionOfCoreGVXR getMajorVersionOfSimpleGVXR getMinorVersionOfCoreGVXR getMinorVersionOfSimpleGVXR
+        getPatchVersionOfCoreGVXR getPatchVersionOfSimpleGVXR""",
+    "the words of a mixture given as a list are its elements":
+        """getMaterialLabel""",
+    "cross sections of NIST XCOM 8.1, and the composition of Schneider 2000":
+        """getMuFromHU""",
+    "the bounds of the vertices as they stand; gVXR's may be larger for turned meshes":
+        """getNodeAndChildrenBoundingBox getNodeOnlyBoundingBox""",
+    "the middle of these bounds":
+        """getNodeAndChildrenBoundingBoxCenter getNodeAndChildrenBoundingBoxCentre getNodeOnlyBoundingBoxCenter
+        getNodeOnlyBoundingBoxCentre""",
+    "of the device of OpenCL":
+        """getOpenGlRenderer getOpenGlVendor getOpenGlVersion""",
+    "the edges of the bands, one more than bands":
+        """getPhotonCountingBands""",
+    "other random numbers":
+        """getPSNR setSeed""",
+    "gVXR 2.1 has not implemented it":
+        """getRootTransformationMatrix setRootTransformationMatrix""",
+    "of the response as Skiagraph has it (setScintillator)":
+        """getTotalEnergyWithDetectorResponse""",
+    "says that it is Skiagraph":
+        """getVersionOfCoreGVXR getVersionOfSimpleGVXR""",
+    "the mean of the triangles' normals by area, of length 1, and not moved by the matrix":
+        """getVertexNormalVectorSet""",
+    "an array of float64; meshes that are made have their vertices in another order":
+        """getVertexSet""",
+    "other words; a label for the second argument":
+        """getVisibilityCheckReport""",
+    "-1 V to -1 MV, by its unit, until it is set":
+        """getVoltage""",
+    "with photon counting too, where gVXR refuses it":
+        """getWhiteImage""",
+    "[band, row, column]; gVXR 2.1 refuses it":
+        """getWhiteSpectralImage""",
+    "a closed mesh points outward whatever is asked":
+        """invertNormalVectors""",
+    "all meshes of the file are one, with the name of the file":
+        """loadSceneGraph""",
+    "half as many rings as sectors, whatever is asked":
+        """makeSphere""",
+    "by the bounds of the vertices as they stand":
+        """moveToCenter moveToCentre""",
+    "multiples of the direction, rising; origin and direction in mm":
+        """rayIntersect""",
+    ".png, .tif or .mha; not compressed":
+        """saveLastLBuffer saveLastPathLength saveLastXRayImage""",
+    ".tif or .mha; not compressed":
+        """saveLastProjectionSet""",
+    "a name of the tables has no effect: formulas by atoms only":
+        """setCompound""",
+    "0.1 to 10 keV; energies are the middles of the bins":
+        """setEnergyBinSize""",
+    "the grid of energies stays: those below are left out":
+        """setFirstEnergyBin""",
+    "the middles of i x i x i equal pieces":
+        """setFocalSpot""",
+    "the larger of i and j counts along both sides; the middles of equal pieces":
+        """setFocalSpotAsRectangle""",
+    "the middles of i x i equal pieces, across the line to the detector":
+        """setFocalSpotAsSquare""",
+    "-1050 to 3000; cross sections of NIST XCOM 8.1":
+        """setHounsfieldUnit setHounsfieldValue setHU""",
+    "a text file too, as json2gvxr needs it":
+        """setLSF""",
+    "photons are counted absolutely and fall off with the distance; noise only by enablePoissonNoise":
+        """setmAs""",
+    "weights that do not sum to 1 are scaled with a warning, where gVXR scales them silently":
+        """setMixture""",
+    "1 to 16; rays at the middles of the pieces of a pixel":
+        """setOversamplingFactor""",
+    "bands of equal width from the least to the greatest energy":
+        """setPhotonCountingBands""",
+    "takeScreenshot shows it from there; the picture always holds the whole scene":
+        """setSceneRotationMatrix""",
+    "every photon that interacts is recorded with all its energy, an upper bound; materials by formula or by "
+    "a name of the tables":
+        """setScintillator""",
+    "kept, and not shown by takeScreenshot":
+        """setShininess setWindowBackGroundColor setWindowBackGroundColour setZoom""",
+    "the tube model of Ebel, calibrated (docs/physics.md)":
+        """setVoltage""",
+    "the size of a screenshot":
+        """setWindowSize""",
 }
 
 _NOTHING = """
 autoCreateOpenGLContext computeMixedPrecisionFlag createNewContext createOpenGLContext createWindow
-cursorPositionCallback destroyWindow displayBeam displayDetector displayNode displayNormalVectors displayScene
-findEGLClients hideWindow lookAt orthographic perspective popModelViewMatrix pushModelViewMatrix renderLoop
-rotateModelView scrollCallback setAmbiantColour setAxisLength setColor setColour setDiffuseColour setMarkerLength
-setShininess setSpecularColour setWindowBackGroundColor setWindowBackGroundColour setWindowPosition setWindowSize setZoom
-showWindow startArcBallRotation stopArcBallRotation takeScreenshot useLighing useLogFile useNegative useWireframe
-usingArcBallRotation disableArtefactFiltering disableArtifactFiltering enableArtefactFilteringOnCPU
-enableArtefactFilteringOnGPU enableArtifactFilteringOnCPU enableArtifactFilteringOnGPU
-setMaxRadiusLbufferArtefactFilter setBinTotalEnergyCutoff
+cursorPositionCallback destroyWindow disableArtefactFiltering disableArtifactFiltering displayBeam displayDetector
+displayNode displayNormalVectors displayScene enableArtefactFilteringOnCPU enableArtefactFilteringOnGPU
+enableArtifactFilteringOnCPU enableArtifactFilteringOnGPU findEGLClients hideWindow lookAt orthographic perspective
+popModelViewMatrix pushModelViewMatrix renderLoop rotateModelView scrollCallback setAxisLength setBinTotalEnergyCutoff
+setMarkerLength setMaxRadiusLbufferArtefactFilter setWindowPosition showWindow startArcBallRotation
+stopArcBallRotation useLighing useLogFile useNegative useWireframe usingArcBallRotation
 """
 
 _REFUSED = {
-    _NO_WINDOW: """getAmbientColour getDiffuseColour getLatestScreenshot getScreenshotOutputPathCT getShininess
-        getSpecularColour getVisibilityCheckReport getWindowSize getZoom getBHPI""",
-    _GL: """getMax2DTextureSize getMax3DTextureSize getMixedPrecisionFlag getNumberOfEGLDevices getOpenGlRenderer
-        getOpenGlVendor getOpenGlVersion getPrecisionCleanedLBuffer getPrecisionCumulatedLBuffer getPrecisionEnergyFluence
-        getPrecisionSumMuXdX getPrecisionUncleanedLBuffer getPrecisionZBuffer getShadingLanguageVersion
-        getLargestPossibleDetectorNumberOfPixels getLargestPossibleNumberOfEnergyBins getBuildEnvironment
-        getMaxRadiusLbufferArtefactFilter isArtefactFilteringOnCPUEnabled isArtefactFilteringOnGPUEnabled""",
-    _NO_SURFACES: """addControlLineSegment addControlPoint convertHU2mu createImplicitSurface createMeshFromImplicitSurface
-        destroyAllImplicitSurfaces destroyImplicitSurface getImplicitSurfaceLabelSet getImplicitSurfaceLastVoxelisation
-        getImplicitSurfaceLastVoxelization getNumberOfControlLineSegments getNumberOfControlPoints
-        getNumberOfImplicitSurfaces implicitSurfaceExists makeFoamInCuboid makeIsoSurface makeSpheresInCylinder
-        setControlLineSegmentParameters setControlPointParameters subtractMesh voxeliseImplicitSurface
-        voxelizeImplicitSurface loadImage2D loadImage3D""",
-    _NO_GAIN: """computeCTAcquisitionWithGain computeXRayImageWithGain getDetectorBias getDetectorGain getDetectorStdDevBias
+    "read it by the package that wrote it, such as SimpleITK; makeIsoSurface takes the array":
+        """loadImage2D loadImage3D""",
+    "meshes are not cut: add the one as an inner surface of the other, which it displaces":
+        """subtractMesh""",
+    "gain, bias and their deviations are not simulated: apply them to the image with NumPy":
+        """computeCTAcquisitionWithGain computeXRayImageWithGain getDetectorBias getDetectorGain getDetectorStdDevBias
         getLastProjectionSetWithGain getNoiseGenerator getTotalEnergyWithDetectorResponseWithGain
         getTotalEnergyWithoutDetectorResponseWithGain getWhiteImageWithGain getWhiteSpectralImageWithGain
         saveLastXRayImageWithGain setDetectorBias setDetectorGain setDetectorStdDevBias""",
-    _RESULT: """computeRMSE computeZNCC getMaxValue getMean getMinValue getPSNR getStddev getImageHeght getImageRow
-        getImageWidth getWhiteLevel setWhiteLevel lineariseTest loadTest loadReference getWhiteSpectralImage
-        mergePhotonCountingBands""",
-    _TUBE: """getFiltrationMaterial getFiltrationThickness getInherentFiltrationMaterial getInherentFiltrationThickness
-        getTubeAngle getVoltage getUnitOfElectriPotential getNumberOfPhotons getNumberOfPhotonsPerCm2At1m
-        getNumberOfPhotonsPerPixelAtSDD getPhotonCountsPerCm2At1m getEnergyBinSize setEnergyBinSize setFirstEnergyBin
-        setNumberOfPhotons setNumberOfPhotonsPerCm2At1m setNumberOfPhotonsPerPixelAtSDD""",
-    "no filtration is assumed: name it by addFilter": "addInherentFilter clearInherentFiltration",
-    "give every projection's source and detector as views to skiagraph.Scene.images": """rotateDetector rotateFocalSpot
-        rotateSource getDetectorPositionSet getDetectorRightVectorSet getDetectorUpVectorSet getSourcePositionSet""",
-    "use computeCTAcquisition": """computeProjectionSet computeSinogram getLastSinogram saveLastSinogram""",
-    "the arguments of the last computeCTAcquisition are the caller's": """getCentreOfRotationPositionCT getFirstAngleCT
-        getIncludeLastAngleFlagCT getLastAngleCT getNumberOfProjectionsCT getOptimalNumberOfProjectionsCT
-        getProjectionOutputPathCT getRotationAxisCT getWhiteImagesInFlatFieldCT""",
-    "use skiagraph.Material: its compositions, edges and coefficients": """getCompound getEffectiveAtomicNumber
-        getEffectiveMolarMass getEffectiveZNumber getElementMolarMass getElementName getMassAttenuationFromCompound
-        getMassAttenuationFromElement getMassAttenuationFromHU getMassAttenuationFromMixture getMixtureElementSet
-        getMixtureWeightSet setMassAttenuationCoefficient""",
-    "use skiagraph.Response: what a scintillator records": """getEnergyResponse getScintillatorMaterial
-        getScintillatorThickness getSupportedScintillatorMaterials getLSF getOversamplingFactor getPhotonCountingBands
-        getNumberOfPhotonCountingBands""",
-    "normals follow from the order of corners; a closed mesh points outward": """hasNormalVectorsInverted
-        invertNormalVectors getFaceNormalVectorSet getVertexNormalVectorSet getNumberOfFaceNormalVectors
-        getNumberOfVertexNormalVectors""",
-    "the steps of a wedge are equal: make it by skiagraph.Mesh.step_wedge": "makeStepWedge",
-    "a rectangle has one number of samples along both sides; use skiagraph.Scene.image(spot=...)":
-        "setFocalSpotAsRectangle",
-    "place source and detector yourself": """applySOD autoAlignDetector getBestSOD getFOV getFieldOfView getMagnification
-        getODD getObjectDetectorDistance getSOD getSourceObjectDistance getProjectionPixelSize getDetectorPixelArea
-        getDetectorVertices getSourceShape""",
-    "scene graphs are read as one mesh: use loadMeshFile": "loadSceneGraph",
-    "it is not Skiagraph's: skiagraph.__version__ is": """getMajorVersionOfCoreGVXR getMajorVersionOfSimpleGVXR
-        getMinorVersionOfCoreGVXR getMinorVersionOfSimpleGVXR getPatchVersionOfCoreGVXR getPatchVersionOfSimpleGVXR
-        getVersionOfCoreGVXR getVersionOfSimpleGVXR""",
-    "nothing is summed up over meshes but the image": "saveLastCumulatedLBuffer",
-    _UNKNOWN: """getIdentityMatrix4 getIndexNumber getMeshFilename getMeshUnitOfLength getNodeLocalTransformationMatrix
-        getRootTransformationMatrix getSceneRotationMatrix getVertexNumber radian2degree rayIntersect
-        setRootTransformationMatrix setSceneRotationMatrix setSceneTransformationMatrix shearNode""",
+    "gVXR 2.1 refuses it too: use computeCTAcquisition":
+        """computeProjectionSet computeSinogram""",
+    "gVXR's documentation does not say how the index is computed":
+        """getBHPI""",
+    "OpenGL is not used":
+        """getBuildEnvironment getLargestPossibleDetectorNumberOfPixels getLargestPossibleNumberOfEnergyBins
+        getMax2DTextureSize getMax3DTextureSize getMaxRadiusLbufferArtefactFilter getMixedPrecisionFlag
+        getNumberOfEGLDevices getPrecisionCleanedLBuffer getPrecisionCumulatedLBuffer getPrecisionEnergyFluence
+        getPrecisionSumMuXdX getPrecisionUncleanedLBuffer getPrecisionZBuffer getShadingLanguageVersion
+        isArtefactFilteringOnCPUEnabled isArtefactFilteringOnGPUEnabled""",
+    "there is no computeSinogram: take rows of getLastProjectionSet":
+        """getLastSinogram saveLastSinogram""",
+    "compute it from the images with NumPy":
+        """getWhiteLevel setWhiteLevel""",
+    "a flat spot lies across the line to the detector: give skiagraph.Scene.image(spot={\"axis\": ...})":
+        """rotateFocalSpot""",
+    "its centre has no unit in gVXR's documentation: call setSourcePosition with the turned position":
+        """rotateSource""",
+    "nothing is summed up over meshes but the image":
+        """saveLastCumulatedLBuffer""",
+    "gVXR 2.1 finds no properties after it: use setMu with the product of coefficient and density":
+        """setMassAttenuationCoefficient""",
 }
 
 #: name -> (kind, remark)
 CALLS: dict[str, tuple[str, str]] = {
     **{name: ("same", "") for name in _SAME.split()},
-    **{name: ("differs", remark) for name, remark in _DIFFERS.items()},
+    **{name: ("differs", remark) for remark, names in _DIFFERS.items() for name in names.split()},
     **{name: ("nothing", "no window, no display; leaky meshes are repaired by default") for name in _NOTHING.split()},
     **{name: ("refused", remark) for remark, names in _REFUSED.items() for name in names.split()},
 }

@@ -1,23 +1,17 @@
-"""The detector, and its noise."""
+"""Where the detector is."""
 from __future__ import annotations
-
-import os
-from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .state import ENERGIES, millimetres, three, unit, world
+from ..matrices import rotate
+from .state import millimetres, three, world
 
 __all__ = [
-    "clearDetectorEnergyResponse", "clearLSF", "disablePoissonNoise", "enablePoissonNoise",
-    "getDetectorNumberOfPixels", "getDetectorPixelSpacing", "getDetectorPosition", "getDetectorRightVector",
-    "getDetectorSize", "getDetectorUpVector", "getSDD", "getSourceDetectorDistance",
-    "loadDetectorEnergyResponse", "setDetectorEnergyResponse", "setDetectorNumberOfPixels",
-    "setDetectorPixelPitch", "setDetectorPixelSize", "setDetectorPosition", "setDetectorRightVector",
-    "setDetectorSize", "setDetectorUpVector", "setLSF", "setOversamplingFactor", "setPhotonCountingBands",
-    "setScintillator", "setSeed", "usePoissonNoise",
+    "autoAlignDetector", "getDetectorNumberOfPixels", "getDetectorPixelArea", "getDetectorPixelSpacing",
+    "getDetectorPosition", "getDetectorRightVector", "getDetectorSize", "getDetectorUpVector", "getDetectorVertices",
+    "getSDD", "getSourceDetectorDistance", "rotateDetector", "setDetectorNumberOfPixels", "setDetectorPixelPitch",
+    "setDetectorPixelSize", "setDetectorPosition", "setDetectorRightVector", "setDetectorSize", "setDetectorUpVector",
 ]
 
 
@@ -38,15 +32,32 @@ def setDetectorRightVector(x: float, y: float, z: float) -> None:
 
 
 def getDetectorUpVector() -> tuple[float, ...]:
-    return _direction(world.scene(False).view.row_step)
+    return _direction(world.view().row_step) if _is_complete() else world.up
 
 
 def getDetectorRightVector() -> tuple[float, ...]:
-    return _direction(world.scene(False).view.column_step)
+    """0, 0, 0 before source and detector are there."""
+    return _direction(world.view().column_step) if _is_complete() else world.right or (0.0, 0.0, 0.0)
+
+
+def _is_complete() -> bool:
+    return min(world.pixels) > 0 and bool(world.size or world.spacing) and world.source != world.detector
 
 
 def _direction(step: NDArray[np.float64]) -> tuple[float, ...]:
     return tuple((step / np.linalg.norm(step)).tolist())
+
+
+def rotateDetector(anAngle: float, x: float, y: float, z: float) -> None:
+    """Turns its directions about its centre, degrees."""
+    turn = rotate((x, y, z), anAngle)[:3, :3]
+    world.right = three(*(turn @ getDetectorRightVector()))
+    world.up = three(*(turn @ world.up))
+
+
+def autoAlignDetector(aFlag: bool = True) -> None:
+    """From now on its directions are made perpendicular to the line from the source to its centre."""
+    world.align = bool(aFlag)
 
 
 def setDetectorNumberOfPixels(aWidth: int, aHeight: int) -> None:
@@ -74,8 +85,28 @@ def getDetectorSize(aUnitOfLength: str) -> tuple[float, float]:
 
 
 def getDetectorPixelSpacing(aUnitOfLength: str) -> tuple[float, float]:
-    view, mm = world.scene(False).view, millimetres(aUnitOfLength)
-    return float(np.linalg.norm(view.column_step)) / mm, float(np.linalg.norm(view.row_step)) / mm
+    """0, 0 before it is known."""
+    mm = millimetres(aUnitOfLength)
+    if world.spacing:
+        return world.spacing[0] / mm, world.spacing[1] / mm
+    if world.size and min(world.pixels) > 0:
+        return world.size[0] / world.pixels[0] / mm, world.size[1] / world.pixels[1] / mm
+    return 0.0, 0.0
+
+
+def getDetectorPixelArea(aUnitOfLength: str) -> float:
+    x, y = getDetectorPixelSpacing(aUnitOfLength)
+    return x * y
+
+
+def getDetectorVertices() -> tuple[float, ...]:
+    """x, y, z in mm of the corners of two triangles; none before source and detector are there."""
+    if not _is_complete():
+        return ()
+    view = world.view()
+    right, up = view.column_step * view.pixels[0] / 2, view.row_step * view.pixels[1] / 2
+    a, b, c, d = (view.detector + i * right + j * up for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    return tuple(float(value) for corner in (a, b, c, a, c, d) for value in corner)
 
 
 def getSourceDetectorDistance(aUnitOfLength: str) -> float:
@@ -83,58 +114,3 @@ def getSourceDetectorDistance(aUnitOfLength: str) -> float:
 
 
 getSDD = getSourceDetectorDistance
-
-
-def setOversamplingFactor(aFactor: int = 1) -> None:
-    world.detector_keys["Oversampling"] = int(aFactor)
-
-
-def setLSF(aLSF: Sequence[float]) -> None:
-    """Along rows only, as gVXR has it."""
-    world.detector_keys["LSF"] = [[float(value) for value in aLSF], [1]]
-
-
-def clearLSF() -> None:
-    world.detector_keys.pop("LSF", None)
-
-
-def setScintillator(aMaterial: str, aThickness: float, aUnitOfLength: str) -> None:
-    clearDetectorEnergyResponse()
-    world.detector_keys["Scintillator"] = {"Material": aMaterial, "Thickness": float(aThickness), "Unit": aUnitOfLength}
-
-
-def loadDetectorEnergyResponse(aFileName: str, aUnitOfEnergy: str) -> None:
-    clearDetectorEnergyResponse()
-    world.detector_keys["EnergyResponse"] = {"File": os.path.abspath(aFileName), "Unit": aUnitOfEnergy}
-
-
-def setDetectorEnergyResponse(anEnergyResponse: Any, aUnitOfEnergy: str) -> None:
-    clearDetectorEnergyResponse()
-    rows = np.asarray(anEnergyResponse, dtype=float)
-    world.detector_keys["EnergyResponse"] = {"LUT": rows.tolist(), "Unit": aUnitOfEnergy}
-
-
-def clearDetectorEnergyResponse() -> None:
-    world.detector_keys.pop("EnergyResponse", None)
-    world.detector_keys.pop("Scintillator", None)
-
-
-def setPhotonCountingBands(aMinEnergy: float, aMaxEnergy: float, aUnitOfEnergy: str, aNumberOfBands: int) -> None:
-    kev = unit(aUnitOfEnergy, ENERGIES)
-    world.bands = np.linspace(aMinEnergy * kev, aMaxEnergy * kev, int(aNumberOfBands) + 1).tolist()
-
-
-def enablePoissonNoise() -> None:
-    world.noise = True
-
-
-def disablePoissonNoise() -> None:
-    world.noise = False
-
-
-def usePoissonNoise() -> bool:
-    return world.noise
-
-
-def setSeed(aRandomGeneratorSeed: int) -> None:
-    world.seed, world.frame = int(aRandomGeneratorSeed), 0

@@ -1,11 +1,19 @@
 """Beginning anew, units, scene files."""
 from __future__ import annotations
 
+from .. import _library
+from .._device import device_of
 from .state import ENERGIES, LENGTHS, unit, world
 
 __all__ = [
-    "destroy", "destroyAllWindows", "getUnitOfEnergy", "getUnitOfLength", "loadSceneFile", "terminate",
+    "destroy", "destroyAllWindows", "getMajorVersionOfCoreGVXR", "getMajorVersionOfSimpleGVXR", "getMinorVersionOfCoreGVXR",
+    "getMinorVersionOfSimpleGVXR", "getOpenGlRenderer", "getOpenGlVendor", "getOpenGlVersion", "getPatchVersionOfCoreGVXR",
+    "getPatchVersionOfSimpleGVXR", "getUnitOfEnergy", "getUnitOfLength", "getVersionOfCoreGVXR", "getVersionOfSimpleGVXR",
+    "loadSceneFile", "terminate",
 ]
+
+#: The release of gVXR whose calls these are.
+_RELEASE = (2, 1, 0)
 
 
 def destroyAllWindows() -> None:
@@ -30,3 +38,44 @@ def loadSceneFile(aFileName: str) -> None:
     The meshes of the file, its focal spot and its detector's response, blur and oversampling stay; the rest may change.
     """
     world.load(aFileName)
+
+
+def getMajorVersionOfCoreGVXR() -> int:
+    """Of the gVXR whose calls these are; the name of Skiagraph is in getVersionOfCoreGVXR."""
+    return _RELEASE[0]
+
+
+def getMinorVersionOfCoreGVXR() -> int:
+    return _RELEASE[1]
+
+
+def getPatchVersionOfCoreGVXR() -> int:
+    return _RELEASE[2]
+
+
+getMajorVersionOfSimpleGVXR = getMajorVersionOfCoreGVXR
+getMinorVersionOfSimpleGVXR = getMinorVersionOfCoreGVXR
+getPatchVersionOfSimpleGVXR = getPatchVersionOfCoreGVXR
+
+
+def getVersionOfCoreGVXR() -> str:
+    """Says that it is Skiagraph."""
+    return f"Skiagraph {_library.text(_library.lib.skg_version())}, with the calls of gVXR {'.'.join(map(str, _RELEASE))}"
+
+
+getVersionOfSimpleGVXR = getVersionOfCoreGVXR
+
+
+def getOpenGlVendor() -> str:
+    """OpenGL is not used: of the device of OpenCL."""
+    return str(device_of(None).info["platform_name"])
+
+
+def getOpenGlRenderer() -> str:
+    """OpenGL is not used: the device of OpenCL."""
+    return str(device_of(None).info["name"])
+
+
+def getOpenGlVersion() -> str:
+    """OpenGL is not used: of the driver of OpenCL."""
+    return "OpenCL, " + str(device_of(None).info["driver"])

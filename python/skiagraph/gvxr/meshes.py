@@ -1,20 +1,25 @@
 """Meshes and the scene graph."""
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .._interface import ArgumentError, FileError
 from ..matrices import rotate
 from ..mesh import Mesh
+from . import dragon
 from .state import Node, millimetres, world
 
 __all__ = [
     "addMesh", "addPolygonMeshAsInnerSurface", "addPolygonMeshAsOuterSurface", "emptyMesh", "getChildLabel",
-    "getIndexSet", "getNumberOfChildren", "getNumberOfPrimitives", "getVertexSet", "isInnerSurface",
-    "isOuterSurface", "loadMeshFile", "makeCube", "makeCuboid", "makeCylinder", "makeSphere",
-    "makeTriangularMesh", "removeMeshAndChildren", "removePolygonMeshesFromSceneGraph",
+    "getFaceNormalVectorSet", "getIndexNumber", "getIndexSet", "getMeshFilename", "getMeshUnitOfLength",
+    "getNumberOfChildren", "getNumberOfFaceNormalVectors", "getNumberOfPrimitives", "getNumberOfVertexNormalVectors",
+    "getVertexNormalVectorSet", "getVertexNumber", "getVertexSet", "hasNormalVectorsInverted", "invertNormalVectors",
+    "isInnerSurface", "isOuterSurface", "loadMeshFile", "loadSceneGraph", "makeCube", "makeCuboid", "makeCylinder",
+    "makeSphere", "makeTriangularMesh", "rayIntersect", "removeMeshAndChildren", "removePolygonMeshesFromSceneGraph",
     "removePolygonMeshesFromXRayRenderer", "saveSTLfile",
 ]
 
@@ -25,7 +30,11 @@ def _loaded(label: str, mesh: Mesh, parent: str) -> None:
 
 def loadMeshFile(aLabel: str, aFileName: str, aUnitOfLength: str, addToRendererAsInnerSurface: bool = True,
                  aParent: str = "root") -> None:
+    """In the folder of this package, welsh-dragon-small.stl is the mesh of gVXR's wheel (skiagraph.gvxr.dragon)."""
+    if not os.path.exists(aFileName) and os.path.basename(aFileName) == dragon.NAME:
+        raise FileError(f"{aFileName}: is not there; {dragon.ADVICE}")
     _loaded(aLabel, Mesh.load(aFileName, unit_mm=millimetres(aUnitOfLength)), aParent)
+    world.node(aLabel).file, world.node(aLabel).unit = os.path.abspath(aFileName), aUnitOfLength
     if addToRendererAsInnerSurface:
         addPolygonMeshAsInnerSurface(aLabel)
 
@@ -61,6 +70,12 @@ def makeTriangularMesh(aLabel: str, aVertexSet: Any, aTriangleIndexSet: Any, aUn
     vertices = np.asarray(aVertexSet, dtype=float).reshape(-1, 3)
     faces = np.asarray(aTriangleIndexSet).reshape(-1, 3)
     _loaded(aLabel, Mesh(vertices, faces, unit_mm=millimetres(aUnitOfLength), name=aLabel), aParent)
+
+
+def loadSceneGraph(aFileName: str, aUnitOfLength: str) -> None:
+    """All meshes of the file together, as one with the file's name, in the X-ray renderer."""
+    label = os.path.splitext(os.path.basename(aFileName))[0]
+    loadMeshFile(label, aFileName, aUnitOfLength)
 
 
 def emptyMesh(aLabel: str, aParent: str = "root") -> None:
@@ -114,20 +129,108 @@ def getNumberOfChildren(aLabel: str) -> int:
 
 
 def getChildLabel(aLabel: str, i: int) -> str:
-    return world.children(aLabel)[i]
+    children = world.children(aLabel)
+    if not 0 <= i < len(children):
+        raise ArgumentError(f"{aLabel!r} has {len(children)} children; there is no number {i}, counted from 0")
+    return children[i]
 
 
 def getNumberOfPrimitives(aLabel: str) -> int:
-    return len(world.mesh(aLabel).faces)
+    return len(getIndexSet(aLabel)) // 3
+
+
+def getVertexNumber(aLabel: str) -> int:
+    return len(getVertexSet(aLabel)) // 3
+
+
+def getIndexNumber(aLabel: str) -> int:
+    return len(getIndexSet(aLabel))
 
 
 def getVertexSet(aLabel: str) -> NDArray[np.float64]:
-    """x, y, z of each vertex in turn, mm."""
-    return world.mesh(aLabel).vertices.ravel()
+    """x, y, z of each vertex in turn, mm; none of an empty node."""
+    mesh = world.node(aLabel).mesh
+    return np.zeros(0) if mesh is None else mesh.vertices.ravel()
 
 
 def getIndexSet(aLabel: str) -> NDArray[np.int32]:
-    return world.mesh(aLabel).faces.ravel()
+    mesh = world.node(aLabel).mesh
+    return np.zeros(0, np.int32) if mesh is None else mesh.faces.ravel()
+
+
+def getMeshFilename(aLabel: str) -> str:
+    """"" if the mesh was made."""
+    return world.node(aLabel).file
+
+
+def getMeshUnitOfLength(aLabel: str) -> str:
+    """"N/A" if the mesh was made."""
+    return world.node(aLabel).unit
+
+
+# Normals
+
+
+def _normals(label: str) -> NDArray[np.float64]:
+    """Of each triangle, its area long, as the corners are ordered."""
+    mesh = world.mesh(label)
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    return np.cross(b - a, c - a) / 2
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return (vectors / np.where(lengths > 0, lengths, 1)).ravel()
+
+
+def getFaceNormalVectorSet(aLabel: str) -> NDArray[np.float64]:
+    """x, y, z for each triangle."""
+    return _unit(_normals(aLabel))
+
+
+def getVertexNormalVectorSet(aLabel: str) -> NDArray[np.float64]:
+    """x, y, z for each vertex: the mean of its triangles' by area."""
+    mesh, normals = world.mesh(aLabel), _normals(aLabel)
+    found = np.zeros((len(mesh.vertices), 3))
+    for k in range(3):
+        np.add.at(found, mesh.faces[:, k], normals)
+    return _unit(found)
+
+
+def getNumberOfFaceNormalVectors(aLabel: str) -> int:
+    return len(world.mesh(aLabel).faces)
+
+
+def getNumberOfVertexNormalVectors(aLabel: str) -> int:
+    return len(world.mesh(aLabel).vertices)
+
+
+def invertNormalVectors(aLabel: str) -> None:
+    """Turns a leaky mesh inside out. A closed one points outward whatever is asked."""
+    node, mesh = world.node(aLabel), world.mesh(aLabel)
+    node.mesh, node.inverted = Mesh(mesh.vertices, mesh.faces[:, ::-1], name=aLabel), not node.inverted
+
+
+def hasNormalVectorsInverted(aLabel: str) -> bool:
+    return world.node(aLabel).inverted
+
+
+def rayIntersect(aLabel: str, aRayOriginX: float, aRayOriginY: float, aRayOriginZ: float, aRayDirectionX: float,
+                 aRayDirectionY: float, aRayDirectionZ: float) -> tuple[float, ...]:
+    """Where a ray meets the triangles of a mesh, as multiples of its direction, rising; origin and direction in mm."""
+    mesh, matrix = world.mesh(aLabel), world.scene_matrix @ world.world_matrix(aLabel)
+    corners = (mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3])[mesh.faces]
+    origin = np.array([aRayOriginX, aRayOriginY, aRayOriginZ], dtype=float)
+    direction = np.array([aRayDirectionX, aRayDirectionY, aRayDirectionZ], dtype=float)
+    side, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    across = np.cross(direction, other)
+    area = np.einsum("ij,ij->i", side, across)
+    scale = 1 / np.where(area == 0, np.inf, area)  # Moeller and Trumbore
+    start = origin - corners[:, 0]
+    u, turned = np.einsum("ij,ij->i", start, across) * scale, np.cross(start, side)
+    v, distance = turned @ direction * scale, np.einsum("ij,ij->i", other, turned) * scale
+    hit = (area != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (distance >= 0)
+    return tuple(np.unique(distance[hit]).tolist())
 
 
 def saveSTLfile(aLabel: str, aFileName: str) -> None:

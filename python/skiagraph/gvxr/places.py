@@ -15,8 +15,10 @@ __all__ = [
     "applyCurrentLocalTransformation", "getLocalTransformationMatrix", "getNodeAndChildrenBoundingBox",
     "getNodeAndChildrenBoundingBoxCenter", "getNodeAndChildrenBoundingBoxCentre", "getNodeOnlyBoundingBox",
     "getNodeOnlyBoundingBoxCenter", "getNodeOnlyBoundingBoxCentre", "getNodeWorldTransformationMatrix",
+    "getIdentityMatrix4", "getNodeLocalTransformationMatrix", "getRootTransformationMatrix",
     "getSceneTransformationMatrix", "moveToCenter", "moveToCentre", "resetSceneTransformation", "rotateNode",
     "rotateScene", "scaleNode", "scaleScene", "setLocalTransformationMatrix", "setNodeTransformationMatrix",
+    "setRootTransformationMatrix", "setSceneTransformationMatrix", "shearNode",
     "translateNode", "translateScene",
 ]
 
@@ -48,6 +50,11 @@ def scaleNode(aLabel: str, x: float, y: float, z: float) -> None:
     _transform(aLabel, np.diag([x, y, z, 1.0]))
 
 
+def shearNode(aLabel: str, yx: float, zx: float, xy: float, zy: float, xz: float, yz: float) -> None:
+    """x += xy y + xz z, y += yx x + yz z, z += zx x + zy y."""
+    _transform(aLabel, np.array([[1, xy, xz, 0], [yx, 1, yz, 0], [zx, zy, 1, 0], [0, 0, 0, 1.0]]))
+
+
 def moveToCentre(aLabel: str = "root") -> None:
     _transform(aLabel, centred(world.bounds(world.below(aLabel))))
 
@@ -73,6 +80,27 @@ setNodeTransformationMatrix = setLocalTransformationMatrix
 
 def getNodeWorldTransformationMatrix(aLabel: str) -> NDArray[np.float64]:
     return _columns(world.world_matrix(aLabel))
+
+
+def getNodeLocalTransformationMatrix(aLabel: str) -> NDArray[np.float64]:
+    """[4, 4], of which a row is a column of the matrix."""
+    return _columns(world.node(aLabel).matrix)
+
+
+def getRootTransformationMatrix() -> NDArray[np.float64]:
+    return _columns(world.node("root").matrix)
+
+
+def setRootTransformationMatrix(aMatrix: Any) -> None:
+    setLocalTransformationMatrix("root", aMatrix)
+
+
+def setSceneTransformationMatrix(aMatrix: Any) -> None:
+    world.scene_matrix = np.asarray(aMatrix, dtype=float).reshape(4, 4).T.copy()
+
+
+def getIdentityMatrix4() -> tuple[float, ...]:
+    return tuple(np.eye(4).ravel().tolist())
 
 
 def applyCurrentLocalTransformation(aLabel: str) -> None:

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._interface import ArgumentError, SceneError
-from .._library import string
-from ..material import Material
+from ..beam import Beam, Response
+from ..material import Material, element_symbol
 from ..matrices import translate
 from ..mesh import Mesh
 from ..scene import Scene
+from ..view import View
 
 LENGTHS = {"um": 1e-3, "micrometre": 1e-3, "micrometer": 1e-3, "mm": 1.0, "millimetre": 1.0, "millimeter": 1.0,
            "cm": 10.0, "centimetre": 10.0, "centimeter": 10.0, "dm": 100.0, "decimetre": 100.0, "decimeter": 100.0,
@@ -44,8 +45,15 @@ class Node:
     #: "inner", "outer" or "": not in the X-ray renderer.
     surface: str = ""
     material: Material | None = None
-    #: How the material was given, "Element: Fe", and whether its density was.
+    #: How the material was given, "Element: Fe".
     description: str = ""
+    #: The file of the mesh and its unit.
+    file: str = ""
+    unit: str = "N/A"
+    inverted: bool = False
+    #: ambient, diffuse, specular: red, green, blue, opacity; and shininess.
+    colours: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    shininess: float = 50.0
 
 
 @dataclass
@@ -64,19 +72,33 @@ class World:
     #: keV -> photons per pixel, or per cm2 at 1 m
     spectrum: dict[float, float] = field(default_factory=dict)
     per_cm2: bool = False
-    tube: dict[str, Any] = field(default_factory=dict)
-    filters: list[tuple[int, float]] = field(default_factory=list)
-    #: Keys of the detector in a scene file: response, blur, oversampling.
+    #: kVp, angle and load of a tube, the width of its bins and the least energy, keV, and a factor on its photons.
+    tube: dict[str, float] = field(default_factory=dict)
+    #: Materials, as they were named, and mm.
+    filters: list[tuple[int | str, float]] = field(default_factory=list)
+    inherent: list[tuple[int | str, float]] = field(default_factory=list)
+    #: Keys of the detector in a scene file: blur, oversampling.
     detector_keys: dict[str, Any] = field(default_factory=dict)
+    #: Whether up and right are made perpendicular to the line from the source to the detector.
+    align: bool = False
+    response: Response | None = None
+    #: The scintillator of the response, ("CsI", 0.6 mm), or rows of keV and keV.
+    scintillator: tuple[str, float] | None = None
+    response_rows: NDArray[np.float64] | None = None
     bands: list[float] | None = None
     noise: bool = False
     seed: int = 0
     frame: int = 0
     images: dict[str, Any] = field(default_factory=dict)
-    angles: list[float] = field(default_factory=list)
+    #: Arguments and views of the last scan.
+    scan: dict[str, Any] = field(default_factory=dict)
+    #: What concerns pictures of the scene: window, zoom, rotation, background.
+    look: dict[str, Any] = field(default_factory=dict)
     #: A scene file that was loaded, and source, detector and beam as they were then.
     file: str = ""
     loaded: str = ""
+    loaded_spectrum: dict[float, float] = field(default_factory=dict)
+    loaded_meshes: dict[str, Mesh] = field(default_factory=dict)
     _scene: Scene | None = None
     _made_of: Any = None
 
@@ -92,18 +114,29 @@ class World:
         return mesh
 
     def add(self, label: str, mesh: Mesh | None, parent: str) -> Node:
-        if parent not in self.nodes:
-            raise SceneError(f"the parent {parent!r} is not there")
-        if label in self.nodes:
-            raise SceneError(f"there is a node {label!r} already")
-        self.nodes[label] = Node(parent, mesh)
-        return self.nodes[label]
+        """A node; one that has the label already gets the mesh and stands where it was made."""
+        self.node(parent)
+        if label in self.nodes and label in self.above(parent):
+            raise SceneError(f"{label!r} cannot lie below {parent!r}, which is itself or lies below it; give another label")
+        old = self.nodes.get(label)
+        made = Node(parent, mesh)
+        if old is not None:
+            made.surface, made.material, made.description = old.surface, old.material, old.description
+        self.nodes[label] = made
+        return made
+
+    def above(self, label: str) -> Iterator[str]:
+        """The node and those that it lies below."""
+        while label:
+            yield label
+            label = self.nodes[label].parent
 
     def children(self, label: str) -> list[str]:
         return [name for name, node in self.nodes.items() if node.parent == label]
 
     def below(self, label: str) -> Iterator[str]:
         """The node and all below it."""
+        self.node(label)
         yield label
         for child in self.children(label):
             yield from self.below(child)
@@ -129,14 +162,17 @@ class World:
     # The scene
 
     def geometry(self) -> dict[str, Any]:
-        """Source and detector as a scene file has them."""
-        source: dict[str, Any] = {"Position": [*self.source, "mm"], "Shape": self.shape}
+        """Source and detector as a scene file has them, with a beam that is replaced."""
+        source: dict[str, Any] = {"Position": [*self.source, "mm"], "Shape": self.shape, "Beam": {"Bins": [[60, 1]]}}
         if self.grid:
             source["Grid"] = self.grid
-        detector = {"Position": [*self.detector, "mm"], "UpVector": list(self.up), "NumberOfPixels": list(self.pixels),
+        up, right = self.up, self.right
+        if self.align:
+            up, right = self._across(up), None if right is None else self._across(right)
+        detector = {"Position": [*self.detector, "mm"], "UpVector": list(up), "NumberOfPixels": list(self.pixels),
                     **self.detector_keys}
-        if self.right:
-            detector["RightVector"] = list(self.right)
+        if right:
+            detector["RightVector"] = list(right)
         if self.size:
             detector["Size"] = [*self.size, "mm"]
         elif self.spacing:
@@ -145,28 +181,58 @@ class World:
             raise SceneError("the detector has no size; call setDetectorPixelSize")
         return {"Source": source, "Detector": detector}
 
-    def beam(self, scene: dict[str, Any]) -> None:
-        filters = [[z, mm, "mm"] for z, mm in self.filters]
-        if self.tube and not self.spectrum:
-            scene["Source"]["Beam"] = {**self.tube, "Filter": filters}
-            return
+    def _across(self, vector: tuple[float, float, float]) -> tuple[float, float, float]:
+        """The part of a vector that is perpendicular to the line from the source to the detector."""
+        line = np.subtract(self.detector, self.source)
+        line = line / np.linalg.norm(line)
+        return three(*(np.asarray(vector) - np.dot(vector, line) * line))
+
+    def has_beam(self) -> bool:
+        return bool(self.spectrum or "kVp" in self.tube)
+
+    def beam(self, filtered: bool = True) -> Beam:
+        """The beam, in photons per pixel or absolute."""
+        layers: dict[Material, float] = {}
+        if filtered:
+            layers = {material_of(name): mm for name, mm in [*self.inherent, *self.filters]}
+        if not self.spectrum and "kVp" in self.tube:
+            beam = Beam.tube(self.tube["kVp"], layers, target_angle=self.tube.get("TubeAngle"),
+                             mas=self.tube["mAs"] if self.tube.get("mAs", 0) > 0 else None,
+                             bin_kev=self.tube.get("bin_kev"))
+            kept = beam.energies >= self.tube.get("first_kev", 0)
+            if not kept.all():
+                beam = Beam(beam.energies[kept], beam.photons[kept], beam.absolute)
+            return beam.scaled(self.tube.get("factor", 1.0))
         bins = self.spectrum or {60.0: 1.0}  # path lengths need no beam
-        scene["Source"]["Beam"] = [{"Energy": kev, "Unit": "keV", "PhotonCount": n} for kev, n in sorted(bins.items())]
+        beam = Beam(sorted(bins), [bins[kev] for kev in sorted(bins)])
+        for material, mm in layers.items():
+            beam = beam.filtered({material: mm})
+        return beam.scaled(self.pixel_share()) if self.per_cm2 else beam
+
+    def pixel_share(self) -> float:
+        """Photons of a pixel at the foot of the perpendicular, for one per cm2 at 1 m."""
+        view = self.view()
+        area = float(np.linalg.norm(np.cross(view.column_step, view.row_step)))
+        return area / 100 * (1000 / float(np.linalg.norm(view.detector - view.source))) ** 2
+
+    def view(self) -> View:
+        """Source and detector."""
+        return Scene(self.geometry()).view
 
     def scene(self, needs_beam: bool = True) -> Scene:
         """The scene as it stands. It is made anew only if more than poses and materials changed."""
-        if needs_beam and not self.spectrum and not self.tube:
+        if needs_beam and not self.has_beam():
             raise SceneError("there is no beam; call setMonoChromatic, addEnergyBinToSpectrum or setVoltage")
         description = self.geometry()
-        self.beam(description)
         shown = [(label, node) for label, node in self.nodes.items() if node.surface and node.mesh is not None]
         outer = [label for label, node in shown if node.surface == "outer"]
         if len(outer) > 1:
             raise SceneError(f"{', '.join(map(repr, outer))} are all outer surfaces; there can be one, which the inner "
                              "ones displace")
-        made_of = (json.dumps(description), self.per_cm2, list(self.filters), [(label, node.surface, id(node.mesh)) for label, node in shown])
+        made_of = (json.dumps(description), needs_beam, self.per_cm2, tuple(self.filters), tuple(self.inherent), tuple(self.tube.items()),
+                   tuple(self.spectrum.items()), [(label, node.surface, id(node.mesh)) for label, node in shown])
         if self._scene is None or made_of != self._made_of:
-            self._scene = self._make(description, shown, outer)
+            self._scene = self._make(description, shown, outer, needs_beam)
             self._made_of = made_of
         for label, node in shown:
             part = self._scene[label]
@@ -174,37 +240,39 @@ class World:
             if not (part.pose == pose).all():
                 part.pose = pose
             if part.material is not node.material:
-                part.material = self.material(label)
+                part.material = self.material(label, needs_beam)
         return self._scene
 
-    def _make(self, description: dict[str, Any], shown: list[tuple[str, Node]], outer: list[str]) -> Scene:
+    def _make(self, description: dict[str, Any], shown: list[tuple[str, Node]], outer: list[str],
+              needs_material: bool) -> Scene:
         scene = Scene(description) if not self.file else self._changed_file(description, [label for label, _ in shown])
         present = {part.label for part in scene}
         for label, node in sorted(shown, key=lambda item: item[1].surface != "outer"):
             if label not in present:
-                scene.add(label, node.mesh, material=self.material(label),
+                scene.add(label, node.mesh, material=self.material(label, needs_material),
                           inside=None if label in outer or not outer else outer[0],
                           pose=self.scene_matrix @ self.world_matrix(label))
-        if self.per_cm2:
-            view = scene.view
-            area = np.linalg.norm(np.cross(view.column_step, view.row_step)) / 100
-            scene.beam = scene.beam.scaled(float(area * (1000 / np.linalg.norm(view.detector - view.source)) ** 2))
-        if self.filters and self.spectrum:
-            layers: list[tuple[Material, float]] = [(Material(_symbol(z)), mm) for z, mm in self.filters]
-            for material, mm in layers:
-                scene.beam = scene.beam.filtered({material: mm})
+        if not shown:  # a plan needs a part
+            scene.add("nothing", Mesh.cube(1), material=Material.mu(0))
+        if not self.file or self.beam_changed():
+            scene.beam = self.beam()
         return scene
 
+    def beam_changed(self) -> bool:
+        """Whether the beam is another one than that of the file that was loaded."""
+        return bool(self.spectrum != self.loaded_spectrum or self.filters or self.inherent or "kVp" in self.tube)
+
     def _changed_file(self, description: dict[str, Any], shown: list[str]) -> Scene:
-        """The scene of the file, with source, detector and beam as they are now."""
+        """The scene of the file, with source, detector and meshes as they are now."""
         scene = Scene(self.file)
-        missing = [part.label for part in scene if part.label not in shown]
-        if missing or self.detector_keys or self.grid:
-            raise SceneError(f"{self.file}: a scene that was loaded from a file keeps its meshes, its focal spot and its "
-                             "detector's response, blur and oversampling; change the file")
+        if self.detector_keys or self.grid:
+            raise SceneError(f"{self.file}: a scene that was loaded from a file keeps its focal spot and its detector's blur "
+                             "and oversampling; change the file")
+        for part in list(scene):
+            if part.label not in shown or self.loaded_meshes[part.label] is not self.nodes[part.label].mesh:
+                scene.remove(part.label)
         if json.dumps(description) != self.loaded:
-            other = Scene(description)
-            scene.view, scene.beam = other.view, other.beam
+            scene.view = Scene(description).view
         return scene
 
     def reset(self) -> None:
@@ -221,28 +289,38 @@ class World:
         self.up, self.right, self.pixels = three(*view.row_step), three(*view.column_step), view.pixels
         self.spacing = float(np.linalg.norm(view.column_step)), float(np.linalg.norm(view.row_step))
         self.shape = "PointSource" if view.projection == "point" else "ParallelBeam"
-        self.spectrum = dict(zip(beam.energies.tolist(), beam.photons.tolist()))
+        self.spectrum = dict(zip(beam.energies.tolist(), beam.resolved(view).photons.tolist()))
+        self.loaded_spectrum = dict(self.spectrum)
         parents = {part.inside for part in scene}
         for part in scene:
             node = self.add(part.label, part.mesh, "root")
+            self.loaded_meshes[part.label] = part.mesh
             node.matrix, node.material, node.description = part.pose.copy(), part.material, part.material.name
             node.surface = "outer" if part.label in parents and len(parents) == 2 else "inner"
-        description = self.geometry()
-        self.beam(description)
-        self.loaded = json.dumps(description)
+        self.loaded = json.dumps(self.geometry())
 
-    def material(self, label: str) -> Material:
+    def material(self, label: str, needed: bool = True) -> Material:
         material = self.node(label).material
+        if material is None and not needed:  # path lengths need none
+            return Material.mu(0)
         if material is None:
             raise SceneError(f"{label}: has no material; call setHU, setElement, setMixture, setCompound or setMu")
         return material
 
     def options(self) -> dict[str, Any]:
-        return {"noise": True, "noise_seed": self.seed} if self.noise else {}
+        """Options of an image."""
+        found: dict[str, Any] = {"noise": True, "noise_seed": self.seed} if self.noise else {}
+        if self.response is not None:
+            found["response"] = self.response
+        return found
 
 
-def _symbol(z: int) -> str:
-    return string("skg_element_symbol_get", int(z))
+def material_of(name: int | str) -> Material:
+    """The material of a filter: an element by number, symbol or name, or any other by name."""
+    try:
+        return Material(element_symbol(name))
+    except ArgumentError:
+        return Material(str(name))
 
 
 def centred(bounds: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -251,7 +329,7 @@ def centred(bounds: NDArray[np.float64]) -> NDArray[np.float64]:
     return translate(x, y, z)
 
 
-def three(x: float, y: float, z: float, scale: float = 1) -> tuple[float, float, float]:
+def three(x: Any, y: Any, z: Any, scale: float = 1) -> tuple[float, float, float]:
     return float(x) * scale, float(y) * scale, float(z) * scale
 
 

@@ -1,0 +1,18 @@
+#include "common/csv.h"
+
+#include <string.h>
+
+/* What a cell of a formula begins with, and what spreadsheets pass over before it. */
+static int is_formula(const char *text) {
+    text += strspn(text, " \t\r\n");
+    return *text && strchr("=+-@|", *text);
+}
+
+void cli_csv_text(const char *text, FILE *stream) {
+    fputs(is_formula(text) ? "\"'" : "\"", stream);
+    for (; *text; text++) {
+        if (*text == '"') fputc('"', stream);
+        fputc(*text, stream);
+    }
+    fputc('"', stream);
+}

@@ -1,0 +1,97 @@
+"""Volumes of circular scans. Private."""
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays
+from ._interface import ArgumentError
+from ._library import call, choice, encode, ffi, integer, make, release, struct
+from .matrices import direction
+from .scan import Scan
+from .view import View
+
+_Three = Union[Sequence[float], NDArray[Any]]
+
+
+def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *, size: int | Sequence[int] | None = None,
+                voxel: float | None = None, filter: str = "ramp", axis: str | _Three | None = None,
+                centre: _Three | None = None) -> NDArray[np.float32]:
+    """The volume of a circular scan in 1/cm, [z, y, x], by the method of Feldkamp, Davis and Kress.
+
+    scan: an .h5 that scene.scan() wrote; or a Scan with its projections as -ln(I/I0), [n, row, column], as
+    scene.scan(quantity="attenuation") computes them. size: voxels along each side, or (x, y, z); by default as many as columns.
+    voxel: their edge in mm; by default the step of the columns as it is seen at the axis. filter: "ramp" or "hann". axis,
+    centre: those of the scan's rotation, by default what the file says, or "z" through the origin. The volume is about centre.
+    """
+    reader = None
+    try:
+        if not isinstance(scan, Scan):
+            if projections is not None:
+                raise ArgumentError("projections go with a Scan; the file has its own")
+            reader = make("skg_scan_reader_open", "skg_scan_reader", encode(scan, "scan"))
+            handle = ffi.new("skg_scan **")
+            call("skg_scan_reader_scan_get", reader, handle)
+            views, found = Scan._borrowed(handle[0]), _axis_of(reader)
+        else:
+            views, found = scan, (np.array([0.0, 0, 1]), np.zeros(3))
+        options = _options(views[0], size, voxel, filter, found[0] if axis is None else direction(axis),
+                           found[1] if centre is None else _arrays.vector(centre, "centre"))
+        return _compute(views, reader, _checked(views, projections) if reader is None else None, options)
+    finally:
+        if reader is not None:
+            release("skg_scan_reader", reader)
+
+
+def _axis_of(reader: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    axis, centre = ffi.new("double[3]"), ffi.new("double[3]")
+    call("skg_scan_reader_axis_get", reader, axis, centre)
+    return np.array(list(axis)), np.array(list(centre))
+
+
+def _checked(scan: Scan, projections: Any) -> NDArray[np.float32]:
+    if projections is None:
+        raise ArgumentError("give the projections of the scan as -ln(I/I0): scene.scan(quantity=\"attenuation\")")
+    images = _arrays.numbers(projections, "projections")
+    if images.shape != (len(scan), *scan[0].shape):
+        raise ArgumentError(f"projections has {_arrays.describe(images)}; the scan has {len(scan)} of {scan[0].shape[0]} x "
+                            f"{scan[0].shape[1]} pixels")
+    return np.ascontiguousarray(images, dtype=np.float32)
+
+
+def _options(view: View, size: Any, voxel: float | None, filter: str, axis: Any, centre: Any) -> Any:
+    options = struct("skg_fdk_options")
+    options.filter = choice("fdk_filter", filter, "filter")
+    voxels = [view.pixels[0] if size is None else size] * 3 if size is None or np.ndim(size) == 0 else list(size)
+    if len(voxels) != 3:
+        raise ArgumentError(f"size is {size!r}; give a number of voxels, or three")
+    share = 1.0
+    if view.projection == "point":
+        share = float(np.linalg.norm(centre - view.source) / np.linalg.norm(view.detector - view.source))
+    options.voxel_mm = share * float(np.linalg.norm(view.column_step)) if voxel is None else float(voxel)
+    for k in range(3):
+        options.voxels[k], options.axis[k] = int(voxels[k]), axis[k]
+        options.centre[k] = options.middle[k] = centre[k]
+    return options
+
+
+def _compute(scan: Scan, reader: Any, images: NDArray[np.float32] | None, options: Any) -> NDArray[np.float32]:
+    fdk = make("skg_fdk_create", "skg_fdk", scan._handle, options)
+    try:
+        own = np.empty(scan[0].shape, np.float32)
+        for k in range(integer("skg_scan_projection_count", scan._handle)):
+            image = own if images is None else images[k]
+            pointer = ffi.cast("float *", image.__array_interface__["data"][0])
+            if reader is not None:
+                call("skg_scan_reader_attenuation_get", reader, k, pointer)
+            call("skg_fdk_add", fdk, k, pointer)
+        volume = ffi.new("float **")
+        call("skg_fdk_volume_get", fdk, volume)
+        shape = tuple(int(options.voxels[k]) for k in (2, 1, 0))
+        return np.frombuffer(ffi.buffer(volume[0], 4 * int(np.prod(shape))), np.float32).reshape(shape).copy()
+    finally:
+        release("skg_fdk", fdk)

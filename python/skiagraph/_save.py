@@ -1,0 +1,251 @@
+"""A scene as a scene file. Private.
+
+The text that the scene was read from stays, with its settings, and what was changed since is written into it: positions as
+doubles with all their digits, so that the file reads back to the same bits.
+"""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._interface import ArgumentError, SceneError
+from ._library import string
+from .beam import Beam
+from .material import Material
+from .part import Part
+from .scan import Scan
+from .view import View
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+_SHAPES = ("Path", "Unit", "Cube", "Cuboid", "Parallelepiped", "Cylinder", "Sphere", "StepWedge", "FlipNormals", "FlipNormal",
+           "FlipNormalVectors", "InvertNormal", "InvertNormals", "InvertNormalVectors")
+_Z_FROM_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+_PLACES = ("Transform", "MoveToCentre", "MoveToCenter")
+
+
+def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+    target = pathlib.Path(path)
+    if target.suffix.lower() != ".json":
+        raise ArgumentError(f"{target}: a scene is written as .json; give save({str(path)!r}, image) for an image")
+    text = json.loads(string("skg_setup_text_get", scene._setup))
+    _rename_files(text, scene._source.files, target.parent)
+    _write_view(scene, text)
+    if "beam" in scene._changed:
+        _put(_object(text, "Source"), "Beam", beam_text(scene.beam))
+    _write_samples(scene, text, target)
+    if scene._trajectory is not None:
+        _put(text, "Scan", _scan_text(scene._trajectory))
+    if scene._breath:
+        _drop(text, "Breathing")
+    target.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
+
+
+# Keys are compared as the library does
+
+
+def _plain(name: str) -> str:
+    return re.sub("[ _-]", "", name).lower()
+
+
+def _named(found: dict[str, Any], name: str) -> str:
+    """The key of this name as the object has it."""
+    return next((key for key in found if _plain(key) == _plain(name)), name)
+
+
+def _get(found: dict[str, Any], name: str, default: Any = None) -> Any:
+    return found.get(_named(found, name), default)
+
+
+def _put(found: dict[str, Any], name: str, value: Any) -> None:
+    found[_named(found, name)] = value
+
+
+def _drop(found: dict[str, Any], *names: str) -> None:
+    for name in names:
+        found.pop(_named(found, name), None)
+
+
+def _object(found: dict[str, Any], name: str) -> dict[str, Any]:
+    made: dict[str, Any] = found.setdefault(_named(found, name), {})
+    return made
+
+
+def _rename_files(value: Any, files: dict[str, tuple[str, tuple[int, int]]], folder: pathlib.Path) -> None:
+    """Names of files lead to the same files from the new folder."""
+    items: Any = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, below in items:
+        if isinstance(below, str) and below in files:
+            value[key] = os.path.relpath(os.path.abspath(files[below][0]), os.path.abspath(folder))
+        else:
+            _rename_files(below, files, folder)
+
+
+# Source and detector
+
+
+def _mm(vector: NDArray[np.float64]) -> list[Any]:
+    return [*vector.tolist(), "mm"]
+
+
+def _write_view(scene: Scene, text: dict[str, Any]) -> None:
+    view = scene._view
+    if view is None or view == scene._read_view:
+        return
+    source, detector = _object(text, "Source"), _object(text, "Detector")
+    _drop(source, "Position", "Direction", "From")
+    infinite = view.projection == "parallel_from_infinity"
+    source["Direction" if infinite else "Position"] = view.source.tolist() if infinite else _mm(view.source)
+    shape = _get(source, "Shape")
+    if not isinstance(shape, list) or view.projection != "point":
+        _put(source, "Shape", "PointSource" if view.projection == "point" else "ParallelBeam")
+    _drop(detector, "UpVector", "RightVector", "Size", "Spacing")
+    for name, value in (("Position", _mm(view.detector)), ("ColumnStep", _mm(view.column_step)),
+                        ("RowStep", _mm(view.row_step)), ("NumberOfPixels", list(view.pixels))):
+        _put(detector, name, value)
+
+
+def beam_text(beam: Beam) -> dict[str, Any]:
+    """The value of the key Beam."""
+    found: dict[str, Any] = {"Bins": [list(row) for row in zip(beam.energies.tolist(), beam.photons.tolist())]}
+    return {**found, "At1m": True} if beam.absolute else found
+
+
+def _scan_text(scan: Scan) -> dict[str, Any]:
+    def row(view: View) -> list[float]:
+        return [float(x) for v in (view.source, view.detector, view.column_step, view.row_step) for x in v]
+
+    found: dict[str, Any] = {"Table": [row(view) for view in scan]}
+    times = scan.times
+    if len(times) > 1 and times.any():
+        found.update(StartTime=float(times[0]), Interval=float(times[1] - times[0]))
+    return found
+
+
+# Samples
+
+
+def _write_samples(scene: Scene, text: dict[str, Any], target: pathlib.Path) -> None:
+    samples = _file_samples(text)
+    parts, old = list(scene), scene._names[:scene._file_parts]
+    changed = _changed(scene)
+    if not any(changed.values()) and len(old) == len(parts) and len(old) == len(samples):
+        return
+    if len(samples) <= max(old, default=-1):
+        raise SceneError(f"{target}: the samples of the scene are not found in its text; this scene cannot be written")
+    together = any(isinstance(sample, str) for sample in _get(text, "Samples") or [])  # the command MoveToCentre
+    made: list[dict[str, Any]] = []
+    for part, name in zip(parts, scene._names):
+        sample = dict(samples[name]) if name < len(samples) and len(made) < scene._file_parts else {}
+        _say_all(sample, part)
+        if not sample.get(_named(sample, "Transform")) or together or part.label in changed["poses"] + changed["meshes"]:
+            _place(sample, part, part.label in changed["meshes"])
+        if not sample.get(_named(sample, "Material")) or part._number in scene._materials:
+            _drop(sample, "Density")
+            sample[_named(sample, "Material")], density = material_text(_material(scene, part), _writer(target, part))
+            if density:
+                sample["Density"] = density
+        if not any(_named(sample, shape) in sample for shape in _SHAPES) or part.label in changed["meshes"]:
+            _drop(sample, *_SHAPES)
+            sample.update(Path=_mesh_file(target, part), Unit="mm")
+        made.append(sample)
+    _drop(text, "SceneGraph")
+    _put(text, "Samples", made)
+
+
+def _file_samples(text: dict[str, Any]) -> list[dict[str, Any]]:
+    """The samples in the order of their parts."""
+    found = [sample for sample in _get(text, "Samples") or [] if isinstance(sample, dict)]
+    graph = _get(text, "SceneGraph")
+    return found + ([graph] if isinstance(graph, dict) else [])
+
+
+def _changed(scene: Scene) -> dict[str, list[str]]:
+    """Labels of the parts from the file whose place, material or mesh is another."""
+    old = list(scene)[:scene._file_parts]
+    poses = [part.label for part, pose in zip(old, scene._read_poses) if (part.pose != pose).any()]
+    return {"poses": poses, "materials": [part.label for part in old if part._number in scene._materials],
+            "meshes": [part.label for part in old if scene._breath or part.mesh._changed], "removed": scene._removed}
+
+
+def _say_all(sample: dict[str, Any], part: Part) -> None:
+    """Label, parent and priority, all of them said."""
+    _drop(sample, "Type", "Priority", "Through")
+    if _named(sample, "Label") not in sample or _get(sample, "Label") != part.label:
+        _put(sample, "Label", part.label)
+    sample["Parent"] = part.inside
+    if part.priority:
+        if part.priority == 2 ** 31 - 1:
+            sample["Through"] = True
+        else:
+            sample["Priority"] = part.priority
+
+
+def _place(sample: dict[str, Any], part: Part, has_mesh: bool) -> None:
+    """The pose, as one matrix. has_mesh: its mesh becomes a file."""
+    _drop(sample, *_PLACES)
+    pose = part.pose
+    if _named(sample, "Cylinder") in sample and not has_mesh:
+        pose = pose @ _Z_FROM_Y  # a sample's cylinder stands along y, that of the part along z
+    if (pose != np.eye(4)).any():
+        sample["Transform"] = [["Matrix", pose.T.ravel().tolist()]]
+
+
+def _material(scene: Scene, part: Part) -> Material:
+    return scene._materials.get(part._number) or part.material
+
+
+def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any, float | None]:
+    """The keys Material and Density. write: makes a file of a text and gives its name."""
+    recipe, density = material._recipe or (None, None)
+    name, *arguments = recipe or ("",)
+    if name == "skg_material_create_named":
+        return arguments[0].decode(), density
+    if name == "skg_material_create_mu":
+        return ["mu", arguments[1]], None
+    if name == "skg_material_create_hounsfield":
+        return ["HU", arguments[0]], density
+    if name == "skg_material_create_formula":
+        return ["Compound", arguments[0].decode()], density or arguments[1] or None
+    if name == "skg_material_create_table":
+        rows = "".join(f"{kev!r} {mu!r}\n" for kev, mu in zip(arguments[2][1], arguments[3][1]))
+        return ["Table", write(rows), "keV"], None
+    if name == "skg_material_create_mixture":
+        return ["Mixture", [x for pair in zip(arguments[2][1], arguments[3][1]) for x in pair]], density or arguments[4] or None
+    if not material.elements:
+        raise SceneError(f"{material.name}: was read from a file of another scene, and its table is not known any more; make it "
+                         "by Material.table")
+    return ["Mixture", [x for pair in material.elements.items() for x in pair]], material.density
+
+
+# Files beside the scene
+
+
+def _beside(target: pathlib.Path, part: Part, suffix: str) -> tuple[pathlib.Path, str]:
+    folder = target.with_name(target.stem + "-parts")
+    folder.mkdir(exist_ok=True)
+    name = f"{part._number}-{re.sub('[^A-Za-z0-9]+', '-', part.label).strip('-')}{suffix}"
+    return folder / name, f"{folder.name}/{name}"
+
+
+def _mesh_file(target: pathlib.Path, part: Part) -> str:
+    path, name = _beside(target, part, ".ply")
+    part.mesh.save(path)
+    return name
+
+
+def _writer(target: pathlib.Path, part: Part) -> Callable[[str], str]:
+    def write(rows: str) -> str:
+        path, name = _beside(target, part, ".txt")
+        path.write_text(rows, encoding="ascii")
+        return name
+
+    return write

@@ -1,0 +1,299 @@
+/* Inputs that never end, never begin or grow when they are unpacked: each is refused at once with a sentence. */
+#include "suite.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <string.h>
+#include <sys/stat.h>
+
+static char folder[64], path[256];
+
+static void set_up(void) {
+    strcpy(folder, "/tmp/skg-inputs-XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+}
+
+static void tear_down(void) {
+    char line[128];
+    snprintf(line, sizeof line, "rm -rf %s", folder);
+    ck_assert_int_eq(system(line), 0);
+}
+
+static const char *in_folder(const char *name) {
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+static void write_bytes(const char *name, const void *bytes, size_t count) {
+    FILE *stream = fopen(in_folder(name), "wb");
+    ck_assert_ptr_nonnull(stream);
+    ck_assert_uint_eq(fwrite(bytes, 1, count, stream), count);
+    fclose(stream);
+}
+
+static const char *const kinds[] = {"a.stl", "a.obj", "a.ply", "a.3mf",    "a.dae",  "spectrum",
+                                    "table", "poses", "list",  "response", "a.json", "a.h5"};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* A build without HDF5 reads no scans. */
+static int is_possible(int kind) {
+    return kind != 11 || skg_scan_file_path_check("a.h5") == SKG_OK;
+}
+
+static skg_status read_input(int kind, const char *from) {
+    skg_status status = SKG_OK;
+    skg_mesh *mesh = NULL;
+    skg_spectrum *spectrum = NULL;
+    skg_material *material = NULL;
+    skg_response *response = NULL;
+    skg_setup *setup = NULL;
+    skg_scan *scan = NULL;
+    skg_view view;
+    skg_view_init(&view);
+    char scene[512];
+    if (kind < 5) status = skg_mesh_load(NULL, from, 1, &mesh);
+    if (kind == 5) status = skg_spectrum_load(from, "keV", &spectrum);
+    if (kind == 6) status = skg_material_load_table(from, "keV", &material);
+    if (kind == 7) status = skg_scan_load_table(&view, NULL, from, &scan);
+    if (kind == 8) {
+        snprintf(
+            scene, sizeof scene,
+            "{\"Source\":{\"Position\":[0,-1,0,\"m\"],\"Shape\":\"ParallelBeam\",\"Beam\":[{\"Energy\":60,"
+            "\"Unit\":\"keV\",\"PhotonCount\":1}]},\"Detector\":{\"Position\":[0,10,0,\"cm\"],\"UpVector\":[0,0,-1],"
+            "\"NumberOfPixels\":[9,7],\"Spacing\":[1,1,\"mm\"],\"LSF\":\"%s\"},\"Samples\":[{\"Label\":\"a\","
+            "\"Sphere\":[12,3,\"mm\"],\"Material\":[\"mu\",1]}]}",
+            from);
+        write_bytes("scene.json", scene, strlen(scene));
+        status = skg_setup_load(NULL, in_folder("scene.json"), 0, NULL, &setup);
+    }
+    if (kind == 9) status = skg_response_load(from, "keV", SKG_RESPONSE_MEANING_SIGNAL, &response);
+    if (kind == 10) status = skg_setup_load(NULL, from, 0, NULL, &setup);
+    if (kind == 11) {
+        skg_scan_reader *reader = NULL;
+        status = skg_scan_reader_open(from, &reader);
+        skg_scan_reader_release(&reader);
+    }
+    return status;
+}
+
+START_TEST(what_is_no_file_is_refused) {
+    char from[256];
+    if (!is_possible(_i)) return;
+    ck_assert_int_eq(mkfifo(in_folder(kinds[_i]), 0666), 0);
+    strcpy(from, path);
+    ck_skg_fails(read_input(_i, from), SKG_ERR_FILE, "it is a pipe or a device, not a file");
+    ck_assert_int_eq(unlink(from), 0);
+    ck_assert_int_eq(symlink("/dev/zero", from), 0);
+    ck_skg_fails(read_input(_i, from), SKG_ERR_FILE, "it is a pipe or a device, not a file");
+    ck_assert_int_eq(unlink(from), 0);
+    ck_assert_int_eq(mkdir(from, 0777), 0);
+    ck_skg_fails(read_input(_i, from), SKG_ERR_FILE, "it is a folder, not a file");
+}
+END_TEST
+
+/* Files with holes, which take no room. */
+START_TEST(what_is_too_long_is_refused) {
+    const int64_t mib = 1 << 20, most = (_i < 5 ? 65536 : 256) * mib;
+    char from[256];
+    if (_i == 11) return; /* a scan may have any length */
+    write_bytes(kinds[_i], "", 0);
+    strcpy(from, path);
+    if (truncate(from, most + 1) != 0) return; /* the file system has no such files */
+    ck_skg_fails(read_input(_i, from), SKG_ERR_FILE,
+                 _i < 5 ? "longer than 65536 MiB" : "longer than 256 MiB");
+}
+END_TEST
+
+/* A glTF file that refers to a pipe. */
+START_TEST(references_are_opened_alike) {
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"pipe.bin\",\"byteLength\":36}],\"bufferViews\":"
+        "[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":"
+        "5126,\"count\":3,\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0}";
+    skg_mesh *mesh = NULL;
+    ck_assert_int_eq(mkfifo(in_folder("pipe.bin"), 0666), 0);
+    write_bytes("a.gltf", text, strlen(text));
+    ck_assert_int_ne(skg_mesh_load(NULL, path, 1, &mesh), SKG_OK);
+    ck_assert_int_gt((int)strlen(skg_last_error()), 0);
+}
+END_TEST
+
+/* A 3MF archive of three files that are stored, not compressed. */
+typedef struct {
+    unsigned char bytes[16384];
+    size_t size, directory; /* of the archive; where its directory begins */
+} archive;
+
+static void put(archive *a, uint64_t value, int count) {
+    for (int b = 0; b < count; b++) a->bytes[a->size++] = (unsigned char)(value >> 8 * b);
+}
+
+static uint32_t crc_of(const char *text) {
+    uint32_t crc = UINT32_MAX;
+    for (; *text; text++) {
+        crc ^= (unsigned char)*text;
+        for (int b = 0; b < 8; b++) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0);
+    }
+    return ~crc;
+}
+
+static void put_entry(archive *a, const char *name, const char *text, size_t at, int is_directory) {
+    put(a, is_directory ? 0x02014b50 : 0x04034b50, 4);
+    if (is_directory) put(a, 20, 2);
+    put(a, 20, 2), put(a, 0, 8);
+    put(a, crc_of(text), 4), put(a, strlen(text), 4), put(a, strlen(text), 4);
+    put(a, strlen(name), 2), put(a, 0, 2);
+    if (is_directory) put(a, 0, 10), put(a, at, 4);
+    memcpy(a->bytes + a->size, name, strlen(name));
+    a->size += strlen(name);
+    if (is_directory) return;
+    memcpy(a->bytes + a->size, text, strlen(text));
+    a->size += strlen(text);
+}
+
+/* relations: instead of the usual text; NULL: that */
+static void make_archive_with(archive *a, const char *relations) {
+    static const char *const names[] = {"[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"};
+    static const char *const texts[] = {
+        "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+        "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+        "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>",
+        "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+        "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>",
+        "<?xml version=\"1.0\"?><model unit=\"millimeter\" "
+        "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\" "
+        "type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex "
+        "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" "
+        "v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" "
+        "v2=\"2\" v3=\"3\"/></triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>"};
+    size_t at[3];
+    a->size = 0;
+    for (int f = 0; f < 3; f++)
+        at[f] = a->size, put_entry(a, names[f], f == 1 && relations ? relations : texts[f], 0, 0);
+    a->directory = a->size;
+    for (int f = 0; f < 3; f++) put_entry(a, names[f], f == 1 && relations ? relations : texts[f], at[f], 1);
+    const size_t length = a->size - a->directory;
+    put(a, 0x06054b50, 4), put(a, 0, 4), put(a, 3, 2), put(a, 3, 2);
+    put(a, length, 4), put(a, a->directory, 4), put(a, 0, 2);
+}
+
+static void make_archive(archive *a) {
+    make_archive_with(a, NULL);
+}
+
+static void ck_archive(const archive *a, const char *name, skg_status expected, const char *text) {
+    skg_mesh *mesh = NULL;
+    write_bytes(name, a->bytes, a->size);
+    if (expected == SKG_OK)
+        ck_skg(skg_mesh_load(NULL, path, 1, &mesh));
+    else
+        ck_skg_fails(skg_mesh_load(NULL, path, 1, &mesh), expected, text);
+    skg_mesh_release(&mesh);
+}
+
+static void set(archive *a, size_t at, uint64_t value, int count) {
+    const size_t size = a->size;
+    a->size = at;
+    put(a, value, count);
+    a->size = size;
+}
+
+START_TEST(archives_are_measured_before_they_are_unpacked) {
+    enum { LENGTH = 24, NAME = 28, ENTRY = 46 };
+    static archive a;
+    make_archive(&a);
+    const size_t second = a.directory + ENTRY + strlen("[Content_Types].xml");
+    ck_archive(&a, "a.3mf", SKG_OK, "");
+    set(&a, a.directory + LENGTH, (1u << 30) + 1, 4);
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
+    ck_archive(&a, "a.unknown", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
+    set(&a, a.directory + LENGTH, 600u << 20, 4); /* two of them */
+    set(&a, second + LENGTH, 600u << 20, 4);
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
+    memmove(a.bytes + 7, a.bytes, a.size), a.size += 7; /* behind other bytes, as Assimp accepts it */
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
+    make_archive(&a);
+    set(&a, a.directory + LENGTH, UINT32_MAX, 4); /* a length of 8 bytes that is not there */
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
+    make_archive(&a);
+    set(&a, second, 0, 4);
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "the archive is damaged");
+    make_archive(&a);
+    set(&a, a.size - 10, UINT32_MAX, 4);
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "the archive is damaged");
+}
+END_TEST
+
+/* Assimp ends the process where a check sum is wrong. */
+START_TEST(damaged_parts_of_archives_are_refused) {
+    static archive a;
+    make_archive(&a);
+    const size_t size = a.size, texts = a.directory;
+    for (size_t at = (size_t)_i; at < size; at += 16) {
+        skg_mesh *mesh = NULL;
+        make_archive(&a);
+        a.bytes[at] ^= (unsigned char)(1 << at / 16 % 8);
+        write_bytes("a.3mf", a.bytes, a.size);
+        skg_mesh_load(NULL, path, 1, &mesh); /* some bytes have no meaning */
+        skg_mesh_release(&mesh);
+    }
+    make_archive(&a);
+    a.bytes[texts - 20 - (size_t)_i] ^= 1;
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "a part of it is not what its check sum says");
+}
+END_TEST
+
+#define MODEL "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\""
+
+/* Assimp ends the process where it finds no model by the relationships. */
+START_TEST(relationships_of_archives_are_checked) {
+    static const struct {
+        const char *text, *error; /* NULL: is read */
+    } cases[] = {
+        {"<Relationships><Relationship Id=\"a\" " MODEL " Target=\"/3D/3dmodel.model\"/></Relationships>",
+         NULL},
+        {"\xEF\xBB\xBF<?xml version='1.0'?>\r\n<Relationships xmlns = 'x' >\n<Relationship Target='3D/3dmodel.model' "
+         "Id='a' " MODEL "></Relationship>\n</Relationships>\n",
+         NULL},
+        {"<Relationships><Relationship " MODEL " Target=\"/3D/other.model\"/></Relationships>",
+         "names \"3D/other.model\""},
+        {"<Relationships><Relationship " MODEL " Target=\"/\"/></Relationships>", "names \"\""},
+        {"<Relationships><Relationship " MODEL "/></Relationships>", "names \"\""},
+        {"", "cannot be read"},
+        {"no XML", "cannot be read"},
+        {"<?xml version='1.0'?>", "cannot be read"},
+        {"<Relationships>", "cannot be read"},
+        {"</Relationships>", "cannot be read"},
+        {"<Relationships></Relationships><Relationships>", "cannot be read"},
+        {"<Relationships><Relationships></Relationships></Relationships>", "cannot be read"},
+        {"<Relationships><Relationship " MODEL " Target=\"/3D/3dmodel.model\"></Relationships>",
+         "cannot be read"},
+        {"<Relationships><Relationship " MODEL "Target=\"/3D/3dmodel.model\"/></Relationships>",
+         "cannot be read"},
+        {"<Relationships><Relationship " MODEL " Target=\"/3D/3dmodel.model/></Relationships>",
+         "cannot be read"},
+        {"<Relationships><Relationship " MODEL " Target=\"&#47;3D/3dmodel.model\"/></Relationships>",
+         "cannot be read"},
+    };
+    static archive a;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        make_archive_with(&a, cases[k].text);
+        ck_archive(&a, "a.3mf", cases[k].error ? SKG_ERR_FORMAT : SKG_OK,
+                   cases[k].error ? cases[k].error : "");
+    }
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_loop_test(tests, what_is_no_file_is_refused, 0, KINDS);
+    tcase_add_test(tests, relationships_of_archives_are_checked);
+    tcase_add_loop_test(tests, damaged_parts_of_archives_are_refused, 0, 16);
+    tcase_add_loop_test(tests, what_is_too_long_is_refused, 0, KINDS);
+    tcase_add_test(tests, references_are_opened_alike);
+    tcase_add_test(tests, archives_are_measured_before_they_are_unpacked);
+}
+
+SKG_SUITE_MAIN("inputs", add_tests)

@@ -1,0 +1,286 @@
+"""The modules beside gVXR's calls: utils, json2gvxr, gvxr2json, the readers, and the scripts that use them."""
+import json
+import pathlib
+import subprocess
+import sys
+import zipfile
+
+import numpy as np
+import pytest
+
+import skiagraph as sk
+from skiagraph import gvxr, gvxr2json, json2gvxr
+from skiagraph.gvxr import dragon, utils
+from skiagraph.gvxr.gVXRDataReader import gVXRDataReader
+from skiagraph.gvxr.JSON2gVXRDataReader import JSON2gVXRDataReader
+
+HERE = pathlib.Path(__file__).parent
+#: Roundings of sums and products of doubles.
+ROUNDED = 1e-12
+
+
+@pytest.fixture(autouse=True)
+def fresh():
+    gvxr.destroyAllWindows()
+    yield
+    gvxr.destroyAllWindows()
+
+
+def described(**others):
+    return {"WindowSize": [320, 240],
+            "Source": {"Position": [0, -40, 0, "cm"], "Shape": "Point",
+                       "Beam": [{"Energy": 30, "Unit": "keV", "PhotonCount": 400},
+                                {"Energy": 0.06, "Unit": "MeV", "PhotonCount": 600}]},
+            "Detector": {"Position": [0, 10, 0, "cm"], "UpVector": [0, 0, -1], "Number of pixels": [32, 24],
+                         "Size": [64, 48, "mm"], "Oversampling": 2},
+            "Scan": {"NumberOfProjections": 4, "FinalAngle": 360, "OutFolder": "out", "Flat-Field Correction": True,
+                     "NumberOfWhiteImages": 3, "RotationAxis": [0, 0, 1]},
+            "Samples": [{"Label": "skin", "Cube": [30, "mm"], "Material": ["mu", 0.2], "Type": "outer"},
+                        {"Label": "bone", "Cylinder": [20, 20, 5, "mm"], "Material": ["Mixture", [20, 0.4, 8, 0.4]],
+                         "Density": 1.5, "Transform": [["Translation", 3, 0, 2, "mm"], ["Rotation", 30, 1, 0, 0]]},
+                        {"Label": "wedge", "Material": ["Compound", "SiO2"], "Density": 2.2, "StepWedge": {
+                            "NumberOfSteps": 3, "TotalLength": 9, "Width": 4, "FirstStepHeight": 1, "OtherStepHeight": 2,
+                            "Unit": "mm"}}], **others}
+
+
+def written(folder, **others):
+    path = folder / "scene.json"
+    path.write_text(json.dumps(described(**others)))
+    return path
+
+
+def read(path):
+    json2gvxr.initGVXR(str(path), "EGL")
+    json2gvxr.initSourceGeometry()
+    json2gvxr.initSpectrum(verbose=0)
+    json2gvxr.initDetector()
+    with pytest.warns(sk.SkiagraphWarning, match="sum to 0.8; they are scaled"):
+        json2gvxr.initSamples(verbose=0)
+
+
+def test_a_scene_file_is_read_section_by_section(tmp_path):
+    path = written(tmp_path)
+    read(path)
+    assert gvxr.getWindowSize() == (320, 240) and gvxr.getOversamplingFactor() == 2
+    expected = sk.Scene(path, lenient=True, settings={"Samples.wedge.Transform": [["Translation", 0, 0, 2.5, "mm"]]})
+    np.testing.assert_allclose(gvxr.computeXRayImage(), expected.image(unit="MeV"), rtol=2e-6)  # matrices in another order
+    assert json2gvxr.params["Detector"]["Size"] == [64, 48, "mm"]
+    assert json2gvxr.getFilePath("a/b.stl") == str(tmp_path / "a" / "b.stl") and json2gvxr.getFilePath("/a.stl") == "/a.stl"
+    json2gvxr.params["Detector"]["Size"] = [32, 24, "mm"]  # a script may change it
+    json2gvxr.initDetector()
+    assert gvxr.getDetectorPixelSpacing("mm") == (1, 1)
+    gvxr.removeMeshAndChildren("bone")
+    assert gvxr.computeXRayImage().shape == (24, 32)
+
+
+def test_sections_do_not_need_a_window(tmp_path):
+    path = str(written(tmp_path))
+    json2gvxr.initDetector(path)
+    json2gvxr.initSourceGeometry(path)
+    assert gvxr.getDetectorUpVector() == (0, 0, -1) and gvxr.getSourceShape() == "POINT"
+    with pytest.raises(sk.FormatError, match="Source.Shape is 'Moon'"):
+        json2gvxr.params["Source"]["Shape"] = "Moon"
+        json2gvxr.initSourceGeometry()
+
+
+def test_a_scan_of_a_scene_file(tmp_path):
+    read(written(tmp_path))
+    with pytest.raises(sk.SceneError, match="call initScan first"):
+        json2gvxr.scan_params.clear()
+        json2gvxr.doCTScan()
+    json2gvxr.initScan()
+    assert json2gvxr.doCTScan() == (0, 90, 180, 270)
+    scan = gvxr.getLastProjectionSet()
+    assert scan.shape == (4, 24, 32) and scan.max() == pytest.approx(1, rel=1e-6)  # a mean of floats
+    assert len(list((tmp_path / "out").glob("*.tif"))) == 4
+    assert gvxr.getWhiteImagesInFlatFieldCT() == 3 and gvxr.getRotationAxisCT() == (0, 0, 1)
+    assert gvxr.getDetectorPositionSet("cm")[1] == pytest.approx((10, 0, 0), abs=1e-9)  # a turn by 90 degrees
+    json2gvxr.params["Scan"] = {"AngleStep": 10}
+    with pytest.raises(sk.FormatError, match="give two of"):
+        json2gvxr.initScan()
+
+
+def test_a_world_is_written_and_read_again(tmp_path):
+    read(written(tmp_path))
+    gvxr.addFilter("Al", 1, "mm")
+    gvxr.setScintillator("Gadox", 300, "um")
+    gvxr.setColour("bone", 1, 0.5, 0.25, 1)
+    gvxr.translateNode("bone", 1, 2, 3, "mm")
+    before = gvxr.computeXRayImage()
+    target = tmp_path / "written" / "again.json"
+    target.parent.mkdir()
+    gvxr2json.saveJSON(str(target))
+    # Meshes as files, and photons behind the filters.
+    np.testing.assert_allclose(sk.Scene(target).image(unit="MeV"), before, rtol=2e-6)
+    gvxr.destroyAllWindows()
+    for call in (json2gvxr.initSourceGeometry, json2gvxr.initSpectrum, json2gvxr.initDetector, json2gvxr.initSamples):
+        call(str(target))
+    np.testing.assert_allclose(gvxr.computeXRayImage(), before, rtol=2e-6)
+    assert gvxr.getAmbientColour("bone") == (1, 0.5, 0.25, 1) and gvxr.isOuterSurface("skin")
+
+
+def test_a_tube_is_written_and_read_again(tmp_path):
+    gvxr.setSourcePosition(0, -40, 0, "cm")
+    gvxr.setDetectorPosition(0, 10, 0, "cm")
+    gvxr.setDetectorUpVector(0, 0, -1)
+    gvxr.setDetectorNumberOfPixels(8, 6)
+    gvxr.setDetectorPixelSize(1, 1, "mm")
+    gvxr.setVoltage(90, "kV")
+    gvxr.setmAs(2)
+    gvxr.addInherentFilter("Be", 0.8, "mm")
+    gvxr.addFilter("Al", 3, "mm")
+    gvxr.setFocalSpotAsRectangle(0, -40, 0, 1, 2, "mm", 2, 3)
+    gvxr.clearFiltration()
+    gvxr.setFiltration([(13, 3)], "mm")
+    assert gvxr.getInherentFiltrationMaterial() == (4,) and gvxr.getFiltrationThickness("cm") == (pytest.approx(0.3),)
+    gvxr.makeCube("cube", 2, "mm")
+    gvxr.addPolygonMeshAsInnerSurface("cube")
+    gvxr.setElement("cube", "Al")
+    gvxr2json.saveJSON(str(tmp_path / "tube.json"))
+    said = json.loads((tmp_path / "tube.json").read_text())
+    assert said["Source"]["Shape"] == ["Rectangle", 1, 2, "mm"] and said["Source"]["Grid"] == 3
+    np.testing.assert_allclose(sk.Scene(tmp_path / "tube.json").image(unit="MeV"), gvxr.computeXRayImage(), rtol=2e-6)
+
+
+def test_spectra_of_utils(tmp_path):
+    gvxr.setSourcePosition(0, -1, 0, "m")
+    gvxr.setDetectorPosition(0, 0, 0, "m")
+    gvxr.setDetectorUpVector(0, 0, -1)
+    gvxr.setDetectorNumberOfPixels(8, 6)
+    gvxr.setDetectorPixelSize(2, 2, "mm")
+    energies, counts, unit = utils.getSpectrumSpekpy(100, [["Cu", 0.1, "mm"], ["None", 1]], 10, 20)
+    assert unit == "keV" and len(energies) == 20 and counts.sum() == pytest.approx(1, rel=ROUNDED)
+    spectrum, energies, counts, unit = utils.loadSpectrumSpekpy(100, [["Cu", 0.1, "mm"]], mAs=2, z=100)
+    beam = sk.Beam.tube(100, {"Al": 0.5, "Cu": 0.1}, mas=2)
+    assert gvxr.getFiltrationMaterial() == (29,) and gvxr.getVoltage("kV") == 100 and gvxr.getmAs() == 2
+    # photons per mm2 at 1 m, on pixels of 4 mm2; what carries 1 eV at most is left out
+    assert gvxr.getNumberOfPhotons() == pytest.approx(4 * beam.photons.sum(), rel=1e-6)
+    assert sum(counts) == pytest.approx(100 * beam.photons.sum(), rel=1e-6)
+    (tmp_path / "beam.txt").write_text("# energy photons\n20 5\n0 30 10 # the second\n")
+    assert utils.loadTextFileSpectrum(str(tmp_path / "beam.txt"), "keV")[0] == {20: 5, 30: 10}
+    assert gvxr.getPhotonCountEnergyBins(False) == pytest.approx((5, 10))
+    (tmp_path / "bad.txt").write_text("20\n")
+    with pytest.raises(sk.FormatError, match="bad.txt: line 1"):
+        utils.getSpectrumTextFile(str(tmp_path / "bad.txt"), "keV")
+
+
+def test_images_of_utils():
+    image = np.linspace(1, 4, 12).reshape(3, 4)
+    assert utils.logImage(image, 1, 4)[0, 0] == pytest.approx(0, abs=1e-8)  # log(1 + 1e-9)
+    assert utils.applyLogScaleAndNegative(image)[-1, -1] == pytest.approx(0, abs=1e-8)
+    sharp = utils.sharpen(image, 1, 2)
+    assert sharp.min() == image.min() and sharp.max() == image.max() and not (sharp == image).all()
+    assert utils.rgb2k3d(1, 2, 3) == 0x010203 and utils.standardisation(image).std() == pytest.approx(1, rel=ROUNDED)
+
+
+def test_plots_of_utils(tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    image = np.linspace(1, 4, 12).reshape(3, 4)
+    utils.saveProjections(image, str(tmp_path / "a.png"))
+    utils.compareWithGroundTruth(image, image + 0.1, str(tmp_path / "b.png"))
+    utils.interactPlotPowerLaw(image, 0.5)
+    assert (tmp_path / "a.png").stat().st_size > 1000 and (tmp_path / "b.png").stat().st_size > 1000
+
+
+def test_the_scene_is_shown(command, tmp_path):
+    read(written(tmp_path))
+    gvxr.setSceneRotationMatrix(np.eye(4))
+    seen = gvxr.takeScreenshot()
+    assert seen.shape == (240, 320, 3) and 0 <= seen.min() < seen.max() <= 1
+    gvxr.setColour("skin", 1, 0, 0, 1)
+    assert (gvxr.takeScreenshot()[..., 0] - gvxr.takeScreenshot()[..., 2]).sum() > (seen[..., 0] - seen[..., 2]).sum()
+    assert (gvxr.getLatestScreenshot() == gvxr.takeScreenshot()).all()
+    page = utils.visualise()
+    assert "<html" in page.html and "<iframe" in page._repr_html_() and len(page.screenshot) > 1000
+
+
+def test_readers_for_cil(tmp_path):
+    reader = JSON2gVXRDataReader(written(tmp_path))
+    try:
+        import cil  # noqa: F401
+    except ImportError:
+        with pytest.raises(sk.UnsupportedError, match="CIL, which is not installed"):
+            reader.read()
+    said = gVXRDataReader(tmp_path, [0, 90], (0, 0, 1), (1, 0, 0)).geometry()
+    assert said["source_position"].tolist() == [0, -400, 0] and said["detector_position"].tolist() == [0, 100, 0]
+    assert said["rotation_axis_position"].tolist() == [1, 0, 0] and said["detector_direction_y"].tolist() == [0, 0, -1]
+    gvxr.useParallelBeam()
+    assert gVXRDataReader(tmp_path, [0], (0, 0, 1)).geometry()["ray_direction"].tolist() == [0, 1, 0]
+
+
+def test_the_dragon_is_fetched_by_the_user(tmp_path):
+    with pytest.raises(sk.FileError, match="skiagraph.gvxr.dragon"):
+        gvxr.loadMeshFile("dragon", str(tmp_path / dragon.NAME), "mm")
+    with zipfile.ZipFile(tmp_path / "gvxr.whl", "w") as wheel:
+        wheel.writestr("gvxrPython3/_gvxrPython3/" + dragon.NAME, b"solid")
+        wheel.writestr("gvxrPython3/utils.py", b"")
+    assert dragon.take(tmp_path / "gvxr.whl", tmp_path).read_bytes() == b"solid"
+    with zipfile.ZipFile(tmp_path / "other.whl", "w") as wheel:
+        wheel.writestr("a.py", b"")
+    with pytest.raises(FileNotFoundError, match="other.whl"):
+        dragon.take(tmp_path / "other.whl", tmp_path)
+
+
+def test_scripts_run_with_the_import_alone_changed(tmp_path):
+    (tmp_path / "old.py").write_text("""from gvxrPython3 import gvxr, json2gvxr
+from gvxrPython3.utils import has_k3d
+import os, gvxrPython3.tests
+json2gvxr.initDetector("scene.json")
+assert os.path.basename(os.path.dirname(gvxr.__file__)) == "gvxr" and has_k3d
+print(gvxr.getVersionOfSimpleGVXR(), gvxr.getDetectorNumberOfPixels())
+""")
+    (tmp_path / "bad.py").write_text("from gvxrPython3 import gvxr\ngvxr.computeXRayImageWithGain()\n")
+    cells = [{"cell_type": "markdown", "source": ["# gvxrPython3"]},
+             {"cell_type": "code", "source": ["%matplotlib inline\n", "from gvxrPython3 import gvxr\n"]},
+             {"cell_type": "code", "source": ["!pip install gvxr\n", "gvxr.createOpenGLContext()"]}]
+    (tmp_path / "book.ipynb").write_text(json.dumps({"cells": cells}))
+    (tmp_path / "other.py").write_text("raise SystemExit('not gVXR')\n")
+    written(tmp_path)
+    done = subprocess.run([sys.executable, str(HERE / "gvxr_scripts.py"), str(tmp_path), "100"], capture_output=True,
+                          text=True, check=False)
+    lines = done.stdout.splitlines()
+    assert done.returncode == 1 and lines[-1].startswith("2 of 3 scripts"), done.stdout + done.stderr
+    assert "FAIL bad.py" in lines[0] and "refused" in lines[0] and lines[1:3] == ["ok   book.ipynb", "ok   old.py"]
+
+
+def test_shapes_of_gvxr():
+    gvxr.makeFoamInCuboid("pores", "", 20, 20, 20, (2, 0.2), 20, 10, 0.5, "mm")
+    volume = sk.Mesh(gvxr.getVertexSet("pores").reshape(-1, 3), gvxr.getIndexSet("pores").reshape(-1, 3)).health["volume"]
+    assert 0.16 * 8000 < volume < 0.21 * 8000  # of polyhedra in spheres that fill 0.2
+    assert gvxr.makeSpheresInCylinder("cylinder", 20, 10, 20, "spheres", 8, 8, 1, 10, "mm") == 150
+    assert np.hypot(*gvxr.getVertexSet("spheres").reshape(-1, 3)[:, :2].T).max() <= 10
+    with pytest.raises(sk.ArgumentError, match="no place is left after"):
+        gvxr.makeSpheresInCylinder("c", 20, 3, 3, "s", 8, 8, 1, 70, "mm")
+    volume = np.zeros((5, 6, 7))
+    volume[1:4, 1:5, 1:6] = 1
+    for values in (volume, volume.ravel().tolist()):
+        gvxr.makeIsoSurface("surface", 0.5, values, 7, 6, 5, 1, 1, 2, "mm")
+        assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((-2.5, -2, -3, 2.5, 2, 3))
+    with pytest.raises(sk.ArgumentError, match="has 210 values instead of 7 x 6 x 4"):
+        gvxr.makeIsoSurface("surface", 0.5, volume, 7, 6, 4, 1, 1, 2, "mm")
+    gvxr.makeStepWedge("wedge", 3, 9, 4, 1, 2, "mm")
+    assert gvxr.getNodeOnlyBoundingBox("wedge", "mm") == pytest.approx((-4.5, -2, 0, 4.5, 2, 5))
+
+
+def test_implicit_surfaces():
+    gvxr.createImplicitSurface("s")
+    gvxr.addControlPoint("s", 1, 0, 0, "mm", "blobby molecule", 1, 0.5)
+    gvxr.voxeliseImplicitSurface("s", 41, 41, 41, 0.1, 0, 0, 0.01, 0.01, 0.01, "cm")
+    volume = gvxr.getImplicitSurfaceLastVoxelisation("s")
+    assert volume.shape == (41, 41, 41) and volume.max() == volume[20, 20, 20] == 1  # about (1, 0, 0) mm
+    gvxr.createMeshFromImplicitSurface("s", "ball", 0.5, "root", 1)
+    radius = np.sqrt(2 * np.log(2))  # where exp(-r^2 / 2) is a half
+    assert gvxr.getNodeOnlyBoundingBox("ball", "mm") == pytest.approx((1 - radius, -radius, -radius, 1 + radius, radius, radius),
+                                                                     abs=0.01)  # linear between voxels of 0.1 mm
+    gvxr.createMeshFromImplicitSurface("s", "shell", 0.5, 0.8)
+    shell = sk.Mesh(gvxr.getVertexSet("shell").reshape(-1, 3), gvxr.getIndexSet("shell").reshape(-1, 3)).health
+    assert shell["closed"] and shell["components"] == 2
+    gvxr.addControlLineSegment("s", 0, 0, 0, 1, 0, 0, "mm", "META_BALL", 2, 1)
+    gvxr.setControlLineSegmentParameters("s", 0, "soft object", 2, 1)
+    assert (gvxr.getNumberOfControlPoints("s"), gvxr.getNumberOfControlLineSegments("s")) == (1, 1)
+    with pytest.raises(sk.ArgumentError, match="'cube' is unknown"):
+        gvxr.setControlPointParameters("s", 0, "cube", 1)
+    gvxr.destroyImplicitSurface("s")
+    with pytest.raises(sk.SceneError, match="no implicit surface 's'"):
+        gvxr.getNumberOfControlPoints("s")
