@@ -1,5 +1,6 @@
 #include "device/identity.h"
 #include "device/device.h"
+#include "device/faults.h"
 #include "device/platforms.h"
 #include "device/store.h"
 
@@ -102,6 +103,7 @@ static int has_cache(cl_platform_id platform) {
 
 skg_status skg_device_identify(skg_device *device) {
     char path[SKG_STORE_PATH];
+    SKG_TRY(skg_faults_check(&device->info));
     skg_store_find(path);
     /* Oclgrind compiles with the options of its command line, which nobody else knows. */
     device->simulates = skg_platform_is(device->platform, "Oclgrind");

@@ -13,11 +13,11 @@ skg_status skg_context_create(const char *config, skg_context **context) {
     uint64_t without = 0; /* bit n: not device n */
     for (;;) {
         skg_context *made = NULL;
-        int32_t index = 0;
+        int32_t index = -1;
         skg_status status = skg_context_open(config, without, &made, &index);
         if (status == SKG_ERR_NO_DEVICE && refused[0]) return skg_fail(SKG_ERR_DEVICE, "%s", refused);
-        SKG_TRY(status);
-        status = skg_trial_need(made, SKG_TRIAL_CORE);
+        if (status != SKG_OK && index < 0) return status; /* no device is at fault */
+        if (status == SKG_OK) status = skg_trial_need(made, SKG_TRIAL_CORE);
         if (status == SKG_OK) {
             if (refused[0]) skg_mailbox_put(skg_mailbox_address(made->driver), refused);
             *context = made;

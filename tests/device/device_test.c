@@ -1,4 +1,5 @@
 #include "device/device.h"
+#include "device/faults.h"
 #include "suite.h"
 
 #include <skiagraph/context.h>
@@ -50,6 +51,32 @@ START_TEST(environment_variable_stands_for_config) {
     ck_skg(skg_context_create(NULL, &context));
     ck_assert_int_eq(context->device->info.compute_units, 1);
     skg_context_release(&context);
+}
+END_TEST
+
+/* What PoCL 3.0 of the Python registry says of itself on a Zen 4, and others that must not be refused. */
+START_TEST(a_pocl_that_ends_the_process_is_known) {
+    static const struct {
+        const char *driver, *version;
+        int fails;
+    } cases[] = {
+        {"3.0-rc2", "OpenCL 3.0 PoCL HSTR: pthread-x86_64-unknown-linux-gnu-znver3", 1},
+        {"3.0-rc2", "OpenCL 3.0 PoCL HSTR: pthread-x86_64-unknown-linux-gnu-generic", 1},
+        {"1.8", "OpenCL 2.0 pocl HSTR: pthread-x86_64-pc-linux-gnu-znver2", 1},
+        {"3.0-rc2", "OpenCL 3.0 PoCL HSTR: pthread-x86_64-unknown-linux-gnu-icelake-client", 0},
+        {"3.1+debian", "OpenCL 3.0 PoCL HSTR: pthread-x86_64-pc-linux-gnu-znver3", 0},
+        {"6.0", "OpenCL 3.0 PoCL HSTR: cpu-x86_64-pc-linux-gnu-znver3", 0},
+        {"3.0-rc2", "OpenCL 3.0 PoCL HSTR: pthread-aarch64-unknown-linux-gnu-generic", 0},
+        {"3.0-rc2", "", 0},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        skg_device_info info;
+        skg_device_info_init(&info);
+        snprintf(info.driver, sizeof info.driver, "%s", cases[n].driver);
+        snprintf(info.version, sizeof info.version, "%s", cases[n].version);
+        ck_assert_int_eq(skg_pocl_fails(&info, 1), cases[n].fails);
+        ck_assert_int_eq(skg_pocl_fails(&info, 0), 0);
+    }
 }
 END_TEST
 
@@ -274,6 +301,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_device_is_found_and_described);
     tcase_add_test(tests, config_words_choose);
+    tcase_add_test(tests, a_pocl_that_ends_the_process_is_known);
     tcase_add_test(tests, environment_variable_stands_for_config);
     tcase_add_test(tests, environment_is_left_alone);
     tcase_add_test(tests, a_forked_child_is_refused);

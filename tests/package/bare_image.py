@@ -1,10 +1,18 @@
 """One image of a cube, where there is nothing but Python and what pip brought."""
 import math
 import os
+import sys
 
 import skiagraph as sk
 
 before = dict(os.environ)
+try:
+    sk.Device()
+except sk.DeviceError as error:
+    if "its compiler would end the process" not in str(error):
+        raise
+    print(f"skipped: {error}")
+    sys.exit(77)
 scene = sk.Scene({"Source": {"Position": [0, -40, 0, "cm"], "Shape": "PointSource",
                              "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
                   "Detector": {"Position": [0, 10, 0, "cm"], "UpVector": [0, 0, -1],
