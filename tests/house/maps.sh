@@ -1,0 +1,31 @@
+#!/bin/sh
+# maps.sh HOUSE ROOT: fails if a room is missing in the table of docs/architecture.md or in README.md, if docs/architecture.svg
+# is not the drawing of these rooms, or if a public header is missing in docs/interface.md.
+set -eu
+house=$1 root=$2 status=0
+drawing=$(mktemp)
+trap 'rm -f "$drawing"' EXIT
+awk -f "$root/docs/figures/architecture.awk" "$house" "$root/docs/architecture.md" >"$drawing" || status=1
+if ! cmp -s "$drawing" "$root/docs/architecture.svg"; then
+    echo "docs/architecture.svg is not the drawing of these rooms; make it again:"
+    echo "    awk -f docs/figures/architecture.awk $house docs/architecture.md >docs/architecture.svg"
+    status=1
+fi
+rooms=$(awk -v root="$root/" '$1 == "room" && index($3, root) == 1 { print substr($3, length(root) + 1) }' "$house")
+for room in $rooms; do
+    case $room in
+    */include/skiagraph)
+        for header in "$root/$room"/*.h "$root/$room"/*.hpp; do
+            name=$(basename "$header")
+            case $name in skiagraph.h | '*.hpp') continue ;; esac
+            grep -qwF "$name" "$root/docs/interface.md" || { echo "docs/interface.md does not name $room/$name"; status=1; }
+        done
+        ;;
+    *) grep -qF "\`$room\`" "$root/README.md" || { echo "README.md does not name $room"; status=1; } ;;
+    esac
+done
+# What is gone must not be named any more.
+for room in $(sed -n 's/^| `\([a-z/]*\)` | .*/\1/p' "$root/docs/architecture.md"); do
+    echo "$rooms" | grep -qxF "$room" || { echo "docs/architecture.md names $room, which is no room"; status=1; }
+done
+exit $status
