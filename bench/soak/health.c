@@ -1,7 +1,8 @@
-#define _DEFAULT_SOURCE /* malloc_trim */
+#define _GNU_SOURCE /* malloc_trim, nftw */
 #include "soak.h"
 
 #include <dirent.h>
+#include <ftw.h>
 #include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,11 +26,39 @@ static long resident_kib(void) {
     return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
+static int kernels;
+
+static int count_kernel(const char *path, const struct stat *its, int type, struct FTW *at) {
+    (void)its, (void)at;
+    const char *end = strrchr(path, '.');
+    kernels += type == FTW_F && end && strcmp(end, ".so") == 0;
+    return 0;
+}
+
+/* The kernels that PoCL has compiled and cached. 0 with another driver. */
+static int count_kernels(void) {
+    enum { HANDLES = 16 };
+    char path[SOAK_PATH];
+    const char *own = getenv("POCL_CACHE_DIR"), *user = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (own)
+        snprintf(path, sizeof path, "%s", own);
+    else
+        snprintf(path, sizeof path, "%s%s/pocl/kcache",
+                 user   ? user
+                 : home ? home
+                        : "",
+                 user ? "" : "/.cache");
+    kernels = 0;
+    nftw(path, count_kernel, HANDLES, FTW_PHYS); /* a folder that is missing holds none */
+    return kernels;
+}
+
 soak_health soak_health_now(void) {
     malloc_trim(0);
     const struct mallinfo2 heap = mallinfo2();
     return (soak_health){.resident_kib = resident_kib(),
                          .heap_kib = (long)((heap.uordblks + heap.hblkhd) / 1024),
+                         .kernels = count_kernels(),
                          .handles = count_entries("/proc/self/fd"),
                          .threads = count_entries("/proc/self/task")};
 }
