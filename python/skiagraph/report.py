@@ -7,6 +7,8 @@ from typing import Any
 
 from ._library import call, ffi, filled, integer, listed
 
+_OVERLAPS_SHOWN = 3
+
 
 class Report(Mapping[str, Any]):
     """A plan's decisions, as a mapping and as text: what is simulated, what is not, and why.
@@ -50,8 +52,11 @@ class Report(Mapping[str, Any]):
         lines.append("effects, with their estimated cost in frames of this scene without effects")
         lines += [f"  {'on' if e['on'] else 'off':<3} {e['name']:<22} {e['cost']:+9.2f}  {e['reason']}"
                   for e in self._found["effects"]]
+        overlaps = self._found["overlaps"]
         lines += [f"  {o['part']} {'leaves its parent' if o['protrudes'] else 'overlaps'} {o['other']}: "
-                  f"{o['volume']:.4g} mm3" for o in self._found["overlaps"]]
+                  f"{o['volume']:.4g} mm3" for o in overlaps[:_OVERLAPS_SHOWN]]
+        if len(overlaps) > _OVERLAPS_SHOWN:
+            lines.append(f"  and {len(overlaps) - _OVERLAPS_SHOWN} more; report[\"overlaps\"] lists all")
         return "\n".join(lines)
 
     def __repr__(self) -> str:

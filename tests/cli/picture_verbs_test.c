@@ -266,6 +266,27 @@ START_TEST(plan_says_what_and_why) {
 }
 END_TEST
 
+START_TEST(of_many_overlaps_the_worst_three_are_printed) {
+    write_text(
+        "many.json",
+        "{\"Source\":{\"Position\":[0,-400,0,\"mm\"],\"Shape\":\"PointSource\",\"Beam\":[{\"Energy\":60,\"Unit\":\"keV\","
+        "\"PhotonCount\":1}]},\"Detector\":{\"Position\":[0,100,0,\"mm\"],\"UpVector\":[0,0,-1],\"NumberOfPixels\":[8,8],"
+        "\"Size\":[80,80,\"mm\"]},\"Samples\":["
+        "{\"Label\":\"a\",\"Cube\":[10,\"mm\"],\"Material\":[\"mu\",0.5]},"
+        "{\"Label\":\"b\",\"Cube\":[12,\"mm\"],\"Material\":[\"mu\",0.5]},"
+        "{\"Label\":\"c\",\"Cube\":[14,\"mm\"],\"Material\":[\"mu\",0.5]},"
+        "{\"Label\":\"d\",\"Cube\":[16,\"mm\"],\"Material\":[\"mu\",0.5]}]}");
+    ck_run(0, "plan many.json");
+    int lines = 0;
+    for (const char *at = said; (at = strstr(at, " mm3, longest ")); at++) lines++;
+    ck_assert_int_eq(lines, 3); /* of six pairs */
+    const char *worst = strstr(said, "\n  c overlaps d: 2744 mm3"),
+               *worse = strstr(said, "overlaps d: 1728 mm3");
+    ck_assert_msg(worst && worse && worst < worse, "%s", said);
+    ck_assert_ptr_nonnull(strstr(said, "  and 3 more; --json lists all\n"));
+}
+END_TEST
+
 /* What the plan has to say reaches standard error, and the picture is made all the same. */
 START_TEST(warnings_are_printed_unless_quiet) {
     write_text("open.obj",
@@ -413,6 +434,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, json_has_its_shape);
     tcase_add_test(tests, verbose_says_what_was_loaded);
     tcase_add_test(tests, plan_says_what_and_why);
+    tcase_add_test(tests, of_many_overlaps_the_worst_three_are_printed);
     tcase_add_test(tests, warnings_are_printed_unless_quiet);
     tcase_add_test(tests, a_wall_that_faces_the_beam_lies_on_its_way);
     tcase_add_test(tests, compression_that_does_not_pay_is_told);

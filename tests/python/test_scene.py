@@ -156,6 +156,16 @@ def test_overlaps_have_labels(scene):
     assert {report["overlaps"][0]["part"], report["overlaps"][0]["other"]} == {"block", "other"}
 
 
+def test_of_many_overlaps_the_worst_are_printed(scene):
+    with pytest.warns(sk.SkiagraphWarning):
+        for n in range(5):
+            scene.add(f"cube {n}", sk.Mesh.cube(10), material="water", pose=sk.translate(20, 0, n))
+        report = scene.plan()
+    lines = [line for line in str(report).splitlines() if " overlaps " in line or "leaves its parent" in line]
+    assert len(report["overlaps"]) > 10 and len(lines) == 3
+    assert f"and {len(report['overlaps']) - 3} more" in str(report)
+
+
 def test_breath(tmp_path):
     with sk.Scene(sk.thorax(tmp_path, 10000), settings={"Detector.NumberOfPixels": [32, 32]}) as scene:
         rest = scene["liver"].mesh.vertices

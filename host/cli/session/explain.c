@@ -230,8 +230,9 @@ static void print_nodes(const skg_plan *plan, const skg_plan_report *report) {
     }
 }
 
+/* The worst, which the plan has first. */
 static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
-    enum { SHOWN = 10 };
+    enum { SHOWN = 3 };
     int64_t count = 0;
     if (skg_plan_overlap_count(plan, &count) != SKG_OK || count == 0) return;
     printf("\noverlaps (path lengths add where parts overlap)\n");
