@@ -1,7 +1,7 @@
 # From the facts of house.sh to arrows: FROM TO "includes" FILE, or FROM TO "calls" NAME.
 function stem(path) { sub(/\.[a-z]+$/, "", path); return path }
-# An object's file, as room/file without ending.
-function node(room, object,   name) {
+# An object's file, as room/file without ending. Folders above the room's are left out.
+function node(room, object,   name, start) {
     name = object
     sub(/.*\.dir\/(\.\/)?/, "", name) # Ninja writes X.dir/./file
     sub(/\.o$/, "", name)
@@ -9,7 +9,8 @@ function node(room, object,   name) {
     sub(/^\.\//, "", name) # Ninja names them ./room/file
     sub(/^\.\.\//, "", name)
     name = stem(name)
-    return index(name, room "/") == 1 ? name : room "/" name
+    start = index("/" name, "/" room "/")
+    return start ? substr(name, start) : room "/" name
 }
 $1 == "file" { known[$2] = 1 }
 $1 == "include" { n++; from[n] = $2; what[n] = $3 }
