@@ -1,7 +1,7 @@
 /* Bodies: ribs against the literature, the generated thorax over a breath. */
-#include "body/follow.h"
+#include "body/bones.h"
 #include "body/inside.h"
-#include "body/ribs.h"
+#include "body/links.h"
 #include "body/types.h"
 #include "suite.h"
 #include "support/angles.h"

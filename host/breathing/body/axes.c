@@ -1,4 +1,4 @@
-#include "body/axes.h"
+#include "body/bones.h"
 
 #include "core/vector.h"
 

@@ -2,9 +2,8 @@
 #include "body/types.h"
 #include "core/context.h"
 
-#include "body/link.h"
-#include "body/organ.h"
-#include "body/ribs.h"
+#include "body/bones.h"
+#include "body/build.h"
 
 #include "core/openmp.h"
 #include "core/plain.h"

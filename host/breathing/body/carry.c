@@ -1,6 +1,6 @@
-#include "body/carry.h"
+#include "body/build.h"
 
-#include "body/near.h"
+#include "body/links.h"
 #include "core/vector.h"
 
 #include <string.h>

@@ -1,10 +1,8 @@
-#include "body/chains.h"
+#include "body/build.h"
 
-#include "body/corotate.h"
-#include "body/rules.h"
-#include "body/share.h"
-#include "body/struts.h"
-#include "body/tie.h"
+#include "body/links.h"
+#include "body/posed.h"
+#include "body/shares.h"
 #include "core/vector.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "body/conflict.h"
+#include "body/posed.h"
 
 #include "core/vector.h"
 

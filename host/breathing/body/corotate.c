@@ -1,4 +1,4 @@
-#include "body/corotate.h"
+#include "body/posed.h"
 
 #include "core/vector.h"
 

@@ -1,4 +1,4 @@
-#include "body/dome.h"
+#include "body/shares.h"
 
 #include <math.h>
 #include <string.h>

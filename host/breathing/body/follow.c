@@ -1,6 +1,6 @@
-#include "body/follow.h"
+#include "body/links.h"
 
-#include "body/dome.h"
+#include "body/shares.h"
 #include "core/vector.h"
 
 #include <string.h>

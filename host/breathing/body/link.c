@@ -1,12 +1,8 @@
-#include "body/link.h"
+#include "body/build.h"
 
-#include "body/carry.h"
-#include "body/chains.h"
-#include "body/liver.h"
-#include "body/ribs.h"
-#include "body/rules.h"
-#include "body/share.h"
-#include "body/tie.h"
+#include "body/bones.h"
+#include "body/links.h"
+#include "body/shares.h"
 #include "core/openmp.h"
 
 /* The diaphragm comes first, since others take its share. */

@@ -1,7 +1,6 @@
-#include "body/liver.h"
+#include "body/shares.h"
 
-#include "body/dome.h"
-#include "body/near.h"
+#include "body/links.h"
 #include "core/vector.h"
 
 /* Where the liver touches the dome: at most this far below it, in mm, and at most so near to the rim. Choices. */

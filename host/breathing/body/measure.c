@@ -1,6 +1,5 @@
-#include "body/measure.h"
+#include "body/posed.h"
 
-#include "body/conflict.h"
 #include "body/types.h"
 #include "core/plain.h"
 #include "core/vector.h"

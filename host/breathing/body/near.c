@@ -1,7 +1,7 @@
-#include "body/near.h"
+#include "body/links.h"
 
 #include "core/vector.h"
-#include "distance/triangle.h"
+#include "distance/nearest.h"
 
 double skg_nearest(const skg_body_organ *organ, const double p[3], double reach, skg_link *link) {
     int64_t triangle;

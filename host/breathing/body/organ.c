@@ -1,6 +1,6 @@
-#include "body/organ.h"
+#include "body/build.h"
 
-#include "body/axes.h"
+#include "body/bones.h"
 #include "core/maths.h"
 #include "core/vector.h"
 

@@ -1,6 +1,5 @@
-#include "body/ribs.h"
+#include "body/bones.h"
 
-#include "body/axes.h"
 #include "core/maths.h"
 #include "core/vector.h"
 

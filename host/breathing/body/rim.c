@@ -1,7 +1,6 @@
-#include "body/rim.h"
+#include "body/shares.h"
 
-#include "body/struts.h"
-#include "body/surface.h"
+#include "body/links.h"
 #include "core/maths.h"
 #include "core/vector.h"
 

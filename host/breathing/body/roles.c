@@ -1,4 +1,4 @@
-#include "body/roles.h"
+#include "body/types.h"
 
 #include "core/names.h"
 

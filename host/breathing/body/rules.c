@@ -1,8 +1,6 @@
-#include "body/rules.h"
+#include "body/links.h"
 
-#include "body/near.h"
-#include "body/share.h"
-#include "body/tie.h"
+#include "body/shares.h"
 #include "core/vector.h"
 
 /* Distances in mm below are choices. Reaches are a few mm more than the gaps that lie between organs. */

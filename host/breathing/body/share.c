@@ -1,11 +1,7 @@
-#include "body/share.h"
+#include "body/shares.h"
 
-#include "body/dome.h"
-#include "body/liver.h"
-#include "body/near.h"
-#include "body/rim.h"
-#include "body/thin.h"
-#include "body/wall.h"
+#include "body/bones.h"
+#include "body/links.h"
 #include "core/vector.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "body/struts.h"
+#include "body/links.h"
 
 #include "core/vector.h"
 

@@ -1,4 +1,4 @@
-#include "body/surface.h"
+#include "body/shares.h"
 
 #include "core/vector.h"
 

@@ -1,4 +1,4 @@
-#include "body/thin.h"
+#include "body/shares.h"
 
 #include "core/vector.h"
 

@@ -1,6 +1,5 @@
-#include "body/tie.h"
+#include "body/links.h"
 
-#include "body/near.h"
 #include "core/vector.h"
 
 #include <ctype.h>

@@ -1,13 +1,47 @@
-/* What a body holds. Private. */
+/* What a body holds, and the roles that labels give to organs. Private. */
 #ifndef SKG_BODY_TYPES_H
 #define SKG_BODY_TYPES_H
 
 #include "body/rigid.h"
-#include "body/roles.h"
 #include "chainmail/chainmail.h"
 #include "core/context.h"
-#include "distance/tree.h"
+#include "distance/nearest.h"
 #include "mesh/mesh.h"
+
+#include <skiagraph/breathing.h>
+
+/* How an organ moves. */
+typedef enum {
+    ROLE_STATIC,
+    ROLE_RIGID, /* turns as the caller says */
+    ROLE_RIB,
+    ROLE_STERNUM,
+    ROLE_CARTILAGE, /* between a rib and the sternum or another rib */
+    ROLE_DIAPHRAGM,
+    ROLE_LINKED,   /* deformable, driven through links: lungs, liver, heart, skin, muscle */
+    ROLE_CARRIED,  /* every vertex moves with the nearest ones of a carrier */
+    ROLE_SPANNED,  /* one end moves with a carrier, the other stays */
+    ROLE_ENCLOSED, /* moves with the rigid organ that it lies in */
+    ROLE_NEEDLE
+} skg_role;
+
+/* The role of a label. number: of ribs and cartilages, 1 to 12; else 0. side: 1 left, -1 right, 0 neither. */
+skg_role skg_role_of(const char *label, int *number, int *side);
+
+/* The tissue of a deformable organ with this label. */
+skg_tissue skg_tissue_of(const char *label);
+
+/* The same of an organ that follows ribs and dome together. */
+skg_tissue skg_coupled_tissue_of(const char *label);
+
+/* Whether a label begins with a word, without regard to case, and no letter follows. */
+int skg_label_begins(const char *label, const char *word);
+
+/* Whether this is a bone that does not move, or what lies at the spine and does not. */
+int skg_label_stays(const char *label);
+
+/* Whether this is the wall of the body, in which everything lies: skin or muscle. */
+int skg_label_is_wall(const char *label);
 
 /* Values of skg_link.organ that are no organ: the point stays at rest, or moves with the diaphragm's tendon. */
 enum { LINK_STAYS = -1, LINK_TENDON = -2 };

@@ -1,6 +1,6 @@
-#include "body/wall.h"
+#include "body/bones.h"
 
-#include "body/near.h"
+#include "body/links.h"
 #include "core/vector.h"
 
 static int is_bone(const skg_body_organ *o, int spine) {

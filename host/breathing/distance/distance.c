@@ -3,8 +3,8 @@
 #include "core/openmp.h"
 #include "core/plain.h"
 #include "core/vector.h"
+#include "distance/nearest.h"
 #include "distance/sample.h"
-#include "distance/tree.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,6 @@
-#include "distance/tree.h"
+#include "distance/nearest.h"
 
 #include "core/vector.h"
-#include "distance/triangle.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "distance/triangle.h"
+#include "distance/nearest.h"
 
 #include "core/vector.h"
 

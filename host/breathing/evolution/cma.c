@@ -1,11 +1,10 @@
 /* CMA-ES with active update, cumulative step size, and restarts with a doubled population: N. Hansen, The CMA Evolution
  * Strategy: A Tutorial, arXiv 1604.00772 (2016), whose names and default constants these are; A. Auger and N. Hansen, A
  * restart CMA evolution strategy with increasing population size, CEC 2005. */
-#include "evolution/cma.h"
+#include "evolution/methods.h"
 
 #include "evolution/draw.h"
 #include "evolution/eigen.h"
-#include "evolution/model.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Differential evolution, rand/1/bin (Storn and Price, J. Glob. Optim. 11 (1997) 341-359). */
-#include "evolution/de.h"
+#include "evolution/methods.h"
 
 #include "evolution/draw.h"
 

@@ -1,6 +1,6 @@
 #include "evolution/eigen.h"
 
-#include "evolution/state.h"
+#include "evolution/methods.h"
 
 #include <lapacke.h>
 

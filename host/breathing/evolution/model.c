@@ -1,4 +1,4 @@
-#include "evolution/model.h"
+#include "evolution/methods.h"
 
 #include "evolution/eigen.h"
 

@@ -1,8 +1,7 @@
 #include "evolution/search.h"
 
-#include "evolution/cma.h"
-#include "evolution/de.h"
 #include "evolution/eigen.h"
+#include "evolution/methods.h"
 
 #include <inttypes.h>
 #include <math.h>

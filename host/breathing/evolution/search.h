@@ -11,7 +11,7 @@
 #ifndef SKG_EVOLUTION_SEARCH_H
 #define SKG_EVOLUTION_SEARCH_H
 
-#include "evolution/state.h"
+#include "evolution/methods.h"
 
 /* Begins a search at a point. seed: at least 0. SKG_ERR_UNSUPPORTED: CMA, but the library was built without LAPACKE. */
 skg_status skg_search_create(int method, int64_t dimensions, const double *start, int64_t seed,

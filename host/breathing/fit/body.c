@@ -1,9 +1,9 @@
-#include "fit/body.h"
+#include "fit/types.h"
 
-#include "body/near.h"
+#include "body/links.h"
 #include "core/vector.h"
 #include "scene/scene.h"
-#include "setup/organs.h"
+#include "setup/types.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,8 +1,7 @@
-#include "fit/parameters.h"
+#include "fit/types.h"
 
-#include "body/link.h"
-#include "body/near.h"
-#include "body/rules.h"
+#include "body/build.h"
+#include "body/links.h"
 #include "core/maths.h"
 #include "core/vector.h"
 

@@ -1,7 +1,7 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 /* The fitted scene as a file. */
 #include "scene/scene.h"
-#include "body/near.h"
+#include "body/links.h"
 #include "core/output.h"
 #include "core/plain.h"
 #include "fit/types.h"

@@ -1,10 +1,10 @@
 /* A set-up that breathes. */
-#include "body/measure.h"
+#include "body/posed.h"
 #include "body/types.h"
 #include "core/context.h"
 #include "core/plain.h"
 #include "scene/scene.h"
-#include "setup/organs.h"
+#include "setup/types.h"
 
 #include <skiagraph/motion.h>
 

@@ -1,8 +1,8 @@
-#include "phantom/airways.h"
+#include "phantom/anatomy.h"
 
 #include "core/vector.h"
 #include "phantom/makers.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 enum { AIRWAYS = 3 };
 

@@ -1,9 +1,8 @@
 /* The organs under the diaphragm of the full thorax. */
 #include "core/vector.h"
-#include "phantom/cage.h"
-#include "phantom/curve.h"
-#include "phantom/ellipsoid.h"
-#include "phantom/organs.h"
+#include "phantom/anatomy.h"
+#include "phantom/makers.h"
+#include "phantom/shapes.h"
 
 #include <math.h>
 

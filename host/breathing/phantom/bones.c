@@ -1,10 +1,8 @@
 /* Ribs, costal cartilage, sternum, spine, clavicles. */
 #include "core/vector.h"
-#include "phantom/cage.h"
-#include "phantom/curve.h"
+#include "phantom/anatomy.h"
 #include "phantom/makers.h"
-#include "phantom/star.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-#include "phantom/builder.h"
+#include "phantom/makers.h"
 
-#include "phantom/retreat.h"
+#include "phantom/contacts.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
-#include "phantom/cage.h"
+#include "phantom/anatomy.h"
 
 #include "core/vector.h"
-#include "phantom/curve.h"
+#include "phantom/shapes.h"
 
 /* Rows of z and half width, z and y of the front, z and y of the back of the cage, in mm. */
 static const double half_width[][2] = {{-300, 122}, {-200, 126}, {-158, 128}, {-119, 131}, {-84, 133},

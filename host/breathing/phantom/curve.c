@@ -1,4 +1,4 @@
-#include "phantom/curve.h"
+#include "phantom/shapes.h"
 
 #include "core/vector.h"
 

@@ -1,9 +1,9 @@
 /* The diaphragm: a closed sheet about its middle surface. */
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/fold.h"
+#include "phantom/contacts.h"
 #include "phantom/makers.h"
-#include "phantom/rings.h"
+#include "phantom/shapes.h"
 
 typedef struct {
     const skg_thorax_plan *plan;

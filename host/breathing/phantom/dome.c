@@ -1,9 +1,8 @@
-#include "phantom/dome.h"
+#include "phantom/anatomy.h"
 
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/cage.h"
-#include "phantom/star.h"
+#include "phantom/shapes.h"
 
 const double skg_dome_centre[2] = {0, -68};
 const double skg_dome_half_thickness = 1.5;

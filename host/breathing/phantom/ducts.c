@@ -1,7 +1,6 @@
 /* Bile ducts. */
-#include "phantom/curve.h"
 #include "phantom/makers.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 enum { DUCTS = 8 };
 

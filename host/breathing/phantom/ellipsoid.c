@@ -1,4 +1,4 @@
-#include "phantom/ellipsoid.h"
+#include "phantom/shapes.h"
 
 #include "core/vector.h"
 

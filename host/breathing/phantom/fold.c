@@ -1,7 +1,6 @@
-#include "phantom/fold.h"
+#include "phantom/contacts.h"
 
 #include "core/vector.h"
-#include "phantom/grid.h"
 
 #include <string.h>
 

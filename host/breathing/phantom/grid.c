@@ -1,4 +1,4 @@
-#include "phantom/grid.h"
+#include "phantom/contacts.h"
 
 #include "core/vector.h"
 

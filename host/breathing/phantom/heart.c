@@ -1,6 +1,6 @@
-#include "phantom/heart.h"
+#include "phantom/anatomy.h"
 
-#include "phantom/ellipsoid.h"
+#include "phantom/shapes.h"
 
 #include <math.h>
 

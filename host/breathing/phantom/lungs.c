@@ -2,14 +2,10 @@
  * lies on the diaphragm: no ring can cross another. */
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/airways.h"
-#include "phantom/cage.h"
-#include "phantom/fold.h"
-#include "phantom/grid.h"
-#include "phantom/heart.h"
+#include "phantom/anatomy.h"
+#include "phantom/contacts.h"
 #include "phantom/makers.h"
-#include "phantom/star.h"
-#include "phantom/tree.h"
+#include "phantom/shapes.h"
 
 #include <string.h>
 

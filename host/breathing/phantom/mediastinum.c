@@ -1,7 +1,7 @@
 /* The great vessels and the oesophagus as parts. */
-#include "phantom/fold.h"
+#include "phantom/contacts.h"
 #include "phantom/makers.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 skg_status skg_thorax_vessels(const skg_thorax_plan *plan, int64_t outer, skg_thorax *thorax) {
     for (int v = 0; v < VESSELS; v++) {

@@ -1,7 +1,7 @@
 /* The needle. */
 #include "core/vector.h"
 #include "phantom/makers.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 #include <string.h>
 

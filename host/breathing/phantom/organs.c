@@ -1,12 +1,9 @@
 /* Heart, and the organs under the diaphragm of the simple thorax. */
-#include "phantom/organs.h"
+#include "phantom/makers.h"
 
 #include "core/vector.h"
-#include "phantom/airways.h"
-#include "phantom/cage.h"
-#include "phantom/ellipsoid.h"
-#include "phantom/heart.h"
-#include "phantom/makers.h"
+#include "phantom/anatomy.h"
+#include "phantom/shapes.h"
 
 static const skg_ellipsoid gallbladder = {{-54, -98, -128}, {11, 13, 23}, {1, 0, 0.3}};
 static const skg_ellipsoid kidney_left = {{57, -26, -162}, {24, 21, 52}, {1, 0.3, 0.15}};

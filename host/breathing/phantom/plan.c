@@ -1,4 +1,4 @@
-#include "phantom/plan.h"
+#include "phantom/anatomy.h"
 
 #include <math.h>
 

@@ -1,9 +1,8 @@
-#include "phantom/ribs.h"
+#include "phantom/anatomy.h"
 
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/cage.h"
-#include "phantom/curve.h"
+#include "phantom/shapes.h"
 
 #include <string.h>
 

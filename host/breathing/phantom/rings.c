@@ -1,4 +1,4 @@
-#include "phantom/rings.h"
+#include "phantom/shapes.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* The thorax as files. */
 #include "core/output.h"
 #include "core/plain.h"
-#include "phantom/builder.h"
+#include "phantom/makers.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,9 +1,8 @@
 /* The shoulder blades. */
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/curve.h"
 #include "phantom/makers.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 enum { CORNERS = 12 };
 

@@ -1,8 +1,7 @@
 /* The skin and the muscle under it: rounded rectangles over z. */
 #include "core/maths.h"
-#include "phantom/curve.h"
 #include "phantom/makers.h"
-#include "phantom/rings.h"
+#include "phantom/shapes.h"
 
 #include <math.h>
 

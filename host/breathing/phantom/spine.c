@@ -1,9 +1,8 @@
 /* The spine of the full thorax: vertebrae with their arches, discs, and the canal. */
 #include "core/vector.h"
-#include "phantom/cage.h"
-#include "phantom/curve.h"
+#include "phantom/anatomy.h"
 #include "phantom/makers.h"
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 /* Measures of a vertebra, mm. */
 typedef struct {

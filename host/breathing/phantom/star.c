@@ -1,4 +1,4 @@
-#include "phantom/star.h"
+#include "phantom/shapes.h"
 
 #include "core/maths.h"
 #include "core/vector.h"

@@ -1,8 +1,7 @@
-#include "phantom/tree.h"
+#include "phantom/shapes.h"
 
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/tube.h"
 
 #include <stdio.h>
 #include <string.h>

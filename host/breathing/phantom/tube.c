@@ -1,8 +1,8 @@
-#include "phantom/tube.h"
+#include "phantom/shapes.h"
 
 #include "core/maths.h"
 #include "core/vector.h"
-#include "phantom/fold.h"
+#include "phantom/contacts.h"
 
 #include <string.h>
 

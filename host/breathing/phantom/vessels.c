@@ -1,7 +1,7 @@
-#include "phantom/vessels.h"
+#include "phantom/anatomy.h"
 
 #include "core/vector.h"
-#include "phantom/curve.h"
+#include "phantom/shapes.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "ctsimu/frame.h"
+#include "ctsimu/parts.h"
 
 #include "core/vector.h"
 

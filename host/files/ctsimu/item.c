@@ -1,4 +1,4 @@
-#include "ctsimu/item.h"
+#include "ctsimu/parts.h"
 
 #include "core/columns.h"
 #include "core/input.h"

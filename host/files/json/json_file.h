@@ -1,6 +1,6 @@
-/* A JSON file, its values, and the lines where they stand. Private. */
-#ifndef SKG_JSON_FILE_H
-#define SKG_JSON_FILE_H
+/* A JSON file, its values, the lines where they stand, and settings that change it. Private. */
+#ifndef SKG_JSON_JSON_FILE_H
+#define SKG_JSON_JSON_FILE_H
 
 #include "core/core.h"
 
@@ -40,5 +40,9 @@ int64_t skg_json_line(const skg_json_node *node);
 
 /* The column of a node in a file of one line, where the line says nothing, from 1; 0 in other files. */
 int64_t skg_json_column(const skg_json_node *node);
+
+/* Applies one setting "KEY=VALUE" with a dotted path; elements of arrays by number or by their Label. The
+ * value is JSON, or a string where it does not parse. SKG_ERR_ARGUMENT. */
+skg_status skg_json_set(skg_json_file *file, const char *setting);
 
 #endif

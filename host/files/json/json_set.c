@@ -1,4 +1,4 @@
-#include "json/json_set.h"
+#include "json/json_file.h"
 
 #include "json/json.h"
 

@@ -1,4 +1,4 @@
-#include "setup/organs.h"
+#include "setup/types.h"
 
 #include "core/maths.h"
 #include "core/vector.h"

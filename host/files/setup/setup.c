@@ -4,7 +4,7 @@
 #include "core/plain.h"
 #include "ctsimu/ctsimu.h"
 #include "setup/sections.h"
-#include "json/json_set.h"
+#include "json/json_file.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -134,4 +134,7 @@ struct skg_setup {
     char *text;       /* the scene file after its settings, with its keys in order */
 };
 
+/* Overwrites an organ, but for mesh and inside, with what the key Organs says of a part, if it does. */
+void skg_setup_describe_organ(const skg_breathing_section *section, int64_t part, skg_organ *organ);
+
 #endif

@@ -4,7 +4,7 @@
 #include "core/maths.h"
 #include "core/output.h"
 #include "scan/format.h"
-#include "scan/hdf5_errors.h"
+#include "scan/hdf5_files.h"
 #include "trajectory/types.h"
 
 #include <skiagraph/version.h>

@@ -1,6 +1,6 @@
 /* Values are read and written again. H5Ocopy of HDF5 1.10 copies objects as they stand in the file, and crashes in one of fifty
  * files in which a few bits are wrong. */
-#include "scan/hdf5_copy.h"
+#include "scan/hdf5_files.h"
 
 #include "core/core.h"
 

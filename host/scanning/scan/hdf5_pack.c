@@ -3,8 +3,7 @@
 #include "core/output.h"
 #include "core/part_name.h"
 #include "core/plain.h"
-#include "scan/hdf5_copy.h"
-#include "scan/hdf5_errors.h"
+#include "scan/hdf5_files.h"
 
 #include <skiagraph/scan_file.h>
 

@@ -2,7 +2,7 @@
 #include "core/input.h"
 #include "core/plain.h"
 #include "core/vector.h"
-#include "scan/hdf5_errors.h"
+#include "scan/hdf5_files.h"
 
 #include <skiagraph/scan_reader.h>
 

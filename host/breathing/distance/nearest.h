@@ -1,13 +1,19 @@
-/* Nearest points on a surface. Private.
+/* Nearest points on a triangle and on a surface. Private. */
+#ifndef SKG_DISTANCE_NEAREST_H
+#define SKG_DISTANCE_NEAREST_H
+
+#include "core/core.h"
+
+/* Weights of the corners a, b and c at the point of their triangle that is nearest to p. */
+void skg_triangle_nearest(const double *a, const double *b, const double *c, const double *p,
+                          double weights[3]);
+
+/* Nearest points on a surface.
  *
  * The triangles are halved again and again along the longest axis of their centres, down to a few in each leaf, and a
  * search visits the nearer half first. Embree's point queries would do the same in single precision: bounds and query
  * are floats, so that a triangle 1e-5 mm farther may win at 200 mm from the origin, and its callback computes the
  * distance to a triangle itself, which leaves little of what a library is used for. */
-#ifndef SKG_DISTANCE_TREE_H
-#define SKG_DISTANCE_TREE_H
-
-#include "core/core.h"
 
 typedef struct {
     int64_t triangles, nodes;

@@ -1,6 +1,6 @@
-/* Errors of HDF5, which prints them unless it is told not to. Private. */
-#ifndef SKG_HDF5_ERRORS_H
-#define SKG_HDF5_ERRORS_H
+/* Errors of HDF5, which prints them unless it is told not to, and copies of what is not images. Private. */
+#ifndef SKG_SCAN_HDF5_FILES_H
+#define SKG_SCAN_HDF5_FILES_H
 
 #include "core/core.h"
 
@@ -29,5 +29,11 @@ static inline skg_status skg_hdf5_fail(const char *path) {
                     access(path, R_OK) != 0 ? strerror(errno)
                                             : "it is no HDF5 file; give the .h5 that a scan wrote");
 }
+
+/* Copies a dataset of numbers with its units; it may be missing. Returns 0 on failure. */
+int skg_hdf5_copy_set(hid_t from, hid_t to, const char *name);
+
+/* Copies the groups geometry and process of a scan. Returns 0 on failure. */
+int skg_hdf5_copy_groups(hid_t from, hid_t to);
 
 #endif

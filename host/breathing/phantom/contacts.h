@@ -1,9 +1,11 @@
-/* Triangles in the cells of a grid, and whether triangles meet. Private. */
-#ifndef SKG_GRID_H
-#define SKG_GRID_H
+/* Surfaces that fold over themselves or meet others, and how they are parted. Private. */
+#ifndef SKG_PHANTOM_CONTACTS_H
+#define SKG_PHANTOM_CONTACTS_H
 
 #include "core/core.h"
 #include "mesh/mesh.h"
+
+/* Triangles in the cells of a grid, and whether triangles meet. */
 
 typedef struct {
     int64_t count;
@@ -42,5 +44,22 @@ int skg_triangle_pierced(const double *from, const double *to, const double *tri
 
 /* Whether an edge of one triangle passes through the other. */
 int skg_triangles_meet(const double *a, const double *b);
+
+/* Surfaces that fold over themselves. */
+
+/* Finds the facets of a closed surface that meet facets other than their neighbours. *count: how many. fold: 1 or 0
+ * per triangle. moved: only facets with a vertex marked here are tested; NULL: all. */
+skg_status skg_shape_folds(const skg_mesh_arrays *arrays, const char *moved, int64_t *count, char *fold);
+
+/* Smooths a surface where it folds over itself, until it does not, in at most 60 passes. */
+skg_status skg_shape_unfold(const char *name, const skg_mesh_arrays *arrays);
+
+/* Keeping surfaces apart. The regions that shape the organs keep gaps where they are sampled. Between the samples a
+ * facet may still cut into a neighbour; it then draws back. */
+
+/* Draws a surface back, along its normals, where it meets `count` other meshes or comes nearer to them than 0.2 mm,
+ * until it does not; at most 15 mm. */
+skg_status skg_shape_retreat(const char *name, int64_t count, skg_mesh *const *others,
+                             skg_mesh_arrays *arrays);
 
 #endif
