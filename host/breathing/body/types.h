@@ -114,7 +114,7 @@ typedef struct {
     double *memory; /* the same with hysteresis: the state before, as moved on */
     skg_chain_report report;
 
-    /* Organs that follow ribs and dome together (share.h). */
+    /* Organs that follow ribs and dome together (shares.h). */
     int coupled;
     double *share;   /* per vertex: of the tendon's displacement */
     double shear[3]; /* of the liver: growth of the share across the tendon's motion, per mm */
@@ -131,7 +131,7 @@ typedef struct {
     double *bone_base; /* per vertex: weights of its bones, whose sum is 1 */
     double *bone_away; /* per vertex: distance of the nearest bone, mm */
     int64_t thins;
-    skg_thin *thin; /* facets that fold easily (thin.h) */
+    skg_thin *thin; /* facets that fold easily (shares.h) */
 
     /* Carried organs. Of a cartilage, near holds the two organs that it lies between. */
     int32_t carrier;

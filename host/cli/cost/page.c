@@ -1,10 +1,8 @@
-#include "cost/page.h"
+#include "cost/output.h"
 
-#include "common/base64.h"
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
-#include "cost/data.h"
 
 #include <math.h>
 #include <stdio.h>

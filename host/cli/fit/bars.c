@@ -1,4 +1,4 @@
-#include "fit/report.h"
+#include "fit/work.h"
 
 #include "common/file.h"
 #include "common/say.h"

@@ -1,4 +1,4 @@
-#include "view/sign.h"
+#include "view/picture.h"
 
 #include "common/say.h"
 

@@ -1,13 +1,12 @@
-#include "view/view.h"
+#include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "film/film.h"
-#include "view/labels.h"
-#include "view/moving.h"
-#include "view/sign.h"
+#include "view/pages.h"
+#include "view/picture.h"
 
 #include <math.h>
 #include <stdio.h>
