@@ -39,6 +39,11 @@ static void clear_entry(int n, double *a, double *v, int p, int q) {
     }
 }
 
+static void swap(double *a, double *b) {
+    const double a_before = *a;
+    *a = *b, *b = a_before;
+}
+
 void skg_eigen(int n, double *matrix, double *values, double *vectors) {
     for (int i = 0; i < n * n; i++) vectors[i] = i / n == i % n;
     for (int sweep = 0; sweep < 12; sweep++) /* converges quadratically; 6 sweeps are enough for n = 4 */
@@ -48,11 +53,8 @@ void skg_eigen(int n, double *matrix, double *values, double *vectors) {
     for (int i = 0; i < n; i++)
         for (int j = i + 1; j < n; j++)
             if (values[j] > values[i]) {
-                double row[4], value = values[i];
-                values[i] = values[j], values[j] = value;
-                memcpy(row, vectors + n * i, (size_t)n * sizeof *row);
-                memcpy(vectors + n * i, vectors + n * j, (size_t)n * sizeof *row);
-                memcpy(vectors + n * j, row, (size_t)n * sizeof *row);
+                swap(values + i, values + j);
+                for (int k = 0; k < n; k++) swap(vectors + n * i + k, vectors + n * j + k);
             }
 }
 

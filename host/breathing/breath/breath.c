@@ -122,13 +122,11 @@ static double wrap(double phase) {
     return p < 1 ? p : 0;
 }
 
-/* Slope at sample i of a monotone cubic through evenly spaced samples: the harmonic mean of the slopes on both sides,
- * 0 at a turn (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300). */
+/* Slope at sample i of a monotone cubic through evenly spaced samples. */
 static double sample_slope(const skg_breath *b, int64_t i) {
     int64_t n = b->sample_count;
-    double before = b->samples[i] - b->samples[(i + n - 1) % n];
-    double after = b->samples[(i + 1) % n] - b->samples[i];
-    return before * after > 0 ? 2 * before * after / (before + after) : 0;
+    return skg_monotone_slope(b->samples[i] - b->samples[(i + n - 1) % n],
+                              b->samples[(i + 1) % n] - b->samples[i]);
 }
 
 static double sampled(const skg_breath *b, double p) {

@@ -3,7 +3,7 @@
 #include "common/file.h"
 #include "common/say.h"
 #include "map/map.h"
-#include "map/png.h"
+#include "map/surface_png.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -65,10 +65,10 @@ int view_draw(view_work *w);
 int view_label(const cli_session *session, const skg_look *look, const view_places *places, uint8_t *rgba);
 
 /* Makes a PNG file of the picture, which the caller frees. */
-int view_encode(const skg_look *look, const uint8_t *rgba, char **bytes, size_t *count);
+int view_encode(const skg_look *look, const uint8_t *rgba, unsigned char **bytes, size_t *count);
 
 /* Inserts a text chunk "Software: skiagraph VERSION" behind the header, by which cli_check_overwrite knows the file.
  * */
-int view_sign(char **bytes, size_t *count);
+int view_sign(unsigned char **bytes, size_t *count);
 
 #endif

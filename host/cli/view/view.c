@@ -157,7 +157,7 @@ static int find_path(view_work *w) {
 }
 
 static int write_pictures(view_work *w) {
-    char *bytes = NULL;
+    unsigned char *bytes = NULL;
     const char *path;
     size_t count = 0;
     if (!has_output(w, is_picture)) return CLI_DONE;
