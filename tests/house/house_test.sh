@@ -31,7 +31,8 @@ look() {
     done
     { printf 'room low %s\nroom high %s\n' "$PWD/low" "$PWD/folder/high"
         for file in low.dir/low/*.o; do echo "object low skg_low $PWD/$file"; done
-        for file in folder.dir/folder/high/*.o; do echo "object high skg_high $PWD/$file"; done; } >house.txt
+        for file in folder.dir/folder/high/*.o; do echo "object high skg_high $PWD/$file"; done
+        [ ! -d python ] || echo "room python $PWD/python"; } >house.txt
     sh "$here/house.sh" house.txt
 }
 # expect TEXT NAME: fails unless house.sh fails and says TEXT.
@@ -48,6 +49,15 @@ expect 'upward: low/low -> high/high (includes high/high.h)' upward_include
 make upward_call
 echo 'int high(void); int up(void); int up(void) { return high(); }' >>low/low.c
 expect 'upward: low/low -> high/high (calls high)' upward_call
+make python
+mkdir -p python/below
+printf 'from .other import b\nfrom . import c, d as e\n' >python/a.py
+printf 'from __future__ import annotations\nif TYPE_CHECKING:\n    from .a import a\n' >python/other.py
+echo | tee python/c.py python/d.py >/dev/null
+look python
+printf 'from ..a import a\n' >python/below/f.py
+printf 'from .below.f import f\n' >python/d.py
+expect 'python/a -> python/d (includes d)' python
 make circle
 echo 'int again(void); int again(void) { return other(); }' >>low/low.c
 expect 'low/low -> low/other (calls other)' circle
