@@ -1,4 +1,5 @@
-# skg_room(NAME SOURCES FILE... [LINKS TARGET...]): one room of the library, an object library of its own.
+# skg_room(FOLDER SOURCES FILE... [LINKS TARGET...]): one room of the library, an object library of its own, named like
+# the last part of FOLDER. `breathing/body` is the room `body`, whose headers are "body/file.h".
 #
 # A room includes the headers of another as "room/file.h". It finds only its own and those of the rooms that were
 # declared before it: its include path is a folder of links to these rooms. An include that points upward does not
@@ -15,15 +16,16 @@ function(skg_link_folders path folders)
   endforeach()
 endfunction()
 
-function(skg_room name)
+function(skg_room folder)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS" ${ARGN})
+  get_filename_component(name ${folder} NAME)
   get_property(rooms GLOBAL PROPERTY SKG_ROOMS)
-  list(APPEND rooms ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+  list(APPEND rooms ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
   list(REMOVE_DUPLICATES rooms)
   set_property(GLOBAL PROPERTY SKG_ROOMS "${rooms}")
   set(sight ${skiagraph_BINARY_DIR}/rooms/${name})
   skg_link_folders(${sight} "${rooms}")
-  list(TRANSFORM ROOM_SOURCES PREPEND ${name}/ REGEX "^[^/].*")
+  list(TRANSFORM ROOM_SOURCES PREPEND ${folder}/ REGEX "^[^/].*")
   add_library(skg_${name} OBJECT ${ROOM_SOURCES})
   target_include_directories(skg_${name} PRIVATE
     ${sight} ${CMAKE_CURRENT_SOURCE_DIR}/include ${skiagraph_SOURCE_DIR}/kernels)

@@ -26,7 +26,7 @@ FNR == NR && $1 == "room" && $3 != "-" {
     name = $3
     if (match(name, /\/lib\/include\/skiagraph$/)) next
     if (match(name, /\/host\/include\/skiagraph$/)) next
-    match(name, /\/(lib|host|kernels|materials|bench)(\/[a-z\/]*)?$/)
+    match(name, /\/(lib|host|kernels|materials|python|bench)(\/[a-z\/]*)?$/)
     rooms[++count] = substr(name, RSTART + 1)
     next
 }

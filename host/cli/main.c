@@ -1,13 +1,11 @@
 /* The command skiagraph: finds the verb, parses what follows it, runs it. */
 #include "common/args.h"
+#include "common/encode.h"
 #include "common/interrupt.h"
-#include "common/json.h"
-#include "common/overwrite.h"
 #include "common/probe.h"
-#include "common/probe_child.h"
 #include "common/say.h"
-#include "manual/help.h"
-#include "manual/list.h"
+#include "common/values.h"
+#include "manual/manual.h"
 #include "verb_table.h"
 
 #include <errno.h>

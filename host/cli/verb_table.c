@@ -1,11 +1,6 @@
 #include "verb_table.h"
 
-#include "breathe/breathe.h"
-#include "cost/cost.h"
-#include "fit/fit.h"
-#include "scan/scan.h"
 #include "verbs/verbs.h"
-#include "view/view.h"
 
 const cli_verb cli_verbs[] = {
     {&cli_manual_image, cli_image},

@@ -39,13 +39,11 @@ static double secant(const skg_frequency_table *table, int64_t row) {
 }
 
 /* The slope of the curve at a row: 0 at frequency 0, about which transfer functions are even, that of the last two rows at the
- * end, else the harmonic mean of both sides, or 0 at a maximum or minimum (F. N. Fritsch and J. Butland, SIAM Journal on
- * Scientific and Statistical Computing 5 (1984) 300-304). */
+ * end, else that of a monotone cubic. */
 static double slope(const skg_frequency_table *table, int64_t row) {
     if (row == 0) return 0;
     if (row == table->count - 1) return secant(table, row - 1);
-    const double left = secant(table, row - 1), right = secant(table, row);
-    return left * right > 0 ? 2 * left * right / (left + right) : 0;
+    return skg_monotone_slope(secant(table, row - 1), secant(table, row));
 }
 
 double skg_frequency_table_at(const skg_frequency_table *table, double per_mm) {

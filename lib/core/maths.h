@@ -17,4 +17,10 @@ static inline int64_t skg_round_up(int64_t count, int64_t size) {
     return skg_divide_up(count, size) * size;
 }
 
+/* The slope of a monotone cubic at a sample: the harmonic mean of the slopes to the samples on both sides, 0 at a maximum or
+ * minimum (F. N. Fritsch and J. Butland, SIAM Journal on Scientific and Statistical Computing 5 (1984) 300-304). */
+static inline double skg_monotone_slope(double before, double after) {
+    return before * after > 0 ? 2 * before * after / (before + after) : 0;
+}
+
 #endif

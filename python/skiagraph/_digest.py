@@ -1,4 +1,8 @@
-"""What identifies a scan whose scene was changed since it was read. Private."""
+"""The hash of a scan whose scene was changed after its file was read. Private.
+
+A file of projections keeps the hash of its scan. scan() continues an unfinished file only if the hashes are equal. The library's
+hash covers the text of the scene and its files; changes that were made in Python since are hashed here.
+"""
 from __future__ import annotations
 
 import hashlib

@@ -1,7 +1,7 @@
 /* Bodies: ribs against the literature, the generated thorax over a breath. */
-#include "body/follow.h"
+#include "body/bones.h"
 #include "body/inside.h"
-#include "body/ribs.h"
+#include "body/links.h"
 #include "body/types.h"
 #include "suite.h"
 #include "support/angles.h"
@@ -71,27 +71,6 @@ static double *positions(const skg_mesh *mesh, int64_t *count) {
     ck_skg(skg_mesh_positions_get(mesh, p, 0));
     return p;
 }
-
-START_TEST(rotations_and_fits) {
-    double r[9], point[5][3] = {{1, 2, 3}, {-4, 0, 2}, {7, -3, 1}, {0, 5, -6}, {2, 2, 9}}, moved[5][3];
-    const double vector[3] = {0.3, -0.5, 1.1};
-    skg_rotation(vector, r);
-    double det = 0;
-    for (int k = 0; k < 3; k++)
-        det += r[k] * (r[3 + (k + 1) % 3] * r[6 + (k + 2) % 3] - r[3 + (k + 2) % 3] * r[6 + (k + 1) % 3]);
-    ck_assert_double_eq_tol(det, 1, 4 * DBL_EPSILON);
-    skg_rigid rigid = {.centre = {1, -2, 5}, .shift = {3, 4, -1}}, fit;
-    memcpy(rigid.rotation, r, sizeof r);
-    for (int i = 0; i < 5; i++) skg_rigid_displace(&rigid, point[i], moved[i]);
-    skg_rigid_fit(5, point[0], moved[0], &fit);
-    for (int k = 0; k < 9; k++) ck_assert_double_eq_tol(fit.rotation[k], r[k], 32 * DBL_EPSILON);
-    for (int i = 0; i < 5; i++) {
-        double d[3];
-        skg_rigid_displace(&fit, point[i], d);
-        for (int k = 0; k < 3; k++) ck_assert_double_eq_tol(d[k], moved[i][k], 64 * DBL_EPSILON * 5);
-    }
-}
-END_TEST
 
 START_TEST(ribs_turn_as_wilson_measured) {
     static const double pump[] = {11, 10, 9, 8, 7}, bucket[] = {13, 12.25, 11.5, 10.75, 10}; /* ribs 3 to 7 */
@@ -399,7 +378,6 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, reference_in_the_middle, 0, 2);
     tcase_add_loop_test(tests, the_needle_is_rigid_and_slides, 0, 2);
     tcase_add_loop_test(tests, bad_bodies_are_refused, 0, 2);
-    tcase_add_test(tests, rotations_and_fits);
     tcase_add_loop_test(tests, ribs_turn_as_wilson_measured, 0, 2);
     tcase_add_loop_test(tests, the_reference_is_the_file, 0, 2);
     tcase_add_loop_test(tests, a_quiet_breath, 0, 2);

@@ -1,8 +1,7 @@
 /* Every named breath of the generated thorax: ribs and diaphragm agree, nothing folds, the liver keeps its volume. */
 #include "breather.h"
 
-#include "body/surface.h"
-#include "body/thin.h"
+#include "body/shares.h"
 #include "core/vector.h"
 #include "suite.h"
 

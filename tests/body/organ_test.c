@@ -1,7 +1,7 @@
 /* What a caller may say of an organ: kinds, axes, links; boxes that turn; drivers that contradict each other.
  */
-#include "body/follow.h"
-#include "body/ribs.h"
+#include "body/bones.h"
+#include "body/links.h"
 #include "body/types.h"
 #include "suite.h"
 #include "support/angles.h"

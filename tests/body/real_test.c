@@ -1,5 +1,5 @@
 /* Sixty-one organs of a real man breathe: needs the data. */
-#include "body/axes.h"
+#include "body/bones.h"
 #include "body/types.h"
 #include "data.h"
 #include "suite.h"

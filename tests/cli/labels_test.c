@@ -1,7 +1,7 @@
 /* Labels and names of files that other programs would take for markup, formulas, commands or paths. */
 #include "cli/browser.h"
 
-#include "common/csv.h"
+#include "common/encode.h"
 #include "common/file.h"
 
 #include <sys/stat.h>

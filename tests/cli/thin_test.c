@@ -1,7 +1,7 @@
 /* Surfaces of a page: fewer triangles, the same kind of surface, vertices that were there. */
 #include "cli/command.h"
 
-#include "view/shapes.h"
+#include "view/surfaces.h"
 
 #include <math.h>
 #include <stdlib.h>

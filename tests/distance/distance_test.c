@@ -1,7 +1,7 @@
 #define _GNU_SOURCE /* memmem, mkstemps */
 /* Distances between surfaces: closed forms, and brute force that shares no code with the library. */
 #include "core/vector.h"
-#include "distance/tree.h"
+#include "distance/nearest.h"
 #include "suite.h"
 #include "support/random.h"
 

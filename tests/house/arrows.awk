@@ -1,7 +1,8 @@
 # From the facts of house.sh to arrows: FROM TO "includes" FILE, or FROM TO "calls" NAME.
-function stem(path) { sub(/\.[a-z]+$/, "", path); return path }
-# An object's file, as room/file without ending.
-function node(room, object,   name) {
+# skiagraph.hpp keeps its ending: it includes the header of the same name.
+function stem(path) { if (path !~ /\.hpp$/) sub(/\.[a-z]+$/, "", path); return path }
+# An object's file, as room/file without ending. Folders above the room's are left out.
+function node(room, object,   name, start) {
     name = object
     sub(/.*\.dir\/(\.\/)?/, "", name) # Ninja writes X.dir/./file
     sub(/\.o$/, "", name)
@@ -9,10 +10,12 @@ function node(room, object,   name) {
     sub(/^\.\//, "", name) # Ninja names them ./room/file
     sub(/^\.\.\//, "", name)
     name = stem(name)
-    return index(name, room "/") == 1 ? name : room "/" name
+    start = index("/" name, "/" room "/")
+    return start ? substr(name, start) : room "/" name
 }
 $1 == "file" { known[$2] = 1 }
 $1 == "include" { n++; from[n] = $2; what[n] = $3 }
+$1 == "import" { n++; from[n] = $2; what[n] = $3 }
 $1 == "symbol" {
     symbols++
     at[symbols] = node($2, $4); program[symbols] = $3; name[symbols] = $5; type[symbols] = $6
@@ -30,6 +33,14 @@ END {
         if (what[i] ~ /^<skiagraph\//) {
             sub(/^skiagraph\//, "", path)
             to = ("host/include/" path) in known ? "host/include/" path : "include/" path
+        } else if (what[i] ~ /^\./) { # of Python: one dot is the folder, two dots the one above
+            path = what[i]
+            sub(/\/$/, "", folder)
+            for (sub(/^\./, "", path); sub(/^\./, "", path);) sub(/\/[^\/]*$/, "", folder)
+            gsub(/\./, "/", path)
+            to = folder "/" path ".py"
+            if (!(to in known)) to = folder "/" path "/__init__.py"
+            if (!(to in known)) to = ""
         } else if (what[i] ~ /^"/) {
             if ((folder path) in known) to = folder path
             else if (from[i] ~ /^bench\// && ("bench/" path) in known) to = "bench/" path

@@ -1,6 +1,7 @@
 #!/bin/sh
 # house.sh HOUSE: fails on an include or a call upward between rooms, and on a circle between files. A .c and its .h
-# are one file here. HOUSE has lines `room NAME FOLDER`, from the ground up, and `object ROOM TARGET FILE`
+# are one file here. The package of Python counts as a room, with imports that run when a module is loaded, which are those
+# without indentation. HOUSE has lines `room NAME FOLDER`, from the ground up, and `object ROOM TARGET FILE`
 # (CMakeLists.txt writes it). Includes are read from the sources, calls from the objects' symbols.
 set -eu
 house=$1
@@ -12,9 +13,17 @@ awk '$1 == "room" { print $2, ++rank }' "$house" >"$work/ranks"
 # Lines `file FILE`, `include FILE NAME` and `symbol ROOM TARGET OBJECT NAME TYPE`.
 awk '$1 == "room" && $3 != "-" { print $2, $3 }' "$house" | while read -r room folder; do
     # shellcheck disable=SC2016
-    (cd "$folder" && find . -name '*.[ch]' -o -name '*.cl' -o -name '*.clh' | sed 's|^\./||' | xargs awk -v room="$room" '
+    (cd "$folder" && find . -name '*.[ch]' -o -name '*.hpp' -o -name '*.cl' -o -name '*.clh' -o -name '*.py' | sed 's|^\./||' | xargs awk -v room="$room" '
         FNR == 1 { print "file", room "/" FILENAME }
-        /^ *# *include/ { sub(/^ *# *include */, ""); print "include", room "/" FILENAME, $1 }')
+        /^ *# *include/ { sub(/^ *# *include */, ""); print "include", room "/" FILENAME, $1 }
+        /^from \.[A-Za-z_.]* import / && FILENAME ~ /\.py$/ {
+            from = $2
+            sub(/^from \.[A-Za-z_.]* import /, "")
+            if (from !~ /[a-z]$/) { # names of modules
+                n = split($0, name, /, */)
+                for (i = 1; i <= n; i++) { sub(/ .*/, "", name[i]); print "import", room "/" FILENAME, from name[i] }
+            } else print "import", room "/" FILENAME, from
+        }')
 done >"$work/facts"
 awk '$1 == "object" { print $4 }' "$house" | sort -u | xargs "${NM:-nm}" -A -P >"$work/symbols"
 awk 'FNR == NR { if ($1 == "object") heads[$4] = heads[$4] "symbol " $2 " " $3 " " $4 "\n"; next }
@@ -28,8 +37,7 @@ awk 'FNR == NR { if ($1 == "object") heads[$4] = heads[$4] "symbol " $2 " " $3 "
 awk -f "$here/arrows.awk" "$work/facts" | sort -u >"$work/arrows"
 awk 'FNR == NR { rank[$1] = $2; next }
     function room(file) {
-        if (file == "include/skiagraph") return "umbrella"
-        if (file ~ /^(cli|bench)\//) return substr(file, 1, index(file, "/") - 1) # these have folders inside
+        if (file ~ /^(cli|bench|python)\//) return substr(file, 1, index(file, "/") - 1) # these have folders inside
         sub(/\/[^\/]*$/, "", file)
         return file
     }

@@ -7,31 +7,32 @@ here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# make NAME: a sound house of two rooms, `low` and `high`, with 120 files that call downward.
+# make NAME: a sound house of two rooms, `low` and in a folder above it `high`, with 120 files that call downward.
 make() {
     rm -rf "${work:?}/$1"
-    mkdir -p "$work/$1/low" "$work/$1/high"
+    mkdir -p "$work/$1/low" "$work/$1/folder/high"
     cd "$work/$1"
     printf 'int low(void);\nint other(void);\n' >low/low.h
-    echo '#include "low.h"' | tee low/other.c high/many.c >low/low.c
+    echo '#include "low.h"' | tee low/other.c folder/high/many.c >low/low.c
     echo 'int low(void) { return 1; }' >>low/low.c
     echo 'int other(void) { return low(); }' >>low/other.c
-    printf '#include "high/high.h"\nint high(void) { return 2; }\n' >high/high.c
-    echo 'int high(void);' >high/high.h
+    printf '#include "high/high.h"\nint high(void) { return 2; }\n' >folder/high/high.c
+    echo 'int high(void);' >folder/high/high.h
     i=0
-    while [ $((i += 1)) -le 120 ]; do printf '#include "low/low.h"\n' >high/user_$i.h; done
-    echo 'int many(void); int many(void) { return low(); }' >>high/many.c
+    while [ $((i += 1)) -le 120 ]; do printf '#include "low/low.h"\n' >folder/high/user_$i.h; done
+    echo 'int many(void); int many(void) { return low(); }' >>folder/high/many.c
 }
 # look NAME: what house.sh says of it; the objects are as the files are.
 look() {
     cd "$work/$1"
-    mkdir -p low.dir/low high.dir/high
-    for file in low/*.c high/*.c; do
-        "$cc" -I. -Ilow -c "$file" -o "${file%%/*}.dir/$file.o"
+    mkdir -p low.dir/low folder.dir/folder/high
+    for file in low/*.c folder/high/*.c; do
+        "$cc" -I. -Ifolder -Ilow -c "$file" -o "${file%%/*}.dir/$file.o"
     done
-    { printf 'room low %s\nroom high %s\n' "$PWD/low" "$PWD/high"
+    { printf 'room low %s\nroom high %s\n' "$PWD/low" "$PWD/folder/high"
         for file in low.dir/low/*.o; do echo "object low skg_low $PWD/$file"; done
-        for file in high.dir/high/*.o; do echo "object high skg_high $PWD/$file"; done; } >house.txt
+        for file in folder.dir/folder/high/*.o; do echo "object high skg_high $PWD/$file"; done
+        [ ! -d python ] || echo "room python $PWD/python"; } >house.txt
     sh "$here/house.sh" house.txt
 }
 # expect TEXT NAME: fails unless house.sh fails and says TEXT.
@@ -48,6 +49,15 @@ expect 'upward: low/low -> high/high (includes high/high.h)' upward_include
 make upward_call
 echo 'int high(void); int up(void); int up(void) { return high(); }' >>low/low.c
 expect 'upward: low/low -> high/high (calls high)' upward_call
+make python
+mkdir -p python/below
+printf 'from .other import b\nfrom . import c, d as e\n' >python/a.py
+printf 'from __future__ import annotations\nif TYPE_CHECKING:\n    from .a import a\n' >python/other.py
+echo | tee python/c.py python/d.py >/dev/null
+look python
+printf 'from ..a import a\n' >python/below/f.py
+printf 'from .below.f import f\n' >python/d.py
+expect 'python/a -> python/d (includes d)' python
 make circle
 echo 'int again(void); int again(void) { return other(); }' >>low/low.c
 expect 'low/low -> low/other (calls other)' circle

@@ -2,7 +2,7 @@
 #ifndef SKG_TESTS_MOTION_FILES_H
 #define SKG_TESTS_MOTION_FILES_H
 
-#include "setup/organs.h"
+#include "setup/types.h"
 #include "suite.h"
 
 #include <skiagraph/motion.h>

@@ -1,6 +1,6 @@
 /* The generated thorax: no part folds over itself. By facets, and by lengths, which are below 0 where more
  * facets face away from the source than towards it. */
-#include "phantom/fold.h"
+#include "phantom/contacts.h"
 #include "suite.h"
 #include "support/run.h"
 

@@ -1,7 +1,7 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "body/inside.h"
 #include "geometry/overlap.h"
-#include "phantom/cage.h"
+#include "phantom/anatomy.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

@@ -1,8 +1,8 @@
-#include "breathe/meshes.h"
+#include "breathe/outputs.h"
 
 #include "common/file.h"
-#include "common/overwrite.h"
 #include "common/say.h"
+#include "common/values.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "breathe/outline.h"
+#include "breathe/outputs.h"
 
 #include "common/say.h"
 

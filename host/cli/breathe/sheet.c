@@ -1,4 +1,4 @@
-#include "breathe/sheet.h"
+#include "breathe/outputs.h"
 
 #include "common/say.h"
 

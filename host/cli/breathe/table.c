@@ -1,6 +1,6 @@
-#include "breathe/table.h"
+#include "breathe/outputs.h"
 
-#include "common/csv.h"
+#include "common/encode.h"
 #include "common/say.h"
 
 #include <errno.h>

@@ -1,6 +1,5 @@
-#include "breathe/write_film.h"
+#include "breathe/outputs.h"
 
-#include "breathe/meshes.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "film/film.h"

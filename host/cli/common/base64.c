@@ -1,4 +1,4 @@
-#include "common/base64.h"
+#include "common/encode.h"
 
 #include <stdlib.h>
 #include <string.h>

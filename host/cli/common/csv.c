@@ -1,4 +1,4 @@
-#include "common/csv.h"
+#include "common/encode.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "common/device.h"
+#include "common/values.h"
 
 #include "common/environment.h"
 #include "common/probe.h"

@@ -1,4 +1,4 @@
-#include "common/json.h"
+#include "common/encode.h"
 
 #include "common/say.h"
 

@@ -1,5 +1,5 @@
 #define _XOPEN_SOURCE 700 /* realpath */
-#include "common/overwrite.h"
+#include "common/values.h"
 
 #include "common/say.h"
 

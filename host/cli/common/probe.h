@@ -1,11 +1,10 @@
 /* Drivers of OpenCL in child processes. A driver that is not known may end, crash or block the process that calls it, so the
  * command calls it in a child first. The child is this command again, and answers on its standard input, which is a socket; what
  * its driver prints is dropped but for the last line. */
-#ifndef SKG_CLI_PROBE_H
-#define SKG_CLI_PROBE_H
+#ifndef CLI_COMMON_PROBE_H
+#define CLI_COMMON_PROBE_H
 
 #include <skiagraph/skiagraph.h>
-
 #include <sys/types.h>
 
 /* First word of the child's command line. Not for users, and in no manual. */
@@ -53,5 +52,8 @@ enum { CLI_REFUSED = 1200 };
 /* Opens a device in a child and keeps what went wrong. config: as above; words: of the device, or NULL; refused: CLI_REFUSED characters, why it cannot be opened; "" if it can.
  * Returns the exit status. */
 int cli_probe_device(const char *config, const char *words, char refused[CLI_REFUSED]);
+
+/* What the child does. words: those after CLI_PROBE_WORD. Returns the exit status of the process. */
+int cli_probe_child(int count, char **words);
 
 #endif

@@ -1,6 +1,5 @@
-#include "common/probe_child.h"
-
 #include "common/probe.h"
+
 #include "common/say.h"
 
 #include <signal.h>

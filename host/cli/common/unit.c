@@ -1,4 +1,4 @@
-#include "common/unit.h"
+#include "common/values.h"
 
 #include "common/say.h"
 

@@ -1,11 +1,9 @@
-#include "cost/advice.h"
+#include "cost/findings.h"
 
 #include "common/progress.h"
 #include "common/say.h"
-#include "cost/command.h"
-#include "cost/compare.h"
-#include "cost/measure.h"
-#include "cost/sources.h"
+#include "cost/measuring.h"
+#include "cost/output.h"
 
 #include <inttypes.h>
 #include <math.h>

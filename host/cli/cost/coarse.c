@@ -1,12 +1,9 @@
-#include "cost/coarse.h"
+#include "cost/measuring.h"
 
 #include "common/progress.h"
 #include "common/say.h"
-#include "cost/compare.h"
-#include "cost/measure.h"
-#include "cost/meshing.h"
-#include "cost/sources.h"
-#include "cost/thorax.h"
+#include "cost/dials.h"
+#include "cost/findings.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,7 @@
-#include "cost/combine.h"
+#include "cost/measuring.h"
 
 #include "common/progress.h"
-#include "cost/measure.h"
-#include "cost/points.h"
-#include "cost/settings.h"
+#include "cost/dials.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cost/command.h"
+#include "cost/output.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,7 @@
-#include "cost/compare.h"
+#include "cost/measuring.h"
 
 #include "common/progress.h"
 #include "common/say.h"
-#include "cost/measure.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cost/csv.h"
+#include "cost/output.h"
 
 #include <inttypes.h>
 #include <math.h>

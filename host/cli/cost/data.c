@@ -1,8 +1,8 @@
-#include "cost/data.h"
+#include "cost/output.h"
 
-#include "common/json.h"
-#include "cost/measure.h"
-#include "cost/sources.h"
+#include "common/encode.h"
+#include "cost/findings.h"
+#include "cost/measuring.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,7 @@
-#include "cost/measure.h"
+#include "cost/measuring.h"
 
 #include "common/progress.h"
-#include "cost/meshing.h"
+#include "cost/dials.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,6 @@
-#include "cost/meshing.h"
+#include "cost/dials.h"
 
 #include "common/say.h"
-#include "cost/round.h"
-#include "cost/thorax.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "cost/open.h"
+#include "cost/dials.h"
 
 #include "common/say.h"
 

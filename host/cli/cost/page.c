@@ -1,81 +1,39 @@
-#include "cost/page.h"
+#include "cost/output.h"
 
-#include "common/base64.h"
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
-#include "cost/data.h"
+#include "map/surface_png.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const float LEAST_SHOWN = 1e-12f; /* of the flat field */
 
 extern const char cost_page[]; /* page.html, as built in */
 
-/* The bytes of a file, which the caller frees; NULL if it cannot be read. */
-static unsigned char *read_all(const char *path, size_t *count) {
-    FILE *stream = fopen(path, "rb");
-    unsigned char *bytes = NULL;
-    *count = 0;
-    if (!stream) return NULL;
-    if (fseek(stream, 0, SEEK_END) == 0) {
-        long size = ftell(stream);
-        rewind(stream);
-        if (size > 0) bytes = malloc((size_t)size);
-        if (bytes) *count = fread(bytes, 1, (size_t)size, stream);
+/* Values as a picture of 256 levels from low to high, as a URI. */
+static int levels_json(const cost_study *study, const float *values, double low, double high, json_t **uri) {
+    const int64_t places = study->thumb_columns * study->thumb_rows;
+    unsigned char *greys = calloc((size_t)places, 1), *png = NULL;
+    size_t size = 0;
+    if (!greys) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places; i++) {
+        const double level = round(255 * ((double)values[i] - low) / (high - low));
+        greys[i] = (unsigned char)fmin(fmax(level, 0), 255); /* black where the value is not a number */
     }
-    fclose(stream);
-    return bytes;
-}
-
-/* A picture as a URI, by way of a temporary file: the library writes pictures to files only. */
-static int picture_json(const skg_picture *picture, json_t **uri) {
-    char folder[] = "/tmp/skiagraph-XXXXXX", path[64];
-    if (!mkdtemp(folder)) return cli_error(CLI_OUTPUT, "/tmp: no temporary folder can be made");
-    snprintf(path, sizeof path, "%s/picture.png", folder);
-    size_t count = 0;
-    skg_status status = skg_picture_write(picture, path);
-    unsigned char *bytes = status == SKG_OK ? read_all(path, &count) : NULL;
-    char *text = bytes ? cli_base64("data:image/png;base64,", bytes, count) : NULL;
-    int exit_status = CLI_DONE;
-    if (status != SKG_OK)
-        exit_status = cli_fail(status);
-    else if (!text)
-        exit_status = cli_error(CLI_OUTPUT, "%s: cannot be read back", path);
-    else
+    int exit_status = cli_png_of_greys((int)study->thumb_columns, (int)study->thumb_rows, greys, &png, &size);
+    char *text = exit_status == CLI_DONE ? cli_base64("data:image/png;base64,", png, size) : NULL;
+    if (text)
         *uri = json_string(text);
-    unlink(path);
-    rmdir(folder);
-    free(bytes);
+    else if (exit_status == CLI_DONE)
+        exit_status = cli_error(CLI_DEVICE, "out of host memory");
+    free(greys);
+    free(png);
     free(text);
     return exit_status;
-}
-
-static void begin_picture(const cost_study *study, const float *data, skg_picture *picture) {
-    skg_picture_init(picture);
-    picture->type = SKG_TYPE_FLOAT32;
-    picture->columns = study->thumb_columns;
-    picture->rows = study->thumb_rows;
-    picture->channels = 1;
-    picture->data = data;
-}
-
-/* Values as 256 levels from low to high, which suffice for a screen and halve the size of the picture. */
-static int levels_json(const cost_study *study, float *values, double low, double high, json_t **uri) {
-    skg_picture picture;
-    begin_picture(study, values, &picture);
-    picture.quantity = SKG_QUANTITY_ATTENUATION;
-    picture.low = low;
-    picture.high = high;
-    for (int64_t i = 0; i < study->thumb_columns * study->thumb_rows; i++) {
-        const double level = round(255 * ((double)values[i] - low) / (high - low));
-        values[i] = (float)(low + (high - low) * fmin(fmax(level, 0), 255) / 255);
-    }
-    return picture_json(&picture, uri);
 }
 
 /* -ln(I/I0) of an image. low, high: set by the first picture and used for all. */
@@ -85,7 +43,10 @@ static int small_json(const cost_study *study, const float *small, double *low, 
     skg_picture picture;
     if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
     for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(small[i], LEAST_SHOWN));
-    begin_picture(study, dense, &picture);
+    skg_picture_init(&picture);
+    picture.columns = study->thumb_columns;
+    picture.rows = study->thumb_rows;
+    picture.data = dense;
     picture.quantity = SKG_QUANTITY_ATTENUATION;
     skg_status status = *high > *low ? SKG_OK : skg_picture_range_get(&picture, low, high);
     if (status == SKG_OK && !(*high > *low)) *high = *low + 1; /* all pixels are equal */

@@ -1,9 +1,7 @@
-#include "cost/phases.h"
+#include "cost/measuring.h"
 
 #include "common/progress.h"
 #include "common/say.h"
-#include "cost/compare.h"
-#include "cost/measure.h"
 
 #include <math.h>
 #include <stdio.h>

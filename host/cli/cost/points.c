@@ -1,9 +1,6 @@
-#include "cost/points.h"
+#include "cost/measuring.h"
 
 #include "common/say.h"
-#include "cost/compare.h"
-#include "cost/measure.h"
-#include "cost/phases.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
-#include "cost/print.h"
+#include "cost/output.h"
 
-#include "cost/measure.h"
-#include "cost/summary.h"
+#include "cost/findings.h"
+#include "cost/measuring.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "cost/round.h"
+#include "cost/dials.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,6 @@
-#include "cost/settings.h"
+#include "cost/dials.h"
 
-#include "cost/measure.h"
+#include "cost/measuring.h"
 
 /* Points are measured in this order: what the scene has today and its neighbours say most. */
 enum { NOW, NEXT, SOON, LATER, LAST };

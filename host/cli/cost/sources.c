@@ -1,8 +1,8 @@
-#include "cost/sources.h"
+#include "cost/findings.h"
 
 #include "common/say.h"
-#include "cost/command.h"
-#include "cost/round.h"
+#include "cost/dials.h"
+#include "cost/output.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "cost/summary.h"
+#include "cost/findings.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,14 +1,8 @@
-#include "cost/sweep.h"
+#include "cost/measuring.h"
 
 #include "common/progress.h"
 #include "common/say.h"
-#include "cost/coarse.h"
-#include "cost/combine.h"
-#include "cost/measure.h"
-#include "cost/meshing.h"
-#include "cost/points.h"
-#include "cost/settings.h"
-#include "cost/thorax.h"
+#include "cost/dials.h"
 
 #include <math.h>
 #include <stdlib.h>

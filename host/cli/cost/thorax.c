@@ -1,4 +1,4 @@
-#include "cost/thorax.h"
+#include "cost/dials.h"
 
 #include <math.h>
 #include <strings.h>

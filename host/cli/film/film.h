@@ -3,7 +3,7 @@
 #ifndef SKG_CLI_FILM_H
 #define SKG_CLI_FILM_H
 
-#include "film/format.h"
+#include "film/writer.h"
 
 typedef struct film film;
 

@@ -1,9 +1,18 @@
 /* What a format of film has to do. Functions that return int return an exit status and print the error. */
-#ifndef SKG_CLI_FILM_WRITER_H
-#define SKG_CLI_FILM_WRITER_H
+#ifndef CLI_FILM_WRITER_H
+#define CLI_FILM_WRITER_H
 
 #include "common/file.h"
-#include "film/format.h"
+
+#include <stdint.h>
+
+/* The frames of a film. */
+typedef struct {
+    int64_t columns, rows;
+    int channels;        /* bytes of a pixel; 1: grey; 4: red, green, blue and one that is ignored */
+    double fps;          /* frames per second */
+    const char *comment; /* what the film shows; the file names it beside the program */
+} film_format;
 
 /* What a writer knows of its film. */
 typedef struct {

@@ -1,9 +1,9 @@
-#include "fit/report.h"
+#include "fit/work.h"
 
 #include "common/file.h"
 #include "common/say.h"
 #include "map/map.h"
-#include "map/png.h"
+#include "map/surface_png.h"
 
 #include <math.h>
 #include <stdio.h>

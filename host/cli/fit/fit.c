@@ -1,13 +1,11 @@
-#include "fit/fit.h"
+#include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
 #include "common/interrupt.h"
-#include "common/json.h"
-#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "fit/page.h"
-#include "fit/report.h"
+#include "common/values.h"
 #include "fit/work.h"
 
 #include <inttypes.h>

@@ -1,9 +1,8 @@
-#include "fit/page.h"
+#include "fit/work.h"
 
-#include "common/base64.h"
+#include "common/encode.h"
 #include "common/file.h"
 #include "common/say.h"
-#include "fit/report.h"
 #include "map/map.h"
 
 #include <inttypes.h>

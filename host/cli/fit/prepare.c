@@ -2,7 +2,7 @@
 
 #include "common/file.h"
 #include "common/say.h"
-#include "common/unit.h"
+#include "common/values.h"
 #include "core/names.h"
 
 #include <inttypes.h>

@@ -1,8 +1,7 @@
-#include "fit/report.h"
+#include "fit/work.h"
 
-#include "common/csv.h"
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
 
 #include <inttypes.h>

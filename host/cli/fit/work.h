@@ -1,6 +1,7 @@
-/* What the verb fit works on. Functions that return int return an exit status and print the error. */
-#ifndef SKG_CLI_FIT_WORK_H
-#define SKG_CLI_FIT_WORK_H
+/* What the verb fit works on, and what it says of it. Functions that return int return an exit status and print the
+ * error. */
+#ifndef CLI_FIT_WORK_H
+#define CLI_FIT_WORK_H
 
 #include "common/args.h"
 
@@ -24,5 +25,18 @@ int fit_prepare(fit_work *work);
 
 /* The file of -o with an extension, or NULL. */
 const char *fit_output(const fit_work *work, const char *extension);
+
+/* What a fit found, in words and numbers. */
+
+json_t *fit_json(const fit_work *work);
+void fit_print(const fit_work *work);
+int fit_write_csv(const fit_work *work, const char *path);
+
+/* The errors before and after as bars, a pair for each target: PNG in memory, which the caller frees. */
+int fit_bars_png(const fit_work *work, unsigned char **png, size_t *size);
+int fit_write_bars(const fit_work *work, const char *path);
+
+/* Writes one file with tables, bars and maps, which loads nothing from elsewhere. */
+int fit_write_page(const fit_work *work, const char *path);
 
 #endif

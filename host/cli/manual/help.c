@@ -1,6 +1,4 @@
-#include "manual/help.h"
-
-#include "manual/list.h"
+#include "manual/manual.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "manual/list.h"
+#include "manual/manual.h"
 
 const cli_manual *const cli_manuals[] = {&cli_manual_image,
                                          &cli_manual_lbuffer,

@@ -1,9 +1,10 @@
 /* What is known of a verb's command line: one table for the parser, `help`, the man pages and the completion
  * of shells. A paragraph is one string without line breaks; who prints it breaks the lines. */
-#ifndef SKG_CLI_MANUAL_H
-#define SKG_CLI_MANUAL_H
+#ifndef CLI_MANUAL_MANUAL_H
+#define CLI_MANUAL_MANUAL_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 /* What a value or an operand names, for completion. */
 enum { CLI_NAMES_NOTHING, CLI_NAMES_FILE, CLI_NAMES_FOLDER, CLI_NAMES_SCENE };
@@ -93,5 +94,21 @@ extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to
     cli_flag_scan_flats, cli_flag_scan_darks, cli_flag_scan_shard, cli_flag_scan_join, cli_flag_scan_mixed,
     cli_flag_scan_grey16, cli_flag_scan_packed, cli_flag_scan_packed_grey16, cli_flag_scan_phases,
     cli_flag_scan_verify, cli_flag_strict;
+
+/* Every verb, and what is known of the command as a whole. */
+
+/* Every verb, in the order of `skiagraph help`; ends with NULL. */
+extern const cli_manual *const cli_manuals[];
+
+extern const char cli_summary[];           /* of the command, one sentence */
+extern const char *const cli_text[];       /* of the command, paragraphs; ends with NULL */
+extern const cli_item cli_other_verbs[];   /* help and version, which are no rows of cli_manuals */
+extern const cli_item cli_exit_statuses[]; /* of every verb */
+extern const cli_item cli_environment[];   /* variables that the command or its platform reads */
+
+/* The help texts on a terminal. */
+
+void cli_help_overview(FILE *stream);
+void cli_help_verb(const cli_manual *manual, FILE *stream);
 
 #endif

@@ -1,7 +1,7 @@
 #include "map/map.h"
 
 #include "common/say.h"
-#include "map/png.h"
+#include "map/surface_png.h"
 
 #include <math.h>
 #include <stdio.h>

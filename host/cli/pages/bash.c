@@ -1,7 +1,7 @@
 /* Completion for bash: a function that looks at the verb and at the word before the cursor. */
 #include "pages/pages.h"
 
-#include "manual/list.h"
+#include "manual/manual.h"
 
 static void put_words(const cli_item *items, FILE *stream) {
     for (const cli_item *item = items; item->name; item++)

@@ -1,7 +1,7 @@
 /* Man pages in the macros of man(7). */
 #include "pages/pages.h"
 
-#include "manual/list.h"
+#include "manual/manual.h"
 
 #include <ctype.h>
 #include <string.h>

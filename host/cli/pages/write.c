@@ -2,7 +2,7 @@
  * build time. */
 #include "pages/pages.h"
 
-#include "manual/list.h"
+#include "manual/manual.h"
 
 #include <errno.h>
 #include <string.h>

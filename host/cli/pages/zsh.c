@@ -1,7 +1,7 @@
 /* Completion for zsh, by _arguments. */
 #include "pages/pages.h"
 
-#include "manual/list.h"
+#include "manual/manual.h"
 
 #include <string.h>
 

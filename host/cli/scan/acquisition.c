@@ -1,16 +1,8 @@
-#include "scan/acquisition.h"
+#include "scan/steps.h"
 
 #include "common/file.h"
 #include "common/interrupt.h"
 #include "common/say.h"
-#include "scan/batches.h"
-#include "scan/grey.h"
-#include "scan/metadata.h"
-#include "scan/packed.h"
-#include "scan/phases.h"
-#include "scan/shards.h"
-#include "scan/shared.h"
-#include "scan/verify.h"
 #include "session/explain.h"
 
 #include <inttypes.h>

@@ -1,8 +1,7 @@
-#include "scan/batches.h"
+#include "scan/steps.h"
 
 #include "common/interrupt.h"
 #include "common/progress.h"
-#include "scan/grey.h"
 #include "session/frames.h"
 
 skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count) {

@@ -1,4 +1,4 @@
-#include "scan/grey.h"
+#include "scan/steps.h"
 
 #include "common/file.h"
 #include "common/say.h"

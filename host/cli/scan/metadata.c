@@ -1,9 +1,9 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 
-#include "scan/metadata.h"
+#include "scan/steps.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
 
 #include <math.h>

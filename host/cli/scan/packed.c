@@ -1,4 +1,4 @@
-#include "scan/packed.h"
+#include "scan/steps.h"
 
 #include "common/file.h"
 #include "common/say.h"

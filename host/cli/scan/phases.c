@@ -1,7 +1,6 @@
-#include "scan/phases.h"
+#include "scan/steps.h"
 
 #include "common/say.h"
-#include "scan/grey.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,9 +1,9 @@
 /* The verb reconstruct. */
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "scan/scan.h"
+#include "verbs/verbs.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,10 +1,9 @@
-#include "scan/scan.h"
+#include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/interrupt.h"
-#include "common/json.h"
 #include "common/say.h"
-#include "scan/acquisition.h"
-#include "scan/verify.h"
+#include "scan/steps.h"
 #include "session/explain.h"
 
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-#include "scan/shards.h"
+#include "scan/steps.h"
 
 #include "common/say.h"
 

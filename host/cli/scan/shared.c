@@ -1,8 +1,7 @@
-#include "scan/shared.h"
+#include "scan/steps.h"
 
 #include "common/progress.h"
 #include "common/say.h"
-#include "scan/batches.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
-#include "scan/verify.h"
+#include "scan/steps.h"
 
-#include "common/json.h"
+#include "common/encode.h"
 #include "common/say.h"
 
 #include <inttypes.h>

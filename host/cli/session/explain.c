@@ -1,6 +1,6 @@
 #include "session/explain.h"
 
-#include "common/json.h"
+#include "common/encode.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "core/names.h"

@@ -1,6 +1,6 @@
 #include "session/frames.h"
 
-#include "common/json.h"
+#include "common/encode.h"
 #include "common/progress.h"
 #include "common/say.h"
 

@@ -1,9 +1,9 @@
 #include "session/meshes.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/filter.h"
-#include "common/json.h"
 #include "common/say.h"
+#include "common/values.h"
 
 #include <skiagraph/skiagraph.h>
 

@@ -1,10 +1,10 @@
 #include "session/render.h"
 
+#include "common/encode.h"
 #include "common/file.h"
 #include "common/interrupt.h"
-#include "common/json.h"
 #include "common/say.h"
-#include "manual/list.h"
+#include "manual/manual.h"
 #include "session/explain.h"
 
 #include <inttypes.h>

@@ -1,8 +1,8 @@
 #include "session/session.h"
 
-#include "common/device.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "common/values.h"
 #include "core/names.h"
 #include "session/meshes.h"
 

@@ -1,8 +1,8 @@
 #include "verbs/verbs.h"
 
-#include "common/filter.h"
-#include "common/json.h"
+#include "common/encode.h"
 #include "common/say.h"
+#include "common/values.h"
 #include "verbs/plot.h"
 
 #include <inttypes.h>

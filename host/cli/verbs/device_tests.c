@@ -1,7 +1,7 @@
-#include "verbs/device_tests.h"
+#include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/environment.h"
-#include "common/json.h"
 #include "common/probe.h"
 #include "common/say.h"
 

@@ -1,13 +1,11 @@
 #include "verbs/verbs.h"
 
-#include "common/device.h"
+#include "common/encode.h"
 #include "common/environment.h"
-#include "common/json.h"
 #include "common/probe.h"
 #include "common/say.h"
-#include "manual/list.h"
-#include "verbs/device_tests.h"
-#include "verbs/warm.h"
+#include "common/values.h"
+#include "manual/manual.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,11 +1,10 @@
 #include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
-#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "common/unit.h"
+#include "common/values.h"
 #include "map/map.h"
 
 #include <inttypes.h>

@@ -1,8 +1,8 @@
 /* The verb make. */
 #include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
 
 #include <inttypes.h>

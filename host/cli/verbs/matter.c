@@ -1,6 +1,6 @@
 #include "verbs/matter.h"
 
-#include "common/json.h"
+#include "common/encode.h"
 
 #include <math.h>
 #include <stdio.h>

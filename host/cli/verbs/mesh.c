@@ -1,9 +1,9 @@
 #include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
-#include "common/unit.h"
+#include "common/values.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "verbs/verbs.h"
 
-#include "common/json.h"
+#include "common/encode.h"
 #include "common/say.h"
 #include "session/explain.h"
 

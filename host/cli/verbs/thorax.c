@@ -1,8 +1,8 @@
 #include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
 #include "common/interrupt.h"
-#include "common/json.h"
 #include "common/progress.h"
 #include "common/say.h"
 

@@ -1,6 +1,6 @@
-/* The verbs of this room. Each returns an exit status and prints its errors. */
-#ifndef SKG_CLI_VERBS_H
-#define SKG_CLI_VERBS_H
+/* The verbs. Each returns an exit status and prints its errors. */
+#ifndef CLI_VERBS_VERBS_H
+#define CLI_VERBS_VERBS_H
 
 #include "common/args.h"
 
@@ -14,5 +14,18 @@ int cli_mesh(const cli_arguments *arguments);
 int cli_plan(const cli_arguments *arguments);
 int cli_thorax(const cli_arguments *arguments);
 int cli_make(const cli_arguments *arguments);
+int cli_breathe(const cli_arguments *arguments);
+int cli_cost(const cli_arguments *arguments);
+int cli_fit(const cli_arguments *arguments);
+int cli_scan(const cli_arguments *arguments);
+int cli_reconstruct(const cli_arguments *arguments);
+int cli_view(const cli_arguments *arguments);
+
+/* `devices --test`: tests every device with all kernels and prints a table, or with json an object. config: the value of --device, or NULL; a driver that it names is tested,
+ * too. Returns an exit status. */
+int cli_device_tests(const char *config, int json);
+
+/* `devices --warm`: renders every scene of the flag once. Returns an exit status, of the first scene that failed. */
+int cli_warm(const cli_arguments *arguments);
 
 #endif

@@ -1,12 +1,12 @@
 /* Compiles what scenes need, so that the jobs that follow find it in the driver's cache. Drivers compile a kernel when it
  * first runs, so each scene is rendered. */
-#include "verbs/warm.h"
+#include "verbs/verbs.h"
 
-#include "common/device.h"
-#include "common/json.h"
+#include "common/encode.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "manual/list.h"
+#include "common/values.h"
+#include "manual/manual.h"
 
 #include <dirent.h>
 #include <errno.h>

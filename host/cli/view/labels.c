@@ -1,7 +1,8 @@
-#include "view/labels.h"
+#include "view/picture.h"
 
 #include "common/say.h"
 #include "core/vector.h"
+#include "map/surface_png.h"
 
 #include <cairo.h>
 
@@ -192,10 +193,6 @@ static void write_caption(const sheet *s, const cli_session *session, const view
     write_text(s, s->text, s->rows - s->text, text);
 }
 
-static cairo_status_t take_bytes(void *stream, const unsigned char *bytes, unsigned int count) {
-    return fwrite(bytes, 1, count, stream) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
 /* Cairo's pixels are numbers with red, green and blue from the 24th bit down. */
 static void copy_to(cairo_surface_t *surface, const skg_look *look, const uint8_t *rgba) {
     unsigned char *pixels = cairo_image_surface_get_data(surface);
@@ -256,16 +253,9 @@ int view_label(const cli_session *session, const skg_look *look, const view_plac
     return status == CAIRO_STATUS_SUCCESS ? CLI_DONE : fail(status);
 }
 
-int view_encode(const skg_look *look, const uint8_t *rgba, char **bytes, size_t *count) {
+int view_encode(const skg_look *look, const uint8_t *rgba, unsigned char **bytes, size_t *count) {
     cairo_surface_t *surface = make_surface(look, rgba);
-    cairo_status_t status = cairo_surface_status(surface);
-    *bytes = NULL;
-    FILE *stream = open_memstream(bytes, count);
-    if (stream && status == CAIRO_STATUS_SUCCESS)
-        status = cairo_surface_write_to_png_stream(surface, take_bytes, stream);
+    const int exit_status = cli_png_of_surface(surface, bytes, count);
     cairo_surface_destroy(surface);
-    if (stream && fclose(stream) == 0 && status == CAIRO_STATUS_SUCCESS) return CLI_DONE;
-    free(*bytes);
-    *bytes = NULL;
-    return fail(status);
+    return exit_status;
 }

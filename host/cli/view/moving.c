@@ -1,9 +1,8 @@
-#include "view/moving.h"
+#include "view/pages.h"
 
 #include "common/progress.h"
 #include "common/say.h"
 #include "film/film.h"
-#include "view/page.h"
 
 #include <math.h>
 #include <stdio.h>

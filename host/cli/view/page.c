@@ -1,8 +1,7 @@
-#include "view/page.h"
+#include "view/pages.h"
 
-#include "common/base64.h"
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/say.h"
 #include "core/vector.h"
 

@@ -1,4 +1,4 @@
-#include "view/place.h"
+#include "view/picture.h"
 
 #include "common/say.h"
 #include "core/vector.h"

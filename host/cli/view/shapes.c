@@ -1,4 +1,4 @@
-#include "view/shapes.h"
+#include "view/surfaces.h"
 
 #include "common/say.h"
 #include "core/vector.h"

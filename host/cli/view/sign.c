@@ -1,4 +1,4 @@
-#include "view/sign.h"
+#include "view/picture.h"
 
 #include "common/say.h"
 
@@ -25,13 +25,13 @@ static void put_word(unsigned char *to, uint32_t word) {
     for (int k = 0; k < 4; k++) to[k] = (unsigned char)(word >> (24 - 8 * k));
 }
 
-int view_sign(char **bytes, size_t *count) {
+int view_sign(unsigned char **bytes, size_t *count) {
     /* type, keyword, a zero, text */
     static const char chunk[] = "tEXtSoftware\0skiagraph " SKG_VERSION;
     const size_t length = sizeof chunk - 1, added = length + 8;
-    char *larger = realloc(*bytes, *count + added);
+    unsigned char *larger = realloc(*bytes, *count + added);
     if (!larger) return cli_error(CLI_DEVICE, "out of host memory for the picture");
-    unsigned char *at = (unsigned char *)larger + HEADER;
+    unsigned char *at = larger + HEADER;
     memmove(at + added, at, *count - HEADER);
     put_word(at, (uint32_t)(length - 4));
     memcpy(at + 4, chunk, length);

@@ -1,4 +1,4 @@
-#include "view/thin.h"
+#include "view/surfaces.h"
 
 #include "common/say.h"
 

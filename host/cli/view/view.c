@@ -1,13 +1,12 @@
-#include "view/view.h"
+#include "verbs/verbs.h"
 
+#include "common/encode.h"
 #include "common/file.h"
-#include "common/json.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "film/film.h"
-#include "view/labels.h"
-#include "view/moving.h"
-#include "view/sign.h"
+#include "view/pages.h"
+#include "view/picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -158,7 +157,7 @@ static int find_path(view_work *w) {
 }
 
 static int write_pictures(view_work *w) {
-    char *bytes = NULL;
+    unsigned char *bytes = NULL;
     const char *path;
     size_t count = 0;
     if (!has_output(w, is_picture)) return CLI_DONE;

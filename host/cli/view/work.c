@@ -1,8 +1,7 @@
-#include "view/work.h"
+#include "view/picture.h"
 
 #include "common/say.h"
 #include "session/explain.h"
-#include "view/labels.h"
 
 #include <math.h>
 #include <stdlib.h>

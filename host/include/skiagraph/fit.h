@@ -38,7 +38,8 @@ typedef struct {
     int32_t size;
     /** enum skg_fit_method */
     int32_t method;
-    /** The search poses the body at most so many times, 1 to 1e9; 4000 by default. */
+    /** Maximum number of evaluations of the objective, 1 to 1e9; 4000 by default. Each one poses the body for every
+     * target and measures how far it is from the target. */
     int64_t evaluations;
     /** Decides all random numbers, at least 0; 1 by default. */
     int64_t seed;

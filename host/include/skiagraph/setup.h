@@ -140,7 +140,8 @@ typedef struct {
     int64_t darks;
     /** Frames of which each is averaged. */
     int64_t dark_frames;
-    /** Geometry that the reconstruction is told, instead of the scan's own; NULL: the same. */
+    /** Geometry for the reconstruction (the key KnownTable). It differs from the geometry of the simulation if the scene
+     * simulates a misalignment of which the reconstruction does not know. NULL: the scan's own geometry. */
     skg_scan *known;
     /** [projections] intensity of the beam over that of the first projection, for grey values; NULL: 1 */
     const double *intensities;

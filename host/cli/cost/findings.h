@@ -1,0 +1,47 @@
+/* What the measured points say: sources of error, a summary, advice. */
+#ifndef CLI_COST_FINDINGS_H
+#define CLI_COST_FINDINGS_H
+
+#include "cost/study.h"
+
+/* How much each source of error contributes, what halving it costs, and how sure the numbers are. */
+
+/* Fills in study->sources and ->largest from the measured points. */
+int cost_find_sources(cost_study *study);
+
+/* The scene's value of the source's dial, "43250 triangles"; empty: the source has no dial. */
+void cost_describe_source(const cost_study *study, int number, char *text, size_t size);
+
+/* The dial of a source that has one. */
+int cost_source_dial(int source);
+
+/* Why the scene has no such error; NULL: it may have it. */
+const char *cost_why_absent(const cost_study *study, int source);
+
+/* Why a source that the scene may have is not measured. */
+const char *cost_why_not(const cost_study *study, int source);
+
+/* Fills in study->unrest and ->priced, and the uncertainty of what was timed in one visit. */
+void cost_find_unrest(cost_study *study);
+
+/* Fills in study->reference_error and ->grey_levels, after the sources. */
+void cost_find_trust(cost_study *study);
+
+/* The scene's costs in one sentence, and what is worth changing. */
+
+/* Fills in study->buy, ->saving and ->summary. */
+void cost_summarise(cost_study *study);
+
+/* "0.21 %", for a fraction. size: 16 suffice. */
+const char *cost_percent(double share, char *text, size_t size);
+
+/* "8.1 ms", with "+-" and the spread where it is known and matters. */
+const char *cost_ms(double ms, double spread_ms, char *text, size_t size);
+
+/* What a change adds to a time: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
+const char *cost_more(double ms, double spread_ms, char *text, size_t size);
+
+/* Which setting to use: marks the frontier and fills study->advice; measures the combinations that were not measured yet. */
+int cost_advise(cost_study *study);
+
+#endif

@@ -1,0 +1,22 @@
+/* The study as text: a command line, JSON, a table, a page. */
+#ifndef CLI_COST_OUTPUT_H
+#define CLI_COST_OUTPUT_H
+
+#include "cost/study.h"
+
+#include <jansson.h>
+
+/* The command line of `image` that a setting stands for, quoted for a shell, which the caller frees; NULL if memory is exhausted. */
+char *cost_command(const cost_study *study, const cost_setting *setting);
+
+json_t *cost_json(const cost_study *study);
+
+/* The table of all points as .csv. The caller frees the text; NULL if memory is exhausted. */
+char *cost_csv(const cost_study *study);
+
+void cost_print(const cost_study *study);
+
+/* Writes page.html with the study's JSON and its pictures instead of a mark. It needs no other file. */
+int cost_write_page(const cost_study *study, const char *path);
+
+#endif

@@ -1,0 +1,32 @@
+/* Pages in which the scene can be turned, and films of it. Functions that return int return an exit status and print the
+ * error. */
+#ifndef CLI_VIEW_PAGES_H
+#define CLI_VIEW_PAGES_H
+
+#include "view/picture.h"
+#include "view/surfaces.h"
+
+/* What the page shows. */
+typedef struct {
+    const cli_session *session;
+    const skg_look *look; /* its direction, path and colours */
+    const view_places *places;
+    const view_shapes *shapes;
+    double seconds; /* that the frames of the shapes last */
+    /* [image_frames][image_rows][image_columns] greys of the detector, image_frames 1 or that of the shapes; NULL: none */
+    const uint8_t *image;
+    int64_t image_columns, image_rows, image_frames;
+} view_page;
+
+/* Writes the page. */
+int view_page_write(const view_page *page, const char *path);
+
+/* Pages and films of a scene, which may breathe. */
+
+/* Writes a page of the present moment, or of w->seconds if that is given. */
+int view_write_page(view_work *w, const char *path);
+
+/* Writes w->seconds at w->fps. The labels stay where they are in the first frame. */
+int view_write_film(view_work *w, const char *path);
+
+#endif

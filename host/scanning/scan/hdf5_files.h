@@ -1,0 +1,39 @@
+/* Errors of HDF5, which prints them unless it is told not to, and copies of what is not images. Private. */
+#ifndef SKG_SCAN_HDF5_FILES_H
+#define SKG_SCAN_HDF5_FILES_H
+
+#include "core/core.h"
+
+#include <errno.h>
+#include <hdf5.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct {
+    H5E_auto2_t print;
+    void *data;
+} skg_hdf5_errors;
+
+static inline void skg_hdf5_be_silent(skg_hdf5_errors *before) {
+    H5Eget_auto2(H5E_DEFAULT, &before->print, &before->data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+static inline void skg_hdf5_be_as_before(const skg_hdf5_errors *before) {
+    H5Eset_auto2(H5E_DEFAULT, before->print, before->data);
+}
+
+/* Of a file that H5Fopen refused. */
+static inline skg_status skg_hdf5_fail(const char *path) {
+    return skg_fail(SKG_ERR_FILE, "%s: cannot be read: %s", path,
+                    access(path, R_OK) != 0 ? strerror(errno)
+                                            : "it is no HDF5 file; give the .h5 that a scan wrote");
+}
+
+/* Copies a dataset of numbers with its units; it may be missing. Returns 0 on failure. */
+int skg_hdf5_copy_set(hid_t from, hid_t to, const char *name);
+
+/* Copies the groups geometry and process of a scan. Returns 0 on failure. */
+int skg_hdf5_copy_groups(hid_t from, hid_t to);
+
+#endif
