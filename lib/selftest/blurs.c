@@ -1,4 +1,4 @@
-#include "trial/blurs.h"
+#include "selftest/blurs.h"
 #include "core/maths.h"
 
 #include <math.h>

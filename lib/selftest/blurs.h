@@ -2,8 +2,8 @@
 #ifndef SKG_TRIAL_BLURS_H
 #define SKG_TRIAL_BLURS_H
 
-#include "trial/finding.h"
-#include "trial/scene.h"
+#include "selftest/finding.h"
+#include "selftest/scene.h"
 
 /* SKG_TRIAL_BLUR: two line spread functions. SKG_TRIAL_DEPTHS: three depths of a scintillator with blurs of their own.
  * SKG_TRIAL_APART: noise whose power rises with the frequency, in an image that is not blurred. */

@@ -1,4 +1,4 @@
-#include "trial/exposure.h"
+#include "selftest/exposure.h"
 #include "beam/spectrum.h"
 #include "core/maths.h"
 

@@ -4,7 +4,7 @@
 #include "device/identity.h"
 #include "device/store.h"
 #include "device/verdict.h"
-#include "trial/trial.h"
+#include "selftest/trial.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
 #include "core/plain.h"
 #include "device/device.h"
 #include "frame/plan.h"
+#include "selftest/trial.h"
 #include "show/picture.h"
-#include "trial/trial.h"
 
 #include <skiagraph/opencl.h>
 

@@ -1,4 +1,4 @@
-#include "trial/boxes.h"
+#include "selftest/boxes.h"
 
 #include <math.h>
 

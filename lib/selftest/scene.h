@@ -5,7 +5,7 @@
 #ifndef SKG_TRIAL_SCENE_H
 #define SKG_TRIAL_SCENE_H
 
-#include "trial/boxes.h"
+#include "selftest/boxes.h"
 
 #include <skiagraph/options.h>
 #include <skiagraph/scene.h>

@@ -1,4 +1,4 @@
-#include "trial/scene.h"
+#include "selftest/scene.h"
 #include "device/device.h"
 #include "device/verdict.h"
 

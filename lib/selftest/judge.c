@@ -1,9 +1,9 @@
-#include "trial/judge.h"
+#include "selftest/judge.h"
 #include "frame/plan.h"
 #include "geometry/samples.h"
-#include "trial/blurs.h"
-#include "trial/exposure.h"
-#include "trial/place.h"
+#include "selftest/blurs.h"
+#include "selftest/exposure.h"
+#include "selftest/place.h"
 
 #include <skiagraph/frame.h>
 #include <skiagraph/plan.h>

@@ -1,4 +1,4 @@
-#include "trial/place.h"
+#include "selftest/place.h"
 #include "frame/plan.h"
 
 #include <skiagraph/mesh.h>

@@ -3,7 +3,7 @@
 #define SKG_TRIAL_PLACE_H
 
 #include "device/device.h"
-#include "trial/scene.h"
+#include "selftest/scene.h"
 
 #include <skiagraph/plan.h>
 

@@ -2,8 +2,8 @@
 #ifndef SKG_TRIAL_EXPOSURE_H
 #define SKG_TRIAL_EXPOSURE_H
 
-#include "trial/finding.h"
-#include "trial/scene.h"
+#include "selftest/finding.h"
+#include "selftest/scene.h"
 
 /* Electronic noise and steps, of an image that is divided by a flat field which falls with the distance. */
 void skg_trial_detector_choose(skg_plan_options *options);

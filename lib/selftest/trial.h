@@ -2,7 +2,7 @@
 #ifndef SKG_TRIAL_H
 #define SKG_TRIAL_H
 
-#include "trial/judge.h"
+#include "selftest/judge.h"
 
 /* Makes sure that the device has passed a test: in this context, or in an earlier process, or else now. SKG_ERR_DEVICE
  * with a sentence that names the kernels, the device and its driver if it has failed it. */

@@ -1,7 +1,7 @@
 /* skg_context_create: the best device that computes rightly. */
 #include "core/plain.h"
 #include "device/device.h"
-#include "trial/trial.h"
+#include "selftest/trial.h"
 
 #include <stdio.h>
 

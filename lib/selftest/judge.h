@@ -2,8 +2,8 @@
 #ifndef SKG_JUDGE_H
 #define SKG_JUDGE_H
 
-#include "trial/finding.h"
-#include "trial/scene.h"
+#include "selftest/finding.h"
+#include "selftest/scene.h"
 
 /* The status is that of the calls, which fail if the device cannot run the scene at all. */
 skg_status skg_trial_judge(skg_context *context, skg_trial_number number, skg_finding *finding);

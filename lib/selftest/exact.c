@@ -1,4 +1,4 @@
-#include "trial/exact.h"
+#include "selftest/exact.h"
 
 #include "frame/plan.h"
 

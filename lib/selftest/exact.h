@@ -6,7 +6,7 @@
 #ifndef SKG_EXACT_H
 #define SKG_EXACT_H
 
-#include "trial/judge.h"
+#include "selftest/judge.h"
 
 /* Compares the path lengths of each strategy, in single precision. The status is that of the calls. */
 skg_status skg_exact_judge(skg_context *context, skg_finding *finding);

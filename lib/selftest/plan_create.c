@@ -1,7 +1,7 @@
 /* skg_plan_create: a plan whose kernels were tested on this device. */
 #include "core/plain.h"
 #include "frame/plan.h"
-#include "trial/trial.h"
+#include "selftest/trial.h"
 
 #include <skiagraph/plan.h>
 

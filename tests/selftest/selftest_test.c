@@ -3,10 +3,10 @@
 #include "device/cache_folder.h"
 #include "device/device.h"
 #include "device/verdict.h"
+#include "selftest/trial.h"
 #include "skg_shared.h"
 #include "stage/kernels.h"
 #include "suite.h"
-#include "trial/trial.h"
 
 #include <skiagraph/frame.h>
 #include <skiagraph/material.h>
@@ -435,4 +435,4 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, bad_numbers_are_refused);
 }
 
-SKG_SUITE_MAIN("trial", add_tests)
+SKG_SUITE_MAIN("selftest", add_tests)

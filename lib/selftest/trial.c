@@ -1,9 +1,9 @@
-#include "trial/trial.h"
+#include "selftest/trial.h"
 #include "device/device.h"
 #include "device/platforms.h"
 #include "device/verdict.h"
-#include "trial/exact.h"
-#include "trial/picture.h"
+#include "selftest/exact.h"
+#include "selftest/picture.h"
 
 #include <stdio.h>
 #include <string.h>

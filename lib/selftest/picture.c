@@ -1,4 +1,4 @@
-#include "trial/picture.h"
+#include "selftest/picture.h"
 
 #include "show/picture.h"
 

@@ -2,7 +2,7 @@
 #ifndef SKG_TRIAL_PICTURE_H
 #define SKG_TRIAL_PICTURE_H
 
-#include "trial/judge.h"
+#include "selftest/judge.h"
 
 /* Whether each box is where it has to be, in its own colour. The status is that of the calls. */
 skg_status skg_picture_judge(skg_context *context, skg_finding *finding);
