@@ -1,5 +1,5 @@
-#include "device/binaries.h"
-#include "device/store.h"
+#include "device/kept.h"
+#include "device/programs.h"
 
 #include <string.h>
 

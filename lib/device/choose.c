@@ -1,11 +1,9 @@
 #include "core/names.h"
+#include "device/choice.h"
 #include "device/device.h"
-#include "device/icd.h"
-#include "device/identity.h"
-#include "device/platforms.h"
-#include "device/start.h"
-#include "device/store.h"
+#include "device/kept.h"
 #include "device/verdict.h"
+#include "driver/driver.h"
 
 #include <ctype.h>
 #include <inttypes.h>

@@ -7,11 +7,11 @@
 #include "core/aside.h"
 #include "core/context.h"
 #include "core/digest.h"
+#include "driver/driver.h"
 
 #include <skiagraph/opencl.h>
 
 struct skg_program;
-struct skg_pages;
 
 typedef struct skg_device {
     cl_platform_id platform;
@@ -23,18 +23,17 @@ typedef struct skg_device {
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
     skg_aside loading;            /* of what is expected */
-    struct skg_pages *pages;      /* of the expected buffer; NULL: none */
-    int64_t builds;        /* programs compiled so far; a second scene with the same effects adds none */
-    int64_t launched;      /* programs that there were when a job was last complete; later ones may be new */
-    int64_t loads;         /* programs taken from the user's folder so far */
-    skg_digest identity;   /* of the device and its driver */
-    char *store;           /* folder in which compiled programs are kept; "": none */
-    int32_t clang;         /* 1: kernels may use the builtins of clang */
-    int32_t caches;        /* 1: the driver keeps compiled kernels itself */
-    int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
-    uint32_t passed;       /* bit n: test n of lib/trial */
-    int32_t compile_noted; /* 1: the log has been told that kernels are compiled */
-    int64_t compile_ms;    /* time that compiling has taken */
+    skg_pages *pages;             /* of the expected buffer; NULL: none */
+    int64_t builds;      /* programs compiled so far; a second scene with the same effects adds none */
+    int64_t launched;    /* programs that there were when a job was last complete; later ones may be new */
+    int64_t loads;       /* programs taken from the user's folder so far */
+    skg_digest identity; /* of the device and its driver */
+    char *store;         /* folder in which compiled programs are kept; "": none */
+    int32_t clang;       /* 1: kernels may use the builtins of clang */
+    int32_t caches;      /* 1: the driver keeps compiled kernels itself */
+    int32_t simulates;   /* 1: a simulator, which is not tested and keeps nothing */
+    uint32_t passed;     /* bit n: test n of lib/trial */
+    skg_watch compiling;
 } skg_device;
 
 /* --- errors --- */
@@ -79,14 +78,8 @@ skg_status skg_program_get(skg_context *context, int32_t files, const char *cons
 void skg_expected_begin(skg_context *context);
 void skg_expected_wait(skg_context *context);
 
-/* Kernels of this process, of any context, may run from the one call to the other. skg_work_begin waits while programs are kept. */
-void skg_work_begin(void);
-void skg_work_end(void);
-int64_t skg_work_count(void); /* work that has begun and not ended */
-
-/* To be called when work has ended: the programs have been launched, and are kept in the user's folder, unless other work is
- * under way: a driver that is asked for a binary compiles its kernels once more, and PoCL 3.1 ends the process (an assertion on
- * a count of uses) if one of them began to run before. */
+/* To be called after skg_work_end: the programs have been launched, and are kept in the user's folder, unless other work is under
+ * way (driver.h). */
 void skg_programs_launched(skg_context *context);
 
 /* Makes a kernel of such a program. The caller releases it with clReleaseKernel. */
@@ -109,11 +102,6 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
 
-/* Bytes of a buffer: from <= byte < to. */
-typedef struct {
-    int64_t from, to;
-} skg_byte_range;
-
 /* Expects a buffer of so many bytes without contents, of which kernels will soon write these ranges (skg_expected_begin), until
  * skg_buffer_forget. */
 void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges);
@@ -126,36 +114,5 @@ skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *da
 /* Reserves the bytes and writes the data. The call returns when the data has been copied. */
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what);
-
-/* --- choosing (choose.c) --- */
-
-/* What the words of a config say of the device; NULL where they say nothing. */
-typedef struct {
-    const char *device, *driver; /* the values of device= and driver= */
-} skg_device_words;
-
-/* Chooses the device for the words of a config, and fills info. without: bit n is set if device n is not wanted; index: the
- * number of the one that is chosen. A device that has failed the test of what every plan needs is passed over, unless it
- * is the only one that fits; its user then hears why. */
-skg_status skg_device_choose(const skg_device_words *words, uint64_t without, cl_platform_id *platform,
-                             cl_device_id *device, skg_device_info *info, int32_t *index);
-
-/* untested: 1 if the device of these words is of a platform that is not known, and no verdict on it is kept, so that the first
- * context on it would test it in this process. Platforms that are not trusted are not asked for their devices. */
-skg_status skg_device_doubt(const skg_device_words *words, int32_t *untested);
-
-/* The device that skg_context_create tries first for this config. */
-skg_status skg_device_locate(const char *config, cl_platform_id *platform, cl_device_id *device,
-                             skg_device_info *info);
-
-/* Opens a device as skg_context_create does, but tests nothing. */
-skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index);
-
-/* Fills in what programs are kept under. To be called once platform and id are set. */
-skg_status skg_device_identify(skg_device *device);
-
-/* Fills info with what OpenCL reports on a device. */
-skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_platform_id platform,
-                             cl_device_id device, skg_device_info *info);
 
 #endif

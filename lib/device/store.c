@@ -1,7 +1,6 @@
-#include "device/store.h"
 #include "core/core.h"
 #include "core/part_name.h"
-#include "device/store_bound.h"
+#include "device/kept.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,5 @@
-#include "device/store_bound.h"
 #include "core/core.h"
+#include "device/kept.h"
 
 #include <dirent.h>
 #include <fcntl.h>

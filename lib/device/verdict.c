@@ -1,7 +1,7 @@
 #include "device/verdict.h"
 #include "core/core.h"
-#include "device/sources.h"
-#include "device/store.h"
+#include "device/kept.h"
+#include "device/programs.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* skg_context_create: the best device that computes rightly. */
 #include "core/plain.h"
-#include "device/device.h"
+#include "device/choice.h"
 #include "selftest/trial.h"
 
 #include <stdio.h>

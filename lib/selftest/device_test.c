@@ -1,8 +1,8 @@
 /* The tests of a device, one by one. */
 #include "core/plain.h"
+#include "device/choice.h"
 #include "device/device.h"
-#include "device/identity.h"
-#include "device/store.h"
+#include "device/kept.h"
 #include "device/verdict.h"
 #include "selftest/trial.h"
 

@@ -1,6 +1,6 @@
 #include "selftest/trial.h"
+#include "device/choice.h"
 #include "device/device.h"
-#include "device/platforms.h"
 #include "device/verdict.h"
 #include "selftest/exact.h"
 #include "selftest/picture.h"

@@ -1,9 +1,9 @@
 /* The library beside a driver that ends, crashes or blocks the process that calls it, or computes wrongly. */
+#include "device/choice.h"
 #include "device/device.h"
 #include "device/guest/folder.h"
-#include "device/identity.h"
-#include "device/platforms.h"
 #include "device/verdict.h"
+#include "driver/driver.h"
 #include "suite.h"
 
 #include <skiagraph/opencl.h>

@@ -1,6 +1,6 @@
 /* A device like a small GPU: 32 KiB of local memory or less, no vectors, no fp64. The real device is asked to behave so; what is
  * looked at is what the library asks of it. Calls are wrapped by the linker. */
-#include "device/device.h"
+#include "device/choice.h"
 #include "selftest/trial.h"
 #include "suite.h"
 

@@ -1,7 +1,7 @@
 /* The tests that a device is put to: they pass on a device that computes rightly, and kernels that were made wrong do
  * not pass. Each of these is compiled, so all of them make a test of their own: SKG_WRONG_KERNELS 1. */
 #include "device/cache_folder.h"
-#include "device/device.h"
+#include "device/choice.h"
 #include "device/verdict.h"
 #include "selftest/trial.h"
 #include "skg_shared.h"

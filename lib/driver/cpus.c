@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* sched_getaffinity, CPU_COUNT_S */
-#include "device/cpus.h"
+#include "driver/driver.h"
 
 #include <omp.h>
 #include <sched.h>

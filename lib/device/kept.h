@@ -1,10 +1,10 @@
-/* The user's folder in which compiled kernels and verdicts on devices are kept. Private to lib/device.
+/* The user's folder in which compiled kernels and verdicts on devices are kept. Private.
  *
  * It is $SKG_CACHE_DIR, else $XDG_CACHE_HOME/skiagraph, else $HOME/.cache/skiagraph. SKG_CACHE_DIR=none turns it off.
  * The folder has to belong to this user, and no one else may write to it, because the driver runs what it holds.
  * Nothing here ever fails a call: what cannot be read or written is compiled or tested again. */
-#ifndef SKG_STORE_H
-#define SKG_STORE_H
+#ifndef SKG_KEPT_H
+#define SKG_KEPT_H
 
 #include "core/digest.h"
 
@@ -26,5 +26,17 @@ int skg_store_write(const char *path, const skg_digest *key, skg_kept kind, cons
 
 /* Removes what is kept under this key. */
 void skg_store_remove(const char *path, const skg_digest *key, skg_kept kind);
+
+/* --- the size of the folder (store_bound.c) --- */
+
+/* The ending of a file that is being written. */
+#define SKG_TEMPORARY ".part"
+
+/* Notes that this open file was used now. Files of the last hour are left alone, so that it costs nothing. */
+void skg_store_used(int file);
+
+/* Removes files of the open folder until it holds at most 256 MiB, and what a process that died left half written. Files
+ * that are not ours by their name are left alone. */
+void skg_store_bound(int folder);
 
 #endif

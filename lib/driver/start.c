@@ -1,10 +1,5 @@
-#include "device/start.h"
-
 #include "core/parallel.h"
-#include "device/cpus.h"
-#include "device/device.h"
-#include "device/platforms.h"
-#include "device/signals.h"
+#include "driver/driver.h"
 
 #include <fenv.h>
 #include <pthread.h>

@@ -1,15 +1,9 @@
-#include "device/platforms.h"
-#include "device/verdict.h"
-
-#include <skiagraph/version.h>
+#include "driver/driver.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum { LONGEST = 256 };
-
-/* Name of the test whose verdict is kept under the identity of a platform. */
-static const char test[] = "platform";
 
 /* Whole names, so that a new driver of a known vendor is a new platform. */
 static const struct {
@@ -56,30 +50,8 @@ int skg_platform_has_clang(cl_platform_id platform) {
     return n >= 0 && list[n].clang;
 }
 
-/* The digest of its names and versions and of the version of this library. Its devices are not asked. */
-static skg_digest identity_of(cl_platform_id platform) {
-    static const cl_platform_info parts[] = {CL_PLATFORM_NAME, CL_PLATFORM_VENDOR, CL_PLATFORM_VERSION};
-    skg_digester digester;
-    skg_digest_start(&digester);
-    skg_digest_add_text(&digester, SKG_VERSION);
-    for (size_t n = 0; n < sizeof parts / sizeof *parts; n++) {
-        char text[LONGEST] = "";
-        if (clGetPlatformInfo(platform, parts[n], sizeof text, text, NULL) != CL_SUCCESS) text[0] = '\0';
-        text[LONGEST - 1] = '\0';
-        skg_digest_add_text(&digester, text);
-    }
-    return skg_digest_end(&digester);
-}
-
-int skg_platform_is_trusted(const char *store, cl_platform_id platform) {
-    skg_verdict verdict;
-    if (skg_platform_is_known(platform)) return 1;
-    const skg_digest identity = identity_of(platform);
-    return skg_verdict_known(store, &identity, test, &verdict) && verdict.good;
-}
-
-void skg_platform_trust(const char *store, cl_platform_id platform) {
-    const skg_digest identity = identity_of(platform);
-    const skg_verdict verdict = {.good = 1};
-    skg_verdict_keep(store, &identity, test, &verdict);
+int skg_platform_is(cl_platform_id platform, const char *part_of_name) {
+    char name[LONGEST];
+    skg_platform_name(platform, name, sizeof name);
+    return strstr(name, part_of_name) != NULL;
 }

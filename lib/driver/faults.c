@@ -1,5 +1,4 @@
-#include "device/faults.h"
-#include "core/core.h"
+#include "driver/driver.h"
 
 #include <stdio.h>
 #include <string.h>

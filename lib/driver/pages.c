@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
-#include "device/pages.h"
+#include "driver/driver.h"
 
 #include <string.h>
 #include <sys/mman.h>
@@ -19,37 +19,31 @@ static void unmap(size_t *mapping) {
     if (mapping) munmap(mapping, *mapping);
 }
 
-static void drop(struct skg_pages *pages) {
-    unmap(pages->mapping);
-    skg_free(&pages->ranges);
-    skg_free(&pages);
-}
-
 static void CL_CALLBACK dropped(cl_mem memory, void *user) {
     (void)memory;
     unmap(user);
 }
 
-void skg_pages_expect(skg_device *device, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
-    struct skg_pages *pages = NULL;
+void skg_pages_expect(int64_t bytes, int64_t count, const skg_byte_range *ranges, skg_pages **pages) {
+    skg_pages *made = NULL;
+    *pages = NULL;
     int64_t written = 0;
     for (int64_t i = 0; i < count; i++) {
         if (ranges[i].from < 0 || ranges[i].to > bytes) return;
         if (ranges[i].to > ranges[i].from) written += ranges[i].to - ranges[i].from;
     }
-    if (!device->info.is_cpu || device->simulates || written < LEAST_BYTES || written > MOST_BYTES) return;
-    if (skg_alloc(1, sizeof *pages, "pages", &pages) != SKG_OK) return;
-    *pages = (struct skg_pages){.bytes = bytes, .count = count};
-    if (skg_alloc(count, sizeof *ranges, "pages", &pages->ranges) != SKG_OK) {
-        drop(pages);
+    if (written < LEAST_BYTES || written > MOST_BYTES) return;
+    if (skg_alloc(1, sizeof *made, "pages", &made) != SKG_OK) return;
+    *made = (skg_pages){.bytes = bytes, .count = count};
+    if (skg_alloc(count, sizeof *ranges, "pages", &made->ranges) != SKG_OK) {
+        skg_free(&made);
         return;
     }
-    memcpy(pages->ranges, ranges, (size_t)count * sizeof *ranges);
-    device->pages = pages;
+    memcpy(made->ranges, ranges, (size_t)count * sizeof *ranges);
+    *pages = made;
 }
 
-void skg_pages_enter(skg_device *device) {
-    struct skg_pages *pages = device->pages;
+void skg_pages_enter(skg_pages *pages) {
     const int64_t page = sysconf(_SC_PAGESIZE);
     if (!pages || pages->start || page < 1) return;
     const size_t whole = (size_t)(page + pages->bytes);
@@ -64,23 +58,24 @@ void skg_pages_enter(skg_device *device) {
     pages->start = start;
 }
 
-cl_mem skg_pages_take(skg_device *device, int64_t bytes, cl_mem_flags flags) {
-    struct skg_pages *pages = device->pages;
+cl_mem skg_pages_take(skg_pages **pages, cl_context cl, int64_t bytes, cl_mem_flags flags) {
+    skg_pages *from = *pages;
     cl_int code = CL_SUCCESS;
-    if (!pages || !pages->start || pages->bytes != bytes) return NULL;
-    cl_mem memory =
-        clCreateBuffer(device->cl, flags | CL_MEM_USE_HOST_PTR, (size_t)bytes, pages->start, &code);
+    if (!from || !from->start || from->bytes != bytes) return NULL;
+    cl_mem memory = clCreateBuffer(cl, flags | CL_MEM_USE_HOST_PTR, (size_t)bytes, from->start, &code);
     if (code != CL_SUCCESS) return NULL;
-    if (clSetMemObjectDestructorCallback(memory, dropped, pages->mapping) != CL_SUCCESS) {
+    if (clSetMemObjectDestructorCallback(memory, dropped, from->mapping) != CL_SUCCESS) {
         clReleaseMemObject(memory);
         return NULL;
     }
-    pages->mapping = NULL;
-    skg_pages_drop(device);
+    from->mapping = NULL;
+    skg_pages_drop(pages);
     return memory;
 }
 
-void skg_pages_drop(skg_device *device) {
-    if (device->pages) drop(device->pages);
-    device->pages = NULL;
+void skg_pages_drop(skg_pages **pages) {
+    if (!*pages) return;
+    unmap((*pages)->mapping);
+    skg_free(&(*pages)->ranges);
+    skg_free(pages);
 }

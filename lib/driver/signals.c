@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* NSIG */
-#include "device/signals.h"
+#include "driver/driver.h"
 
 #include <pthread.h>
 #include <signal.h>

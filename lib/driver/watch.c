@@ -1,4 +1,4 @@
-#include "device/watch.h"
+#include "driver/driver.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -41,36 +41,35 @@ static int start(watched *w, pthread_t *thread) {
     return started;
 }
 
-static void wait_for(skg_context *context, watched *w) {
-    skg_device *device = context->device;
-    const int64_t end = now_ms() + PATIENCE_MS - device->compile_ms;
+static void wait_for(watched *w, skg_watch *watch, const skg_context *context, const char *device) {
+    const int64_t end = now_ms() + PATIENCE_MS - watch->ms;
     const struct timespec moment = {end / 1000, end % 1000 * 1000000};
     pthread_mutex_lock(&w->lock);
     int code = 0;
-    while (!w->done && !device->compile_noted && code != ETIMEDOUT)
+    while (!w->done && !watch->logged && code != ETIMEDOUT)
         code = pthread_cond_timedwait(&w->changed, &w->lock, &moment);
-    if (!w->done && !device->compile_noted) {
-        device->compile_noted = 1;
+    if (!w->done && !watch->logged) {
+        watch->logged = 1;
         pthread_mutex_unlock(&w->lock); /* a log may take its time */
-        skg_log(context, SKG_LOG_PROGRESS, "compiling kernels for %s, once for this device",
-                device->info.name);
+        skg_log(context, SKG_LOG_PROGRESS, "compiling kernels for %s, once for this device", device);
         pthread_mutex_lock(&w->lock);
     }
     while (!w->done) pthread_cond_wait(&w->changed, &w->lock);
     pthread_mutex_unlock(&w->lock);
 }
 
-void skg_watch(skg_context *context, void (*work)(void *data), void *data) {
+void skg_watch_call(skg_watch *watch, const skg_context *context, const char *device,
+                    void (*work)(void *data), void *data) {
     watched w = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, 0, work, data};
     pthread_t thread;
     const int64_t begin = now_ms();
     if (start(&w, &thread)) {
-        wait_for(context, &w);
+        wait_for(&w, watch, context, device);
         pthread_join(thread, NULL);
     } else {
         work(data);
     }
-    context->device->compile_ms += now_ms() - begin;
+    watch->ms += now_ms() - begin;
     pthread_cond_destroy(&w.changed);
     pthread_mutex_destroy(&w.lock);
 }
