@@ -61,7 +61,8 @@ skg_status skg_device_doubt(const skg_device_words *words, int32_t *untested);
 skg_status skg_device_locate(const char *config, cl_platform_id *platform, cl_device_id *device,
                              skg_device_info *info);
 
-/* Opens a device as skg_context_create does, but tests nothing. */
+/* The first step of skg_context_create: opens the device that config chooses among those that `without` leaves. The second step is
+ * its self-test. */
 skg_status skg_context_open(const char *config, uint64_t without, skg_context **context, int32_t *index);
 
 /* Fills info with what OpenCL reports on a device. */

@@ -24,15 +24,16 @@ typedef struct skg_device {
     struct skg_program *programs; /* by files and options */
     skg_aside loading;            /* of what is expected */
     skg_pages *pages;             /* of the expected buffer; NULL: none */
-    int64_t builds;      /* programs compiled so far; a second scene with the same effects adds none */
-    int64_t launched;    /* programs that there were when a job was last complete; later ones may be new */
-    int64_t loads;       /* programs taken from the user's folder so far */
-    skg_digest identity; /* of the device and its driver */
-    char *store;         /* folder in which compiled programs are kept; "": none */
-    int32_t clang;       /* 1: kernels may use the builtins of clang */
-    int32_t caches;      /* 1: the driver keeps compiled kernels itself */
-    int32_t simulates;   /* 1: a simulator, which is not tested and keeps nothing */
-    uint32_t passed;     /* bit n: test n of lib/trial */
+    int64_t builds;       /* programs compiled so far; a second scene with the same effects adds none */
+    int64_t launched;     /* programs that there were when a job was last complete; later ones may be new */
+    int64_t loads;        /* programs taken from the user's folder so far */
+    skg_digest identity;  /* of the device and its driver */
+    char *store;          /* folder in which compiled programs are kept; "": none */
+    int32_t clang;        /* 1: kernels may use the builtins of clang */
+    int32_t caches;       /* 1: the driver keeps compiled kernels itself */
+    int32_t simulates;    /* 1: a simulator, which is not tested and keeps nothing */
+    uint32_t passed;      /* bit n: enum skg_self_test */
+    int32_t self_testing; /* 1: a self-test is running, whose own calls need none */
     skg_watch compiling;
 } skg_device;
 

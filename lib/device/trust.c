@@ -1,5 +1,5 @@
 #include "device/choice.h"
-#include "device/verdict.h"
+#include "device/self_tests.h"
 
 #include <skiagraph/version.h>
 

@@ -1,10 +1,10 @@
-#include "selftest/blurs.h"
 #include "core/maths.h"
+#include "selftest/selftest.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { DEPTHS = SKG_TRIAL_DEPTH_COUNT };
+enum { DEPTHS = SKG_SELF_TEST_DEPTH_COUNT };
 
 /* No line is symmetrical, so that an image that is turned over is found. */
 static const double row[] = {0.05, 0.2, 0.5, 0.15, 0.1}, column[] = {0.1, 0.3, 0.4, 0.2, 0};
@@ -26,7 +26,7 @@ static skg_detector_blur lines(int64_t columns, const double *along_row, int64_t
                                .along_column = along_column};
 }
 
-static skg_status choose_depths(skg_trial_scene *scene) {
+static skg_status choose_depths(skg_self_test_scene *scene) {
     skg_detector_blur *blurs = scene->depth_blurs;
     blurs[0] = lines(1, one, 1, one);
     blurs[1] = lines(5, row, 3, flat);
@@ -46,8 +46,8 @@ static skg_status choose_depths(skg_trial_scene *scene) {
 
 /* Samples a, b, a have the transfer function b + 2 a cos(2 pi f). The power of the noise is its square, and that of the image
  * is 1, so that the DQE is the inverse of it. */
-static void choose_dqe(skg_trial_scene *scene) {
-    enum { LAST = SKG_TRIAL_FREQUENCIES - 1 };
+static void choose_dqe(skg_self_test_scene *scene) {
+    enum { LAST = SKG_SELF_TEST_FREQUENCIES - 1 };
     const double highest = 0.5 / scene->view.column_step[0];
     for (int k = 0; k <= LAST; k++) {
         const double transfer = own + 2 * beside * cos(SKG_PI * k / LAST);
@@ -55,22 +55,22 @@ static void choose_dqe(skg_trial_scene *scene) {
         scene->dqe_values[k] = dqe_zero / (transfer * transfer);
     }
     skg_dqe_init(&scene->dqe);
-    scene->dqe.count = SKG_TRIAL_FREQUENCIES;
+    scene->dqe.count = SKG_SELF_TEST_FREQUENCIES;
     scene->dqe.per_mm = scene->per_mm;
     scene->dqe.dqe = scene->dqe_values;
     scene->options.noise = 1;
     scene->options.dqe = &scene->dqe;
 }
 
-skg_status skg_trial_blurs_choose(skg_trial_scene *scene) {
+skg_status skg_self_test_blurs_choose(skg_self_test_scene *scene) {
     scene->blur = lines(5, row, 5, column);
-    if (scene->number == SKG_TRIAL_BLUR) scene->options.blur = &scene->blur;
-    if (scene->number == SKG_TRIAL_APART) choose_dqe(scene);
-    return scene->number == SKG_TRIAL_DEPTHS ? choose_depths(scene) : SKG_OK;
+    if (scene->number == SKG_SELF_TEST_BLUR) scene->options.blur = &scene->blur;
+    if (scene->number == SKG_SELF_TEST_APART) choose_dqe(scene);
+    return scene->number == SKG_SELF_TEST_DEPTHS ? choose_depths(scene) : SKG_OK;
 }
 
 /* Adds a share of the image to what is wanted, blurred. A pixel beyond the edge has the value of the nearest one. */
-static void add_blurred(const skg_trial_scene *scene, const skg_detector_blur *blur, double share,
+static void add_blurred(const skg_self_test_scene *scene, const skg_detector_blur *blur, double share,
                         const double *shown, double *wanted) {
     const int columns = (int)scene->view.columns, rows = (int)scene->view.rows;
     for (int p = 0; p < rows * columns; p++)
@@ -85,10 +85,10 @@ static void add_blurred(const skg_trial_scene *scene, const skg_detector_blur *b
         }
 }
 
-skg_status skg_trial_blur(const skg_trial_scene *scene, const double *shown, double *wanted) {
+skg_status skg_self_test_blur(const skg_self_test_scene *scene, const double *shown, double *wanted) {
     double per_cm = 0;
     for (int64_t p = 0; p < scene->view.rows * scene->view.columns; p++) wanted[p] = 0;
-    if (scene->number == SKG_TRIAL_BLUR) {
+    if (scene->number == SKG_SELF_TEST_BLUR) {
         add_blurred(scene, &scene->blur, 1, shown, wanted);
         return SKG_OK;
     }
@@ -115,9 +115,9 @@ static double variance_at(const double *shown, int64_t pixel, int64_t columns, c
 /* With the expected mean and variance, n normal deviates have the sum 0 and the sum of squares n. Without blur their standard
  * deviations are sqrt(n) and sqrt(2 n); if the correlation of deviates at a distance d is r(d), the latter is sqrt(2 n sum r^2),
  * and so is at most that of the sum of products. The former falls where neighbours have opposite signs. Six of them. */
-void skg_trial_noise_compare(const skg_trial_scene *scene, const double *image, const double *shown,
-                             double open, skg_finding *finding) {
-    const int apart = scene->number == SKG_TRIAL_APART;
+void skg_self_test_noise_compare(const skg_self_test_scene *scene, const double *image, const double *shown,
+                                 double open, skg_verdict *verdict) {
+    const int apart = scene->number == SKG_SELF_TEST_APART;
     const double samples[3] = {apart ? beside : 0, apart ? own : 1, apart ? beside : 0};
     const double power = samples[1] * samples[1] + 2 * samples[0] * samples[0];
     const double next = 2 * samples[0] * samples[1] / power, after = samples[0] * samples[0] / power;
@@ -136,10 +136,10 @@ void skg_trial_noise_compare(const skg_trial_scene *scene, const double *image, 
         }
     }
     const double n = (double)((rows - 2) * (columns - 2)), bar = 6 * related * sqrt(2 * n);
-    finding->good = fabs(sum) <= 6 * sqrt(n) && fabs(squares - n) <= bar && fabs(products - next * n) <= bar;
-    if (!finding->good)
+    verdict->good = fabs(sum) <= 6 * sqrt(n) && fabs(squares - n) <= bar && fabs(products - next * n) <= bar;
+    if (!verdict->good)
         snprintf(
-            finding->reason, sizeof finding->reason,
+            verdict->reason, sizeof verdict->reason,
             "over %.0f pixels the noise has a mean of %.3g standard deviations, a variance of %.3g instead "
             "of 1, and a covariance of %.3g instead of %.3g with the pixel beside",
             n, sum / n, squares / n, products / n, next);

@@ -1,4 +1,4 @@
-#include "selftest/boxes.h"
+#include "selftest/selftest.h"
 
 #include <math.h>
 

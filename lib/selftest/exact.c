@@ -1,6 +1,9 @@
-#include "selftest/exact.h"
-
-#include "frame/plan.h"
+/* A scene of which every sum is a known integer.
+ *
+ * Under a parallel beam along z, with pixels of 1 mm and a path of 1024 mm, the faces of these boxes have depths whose
+ * numerators are small and whose denominators are powers of two. So are their gradients, since their sides are. No step of
+ * the kernels rounds, and every path length is exact: one bit that is wrong is found. */
+#include "selftest/selftest.h"
 
 #include <skiagraph/frame.h>
 #include <skiagraph/plan.h>
@@ -9,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { N = SKG_TRIAL_PIXELS, PIXELS = N * N, BOXES = 12 };
+enum { N = SKG_SELF_TEST_PIXELS, PIXELS = N * N, BOXES = 12 };
 
 typedef struct {
     skg_scene *scene;
@@ -76,13 +79,13 @@ static skg_status render(skg_context *context, int32_t strategy, exact_run *run)
     output.data = run->lengths;
     output.type = SKG_TYPE_FLOAT32;
     skg_plan_release(&run->plan);
-    SKG_TRY(skg_plan_make(context, run->scene, &run->view, run->beam, &options, &run->plan));
-    SKG_TRY(skg_plan_lengths_enqueue(run->plan, 0, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
+    SKG_TRY(skg_plan_create(context, run->scene, &run->view, run->beam, &options, &run->plan));
+    SKG_TRY(skg_plan_lengths(run->plan, 0, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
     const skg_status status = skg_job_wait(&job);
     return status < 0 ? status : SKG_OK;
 }
 
-static void compare(const exact_run *run, const char *strategy, skg_finding *finding) {
+static void compare(const exact_run *run, const char *strategy, skg_verdict *verdict) {
     int wrong = 0;
     for (int p = 0; p < PIXELS; p++) {
         const double place[2] = {p % N - 0.5 * (N - 1), p / N - 0.5 * (N - 1)};
@@ -91,16 +94,16 @@ static void compare(const exact_run *run, const char *strategy, skg_finding *fin
         if ((double)run->lengths[p] == length) continue;
         if (wrong++ == 0)
             snprintf(
-                finding->reason, sizeof finding->reason,
+                verdict->reason, sizeof verdict->reason,
                 "with strategy %s, pixel (%d, %d) has a path length of %.9g mm instead of %.9g mm, the first",
                 strategy, p / N, p % N, (double)run->lengths[p], length);
     }
-    finding->good = wrong == 0;
-    const size_t used = strlen(finding->reason);
-    if (wrong) snprintf(finding->reason + used, sizeof finding->reason - used, " of %d", wrong);
+    verdict->good = wrong == 0;
+    const size_t used = strlen(verdict->reason);
+    if (wrong) snprintf(verdict->reason + used, sizeof verdict->reason - used, " of %d", wrong);
 }
 
-skg_status skg_exact_judge(skg_context *context, skg_finding *finding) {
+skg_status skg_self_test_exact(skg_context *context, skg_verdict *verdict) {
     static const struct {
         int32_t number;
         const char *name;
@@ -108,12 +111,12 @@ skg_status skg_exact_judge(skg_context *context, skg_finding *finding) {
         {SKG_STRATEGY_COPIES, "copies"}, {SKG_STRATEGY_TILES, "tiles"}, {SKG_STRATEGY_ATOMICS, "atomics"}};
     exact_run *run = NULL;
     skg_status status = SKG_OK;
-    *finding = (skg_finding){.good = 1};
+    *verdict = (skg_verdict){.good = 1};
     SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
     SKG_TRY_CLEANUP(make_scene(context, run));
-    for (int k = 0; k < 3 && finding->good; k++) {
+    for (int k = 0; k < 3 && verdict->good; k++) {
         SKG_TRY_CLEANUP(render(context, strategies[k].number, run));
-        compare(run, strategies[k].name, finding);
+        compare(run, strategies[k].name, verdict);
     }
 cleanup:
     skg_plan_release(&run->plan);

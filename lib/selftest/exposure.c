@@ -1,6 +1,6 @@
-#include "selftest/exposure.h"
 #include "beam/spectrum.h"
 #include "core/maths.h"
+#include "selftest/selftest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 /* keV: the noise spans several steps, so that their rounding adds the variance of an even distribution. */
 static const double noise = 300, step = 50;
 
-void skg_trial_detector_choose(skg_plan_options *options) {
+void skg_self_test_detector_choose(skg_plan_options *options) {
     options->electronic_kev = noise;
     options->quantum_step_kev = step;
     options->quantity = SKG_QUANTITY_TRANSMISSION;
@@ -23,18 +23,18 @@ static double place_of(const skg_view *view, int64_t row, int64_t column, double
     return sqrt(down * down + *x * *x + *y * *y);
 }
 
-void skg_trial_detector_compare(const skg_view *view, const double *image, const double *shown, double open,
-                                skg_finding *finding) {
+void skg_self_test_detector_compare(const skg_view *view, const double *image, const double *shown,
+                                    double open, skg_verdict *verdict) {
     const int64_t pixels = view->columns * view->rows;
     const double down = view->centre[2] - view->source[2], spread = sqrt(noise * noise + step * step / 12);
-    double sum = 0, squares = 0, products = 0, above[SKG_TRIAL_PIXELS] = {0};
+    double sum = 0, squares = 0, products = 0, above[SKG_SELF_TEST_PIXELS] = {0};
     for (int64_t p = 0; p < pixels; p++) {
         double x, y;
         const double fall = pow(down / place_of(view, p / view->columns, p % view->columns, &x, &y), 3);
         const double kev = image[p] * open * fall, steps = kev / step;
         /* 800 steps of the open beam with an error of two roundings to floats are 2e-4. */
         if (!(fabs(steps - rint(steps)) <= 1e-3)) {
-            snprintf(finding->reason, sizeof finding->reason,
+            snprintf(verdict->reason, sizeof verdict->reason,
                      "pixel (%d, %d) has %.9g keV, which is no multiple of %g", (int)(p / view->columns),
                      (int)(p % view->columns), kev, step);
             return;
@@ -46,23 +46,23 @@ void skg_trial_detector_compare(const skg_view *view, const double *image, const
     }
     /* As of quantum noise: six standard deviations of the sums. */
     const double n = (double)pixels;
-    finding->good =
+    verdict->good =
         fabs(sum) <= 6 * sqrt(n) && fabs(squares - n) <= 6 * sqrt(2 * n) && fabs(products) <= 6 * sqrt(n);
-    if (!finding->good)
+    if (!verdict->good)
         snprintf(
-            finding->reason, sizeof finding->reason,
+            verdict->reason, sizeof verdict->reason,
             "over all pixels the electronic noise has a mean of %.3g standard deviations, a variance of %.3g "
             "instead of 1, and a covariance of %.3g with the pixel above",
             sum / n, squares / n, products / n);
 }
 
 /* Energy of the beam, of which all shades are known; rows of the bow-tie; the layer. */
-static const double energy = 40, tangents[SKG_TRIAL_BOWTIE_ROWS] = {-0.3, -0.1, 0.05, 0.3},
-                    paths[SKG_TRIAL_BOWTIE_ROWS] = {8, 3, 1, 6};
+static const double energy = 40, tangents[SKG_SELF_TEST_BOWTIE_ROWS] = {-0.3, -0.1, 0.05, 0.3},
+                    paths[SKG_SELF_TEST_BOWTIE_ROWS] = {8, 3, 1, 6};
 static const double layer = 0.3;
-enum { ROWS = SKG_TRIAL_BOWTIE_ROWS };
+enum { ROWS = SKG_SELF_TEST_BOWTIE_ROWS };
 
-skg_status skg_trial_shades_choose(skg_trial_scene *scene) {
+skg_status skg_self_test_shades_choose(skg_self_test_scene *scene) {
     skg_bowtie *bowtie = &scene->bowtie;
     skg_grid *grid = &scene->grid;
     skg_bowtie_init(bowtie);
@@ -88,7 +88,7 @@ skg_status skg_trial_shades_choose(skg_trial_scene *scene) {
     return SKG_OK;
 }
 
-skg_status skg_trial_shade(const skg_trial_scene *scene, int64_t row, int64_t column, double *share) {
+skg_status skg_self_test_shade(const skg_self_test_scene *scene, int64_t row, int64_t column, double *share) {
     const skg_view *view = &scene->view;
     const double down = view->centre[2] - view->source[2];
     double x, y, passed = 0, filter = 0, crystal = 0;
@@ -105,7 +105,7 @@ skg_status skg_trial_shade(const skg_trial_scene *scene, int64_t row, int64_t co
     return SKG_OK;
 }
 
-void skg_trial_heel_choose(skg_trial_scene *scene) {
+void skg_self_test_heel_choose(skg_self_test_scene *scene) {
     skg_heel *heel = &scene->heel;
     skg_heel_init(heel);
     heel->kvp = 100;
@@ -118,17 +118,17 @@ void skg_trial_heel_choose(skg_trial_scene *scene) {
 }
 
 /* The anode's face is turned by its angle from the central ray, which is along z, to the direction of the anode. */
-skg_status skg_trial_heel(const skg_trial_scene *scene, int64_t row, int64_t column, double *shares) {
+skg_status skg_self_test_heel(const skg_self_test_scene *scene, int64_t row, int64_t column, double *shares) {
     const skg_heel *heel = &scene->heel;
     const skg_heel_tube tube = {
         .anode = heel->anode, .kvp = heel->kvp, .angle_deg = heel->angle_deg, .bin_kev = heel->bin_kev};
     const double face = heel->angle_deg * SKG_PI / 180, down = scene->view.centre[2] - scene->view.source[2];
-    double x, y, losses[SKG_TRIAL_ENERGIES_MAX];
+    double x, y, losses[SKG_SELF_TEST_ENERGIES_MAX];
     const double length = place_of(&scene->view, row, column, &x, &y);
     const double toward =
         (x * heel->direction[0] + y * heel->direction[1]) / hypot(heel->direction[0], heel->direction[1]);
     const double angle = asin((sin(face) * down - cos(face) * toward) / length) * 180 / SKG_PI;
     SKG_TRY(skg_heel_losses(&tube, angle, scene->beam, losses));
-    for (int e = 0; e < SKG_TRIAL_ENERGIES_MAX; e++) shares[e] = exp(-losses[e]);
+    for (int e = 0; e < SKG_SELF_TEST_ENERGIES_MAX; e++) shares[e] = exp(-losses[e]);
     return SKG_OK;
 }

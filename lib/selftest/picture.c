@@ -1,6 +1,6 @@
-#include "selftest/picture.h"
+#include "selftest/selftest.h"
 
-#include "show/picture.h"
+#include <skiagraph/view_picture.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -89,39 +89,38 @@ static int is_right(const uint8_t *opaque, const uint8_t *translucent, int front
     return !behind || (translucent[0] > opaque[0] + 2 && translucent[1] < opaque[1]);
 }
 
-static void compare(picture_run *run, skg_finding *finding) {
-    int wrong = 0, judged[BOXES] = {0};
+static void compare(picture_run *run, skg_verdict *verdict) {
+    int wrong = 0, compared[BOXES] = {0};
     for (int p = 0; p < N * N; p++) {
         const int front = around(run, 1, p / N, p % N), behind = around(run, 0, p / N, p % N);
         if (front < 0 || behind < 0 || front + behind == 0) continue;
-        judged[front]++;
+        compared[front]++;
         const uint8_t *c = run->opaque + 4 * p;
         if (is_right(c, run->translucent + 4 * p, front, behind)) continue;
         if (wrong++ == 0)
-            snprintf(finding->reason, sizeof finding->reason,
+            snprintf(verdict->reason, sizeof verdict->reason,
                      "pixel (%d, %d) of the picture is (%d, %d, %d) where the %s box is, the first", p / N,
                      p % N, c[0], c[1], c[2], front ? "green" : "red");
     }
     /* An edge of the beam crosses the boxes. */
-    finding->good = judged[0] > N && judged[1] > N && 20 * wrong <= judged[0] + judged[1];
-    if (finding->good) finding->reason[0] = '\0';
-    const size_t used = strlen(finding->reason);
-    if (!finding->good)
-        snprintf(finding->reason + used, sizeof finding->reason - used, " of %d pixels", wrong);
+    verdict->good = compared[0] > N && compared[1] > N && 20 * wrong <= compared[0] + compared[1];
+    if (verdict->good) verdict->reason[0] = '\0';
+    const size_t used = strlen(verdict->reason);
+    if (!verdict->good)
+        snprintf(verdict->reason + used, sizeof verdict->reason - used, " of %d pixels", wrong);
 }
 
-skg_status skg_picture_judge(skg_context *context, skg_finding *finding) {
+skg_status skg_self_test_picture(skg_context *context, skg_verdict *verdict) {
     picture_run *run = NULL;
     skg_status status = SKG_OK;
-    *finding = (skg_finding){0};
     SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
     SKG_TRY_CLEANUP(make_scene(context, run));
     SKG_TRY_CLEANUP(skg_view_places_get(run->scene, &run->view, &run->look, BOXES * CORNERS, run->corners[0],
                                         run->places[0]));
-    SKG_TRY_CLEANUP(skg_show_picture(context, run->scene, &run->view, &run->look, run->opaque));
+    SKG_TRY_CLEANUP(skg_view_picture(context, run->scene, &run->view, &run->look, run->opaque));
     run->look.colours = half_green;
-    SKG_TRY_CLEANUP(skg_show_picture(context, run->scene, &run->view, &run->look, run->translucent));
-    compare(run, finding);
+    SKG_TRY_CLEANUP(skg_view_picture(context, run->scene, &run->view, &run->look, run->translucent));
+    compare(run, verdict);
 cleanup:
     skg_scene_release(&run->scene);
     skg_free(&run);

@@ -1,12 +1,10 @@
-#include "selftest/scene.h"
-#include "device/device.h"
-#include "device/verdict.h"
+#include "selftest/selftest.h"
 
 #include <math.h>
 #include <stdio.h>
 
 /* Attenuation of the two parts in 1/cm at the energies of the beam, in keV. */
-enum { ENERGIES = SKG_TRIAL_ENERGIES_MAX };
+enum { ENERGIES = SKG_SELF_TEST_ENERGIES_MAX };
 static const double energies[ENERGIES] = {40, 60, 90}, photons[ENERGIES] = {1000, 2000, 500};
 static const double attenuation[2][ENERGIES] = {{0.27, 0.2, 0.17}, {1.28, 0.6, 0.34}};
 
@@ -14,57 +12,39 @@ static const double attenuation[2][ENERGIES] = {{0.27, 0.2, 0.17}, {1.28, 0.6, 0
  * which a mesh keeps as floats. In double precision the latter alone. In half precision depths have 11 bits over the
  * 1,200 mm from the source. Intensities change by at most mu L exp(-mu L) < 0.4 times the relative error of a length,
  * and by the rounding of floats. */
-static const skg_trial trials[SKG_TRIALS] = {
-    [SKG_TRIAL_CORE] = {SKG_TEST_OF_ALL, 1e-4, 1e-4},
-    [SKG_TRIAL_COPIES] = {"strategy copies", 1e-4, 1e-4},
-    [SKG_TRIAL_TILES] = {"strategy tiles", 1e-4, 1e-4},
-    [SKG_TRIAL_ATOMICS] = {"strategy atomics", 1e-4, 1e-4},
-    [SKG_TRIAL_DOUBLE] = {"precision double", 2e-6, 2e-6},
-    [SKG_TRIAL_HALF] = {"precision half", 0.1, 0.1},
-    [SKG_TRIAL_ENERGIES] = {"several energies", 1e-4, 1e-4},
-    [SKG_TRIAL_SOURCE_PLANE] = {"source plane", 1e-4, 1e-4},
-    [SKG_TRIAL_LEAKY] = {"leaky meshes", 1e-4, 1e-4},
-    [SKG_TRIAL_PRIORITY] = {"priority", 1e-4, 1e-4},
-    [SKG_TRIAL_NOISE] = {"noise", 1e-4, 1e-4},
-    [SKG_TRIAL_BLUR] = {"blur", 1e-4, 1e-4},
-    [SKG_TRIAL_PARALLEL] = {"parallel beam", 0, 0},
-    [SKG_TRIAL_LENGTHS] = {"path lengths", 1e-4, 1e-4},
-    [SKG_TRIAL_DETECTOR] = {"detector", 1e-4, 1e-4},
-    [SKG_TRIAL_SHADES] = {"shades", 1e-4, 1e-3}, /* the tables of a grid are linear between points */
-    [SKG_TRIAL_PLACE] = {"positions on the device", 1e-4, 1e-4},
-    [SKG_TRIAL_PICTURE] = {"3D view", 0, 0},
-    [SKG_TRIAL_RAYS] = {"supersampling", 1e-4, 1e-4},
-    [SKG_TRIAL_HEEL] = {"heel effect", 1e-4, 1e-4},
-    [SKG_TRIAL_DEPTHS] = {"blur by depths", 1e-4, 1e-4},
-    [SKG_TRIAL_APART] = {"noise power", 1e-4, 1e-4},
-    [SKG_TRIAL_PASSES] = {"extended source", 1e-4, 1e-4},
-    [SKG_TRIAL_SIDE] = {"extended source, side by side", 1e-4, 1e-4},
-};
-
-const skg_trial *skg_trial_get(skg_trial_number number) {
-    return &trials[number];
+skg_tolerance skg_self_test_tolerance(skg_self_test number) {
+    switch (number) {
+    case SKG_SELF_TEST_DOUBLE:
+        return (skg_tolerance){2e-6, 2e-6};
+    case SKG_SELF_TEST_HALF:
+        return (skg_tolerance){0.1, 0.1};
+    case SKG_SELF_TEST_SHADES:
+        return (skg_tolerance){1e-4, 1e-3}; /* the tables of a grid are linear between points */
+    default:
+        return (skg_tolerance){1e-4, 1e-4};
+    }
 }
 
-static int has_two_parts(const skg_trial_scene *scene) {
-    return scene->number == SKG_TRIAL_ENERGIES || scene->number == SKG_TRIAL_PRIORITY;
+static int has_two_parts(const skg_self_test_scene *scene) {
+    return scene->number == SKG_SELF_TEST_ENERGIES || scene->number == SKG_SELF_TEST_PRIORITY;
 }
 
-static int has_energies(const skg_trial_scene *scene) {
-    return scene->number == SKG_TRIAL_ENERGIES || scene->number == SKG_TRIAL_HEEL;
+static int has_energies(const skg_self_test_scene *scene) {
+    return scene->number == SKG_SELF_TEST_ENERGIES || scene->number == SKG_SELF_TEST_HEEL;
 }
 
 /* The last pixels of a row that fill no vector, and vectors that end before those that are read with them, have code paths of
  * their own. A row of 83 pixels has both, with vectors of 1, 4, 8 and 16 of which four are read together. */
-static int has_odd_rows(skg_trial_number number) {
-    return number == SKG_TRIAL_CORE || number == SKG_TRIAL_BLUR || number == SKG_TRIAL_DETECTOR ||
-           number == SKG_TRIAL_DEPTHS;
+static int has_odd_rows(skg_self_test number) {
+    return number == SKG_SELF_TEST_CORE || number == SKG_SELF_TEST_BLUR || number == SKG_SELF_TEST_DETECTOR ||
+           number == SKG_SELF_TEST_DEPTHS;
 }
 
 /* One large box, smaller ones of all sizes on a spiral around it, and one that pierces the large one. Their places and
  * angles are arbitrary. The large one's triangles cross the whole detector, so that they are drawn by the loops, lists and
  * queues that are made for large triangles. */
-static void place_boxes(skg_trial_scene *scene) {
-    for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
+static void place_boxes(skg_self_test_scene *scene) {
+    for (int b = 0; b < SKG_SELF_TEST_BOXES; b++) {
         const double turn = 2.4 * b, far = 14 + 1.1 * b, size = 0.15 * exp(0.13 * b);
         const double centre[3] = {far * cos(turn), far * sin(turn), 10 * sin(1.7 * b)};
         const double half[3] = {size, 1.3 * size, 0.7 * size};
@@ -74,33 +54,33 @@ static void place_boxes(skg_trial_scene *scene) {
     /* The large one, or a narrow one around the source, whose sides the outer rays cross beside the source. */
     const double middle[3] = {1, -2, 3}, half[3] = {30, 42, 15}, angles[3] = {0.31, 0.52, 0.23};
     const double source[3] = {0.2, -0.1, -990}, narrow[3] = {1, 0.8, 30}, upright[3] = {0.01, 0.02, 0.23};
-    scene->boxes[0] = scene->number == SKG_TRIAL_SOURCE_PLANE ? skg_box_turned(source, narrow, upright)
-                                                              : skg_box_turned(middle, half, angles);
+    scene->boxes[0] = scene->number == SKG_SELF_TEST_SOURCE_PLANE ? skg_box_turned(source, narrow, upright)
+                                                                  : skg_box_turned(middle, half, angles);
     const double beside[3] = {9, 3, 1}, other[3] = {8, 5, 6}, others[3] = {0.71, 0.13, 0.4};
-    scene->boxes[SKG_TRIAL_BOXES] = skg_box_turned(beside, other, others);
+    scene->boxes[SKG_SELF_TEST_BOXES] = skg_box_turned(beside, other, others);
 }
 
-/* Boxes elsewhere, of which the mesh of SKG_TRIAL_PLACE is made. */
-static void misplace(const skg_trial_scene *scene, skg_box *boxes) {
-    for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
+/* Boxes elsewhere, of which the mesh of SKG_SELF_TEST_PLACE is made. */
+static void misplace(const skg_self_test_scene *scene, skg_box *boxes) {
+    for (int b = 0; b < SKG_SELF_TEST_BOXES; b++) {
         boxes[b] = scene->boxes[b];
         boxes[b].centre[0] += 5, boxes[b].centre[1] -= 3, boxes[b].centre[2] += 2;
     }
 }
 
-static skg_status add_part(skg_context *context, skg_trial_scene *scene, int part) {
-    const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_TRIAL_BOXES;
-    skg_box elsewhere[SKG_TRIAL_BOXES];
+static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int part) {
+    const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_SELF_TEST_BOXES;
+    skg_box elsewhere[SKG_SELF_TEST_BOXES];
     skg_part given;
     skg_part_init(&given);
-    if (scene->number == SKG_TRIAL_PLACE) {
+    if (scene->number == SKG_SELF_TEST_PLACE) {
         misplace(scene, elsewhere);
         first = elsewhere;
     }
     given.label = part == 0 ? "boxes" : "box";
-    given.priority = scene->number == SKG_TRIAL_PRIORITY ? part : 0;
-    skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_TRIAL_BOXES : 1,
-                                       part == 0 && scene->number == SKG_TRIAL_LEAKY, &given.mesh);
+    given.priority = scene->number == SKG_SELF_TEST_PRIORITY ? part : 0;
+    skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_SELF_TEST_BOXES : 1,
+                                       part == 0 && scene->number == SKG_SELF_TEST_LEAKY, &given.mesh);
     if (status == SKG_OK)
         status =
             skg_material_create_table(given.label, ENERGIES, energies, attenuation[part], &given.material);
@@ -110,37 +90,37 @@ static skg_status add_part(skg_context *context, skg_trial_scene *scene, int par
     return status;
 }
 
-static void choose_options(skg_trial_scene *scene) {
+static void choose_options(skg_self_test_scene *scene) {
     skg_plan_options *options = &scene->options;
     skg_plan_options_init(options);
     options->overlaps = 0;
     switch (scene->number) {
-    case SKG_TRIAL_COPIES:
+    case SKG_SELF_TEST_COPIES:
         options->strategy = SKG_STRATEGY_COPIES;
         break;
-    case SKG_TRIAL_TILES:
+    case SKG_SELF_TEST_TILES:
         options->strategy = SKG_STRATEGY_TILES;
         break;
-    case SKG_TRIAL_ATOMICS:
+    case SKG_SELF_TEST_ATOMICS:
         options->strategy = SKG_STRATEGY_ATOMICS;
         break;
-    case SKG_TRIAL_DOUBLE:
+    case SKG_SELF_TEST_DOUBLE:
         options->precision = SKG_PRECISION_DOUBLE;
         break;
-    case SKG_TRIAL_HALF:
+    case SKG_SELF_TEST_HALF:
         options->precision = SKG_PRECISION_HALF;
         break;
-    case SKG_TRIAL_LEAKY:
+    case SKG_SELF_TEST_LEAKY:
         options->repair = SKG_REPAIR_NEIGHBOURS;
         break;
-    case SKG_TRIAL_NOISE:
+    case SKG_SELF_TEST_NOISE:
         options->noise = 1;
         break;
-    case SKG_TRIAL_RAYS:
+    case SKG_SELF_TEST_RAYS:
         options->supersampling = 2;
         break;
-    case SKG_TRIAL_PASSES:
-    case SKG_TRIAL_SIDE:
+    case SKG_SELF_TEST_PASSES:
+    case SKG_SELF_TEST_SIDE:
         options->strategy = SKG_STRATEGY_COPIES;
         options->spot = &scene->spot;
         break;
@@ -150,17 +130,17 @@ static void choose_options(skg_trial_scene *scene) {
 }
 
 /* As many samples as are drawn together (plan/choose.h); on a single worker PASSES draws each by itself. */
-static void choose_spot(const skg_context *context, skg_trial_scene *scene) {
+static void choose_spot(const skg_context *context, skg_self_test_scene *scene) {
     const int32_t workers = context->device->info.compute_units;
     skg_spot_init(&scene->spot);
     scene->spot.shape = SKG_SPOT_RECTANGLE;
     scene->spot.extent[0] = scene->spot.extent[1] = 2;
-    scene->spot.samples = scene->number == SKG_TRIAL_SIDE ? 4 * workers : workers;
+    scene->spot.samples = scene->number == SKG_SELF_TEST_SIDE ? 4 * workers : workers;
 }
 
-skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number, int64_t pixels,
-                                  skg_trial_scene *scene) {
-    *scene = (skg_trial_scene){.number = number};
+skg_status skg_self_test_scene_create(skg_context *context, skg_self_test number, int64_t pixels,
+                                      skg_self_test_scene *scene) {
+    *scene = (skg_self_test_scene){.number = number};
     skg_view *view = &scene->view;
     skg_view_init(view);
     view->columns = has_odd_rows(number) ? pixels - 13 : pixels;
@@ -178,7 +158,7 @@ skg_status skg_trial_scene_create(skg_context *context, skg_trial_number number,
     return skg_spectrum_create_mono(energies[0], photons[0], &scene->beam);
 }
 
-void skg_trial_scene_release(skg_trial_scene *scene) {
+void skg_self_test_scene_release(skg_self_test_scene *scene) {
     skg_scene_release(&scene->scene);
     skg_spectrum_release(&scene->beam);
     skg_response_release(&scene->response);
@@ -186,8 +166,8 @@ void skg_trial_scene_release(skg_trial_scene *scene) {
     skg_material_release(&scene->filter);
 }
 
-void skg_trial_lengths(const skg_trial_scene *scene, double row, double column, double *surface,
-                       double *net) {
+void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double column, double *surface,
+                           double *net) {
     const skg_view *view = &scene->view;
     double pixel[3], enters = 0, leaves = 0, distance = 0, from = 0, to = 0;
     const double i = column - (double)(view->columns - 1) / 2, j = row - (double)(view->rows - 1) / 2;
@@ -197,20 +177,20 @@ void skg_trial_lengths(const skg_trial_scene *scene, double row, double column, 
     }
     distance = sqrt(distance);
     const int other = has_two_parts(scene) &&
-                      skg_box_crossed(&scene->boxes[SKG_TRIAL_BOXES], view->source, pixel, &from, &to);
+                      skg_box_crossed(&scene->boxes[SKG_SELF_TEST_BOXES], view->source, pixel, &from, &to);
     *surface = net[0] = net[1] = 0;
     if (other) net[1] = (to - from) * distance;
-    for (int b = 0; b < SKG_TRIAL_BOXES; b++) {
+    for (int b = 0; b < SKG_SELF_TEST_BOXES; b++) {
         if (!skg_box_crossed(&scene->boxes[b], view->source, pixel, &enters, &leaves)) continue;
         *surface += (leaves - enters) * distance;
         net[0] += (leaves - enters) * distance;
-        if (other && scene->number == SKG_TRIAL_PRIORITY) /* part 1 displaces part 0 */
+        if (other && scene->number == SKG_SELF_TEST_PRIORITY) /* part 1 displaces part 0 */
             net[0] -= fmax(0, fmin(leaves, to) - fmax(enters, from)) * distance;
     }
 }
 
-double skg_trial_intensity(const skg_trial_scene *scene, const double *shares, const double *net,
-                           double *open) {
+double skg_self_test_intensity(const skg_self_test_scene *scene, const double *shares, const double *net,
+                               double *open) {
     const int bins = has_energies(scene) ? ENERGIES : 1;
     double shown = 0;
     *open = 0;

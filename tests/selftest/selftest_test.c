@@ -2,8 +2,8 @@
  * not pass. Each of these is compiled, so all of them make a test of their own: SKG_WRONG_KERNELS 1. */
 #include "device/cache_folder.h"
 #include "device/choice.h"
-#include "device/verdict.h"
-#include "selftest/trial.h"
+#include "device/self_tests.h"
+#include "selftest/selftest.h"
 #include "skg_shared.h"
 #include "stage/kernels.h"
 #include "suite.h"
@@ -92,16 +92,16 @@ END_TEST
 
 START_TEST(a_right_device_passes) {
     skg_context *context = open_first("");
-    for (int test = 0; test < SKG_TRIALS; test++) {
-        skg_finding finding;
-        if (test == SKG_TRIAL_DOUBLE && !context->device->info.has_double) continue;
-        ck_skg(skg_trial_again(context, (skg_trial_number)test, &finding));
-        ck_assert_msg(finding.good, "%s: %s", skg_trial_get((skg_trial_number)test)->name, finding.reason);
-        ck_assert(test == SKG_TRIAL_CORE ? finding.score > 0 : finding.score == 0);
-        if (test != SKG_TRIAL_TILES) continue;
+    for (int test = 0; test < SKG_SELF_TESTS; test++) {
+        skg_verdict verdict;
+        if (test == SKG_SELF_TEST_DOUBLE && !context->device->info.has_double) continue;
+        ck_skg(skg_self_test_repeat(context, (skg_self_test)test, &verdict));
+        ck_assert_msg(verdict.good, "%s: %s", skg_self_test_name((skg_self_test)test), verdict.reason);
+        ck_assert(test == SKG_SELF_TEST_CORE ? verdict.score > 0 : verdict.score == 0);
+        if (test != SKG_SELF_TEST_TILES) continue;
         context->device->info.is_gpu = 1;
-        ck_skg(skg_trial_again(context, SKG_TRIAL_TILES, &finding));
-        ck_assert_msg(finding.good, "squares: %s", finding.reason);
+        ck_skg(skg_self_test_repeat(context, SKG_SELF_TEST_TILES, &verdict));
+        ck_assert_msg(verdict.good, "squares: %s", verdict.reason);
         context->device->info.is_gpu = 0;
     }
     skg_context_release(&context);
@@ -141,99 +141,102 @@ static void remove_kernels(void) {
 /* Errors that a compiler might make: each has to be found by the test of these kernels. */
 static const struct {
     const char *file, *old, *new;
-    skg_trial_number test;
+    skg_self_test test;
 } errors[] = {
     {"sums.clh", "SKG_TO_REAL_V(SKG_AS_TERM_V(sum))", "SKG_TO_REAL_V(SKG_AS_TERM_V(sum) * 0)",
-     SKG_TRIAL_CORE},
-    {"project.cl", "p->anchor_x + across / t", "p->anchor_x + across / t + 0.01f", SKG_TRIAL_CORE},
-    {"attenuate.cl", "passed, pixels->shown[c][r])", "passed * 1.001f, pixels->shown[c][r])", SKG_TRIAL_CORE},
+     SKG_SELF_TEST_CORE},
+    {"project.cl", "p->anchor_x + across / t", "p->anchor_x + across / t + 0.01f", SKG_SELF_TEST_CORE},
+    {"attenuate.cl", "passed, pixels->shown[c][r])", "passed * 1.001f, pixels->shown[c][r])",
+     SKG_SELF_TEST_CORE},
     {"planes.clh", "pass->used, plane, pass->row, at)", "pass->used, plane, pass->row, pass->column)",
-     SKG_TRIAL_CORE},
-    {"attenuate.cl", "SKG_WIDE); k++, place++)", "SKG_WIDE - 1); k++, place++)", SKG_TRIAL_CORE},
-    {"attenuate.cl", "pass.column += SKG_RUNS", "pass.column += 2 * SKG_RUNS", SKG_TRIAL_CORE},
+     SKG_SELF_TEST_CORE},
+    {"attenuate.cl", "SKG_WIDE); k++, place++)", "SKG_WIDE - 1); k++, place++)", SKG_SELF_TEST_CORE},
+    {"attenuate.cl", "pass.column += SKG_RUNS", "pass.column += 2 * SKG_RUNS", SKG_SELF_TEST_CORE},
     {"attenuate.cl", "pass->weights[n * SKG_CHANNELS + c]), passed", "pass->weights[c]), passed",
-     SKG_TRIAL_ENERGIES},
-    {"source_plane.cl", "part < 1 ? part : 1", "part < 1 ? 0 : 1", SKG_TRIAL_SOURCE_PLANE},
-    {"leaky.cl", "place += sums & valid", "place += sums & 0", SKG_TRIAL_LEAKY},
-    {"hits.cl", "hits[k + 1].depth - hits[k].depth", "hits[k].depth - hits[k + 1].depth", SKG_TRIAL_PRIORITY},
-    {"noise.clh", "(uint)pixel", "(uint)0", SKG_TRIAL_NOISE},
-    {"blur.cl", "weights[j * across + i]", "weights[j * across]", SKG_TRIAL_BLUR},
+     SKG_SELF_TEST_ENERGIES},
+    {"source_plane.cl", "part < 1 ? part : 1", "part < 1 ? 0 : 1", SKG_SELF_TEST_SOURCE_PLANE},
+    {"leaky.cl", "place += sums & valid", "place += sums & 0", SKG_SELF_TEST_LEAKY},
+    {"hits.cl", "hits[k + 1].depth - hits[k].depth", "hits[k].depth - hits[k + 1].depth",
+     SKG_SELF_TEST_PRIORITY},
+    {"noise.clh", "(uint)pixel", "(uint)0", SKG_SELF_TEST_NOISE},
+    {"blur.cl", "weights[j * across + i]", "weights[j * across]", SKG_SELF_TEST_BLUR},
     {"project.cl", "(p->anchor_x + across, p->anchor_y + down, r, t)",
-     "(p->anchor_x + across, p->anchor_y + down, r * 1.0000001f, t)", SKG_TRIAL_PARALLEL},
+     "(p->anchor_x + across, p->anchor_y + down, r * 1.0000001f, t)", SKG_SELF_TEST_PARALLEL},
     /* Strategies; the loops of draw.clh: tiny, narrow, rows, tall, spans, steep; what only large triangles take. */
-    {"raster_copies.cl", "blocks, triangle, end);", "blocks, triangle, end - 1);", SKG_TRIAL_COPIES},
+    {"raster_copies.cl", "blocks, triangle, end);", "blocks, triangle, end - 1);", SKG_SELF_TEST_COPIES},
     {"raster_passes.cl", "blocks, 0, frame->triangles);", "blocks, 0, frame->triangles - 1);",
-     SKG_TRIAL_PASSES},
-    {"raster_passes.cl", "(p.y, q.y, r.y, s.y)", "(p.y, q.y, r.y, r.y)", SKG_TRIAL_SIDE},
-    {"draw.clh", "pass * target->image_size", "0", SKG_TRIAL_SIDE},
-    {"sums.clh", "(size_t)(frame->first_plane + plane)", "(size_t)plane", SKG_TRIAL_PASSES},
+     SKG_SELF_TEST_PASSES},
+    {"raster_passes.cl", "(p.y, q.y, r.y, s.y)", "(p.y, q.y, r.y, r.y)", SKG_SELF_TEST_SIDE},
+    {"draw.clh", "pass * target->image_size", "0", SKG_SELF_TEST_SIDE},
+    {"sums.clh", "(size_t)(frame->first_plane + plane)", "(size_t)plane", SKG_SELF_TEST_PASSES},
     {"draw.clh", "skg_hit_v(&line, i) & (i < right) & (j < bottom)",
-     "skg_hit_v(&line, i) & (i < right - 1) & (j < bottom)", SKG_TRIAL_COPIES},
-    {"draw.clh", "SKG_DRAW_BLOCK(1, SKG_BLOCK_1)", "SKG_DRAW_BLOCK(1, SKG_BLOCK_0)", SKG_TRIAL_COPIES},
-    {"draw.clh", "skg_hit_v(&lower, i), 0)", "skg_hit_v(&upper, i), 0)", SKG_TRIAL_COPIES},
+     "skg_hit_v(&line, i) & (i < right - 1) & (j < bottom)", SKG_SELF_TEST_COPIES},
+    {"draw.clh", "SKG_DRAW_BLOCK(1, SKG_BLOCK_1)", "SKG_DRAW_BLOCK(1, SKG_BLOCK_0)", SKG_SELF_TEST_COPIES},
+    {"draw.clh", "skg_hit_v(&lower, i), 0)", "skg_hit_v(&upper, i), 0)", SKG_SELF_TEST_COPIES},
     {"draw.clh", "place + SKG_WIDE, skg_depth_v(&f, &line, more)",
-     "place + SKG_WIDE, skg_depth_v(&f, &line, i)", SKG_TRIAL_COPIES},
+     "place + SKG_WIDE, skg_depth_v(&f, &line, i)", SKG_SELF_TEST_COPIES},
     {"draw.clh",
      "skg_depth_v(&f, &line, i), stored.factor[row],\n                                i < line.b, 0)",
      "skg_depth_v(&f, &line, i), stored.factor[row],\n                                i < line.b - 1, 0)",
-     SKG_TRIAL_COPIES},
-    {"draw.clh", "skg_between_v(&span, i), i)", "skg_between_v(&span, i + 1), i)", SKG_TRIAL_COPIES},
+     SKG_SELF_TEST_COPIES},
+    {"draw.clh", "skg_between_v(&span, i), i)", "skg_between_v(&span, i + 1), i)", SKG_SELF_TEST_COPIES},
     {"bands.cl", "if (to - from >= SKG_MOST_TILES) {", "if (to - from >= 1) {\n                    continue;",
-     SKG_TRIAL_TILES},
+     SKG_SELF_TEST_TILES},
     {"raster_bands.cl", "skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range)", "",
-     SKG_TRIAL_TILES},
+     SKG_SELF_TEST_TILES},
     {"raster_atomics.cl", "queue[2 * (first + s) + 3] = s;", "queue[2 * (first + s) + 3] = 0;",
-     SKG_TRIAL_ATOMICS},
+     SKG_SELF_TEST_ATOMICS},
     {"raster_atomics.cl", "box.j1 = min(box.j1, box.j0 + rows);", "box.j1 = min(box.j1, box.j0 + rows - 1);",
-     SKG_TRIAL_ATOMICS},
+     SKG_SELF_TEST_ATOMICS},
     {"pixel.clh", "skg_depth(f, &line, (skg_real)column), factor);",
-     "skg_depth(f, &line, (skg_real)column), -factor);", SKG_TRIAL_ATOMICS},
-    {"exponential.clh", "0.24022650695910156204", "0.24", SKG_TRIAL_DOUBLE},
-    {"half.cl", "* 1e-3f);", "* 1.2e-3f);", SKG_TRIAL_HALF},
-    {"counts.cl", "verdict[0] = total;", "verdict[0] = total + 100;", SKG_TRIAL_LEAKY},
-    {"random.clh", "(F)(0x1.0fc8bep+1f)", "(F)(0x1.3fc8bep+1f)", SKG_TRIAL_NOISE},
+     "skg_depth(f, &line, (skg_real)column), -factor);", SKG_SELF_TEST_ATOMICS},
+    {"exponential.clh", "0.24022650695910156204", "0.24", SKG_SELF_TEST_DOUBLE},
+    {"half.cl", "* 1e-3f);", "* 1.2e-3f);", SKG_SELF_TEST_HALF},
+    {"counts.cl", "verdict[0] = total;", "verdict[0] = total + 100;", SKG_SELF_TEST_LEAKY},
+    {"random.clh", "(F)(0x1.0fc8bep+1f)", "(F)(0x1.3fc8bep+1f)", SKG_SELF_TEST_NOISE},
     {"attenuate.cl", "pixels.shown[0][r] = pixels.highest[r]",
-     "pixels.shown[0][r] = 1.001f * pixels.highest[r]", SKG_TRIAL_LENGTHS},
-    {"raster_squares.cl", "k < own + all; k += 64", "k < own; k += 64", SKG_TRIAL_TILES},
+     "pixels.shown[0][r] = 1.001f * pixels.highest[r]", SKG_SELF_TEST_LENGTHS},
+    {"raster_squares.cl", "k < own + all; k += 64", "k < own; k += 64", SKG_SELF_TEST_TILES},
     {"raster_squares.cl", "own = starts[tile + 1] - starts[tile]",
-     "own = starts[tile + 1] - starts[tile] - 1", SKG_TRIAL_TILES},
+     "own = starts[tile + 1] - starts[tile] - 1", SKG_SELF_TEST_TILES},
     {"raster_squares.cl", "k / columns * frame.tile_columns + k % columns]",
-     "k / columns * frame.tile_columns]", SKG_TRIAL_TILES},
+     "k / columns * frame.tile_columns]", SKG_SELF_TEST_TILES},
     {"tiles.cl", "tiles->z = (box.i1 - 1 + range.pixel_i) / frame->tile_columns + 1",
-     "tiles->z = tiles->x + 1", SKG_TRIAL_TILES},
-    {"detect.cl", "rint(value / spacing) * spacing", "value", SKG_TRIAL_DETECTOR},
+     "tiles->z = tiles->x + 1", SKG_SELF_TEST_TILES},
+    {"detect.cl", "rint(value / spacing) * spacing", "value", SKG_SELF_TEST_DETECTOR},
     {"detect.cl", "SKG_TO_REAL_V(skg_normal_v(draw[0]))", "2 * SKG_TO_REAL_V(skg_normal_v(draw[0]))",
-     SKG_TRIAL_DETECTOR},
-    {"detect.cl", "row * columns + column, SKG_DRAW", "column, SKG_DRAW", SKG_TRIAL_DETECTOR},
-    {"detect.cl", "((long)channel * rows + row) * columns + column", "column", SKG_TRIAL_DETECTOR},
-    {"attenuate.cl", "sums[k] += rays[k * SKG_FINE + a]", "sums[k] += rays[k * SKG_FINE]", SKG_TRIAL_RAYS},
-    {"attenuate.cl", "(SKG_ADD || row > 0)", "SKG_ADD", SKG_TRIAL_RAYS},
+     SKG_SELF_TEST_DETECTOR},
+    {"detect.cl", "row * columns + column, SKG_DRAW", "column, SKG_DRAW", SKG_SELF_TEST_DETECTOR},
+    {"detect.cl", "((long)channel * rows + row) * columns + column", "column", SKG_SELF_TEST_DETECTOR},
+    {"attenuate.cl", "sums[k] += rays[k * SKG_FINE + a]", "sums[k] += rays[k * SKG_FINE]",
+     SKG_SELF_TEST_RAYS},
+    {"attenuate.cl", "(SKG_ADD || row > 0)", "SKG_ADD", SKG_SELF_TEST_RAYS},
     {"shades.clh", "fma(share, (skg_realv)(tangents[rows + row + 1] - first), (skg_realv)(first))",
-     "(skg_realv)(first)", SKG_TRIAL_SHADES},
-    {"shades.clh", "* (length / sqrt(fma(x, x, y * y)))", "", SKG_TRIAL_SHADES},
+     "(skg_realv)(first)", SKG_SELF_TEST_SHADES},
+    {"shades.clh", "* (length / sqrt(fma(x, x, y * y)))", "", SKG_SELF_TEST_SHADES},
     {"shades.clh", "value = fma(value, z, (skg_realv)(terms[t]))",
-     "value = fma(value, z, (skg_realv)(terms[0]))", SKG_TRIAL_SHADES},
-    {"shades.clh", "fma(at - row, next[g] - here[g], here[g])", "2 * here[g]", SKG_TRIAL_SHADES},
-    {"shades.clh", "polynomials + s * SKG_TERMS, heel)", "polynomials, heel)", SKG_TRIAL_HEEL},
-    {"shades.clh", "column, row) / length + args->heel[3]", "column, row) / length", SKG_TRIAL_HEEL},
-    {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_TRIAL_DEPTHS},
-    {"blur.cl", "add ? place[k] + rest[k] : rest[k]", "rest[k]", SKG_TRIAL_DEPTHS},
-    {"blur.cl", "weights[j * across + i]", "weights[i]", SKG_TRIAL_DEPTHS},
-    {"blur.cl", "k < pixels; k++) place[k] = add", "k < pixels - 1; k++) place[k] = add", SKG_TRIAL_BLUR},
+     "value = fma(value, z, (skg_realv)(terms[0]))", SKG_SELF_TEST_SHADES},
+    {"shades.clh", "fma(at - row, next[g] - here[g], here[g])", "2 * here[g]", SKG_SELF_TEST_SHADES},
+    {"shades.clh", "polynomials + s * SKG_TERMS, heel)", "polynomials, heel)", SKG_SELF_TEST_HEEL},
+    {"shades.clh", "column, row) / length + args->heel[3]", "column, row) / length", SKG_SELF_TEST_HEEL},
+    {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_SELF_TEST_DEPTHS},
+    {"blur.cl", "add ? place[k] + rest[k] : rest[k]", "rest[k]", SKG_SELF_TEST_DEPTHS},
+    {"blur.cl", "weights[j * across + i]", "weights[i]", SKG_SELF_TEST_DEPTHS},
+    {"blur.cl", "k < pixels; k++) place[k] = add", "k < pixels - 1; k++) place[k] = add", SKG_SELF_TEST_BLUR},
     {"detect.cl", "k < pixels; k++) image[k] = rest[k]", "k < pixels - 1; k++) image[k] = rest[k]",
-     SKG_TRIAL_DETECTOR},
+     SKG_SELF_TEST_DETECTOR},
     {"attenuate.cl", "skg_noisy_v(pass, pixels, r, c, all) - value", "skg_noisy_v(pass, pixels, r, c, all)",
-     SKG_TRIAL_APART},
-    {"attenuate.cl", "pixels.spread[c], SKG_CHANNELS + c)", "pixels.spread[c], c)", SKG_TRIAL_APART},
-    {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_TRIAL_APART},
-    {"place.cl", "(long)taken[v]", "(long)taken[0]", SKG_TRIAL_PLACE},
-    {"place.cl", "to[k] = finite ? at : x;", "to[k] = x;", SKG_TRIAL_PLACE},
-    {"show.cl", "((depth < strip->depth[r]) | (", "((depth > strip->depth[r]) | (", SKG_TRIAL_PICTURE},
-    {"show.cl", "face->box[2] / SKG_SHOW_TILE + 1", "face->box[2] / SKG_SHOW_TILE", SKG_TRIAL_PICTURE},
+     SKG_SELF_TEST_APART},
+    {"attenuate.cl", "pixels.spread[c], SKG_CHANNELS + c)", "pixels.spread[c], c)", SKG_SELF_TEST_APART},
+    {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_SELF_TEST_APART},
+    {"place.cl", "(long)taken[v]", "(long)taken[0]", SKG_SELF_TEST_PLACE},
+    {"place.cl", "to[k] = finite ? at : x;", "to[k] = x;", SKG_SELF_TEST_PLACE},
+    {"show.cl", "((depth < strip->depth[r]) | (", "((depth > strip->depth[r]) | (", SKG_SELF_TEST_PICTURE},
+    {"show.cl", "face->box[2] / SKG_SHOW_TILE + 1", "face->box[2] / SKG_SHOW_TILE", SKG_SELF_TEST_PICTURE},
     {"show.cl", "skg_show_outside(rows, 1, r) | skg_show_outside(rows, 2, r)", "skg_show_outside(rows, 1, r)",
-     SKG_TRIAL_PICTURE},
-    {"show.cl", "strip->through[r] -= share;", "", SKG_TRIAL_PICTURE},
-    {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_TRIAL_PICTURE},
+     SKG_SELF_TEST_PICTURE},
+    {"show.cl", "strip->through[r] -= share;", "", SKG_SELF_TEST_PICTURE},
+    {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_SELF_TEST_PICTURE},
 };
 
 /* Extents end at multiples of SKG_EXTENT_COLUMNS, so that a device whose vectors read together are not wider never calls the
@@ -245,16 +248,16 @@ static int is_reached(int number, const skg_device_info *device) {
 
 START_TEST(wrong_kernels_are_found) {
     char more[96];
-    skg_finding finding;
+    skg_verdict verdict;
     copy_kernels(errors[_i].file, errors[_i].old, errors[_i].new);
     snprintf(more, sizeof more, "kernels=%s", kernels);
     skg_context *context = open_first(more);
     /* Squares are the tiles of GPUs. */
     context->device->info.is_gpu |= strstr("raster_squares.cl tiles.cl", errors[_i].file) != NULL;
-    ck_skg(skg_trial_again(context, errors[_i].test, &finding));
+    ck_skg(skg_self_test_repeat(context, errors[_i].test, &verdict));
     if (is_reached(_i, &context->device->info)) {
-        ck_assert_int_eq(finding.good, 0);
-        ck_assert_msg(strstr(finding.reason, "pixel") != NULL, "%s", finding.reason);
+        ck_assert_int_eq(verdict.good, 0);
+        ck_assert_msg(strstr(verdict.reason, "pixel") != NULL, "%s", verdict.reason);
     }
     skg_context_release(&context);
     remove_kernels();
@@ -272,8 +275,9 @@ START_TEST(a_verdict_is_found_once_and_kept) {
     skg_verdict verdict;
     ck_skg(skg_context_create("device=0:0", &context));
     ck_assert_int_eq(count_kept(".verdict", NULL), 1);
-    ck_assert_int_eq(
-        skg_verdict_known(context->device->store, &context->device->identity, SKG_TEST_OF_ALL, &verdict), 1);
+    ck_assert_int_eq(skg_verdict_known(context->device->store, &context->device->identity,
+                                       skg_self_test_name(SKG_SELF_TEST_CORE), &verdict),
+                     1);
     ck_assert_int_eq(verdict.good, 1);
     ck_assert_double_gt(verdict.score, 0);
     skg_context_release(&context);
@@ -286,7 +290,7 @@ END_TEST
 START_TEST(a_device_that_failed_is_refused) {
     skg_context *context = open_first("");
     skg_device_test result;
-    keep_verdict(context, SKG_TEST_OF_ALL, 0, 0);
+    keep_verdict(context, skg_self_test_name(SKG_SELF_TEST_CORE), 0, 0);
     skg_context_release(&context);
     ck_skg_fails(skg_context_create("device=0:0", &context), SKG_ERR_DEVICE, "computes wrongly");
     ck_skg_fails(skg_context_create("device=0:0", &context), SKG_ERR_DEVICE, "pixel (1, 2) is black");
@@ -294,7 +298,7 @@ START_TEST(a_device_that_failed_is_refused) {
     skg_device_test_init(&result);
     ck_skg(skg_device_test_run(0, 0, &result)); /* tests again, and finds it right */
     ck_assert_int_eq(result.verdict, SKG_TEST_RIGHT);
-    ck_assert_str_eq(result.name, SKG_TEST_OF_ALL);
+    ck_assert_str_eq(result.name, skg_self_test_name(SKG_SELF_TEST_CORE));
     ck_skg(skg_context_create("device=0:0", &context));
     skg_context_release(&context);
 }
@@ -316,7 +320,7 @@ static void list_devices(const char *flags, char *said, size_t size) {
 START_TEST(a_refused_device_is_listed_with_the_reason) {
     char said[16384];
     skg_context *context = open_first("");
-    keep_verdict(context, SKG_TEST_OF_ALL, 0, 0);
+    keep_verdict(context, skg_self_test_name(SKG_SELF_TEST_CORE), 0, 0);
     list_devices("", said, sizeof said);
     ck_assert_msg(strstr(said, context->device->info.name) != NULL, "%s", said);
     ck_assert_msg(strstr(said, "\n       refused: ") != NULL, "%s", said);
@@ -331,14 +335,14 @@ END_TEST
 #endif
 
 static skg_status plan_with(skg_context *context, int noise) {
-    skg_trial_scene scene;
+    skg_self_test_scene scene;
     skg_plan *plan = NULL;
-    ck_skg(skg_trial_scene_create(context, SKG_TRIAL_CORE, 16, &scene));
+    ck_skg(skg_self_test_scene_create(context, SKG_SELF_TEST_CORE, 16, &scene));
     scene.options.noise = noise;
     const skg_status status =
         skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan);
     skg_plan_release(&plan);
-    skg_trial_scene_release(&scene);
+    skg_self_test_scene_release(&scene);
     return status;
 }
 
@@ -359,7 +363,7 @@ END_TEST
 /* Kernels that no plan needs by itself: the calls that need them are refused. */
 START_TEST(calls_are_refused_whose_kernels_are_wrong) {
     skg_context *context = NULL;
-    skg_trial_scene scene;
+    skg_self_test_scene scene;
     skg_plan *plan = NULL;
     skg_job *job = NULL;
     skg_output output;
@@ -370,7 +374,7 @@ START_TEST(calls_are_refused_whose_kernels_are_wrong) {
     output.data = lengths;
     output.type = SKG_TYPE_FLOAT32;
     ck_skg(skg_context_create("device=0:0", &context));
-    ck_skg(skg_trial_scene_create(context, SKG_TRIAL_CORE, 16, &scene));
+    ck_skg(skg_self_test_scene_create(context, SKG_SELF_TEST_CORE, 16, &scene));
     ck_skg(skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan));
     keep_verdict(context, "path lengths", 0, 0);
     keep_verdict(context, "positions on the device", 0, 0);
@@ -385,7 +389,7 @@ START_TEST(calls_are_refused_whose_kernels_are_wrong) {
     ck_skg(skg_plan_lengths(plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));
     ck_skg(skg_job_wait(&job));
     skg_plan_release(&plan);
-    skg_trial_scene_release(&scene);
+    skg_self_test_scene_release(&scene);
     skg_context_release(&context);
 }
 END_TEST
@@ -407,7 +411,7 @@ START_TEST(bad_numbers_are_refused) {
     skg_device_test_init(&result);
     ck_skg(skg_device_test_count(&count));
     ck_skg(skg_device_count(&devices));
-    ck_assert_int_eq(count, SKG_TRIALS);
+    ck_assert_int_eq(count, SKG_SELF_TESTS);
     ck_skg_fails(skg_device_test_run(0, count, &result), SKG_ERR_ARGUMENT, "counted from 0");
     ck_skg_fails(skg_device_test_run(0, -1, &result), SKG_ERR_ARGUMENT, "counted from 0");
     ck_skg_fails(skg_device_test_run(devices, 0, &result), SKG_ERR_ARGUMENT, "counted from 0");

@@ -1,7 +1,7 @@
 /* skg_context_create: the best device that computes rightly. */
 #include "core/plain.h"
 #include "device/choice.h"
-#include "selftest/trial.h"
+#include "device/self_tests.h"
 
 #include <stdio.h>
 
@@ -17,7 +17,7 @@ skg_status skg_context_create(const char *config, skg_context **context) {
         skg_status status = skg_context_open(config, without, &made, &index);
         if (status == SKG_ERR_NO_DEVICE && refused[0]) return skg_fail(SKG_ERR_DEVICE, "%s", refused);
         if (status != SKG_OK && index < 0) return status; /* no device is at fault */
-        if (status == SKG_OK) status = skg_trial_need(made, SKG_TRIAL_CORE);
+        if (status == SKG_OK) status = skg_self_test_need(made, SKG_SELF_TEST_CORE);
         if (status == SKG_OK) {
             if (refused[0]) skg_mailbox_put(skg_mailbox_address(made->driver), refused);
             *context = made;

@@ -3,8 +3,7 @@
 #include "device/choice.h"
 #include "device/device.h"
 #include "device/kept.h"
-#include "device/verdict.h"
-#include "selftest/trial.h"
+#include "device/self_tests.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -18,19 +17,19 @@ void skg_device_test_init_sized(void *result, int32_t size) {
 
 skg_status skg_device_test_count(int64_t *count) {
     SKG_NEEDS(count);
-    *count = SKG_TRIALS;
+    *count = SKG_SELF_TESTS;
     return SKG_OK;
 }
 
 static skg_status check_test(int64_t test) {
-    if (test >= 0 && test < SKG_TRIALS) return SKG_OK;
-    return skg_fail(SKG_ERR_ARGUMENT, "test %" PRId64 " of %d (counted from 0)", test, SKG_TRIALS);
+    if (test >= 0 && test < SKG_SELF_TESTS) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "test %" PRId64 " of %d (counted from 0)", test, SKG_SELF_TESTS);
 }
 
 skg_status skg_device_test_name_get(int64_t test, const char **name) {
     SKG_NEEDS(name);
     SKG_TRY(check_test(test));
-    *name = skg_trial_get((skg_trial_number)test)->name;
+    *name = skg_self_test_name((skg_self_test)test);
     return SKG_OK;
 }
 
@@ -43,18 +42,18 @@ static skg_status take_failure(skg_status status, skg_device_test *result) {
     return SKG_OK;
 }
 
-static skg_status run_test(const skg_device_info *info, skg_trial_number number, skg_device_test *result) {
+static skg_status run_test(const skg_device_info *info, skg_self_test number, skg_device_test *result) {
     char config[64];
     skg_context *context = NULL;
-    skg_finding finding;
+    skg_verdict verdict;
     int32_t index = 0;
     snprintf(config, sizeof config, "device=%" PRId32 ":%" PRId32, info->platform, info->device);
     skg_status status = skg_context_open(config, 0, &context, &index);
-    if (status == SKG_OK) status = skg_trial_again(context, number, &finding);
+    if (status == SKG_OK) status = skg_self_test_repeat(context, number, &verdict);
     if (status == SKG_OK) {
-        result->verdict = finding.good ? SKG_TEST_RIGHT : SKG_TEST_WRONG;
-        result->score = finding.score;
-        memcpy(result->reason, finding.reason, sizeof result->reason);
+        result->verdict = verdict.good ? SKG_TEST_RIGHT : SKG_TEST_WRONG;
+        result->score = verdict.score;
+        memcpy(result->reason, verdict.reason, sizeof result->reason);
     } else {
         status = take_failure(status, result);
     }
@@ -72,9 +71,9 @@ skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *re
     skg_device_info_init(&info);
     skg_device_test_init(&ours);
     SKG_TRY(skg_device_get(device, &info));
-    snprintf(ours.name, sizeof ours.name, "%s", skg_trial_get((skg_trial_number)test)->name);
+    snprintf(ours.name, sizeof ours.name, "%s", skg_self_test_name((skg_self_test)test));
     clock_gettime(CLOCK_MONOTONIC, &start);
-    SKG_TRY(run_test(&info, (skg_trial_number)test, &ours));
+    SKG_TRY(run_test(&info, (skg_self_test)test, &ours));
     clock_gettime(CLOCK_MONOTONIC, &end);
     ours.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
     return skg_struct_write(&ours, sizeof ours, "skg_device_test", result);
@@ -99,6 +98,6 @@ skg_status skg_device_test_keep(const char *config, int64_t test, const skg_devi
     snprintf(verdict.reason, sizeof verdict.reason, "%.*s", (int)sizeof ours.reason - 1, ours.reason);
     const skg_digest identity = skg_identity_of(platform, device);
     skg_store_find(store);
-    skg_verdict_keep(store, &identity, skg_trial_get((skg_trial_number)test)->name, &verdict);
+    skg_verdict_keep(store, &identity, skg_self_test_name((skg_self_test)test), &verdict);
     return SKG_OK;
 }
