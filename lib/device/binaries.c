@@ -1,4 +1,4 @@
-#include "device/kept.h"
+#include "device/cache.h"
 #include "device/programs.h"
 
 #include <string.h>

@@ -47,14 +47,14 @@ typedef struct {
     const char *device, *driver; /* the values of device= and driver= */
 } skg_device_words;
 
-/* Chooses the device for the words of a config, and fills info. without: bit n is set if device n is not wanted; index: the
- * number of the one that is chosen. A device that has failed the test of what every plan needs is passed over, unless it
- * is the only one that fits; its user then hears why. */
+/* Chooses the device for the words of a config, and fills info. without: bit n excludes device n; index: the number of the chosen
+ * device. A device that has failed the self-test SKG_SELF_TEST_CORE is chosen only if no other fits; opening it then fails with the
+ * reason. */
 skg_status skg_device_choose(const skg_device_words *words, uint64_t without, cl_platform_id *platform,
                              cl_device_id *device, skg_device_info *info, int32_t *index);
 
-/* untested: 1 if the device of these words is of a platform that is not known, and no verdict on it is kept, so that the first
- * context on it would test it in this process. Platforms that are not trusted are not asked for their devices. */
+/* untested: 1 if the device of these words is of an unknown platform and has no cached verdict, so that the first context on it
+ * would test it in this process. Platforms that are not trusted are not asked for their devices. */
 skg_status skg_device_doubt(const skg_device_words *words, int32_t *untested);
 
 /* The device that skg_context_create tries first for this config. */

@@ -1,7 +1,7 @@
 #include "core/names.h"
+#include "device/cache.h"
 #include "device/choice.h"
 #include "device/device.h"
-#include "device/kept.h"
 #include "device/self_tests.h"
 #include "driver/driver.h"
 

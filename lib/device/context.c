@@ -97,8 +97,8 @@ static skg_status read_words(const char *words, wanted_device *wanted) {
     return SKG_OK;
 }
 
-/* Words of config replace those of the environment. A driver of the environment ends with a device of config, which is one
- * of the loader's. */
+/* Words of config replace those of the environment. If config has a device and no driver, the driver of the environment is
+ * ignored too, because the device is one of the loader's. */
 static skg_status read_config(const char *config, wanted_device *wanted) {
     wanted_device asked = {0};
     *wanted = (wanted_device){0};

@@ -1,4 +1,4 @@
-/* skg_context_create: the best device that computes rightly. */
+/* skg_context_create: opens the best device that passes its self-test. */
 #include "core/plain.h"
 #include "device/choice.h"
 #include "device/self_tests.h"

@@ -22,18 +22,18 @@ typedef struct skg_device {
     skg_device_info info;
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
-    skg_aside loading;            /* of what is expected */
-    skg_pages *pages;             /* of the expected buffer; NULL: none */
-    int64_t builds;       /* programs compiled so far; a second scene with the same effects adds none */
-    int64_t launched;     /* programs that there were when a job was last complete; later ones may be new */
-    int64_t loads;        /* programs taken from the user's folder so far */
+    skg_aside loading;            /* loads prefetched programs */
+    skg_pages *pages;             /* of the prefetched buffer; NULL: none */
+    int64_t builds;   /* programs compiled so far; a second scene with the same effects adds none */
+    int64_t launched; /* value of builds when a job was last complete; later programs may not have run yet */
+    int64_t loads;    /* programs taken from the user's folder so far */
     skg_digest identity;  /* of the device and its driver */
-    char *store;          /* folder in which compiled programs are kept; "": none */
+    char *store;          /* folder of cached programs and verdicts; "": none */
     int32_t clang;        /* 1: kernels may use the builtins of clang */
-    int32_t caches;       /* 1: the driver keeps compiled kernels itself */
-    int32_t simulates;    /* 1: a simulator, which is not tested and keeps nothing */
+    int32_t caches;       /* 1: the driver caches compiled kernels itself */
+    int32_t simulates;    /* 1: a simulator, which is not tested and caches nothing */
     uint32_t passed;      /* bit n: enum skg_self_test */
-    int32_t self_testing; /* 1: a self-test is running, whose own calls need none */
+    int32_t self_testing; /* > 0: a self-test is running, whose own calls need none */
     skg_watch compiling;
 } skg_device;
 
@@ -69,17 +69,17 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 
 /* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1 ...").
  * It comes from the cache of the context or is built. The cache owns it; do not release it. If it does not
- * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only expected (skg_expected_begin). */
+ * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only prefetched (skg_expected_begin). */
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program);
 
-/* Begins to load those of the expected programs that the user's folder has, and to enter the memory of the expected buffer, in
- * a thread of its own, until skg_expected_wait. Meanwhile the context must not be used otherwise. What cannot be had is left
- * to skg_program_get and skg_buffer_reserve, and its errors too. */
+/* Prefetches in a thread of its own, until skg_expected_wait: loads the programs that were asked for with NULL from the user's
+ * folder, and writes to the pages of the prefetched buffer. Meanwhile the context must not be used. It reports no error: a program
+ * or buffer that it could not prefetch is made by skg_program_get or skg_buffer_reserve. */
 void skg_expected_begin(skg_context *context);
 void skg_expected_wait(skg_context *context);
 
-/* To be called after skg_work_end: the programs have been launched, and are kept in the user's folder, unless other work is under
+/* To be called after skg_work_end, when all programs have been launched: saves them in the user's folder, unless other work is under
  * way (driver.h). */
 void skg_programs_launched(skg_context *context);
 
@@ -103,7 +103,7 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
 
-/* Expects a buffer of so many bytes without contents, of which kernels will soon write these ranges (skg_expected_begin), until
+/* Prefetches the memory of a buffer of this size, of which kernels will soon write these ranges (skg_expected_begin), until
  * skg_buffer_forget. */
 void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges);
 void skg_buffer_forget(skg_context *context);

@@ -1,8 +1,8 @@
-/* The tests of a device, one by one. */
+/* Public calls that run a single self-test. */
 #include "core/plain.h"
+#include "device/cache.h"
 #include "device/choice.h"
 #include "device/device.h"
-#include "device/kept.h"
 #include "device/self_tests.h"
 
 #include <inttypes.h>
@@ -33,7 +33,7 @@ skg_status skg_device_test_name_get(int64_t test, const char **name) {
     return SKG_OK;
 }
 
-/* What a call that failed means for the verdict: memory and arguments are not the device's fault. */
+/* The verdict if a call has failed. Too little memory and wrong arguments are not the device's fault. */
 static skg_status take_failure(skg_status status, skg_device_test *result) {
     if (status == SKG_ERR_MEMORY || status == SKG_ERR_ARGUMENT) return status;
     result->verdict = status == SKG_ERR_UNSUPPORTED ? SKG_TEST_UNSUPPORTED : SKG_TEST_FAILED;

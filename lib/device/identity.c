@@ -1,6 +1,6 @@
+#include "device/cache.h"
 #include "device/choice.h"
 #include "device/device.h"
-#include "device/kept.h"
 
 #include <skiagraph/version.h>
 

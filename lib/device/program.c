@@ -8,9 +8,9 @@
 struct skg_program {
     struct skg_program *next;
     char *key;          /* files and options */
-    cl_program program; /* NULL: it is expected */
-    char *options;      /* for the compiler, while it is expected */
-    skg_digest digest;  /* what it is kept under */
+    cl_program program; /* NULL: it is to be prefetched */
+    char *options;      /* for the compiler, until it is prefetched */
+    skg_digest digest;  /* key in the cache */
     int32_t kept;       /* 1: it is in the user's folder, or this process has been counted there */
 };
 
@@ -70,7 +70,7 @@ static skg_status build_text(skg_context *context, const skg_program_text *text,
     return status;
 }
 
-/* Makes the program of an entry from what was kept, or from its text. */
+/* Makes the program of an entry from the cache, or from its text. */
 static skg_status build(skg_context *context, const skg_program_text *text, struct skg_program *entry) {
     skg_device *device = context->device;
     entry->program = skg_binary_load(device, &entry->digest, text->options);
@@ -100,7 +100,7 @@ skg_status skg_program_get(skg_context *context, int32_t files, const char *cons
     skg_program_text text = {0};
     char *key = NULL;
     skg_status status = SKG_OK;
-    if (!program && !device->store[0]) return SKG_OK; /* nothing is kept */
+    if (!program && !device->store[0]) return SKG_OK; /* nothing is cached */
     if (program) *program = NULL;
     SKG_TRY(make_key(files, names, options, &key));
     for (entry = device->programs; entry; entry = entry->next)

@@ -45,24 +45,23 @@ skg_status skg_program_text_create(const skg_device *device, const skg_program_t
 /* The key of a program: its text, its options and the device. */
 skg_digest skg_binary_key(const skg_device *device, const skg_program_text *text);
 
-/* The program that was kept under this key, ready for use. NULL: there is none, or the driver rejects it, in which case
- * it is removed. */
+/* The cached program of a key, ready for use. NULL: there is none, or the driver rejects it, in which case it is removed. */
 cl_program skg_binary_load(skg_device *device, const skg_digest *key, const char *options);
 
-/* Keeps a program. It should have been launched: PoCL adds the machine code of a kernel then. */
+/* Caches a program. It should have been launched: PoCL adds the machine code of a kernel then. */
 void skg_binary_save(const skg_device *device, const skg_digest *key, cl_program program);
 
-/* The process from which on a program is kept although its driver keeps it, too. PoCL compiles all kernels a second time
- * when it is asked for programs: 0.95 s for those of an image. A process that loads them from our folder starts 0.05 s
- * earlier than with PoCL's own cache, which preprocesses the text each time. */
+/* Number of processes that use a program before it is cached, if its driver caches it too. PoCL compiles all kernels a second
+ * time when it is asked for the binary: 0.95 s for an image. A process that loads the binary from our cache starts 0.05 s earlier
+ * than with PoCL's own cache, which preprocesses the text each time. */
 enum { SKG_USES_THAT_PAY = 20 };
 
-/* Counts a process that has used a program, and says whether it should keep it. */
+/* Counts a process that has used a program. 1: it should cache the program. */
 int skg_binary_pays(const skg_device *device, const skg_digest *key);
 
 /* --- the programs of a context (program.c) --- */
 
-/* Frees the cache. OpenCL is called only if `ours`: not in a child process after a fork. */
+/* Frees the programs of a context. OpenCL is called only if `ours`: not in a child process after a fork. */
 void skg_programs_release(skg_device *device, int ours);
 
 #endif

@@ -44,7 +44,7 @@ static skg_status refuse(const skg_device *device, skg_self_test number, const s
                     verdict->reason);
 }
 
-/* The scenes of the tests are usable. A call that finds one unusable has read wrong numbers from the device. */
+/* The scenes of the self-tests are valid. If a call reports an error in one, it has read wrong numbers from the device. */
 skg_status skg_self_test_run(skg_context *context, skg_self_test number, skg_verdict *verdict) {
     skg_device *device = context->device;
     *verdict = (skg_verdict){0};

@@ -1,5 +1,5 @@
 #include "core/core.h"
-#include "device/kept.h"
+#include "device/cache.h"
 #include "device/programs.h"
 #include "device/self_tests.h"
 

@@ -1,7 +1,7 @@
 #include "device/self_tests.h"
 #include "frame/plan.h"
 
-/* The tests of what a plan uses. */
+/* The self-tests of the kernels that a plan uses. */
 static uint32_t tests_of(const skg_plan *plan, const skg_view *view) {
     const skg_recipe *recipe = plan->recipe;
     const skg_effect_state *effects = plan->outcome.effects;

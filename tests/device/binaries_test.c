@@ -1,9 +1,9 @@
 /* Programs that are kept between processes. The tests pretend that the driver has no cache of its own where they want
  * the program to be kept at once. */
+#include "device/cache.h"
 #include "device/cache_folder.h"
 #include "device/choice.h"
 #include "device/device.h"
-#include "device/kept.h"
 #include "device/programs.h"
 #include "suite.h"
 
