@@ -81,6 +81,7 @@ START_TEST(a_small_gpu_gets_what_it_can_do) {
         if (test == SKG_SELF_TEST_DOUBLE) {
             ck_skg_fails(skg_self_test_run(context, (skg_self_test)test, &verdict), SKG_ERR_UNSUPPORTED,
                          "double");
+            ck_assert_int_eq(context->device->self_testing, 0); /* after a failure, too */
             continue;
         }
         ck_skg(skg_self_test_run(context, (skg_self_test)test, &verdict));

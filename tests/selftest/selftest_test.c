@@ -97,6 +97,7 @@ START_TEST(a_right_device_passes) {
         if (test == SKG_SELF_TEST_DOUBLE && !context->device->info.has_double) continue;
         ck_skg(skg_self_test_repeat(context, (skg_self_test)test, &verdict));
         ck_assert_msg(verdict.good, "%s: %s", skg_self_test_name((skg_self_test)test), verdict.reason);
+        ck_assert_int_eq(context->device->self_testing, 0); /* calls of the caller are tested again */
         ck_assert(test == SKG_SELF_TEST_CORE ? verdict.score > 0 : verdict.score == 0);
         if (test != SKG_SELF_TEST_TILES) continue;
         context->device->info.is_gpu = 1;
