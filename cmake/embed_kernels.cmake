@@ -20,5 +20,5 @@ if(count EQUAL 0)
 endif()
 string(SHA256 digest "${digests}")
 file(WRITE ${TABLE}
-  "#include \"device/sources.h\"\n${arrays}const skg_kernel_source skg_kernel_sources[] = {\n${rows}};\n"
+  "#include \"device/programs.h\"\n${arrays}const skg_kernel_source skg_kernel_sources[] = {\n${rows}};\n"
   "const int skg_kernel_source_count = ${count};\nconst char skg_kernel_sources_digest[] = \"${digest}\";\n")

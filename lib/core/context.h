@@ -10,7 +10,7 @@
 
 struct skg_device; /* defined in lib/device */
 
-/* Who hears of failures. All zero: nobody. */
+/* The function that receives failures (skg_context_error_set). All zero: none. */
 typedef struct {
     skg_error_function call;
     void *user;
@@ -21,17 +21,23 @@ struct skg_context {
     int64_t process; /* that made it: any other one is a child after fork */
     skg_logger log;
     skg_error_handler error;
-    skg_mailbox *driver; /* what the OpenCL driver's threads have said */
+    skg_mailbox *driver; /* messages of the OpenCL driver's threads */
     struct skg_device *device;
 };
 
 /* To be called first by every public call that uses a context: SKG_ERR_ARGUMENT for NULL, SKG_ERR_FORK in a child
- * process. What the driver has said since the last call is logged here, so that the log is called by the thread
- * that uses the context and by no other. */
+ * process. It logs the driver's messages since the last call, so that only the thread that uses the context calls the
+ * log. */
 skg_status skg_context_enter(const skg_context *context);
 
-/* The beginning and the end of a public call whose failures the handler of a context hears of; context may be NULL. Of
- * public calls within public calls, the outermost is heard of. The context may be freed meanwhile. The end returns status. */
+/* Bracket a public call, so that its failure is reported to the context's error handler:
+ *
+ *     const skg_error_handler handler = skg_call_begin(context);
+ *     return skg_call_end(handler, do_the_work(context));
+ *
+ * skg_call_end calls the handler if status is a failure, and returns status. If a public call makes other public calls, only the
+ * outermost one reports, so that a failure is reported once. skg_call_begin copies the handler, because the call in between may
+ * free the context. context: NULL has no handler. */
 skg_error_handler skg_call_begin(const skg_context *context);
 skg_status skg_call_end(skg_error_handler handler, skg_status status);
 

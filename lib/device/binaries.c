@@ -1,5 +1,5 @@
-#include "device/binaries.h"
-#include "device/store.h"
+#include "device/cache.h"
+#include "device/programs.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 #include "device/device.h"
-#include "device/pages.h"
+#include "driver/driver.h"
 
 #include <inttypes.h>
 
@@ -14,7 +14,7 @@ static skg_status create(skg_device *device, int64_t bytes, cl_mem_flags flags, 
     skg_buffer_release(buffer);
     cl_int code = CL_SUCCESS;
     /* OpenCL copies the data, and takes no pointer to const. */
-    cl_mem memory = data ? NULL : skg_pages_take(device, bytes, flags);
+    cl_mem memory = data ? NULL : skg_pages_take(&device->pages, device->cl, bytes, flags);
     if (!memory) memory = clCreateBuffer(device->cl, flags, (size_t)bytes, (void *)(uintptr_t)data, &code);
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clCreateBuffer", __FILE__, __LINE__);
@@ -27,12 +27,13 @@ static skg_status create(skg_device *device, int64_t bytes, cl_mem_flags flags, 
 }
 
 void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
-    skg_pages_drop(context->device);
-    skg_pages_expect(context->device, bytes, count, ranges);
+    skg_device *device = context->device;
+    skg_pages_drop(&device->pages);
+    if (device->info.is_cpu && !device->simulates) skg_pages_expect(bytes, count, ranges, &device->pages);
 }
 
 void skg_buffer_forget(skg_context *context) {
-    skg_pages_drop(context->device);
+    skg_pages_drop(&context->device->pages);
 }
 
 skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t bytes, cl_mem_flags flags,

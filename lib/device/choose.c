@@ -1,11 +1,9 @@
 #include "core/names.h"
+#include "device/cache.h"
+#include "device/choice.h"
 #include "device/device.h"
-#include "device/icd.h"
-#include "device/identity.h"
-#include "device/platforms.h"
-#include "device/start.h"
-#include "device/store.h"
-#include "device/verdict.h"
+#include "device/self_tests.h"
+#include "driver/driver.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -236,7 +234,8 @@ static skg_status pick(survey *s, int which, uint64_t without, candidate *best) 
         SKG_TRY(status);
         if (!fits(s->device, &one.info) || without >> i & 1) continue;
         const skg_digest identity = skg_identity_of(at->platform, at->device);
-        one.tested = skg_verdict_known(s->store, &identity, SKG_TEST_OF_ALL, &one.verdict);
+        one.tested =
+            skg_verdict_known(s->store, &identity, skg_self_test_name(SKG_SELF_TEST_CORE), &one.verdict);
         if (which == ASK_TRUSTED && !one.info.known && !(one.tested && one.verdict.good)) continue;
         if (best->number < 0 || better(&one, best)) *best = one;
     }

@@ -1,10 +1,9 @@
 #include "core/names.h"
 #include "core/plain.h"
+#include "device/choice.h"
 #include "device/device.h"
-#include "device/icd.h"
-#include "device/pages.h"
-#include "device/program.h"
-#include "device/start.h"
+#include "device/programs.h"
+#include "driver/driver.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -98,8 +97,8 @@ static skg_status read_words(const char *words, wanted_device *wanted) {
     return SKG_OK;
 }
 
-/* Words of config replace those of the environment. A driver of the environment ends with a device of config, which is one
- * of the loader's. */
+/* Words of config replace those of the environment. If config has a device and no driver, the driver of the environment is
+ * ignored too, because the device is one of the loader's. */
 static skg_status read_config(const char *config, wanted_device *wanted) {
     wanted_device asked = {0};
     *wanted = (wanted_device){0};
@@ -121,18 +120,14 @@ static skg_device_words words_of(const wanted_device *wanted) {
 
 /* Leaves a warning for the context's log, which the caller has not set yet. */
 static void warn_of_workers(const skg_context *context, int32_t cpus) {
-    static const char *const variables[][2] = {{"Portable Computing Language", "POCL_MAX_PTHREAD_COUNT"},
-                                               {"Intel", "CL_CONFIG_CPU_TBB_NUM_WORKERS"},
-                                               {"rusticl", "LP_NUM_THREADS"}};
     const skg_device_info *info = &context->device->info;
     char sentence[SKG_MAILBOX_SENTENCE];
-    const char *variable = "the driver's variable for its number of threads";
-    for (size_t n = 0; n < sizeof variables / sizeof *variables; n++)
-        if (strstr(info->platform_name, variables[n][0])) variable = variables[n][1];
+    const char *variable = skg_driver_threads_variable(info->platform_name);
     snprintf(sentence, sizeof sentence,
              "%s has %" PRId32 " threads, but this process may run on %" PRId32
              " of the CPUs; images are faster if %s is set to %" PRId32 " before the process starts",
-             info->name, info->compute_units, cpus, variable, cpus);
+             info->name, info->compute_units, cpus,
+             variable ? variable : "the driver's variable for its number of threads", cpus);
     skg_mailbox_put(skg_mailbox_address(context->driver), sentence);
 }
 
@@ -304,7 +299,7 @@ void skg_context_release(skg_context **context) {
     skg_device *device = last->device;
     int ours = last->process == (int64_t)getpid(); /* a child process must not call OpenCL */
     skg_programs_release(device, ours);
-    skg_pages_drop(device);
+    skg_pages_drop(&device->pages);
     if (ours && device->queue) clReleaseCommandQueue(device->queue);
     if (ours && device->cl) clReleaseContext(device->cl);
     if (ours && device->id) clReleaseDevice(device->id); /* does nothing unless it is a sub-device */

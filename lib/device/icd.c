@@ -1,7 +1,7 @@
-#include "device/icd.h"
+#include "device/choice.h"
 
 #include "device/device.h"
-#include "device/start.h"
+#include "driver/driver.h"
 
 #include <CL/cl_ext.h>
 

@@ -1,11 +1,6 @@
-#include "device/program.h"
-#include "device/binaries.h"
-#include "device/pages.h"
-#include "device/program_text.h"
-#include "device/signals.h"
-#include "device/watch.h"
+#include "device/programs.h"
+#include "driver/driver.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,9 +8,9 @@
 struct skg_program {
     struct skg_program *next;
     char *key;          /* files and options */
-    cl_program program; /* NULL: it is expected */
-    char *options;      /* for the compiler, while it is expected */
-    skg_digest digest;  /* what it is kept under */
+    cl_program program; /* NULL: it is to be prefetched */
+    char *options;      /* for the compiler, until it is prefetched */
+    skg_digest digest;  /* key in the cache */
     int32_t kept;       /* 1: it is in the user's folder, or this process has been counted there */
 };
 
@@ -66,7 +61,7 @@ static skg_status build_text(skg_context *context, const skg_program_text *text,
     SKG_TRY(skg_program_text_create(device, text, program));
     compilation work = {*program, device->id, text->options, CL_SUCCESS};
     skg_signals_keep();
-    skg_watch(context, compile, &work);
+    skg_watch_call(&device->compiling, context, device->info.name, compile, &work);
     skg_signals_restore();
     if (work.code == CL_SUCCESS) return SKG_OK;
     const skg_status status = build_failed(device, *program, work.code, key);
@@ -75,7 +70,7 @@ static skg_status build_text(skg_context *context, const skg_program_text *text,
     return status;
 }
 
-/* Makes the program of an entry from what was kept, or from its text. */
+/* Makes the program of an entry from the cache, or from its text. */
 static skg_status build(skg_context *context, const skg_program_text *text, struct skg_program *entry) {
     skg_device *device = context->device;
     entry->program = skg_binary_load(device, &entry->digest, text->options);
@@ -105,7 +100,7 @@ skg_status skg_program_get(skg_context *context, int32_t files, const char *cons
     skg_program_text text = {0};
     char *key = NULL;
     skg_status status = SKG_OK;
-    if (!program && !device->store[0]) return SKG_OK; /* nothing is kept */
+    if (!program && !device->store[0]) return SKG_OK; /* nothing is cached */
     if (program) *program = NULL;
     SKG_TRY(make_key(files, names, options, &key));
     for (entry = device->programs; entry; entry = entry->next)
@@ -127,7 +122,7 @@ static void prepare_expected(void *user) {
     for (struct skg_program *entry = device->programs; entry; entry = entry->next)
         if (!entry->program && entry->options)
             entry->program = skg_binary_load(device, &entry->digest, entry->options);
-    skg_pages_enter(device);
+    skg_pages_enter(device->pages);
 }
 
 void skg_expected_begin(skg_context *context) {
@@ -147,32 +142,8 @@ void skg_expected_wait(skg_context *context) {
     }
 }
 
-/* The work of this process, and who counts it or keeps programs. */
-static pthread_mutex_t counting = PTHREAD_MUTEX_INITIALIZER;
-static int64_t under_way;
-
-static void count(int64_t more) {
-    pthread_mutex_lock(&counting);
-    under_way += more;
-    pthread_mutex_unlock(&counting);
-}
-
-void skg_work_begin(void) {
-    count(1);
-}
-
-void skg_work_end(void) {
-    count(-1);
-}
-
-int64_t skg_work_count(void) {
-    pthread_mutex_lock(&counting);
-    const int64_t now = under_way;
-    pthread_mutex_unlock(&counting);
-    return now;
-}
-
-static void keep_programs(const skg_device *device) {
+static void keep_programs(void *data) {
+    const skg_device *device = data;
     for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
         if (!entry->program) continue;
         if (!entry->kept && skg_binary_pays(device, &entry->digest))
@@ -182,11 +153,7 @@ static void keep_programs(const skg_device *device) {
 }
 
 void skg_programs_launched(skg_context *context) {
-    const skg_device *device = context->device;
-    if (!device->store[0]) return;
-    pthread_mutex_lock(&counting);
-    if (under_way == 0) keep_programs(device);
-    pthread_mutex_unlock(&counting);
+    if (context->device->store[0]) skg_work_none_call(keep_programs, context->device);
 }
 
 void skg_programs_release(skg_device *device, int ours) {

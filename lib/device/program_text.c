@@ -1,6 +1,5 @@
-#include "device/program_text.h"
 #include "core/input.h"
-#include "device/sources.h"
+#include "device/programs.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,6 @@
-#include "device/store.h"
 #include "core/core.h"
 #include "core/part_name.h"
-#include "device/store_bound.h"
+#include "device/cache.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -101,7 +100,7 @@ static int write_whole(int file, const void *data, size_t bytes) {
     return 1;
 }
 
-/* It finds damage. No one else may write to the folder, so that it need not resist intent. */
+/* It detects damage, not manipulation: no one else may write to the folder. */
 static uint32_t checksum_of(const header *head, const void *data) {
     header bare = *head;
     bare.checksum = 0;

@@ -1,5 +1,5 @@
-#include "device/store_bound.h"
 #include "core/core.h"
+#include "device/cache.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -38,7 +38,7 @@ static int by_use(const void *a, const void *b) {
     return left->used < right->used ? -1 : left->used > right->used;
 }
 
-/* Lists the files that are kept. What was half written an hour ago is removed. */
+/* Lists the cached files. Unfinished files older than an hour are removed. */
 static int64_t list_files(int folder, DIR *entries, kept_file **files) {
     int64_t count = 0, capacity = 0;
     const time_t now = time(NULL);

@@ -1,7 +1,7 @@
-#include "device/verdict.h"
 #include "core/core.h"
-#include "device/sources.h"
-#include "device/store.h"
+#include "device/cache.h"
+#include "device/programs.h"
+#include "device/self_tests.h"
 
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* Makes a plan: a recipe, a machine for it, and what is known before the first frame. */
+#include "core/plain.h"
 #include "device/device.h"
 #include "frame/adapt.h"
 #include "frame/assemble.h"
@@ -8,6 +9,8 @@
 #include "plan/effects.h"
 #include "plan/overlaps.h"
 #include "plan/precision.h"
+
+#include <skiagraph/plan.h>
 
 /* Finds overlaps while programs are loaded and nodes are searched. */
 static skg_status find_overlaps(skg_plan *plan, skg_plan_overlaps *found) {
@@ -51,9 +54,14 @@ static skg_status make(skg_plan *plan, skg_scene *scene, const skg_view *view, s
     return status;
 }
 
-skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
+static skg_status create(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
                          const skg_plan_options *options, skg_plan **plan) {
+    SKG_PLAIN;
+    SKG_TRY(skg_context_enter(context));
+    SKG_NEEDS_OF("skg_plan_create", plan);
     *plan = NULL;
+    SKG_NEEDS_OF("skg_plan_create", scene);
+    SKG_NEEDS_OF("skg_plan_create", spectrum);
     if (scene->count == 0)
         return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_add");
     SKG_TRY(skg_view_check(view));
@@ -61,8 +69,15 @@ skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view 
     SKG_TRY(skg_alloc(1, sizeof *made, "plan", &made));
     skg_refs_init(&made->refs);
     made->context = context, skg_ref(&context->refs);
-    const skg_status status = make(made, scene, view, spectrum, options);
+    skg_status status = make(made, scene, view, spectrum, options);
+    if (status == SKG_OK) status = skg_plan_self_test(made, view);
     if (status != SKG_OK) skg_plan_release(&made);
     *plan = made;
     return status;
+}
+
+skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
+                           skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, scene, view, spectrum, options, plan));
 }

@@ -1,7 +1,7 @@
 #include "frame/job.h"
 
 #include "core/plain.h"
-#include "device/signals.h"
+#include "driver/driver.h"
 
 skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
                           int64_t frames, skg_job **job) {

@@ -14,19 +14,8 @@ struct skg_plan {
     skg_outcome outcome;
 };
 
-/* Makes a plan as skg_plan_create does, but tests nothing. */
-skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
-                         const skg_plan_options *options, skg_plan **plan);
-
-/* As skg_plan_lengths, skg_plan_lengths_cl and skg_plan_positions_set_cl, but they test nothing. */
-skg_status skg_plan_lengths_enqueue(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                    const skg_frame *frames, const skg_output *output, skg_job **job);
-skg_status skg_plan_lengths_enqueue_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                       const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                                       int64_t offset, const skg_caller_events *events, skg_job **job);
-skg_status skg_plan_positions_enqueue(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
-                                      const float *lowest, const float *highest,
-                                      const skg_caller_events *events);
+/* Makes sure that the device has passed the self-tests of the kernels that the plan uses (self_tests.c). */
+skg_status skg_plan_self_test(const skg_plan *plan, const skg_view *view);
 
 /* Checks that the scene still has the parts that the plan was made for, in the same places: else SKG_STALE. Takes over
  * materials that have changed. */

@@ -1,4 +1,5 @@
 #include "core/plain.h"
+#include "device/self_tests.h"
 #include "frame/caller.h"
 #include "frame/plan.h"
 
@@ -56,13 +57,13 @@ static skg_status check_memory(const skg_plan *plan, const skg_mesh *mesh, int64
     return SKG_OK;
 }
 
-skg_status skg_plan_positions_enqueue(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
-                                      const float *lowest, const float *highest,
-                                      const skg_caller_events *events) {
+static skg_status set_positions(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
+                                const float *lowest, const float *highest, const skg_caller_events *events) {
     SKG_PLAIN;
     skg_place_source source = {.memory = buffer};
     SKG_NEEDS_OF(CALL, plan);
     SKG_TRY(skg_context_enter(plan->context));
+    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_PLACE));
     SKG_TRY(skg_caller_events_check(CALL, events));
     SKG_TRY(check_part(plan, part));
     SKG_TRY(check_bounds(lowest, highest, &source));
@@ -75,4 +76,12 @@ skg_status skg_plan_positions_enqueue(skg_plan *plan, int64_t part, cl_mem buffe
     if (events->done) SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, events->done));
     SKG_CL_TRY(clFlush(queue));
     return SKG_OK;
+}
+
+skg_status skg_plan_positions_set_cl(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
+                                     const float *lowest, const float *highest, int32_t waits,
+                                     const cl_event *wait_list, cl_event *done) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_caller_events events = {waits, wait_list, done};
+    return skg_call_end(handler, set_positions(plan, part, buffer, offset, lowest, highest, &events));
 }

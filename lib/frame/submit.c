@@ -1,4 +1,5 @@
 #include "core/plain.h"
+#include "device/self_tests.h"
 #include "frame/caller.h"
 #include "frame/submission.h"
 
@@ -73,14 +74,21 @@ static skg_status check_lengths(const char *call, const skg_plan *plan, int64_t 
     return SKG_OK;
 }
 
-skg_status skg_plan_lengths_enqueue(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                    const skg_frame *frames, const skg_output *output, skg_job **job) {
+static skg_status submit_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                 const skg_frame *frames, const skg_output *output, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths", plan, job));
+    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_LENGTHS));
     SKG_TRY(check_lengths("skg_plan_lengths", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind};
     SKG_TRY(prepare(plan, &s, output));
     return submit(plan, &s, job);
+}
+
+skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                            const skg_frame *frames, const skg_output *output, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_lengths(plan, part, kind, count, frames, output, job));
 }
 
 /* --- into the caller's device memory */
@@ -137,12 +145,23 @@ skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *fr
         handler, submit_images_cl(plan, count, frames, output, buffer, offset, waits, wait_list, done, job));
 }
 
-skg_status skg_plan_lengths_enqueue_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                       const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                                       int64_t offset, const skg_caller_events *events, skg_job **job) {
+static skg_status submit_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                                    const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                                    int64_t offset, const skg_caller_events *events, skg_job **job) {
     SKG_PLAIN;
     SKG_TRY(begin("skg_plan_lengths_cl", plan, job));
+    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_LENGTHS));
     SKG_TRY(check_lengths("skg_plan_lengths_cl", plan, part, kind));
     skg_submission s = {.count = count, .frames = frames, .lengths_of = part, .kind = kind, .buffer = buffer};
     return submit_cl("skg_plan_lengths_cl", plan, &s, output, offset, events, job);
+}
+
+skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
+                               const skg_frame *frames, const skg_output *output, cl_mem buffer,
+                               int64_t offset, int32_t waits, const cl_event *wait_list, cl_event *done,
+                               skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_caller_events events = {waits, wait_list, done};
+    return skg_call_end(
+        handler, submit_lengths_cl(plan, part, kind, count, frames, output, buffer, offset, &events, job));
 }

@@ -1,10 +1,10 @@
 #include "core/context.h"
 #include "core/plain.h"
 #include "core/vector.h"
+#include "device/self_tests.h"
 #include "show/draw.h"
 #include "show/markers.h"
 #include "show/parts.h"
-#include "show/picture.h"
 
 #include <skiagraph/view_picture.h>
 
@@ -68,10 +68,11 @@ static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look
     return skg_show_camera_make(view, look, low, high, camera);
 }
 
-skg_status skg_show_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
+skg_status skg_view_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
                             const skg_look *look, uint8_t *rgba) {
     SKG_PLAIN;
     SKG_TRY(skg_context_enter(context));
+    SKG_TRY(skg_self_test_need(context, SKG_SELF_TEST_PICTURE));
     SKG_NEEDS(scene);
     SKG_NEEDS(view);
     SKG_NEEDS(rgba);

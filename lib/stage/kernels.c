@@ -1,6 +1,6 @@
 #include "stage/kernels.h"
 
-#include "device/signals.h"
+#include "driver/driver.h"
 
 #include <skiagraph/plan.h>
 

@@ -1,11 +1,10 @@
 /* Programs that are kept between processes. The tests pretend that the driver has no cache of its own where they want
  * the program to be kept at once. */
-#include "device/binaries.h"
+#include "device/cache.h"
 #include "device/cache_folder.h"
+#include "device/choice.h"
 #include "device/device.h"
-#include "device/identity.h"
-#include "device/program.h"
-#include "device/store.h"
+#include "device/programs.h"
 #include "suite.h"
 
 #include <sys/wait.h>

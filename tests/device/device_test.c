@@ -1,5 +1,5 @@
 #include "device/device.h"
-#include "device/faults.h"
+#include "driver/driver.h"
 #include "suite.h"
 
 #include <skiagraph/context.h>

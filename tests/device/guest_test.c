@@ -1,9 +1,9 @@
 /* The library beside a driver that ends, crashes or blocks the process that calls it, or computes wrongly. */
+#include "device/choice.h"
 #include "device/device.h"
 #include "device/guest/folder.h"
-#include "device/identity.h"
-#include "device/platforms.h"
-#include "device/verdict.h"
+#include "device/self_tests.h"
+#include "driver/driver.h"
 #include "suite.h"
 
 #include <skiagraph/opencl.h>
@@ -90,7 +90,7 @@ static void let_pass(double score) {
     skg_verdict verdict = {.good = 1, .score = score};
     ck_skg(skg_device_locate("device=guest", &platform, &device, &info));
     const skg_digest identity = skg_identity_of(platform, device);
-    skg_verdict_keep(cache_folder, &identity, SKG_TEST_OF_ALL, &verdict);
+    skg_verdict_keep(cache_folder, &identity, skg_self_test_name(SKG_SELF_TEST_CORE), &verdict);
     skg_platform_trust(cache_folder, platform);
 }
 
@@ -161,7 +161,7 @@ START_TEST(only_what_can_be_kept_is_kept) {
     ck_skg_fails(skg_device_test_keep("device=99:0", 0, &result), SKG_ERR_NO_DEVICE, "no OpenCL device fits");
     ck_skg_fails(skg_device_test_keep("device=0:0", 0, NULL), SKG_ERR_ARGUMENT, "result");
     ck_skg(skg_device_test_name_get(0, &name));
-    ck_assert_str_eq(name, SKG_TEST_OF_ALL);
+    ck_assert_str_eq(name, skg_self_test_name(SKG_SELF_TEST_CORE));
     ck_skg_fails(skg_device_test_name_get(-1, &name), SKG_ERR_ARGUMENT, "counted from 0");
     ck_skg_fails(skg_device_test_name_get(0, NULL), SKG_ERR_ARGUMENT, "name");
 }

@@ -1,5 +1,5 @@
+#include "device/cache.h"
 #include "device/cache_folder.h"
-#include "device/store.h"
 #include "suite.h"
 
 #include "core/core.h"

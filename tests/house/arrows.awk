@@ -14,6 +14,7 @@ function node(room, object,   name, start) {
     return start ? substr(name, start) : room "/" name
 }
 $1 == "file" { known[$2] = 1 }
+$1 == "hook" { hook[$2] = 1 }
 $1 == "include" { n++; from[n] = $2; what[n] = $3 }
 $1 == "import" { n++; from[n] = $2; what[n] = $3 }
 $1 == "symbol" {
@@ -22,6 +23,7 @@ $1 == "symbol" {
     if ($6 !~ /[Uw]/) {
         own[$3, $5] = at[symbols]
         if ($3 !~ /^program:/) shared[$5] = at[symbols]
+        if ($6 ~ /[RD]/) data[$5] = 1
     }
 }
 END {
@@ -53,6 +55,7 @@ END {
     for (i = 1; i <= symbols; i++) {
         if (type[i] !~ /[Uw]/) continue
         to = (program[i], name[i]) in own ? own[program[i], name[i]] : shared[name[i]]
+        if (name[i] in hook && name[i] in data) continue
         if (to != "" && to != at[i]) print at[i], to, "calls", name[i]
     }
 }

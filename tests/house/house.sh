@@ -1,8 +1,9 @@
 #!/bin/sh
 # house.sh HOUSE: fails on an include or a call upward between rooms, and on a circle between files. A .c and its .h
 # are one file here. The package of Python counts as a room, with imports that run when a module is loaded, which are those
-# without indentation. HOUSE has lines `room NAME FOLDER`, from the ground up, and `object ROOM TARGET FILE`
-# (CMakeLists.txt writes it). Includes are read from the sources, calls from the objects' symbols.
+# without indentation. HOUSE has lines `room NAME FOLDER`, from the ground up, `object ROOM TARGET FILE`, and `hook NAME`
+# (CMakeLists.txt writes it). Includes are read from the sources, calls from the objects' symbols. A hook is a constant that
+# a lower room declares and an upper room defines: reading it is no call upward. It must be data.
 set -eu
 house=$1
 here=$(dirname "$0")
@@ -32,6 +33,8 @@ awk 'FNR == NR { if ($1 == "object") heads[$4] = heads[$4] "symbol " $2 " " $3 "
         n = split(heads[$1], head, "\n")
         for (i = 1; i < n; i++) print head[i], $2, $3
     }' "$house" "$work/symbols" >>"$work/facts"
+
+awk '$1 == "hook"' "$house" >>"$work/facts"
 
 # Arrows `FROM TO REASON` between files, then those that point up, then circles.
 awk -f "$here/arrows.awk" "$work/facts" | sort -u >"$work/arrows"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # house_test.sh CC: house.sh must find an upward include, an upward call and a circle in houses made for it, and nothing in
-# a sound one.
+# a sound one or in one with a hook.
 set -eu
 cc=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -32,7 +32,8 @@ look() {
     { printf 'room low %s\nroom high %s\n' "$PWD/low" "$PWD/folder/high"
         for file in low.dir/low/*.o; do echo "object low skg_low $PWD/$file"; done
         for file in folder.dir/folder/high/*.o; do echo "object high skg_high $PWD/$file"; done
-        [ ! -d python ] || echo "room python $PWD/python"; } >house.txt
+        [ ! -d python ] || echo "room python $PWD/python"
+        [ ! -f hooks ] || cat hooks; } >house.txt
     sh "$here/house.sh" house.txt
 }
 # expect TEXT NAME: fails unless house.sh fails and says TEXT.
@@ -58,6 +59,17 @@ look python
 printf 'from ..a import a\n' >python/below/f.py
 printf 'from .below.f import f\n' >python/d.py
 expect 'python/a -> python/d (includes d)' python
+# A hook is a constant; one that the house does not name, and a function, are calls upward.
+make hook
+echo 'extern const int up; int down(void); int down(void) { return up; }' >>low/low.c
+echo 'const int up = 1;' >>folder/high/high.c
+expect 'upward: low/low -> high/high (calls up)' hook
+echo 'hook up' >hooks
+look hook
+make hooked_call
+echo 'int high(void); int up(void); int up(void) { return high(); }' >>low/low.c
+echo 'hook high' >hooks
+expect 'upward: low/low -> high/high (calls high)' hooked_call
 make circle
 echo 'int again(void); int again(void) { return other(); }' >>low/low.c
 expect 'low/low -> low/other (calls other)' circle

@@ -1,5 +1,5 @@
 /* Structs that host and device share. */
-#include "device/sources.h"
+#include "device/programs.h"
 #include "kernels/picture.h"
 #include "suite.h"
 

@@ -1,8 +1,8 @@
 /* A device like a small GPU: 32 KiB of local memory or less, no vectors, no fp64. The real device is asked to behave so; what is
  * looked at is what the library asks of it. Calls are wrapped by the linker. */
-#include "device/device.h"
+#include "device/choice.h"
+#include "selftest/selftest.h"
 #include "suite.h"
-#include "trial/trial.h"
 
 #include <string.h>
 
@@ -67,7 +67,7 @@ cl_int __wrap_clBuildProgram(cl_program program, cl_uint count, const cl_device_
 
 START_TEST(a_small_gpu_gets_what_it_can_do) {
     skg_context *context = NULL;
-    skg_finding finding;
+    skg_verdict verdict;
     int32_t index = 0;
     ck_skg(skg_context_open("device=0:0", 0, &context, &index));
     skg_device_info *info = &context->device->info;
@@ -77,14 +77,15 @@ START_TEST(a_small_gpu_gets_what_it_can_do) {
     info->has_double = 0;
     info->is_gpu = 1;
     info->is_cpu = 0;
-    for (int test = 0; test < SKG_TRIALS; test++) {
-        if (test == SKG_TRIAL_DOUBLE) {
-            ck_skg_fails(skg_trial_judge(context, (skg_trial_number)test, &finding), SKG_ERR_UNSUPPORTED,
+    for (int test = 0; test < SKG_SELF_TESTS; test++) {
+        if (test == SKG_SELF_TEST_DOUBLE) {
+            ck_skg_fails(skg_self_test_run(context, (skg_self_test)test, &verdict), SKG_ERR_UNSUPPORTED,
                          "double");
+            ck_assert_int_eq(context->device->self_testing, 0); /* after a failure, too */
             continue;
         }
-        ck_skg(skg_trial_run(context, (skg_trial_number)test, &finding));
-        ck_assert_msg(finding.good, "%s: %s", skg_trial_get((skg_trial_number)test)->name, finding.reason);
+        ck_skg(skg_self_test_run(context, (skg_self_test)test, &verdict));
+        ck_assert_msg(verdict.good, "%s: %s", skg_self_test_name((skg_self_test)test), verdict.reason);
     }
     ck_assert_int_gt(launched, 0);
     ck_assert_uint_gt(most_local, 0); /* the tiles of a GPU stand in local memory */

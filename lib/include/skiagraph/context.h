@@ -110,8 +110,8 @@ enum skg_log_level {
     SKG_LOG_PROGRESS = 3
 };
 
-/** Receives one line of the log. It is called by the thread that is inside a call of the library on this
- * context, before that call returns, and by no other. It must not call the library with the same context.
+/** Receives one line of the log. The library calls it during a call that uses the context, in the thread of that call. It must
+ * not call the library with the same context.
  *
  *     level      enum skg_log_level
  *     sentence   one sentence without a newline, valid during the call only
@@ -121,16 +121,16 @@ typedef void (*skg_log_function)(int32_t level, const char *sentence, void *user
 /** Sets where the lines of a context's log go. NULL, the default, drops them. */
 SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user);
 
-/** Receives a failure. It is called by the thread that is inside the call that fails, just before that call returns, once
- * for each such call. It must not call the library with the same context.
+/** Receives a failure. The library calls it once for each call that fails, just before that call returns, in the thread of that
+ * call. It must not call the library with the same context.
  *
  *     status     the negative status that the call returns; SKG_STALE and SKG_RANGE are no failures
  *     sentence   what skg_last_error gives; valid during the call only
  *     user       as given to skg_context_error_set */
 typedef void (*skg_error_function)(skg_status status, const char *sentence, void *user);
 
-/** Sets a function that hears of the failures of calls with this context: those that take a context, a plan or a job, except
- * for calls that retain one, read what a plan reports, or compute a scan, of which the calls that they make are heard of.
+/** Sets the function that receives the failures of calls that take this context, or a plan or a job of it. Calls that retain a
+ * handle or read a plan's report do not report. Calls that compute a scan do not report themselves; the calls that they make do.
  * NULL, the default: none. */
 SKG_API skg_status skg_context_error_set(skg_context *context, skg_error_function error, void *user);
 

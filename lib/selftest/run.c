@@ -1,0 +1,14 @@
+#include "selftest/selftest.h"
+
+static skg_status run(skg_context *context, skg_self_test number, skg_verdict *verdict) {
+    switch (number) {
+    case SKG_SELF_TEST_PARALLEL:
+        return skg_self_test_exact(context, verdict);
+    case SKG_SELF_TEST_PICTURE:
+        return skg_self_test_picture(context, verdict);
+    default:
+        return skg_self_test_image(context, number, verdict);
+    }
+}
+
+const skg_self_test_hook skg_self_tests = {.run = run};
