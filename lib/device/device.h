@@ -32,7 +32,7 @@ typedef struct skg_device {
     int32_t clang;         /* 1: kernels may use the builtins of clang */
     int32_t caches;        /* 1: the driver keeps compiled kernels itself */
     int32_t simulates;     /* 1: a simulator, which is not tested and keeps nothing */
-    uint32_t passed;       /* bit n: test n of lib/trial */
+    uint64_t passed;       /* bit n: test n of lib/trial */
     int32_t compile_noted; /* 1: the log has been told that kernels are compiled */
     int64_t compile_ms;    /* time that compiling has taken */
 } skg_device;

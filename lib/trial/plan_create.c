@@ -1,44 +1,28 @@
 /* skg_plan_create: a plan whose kernels were tested on this device. */
 #include "core/plain.h"
 #include "frame/plan.h"
+#include "plan/effects.h"
 #include "trial/trial.h"
 
 #include <skiagraph/plan.h>
 
 /* The tests of what a plan uses. */
-static uint32_t tests_of(const skg_plan *plan, const skg_view *view) {
+static uint64_t tests_of(const skg_plan *plan, const skg_view *view) {
     const skg_recipe *recipe = plan->recipe;
-    const skg_effect_state *effects = plan->outcome.effects;
-    static const struct {
-        int effect;
-        skg_trial_number test;
-    } of_effects[] = {{SKG_EFFECT_ENERGIES, SKG_TRIAL_ENERGIES},
-                      {SKG_EFFECT_SOURCE_PLANE, SKG_TRIAL_SOURCE_PLANE},
-                      {SKG_EFFECT_LEAKY, SKG_TRIAL_LEAKY},
-                      {SKG_EFFECT_PRIORITY, SKG_TRIAL_PRIORITY},
-                      {SKG_EFFECT_NOISE, SKG_TRIAL_NOISE},
-                      {SKG_EFFECT_BLUR, SKG_TRIAL_BLUR},
-                      {SKG_EFFECT_ELECTRONIC, SKG_TRIAL_DETECTOR},
-                      {SKG_EFFECT_QUANTISATION, SKG_TRIAL_DETECTOR},
-                      {SKG_EFFECT_HEEL, SKG_TRIAL_HEEL},
-                      {SKG_EFFECT_BOWTIE, SKG_TRIAL_SHADES},
-                      {SKG_EFFECT_GRID, SKG_TRIAL_SHADES},
-                      {SKG_EFFECT_OBLIQUE, SKG_TRIAL_SHADES},
-                      {SKG_EFFECT_SUPERSAMPLING, SKG_TRIAL_RAYS},
-                      {SKG_EFFECT_DEPTHS, SKG_TRIAL_DEPTHS},
-                      {SKG_EFFECT_DQE, SKG_TRIAL_APART}};
     static const skg_trial_number of_strategies[] = {[SKG_STRATEGY_AUTO] = SKG_TRIAL_CORE,
                                                      [SKG_STRATEGY_COPIES] = SKG_TRIAL_COPIES,
                                                      [SKG_STRATEGY_TILES] = SKG_TRIAL_TILES,
                                                      [SKG_STRATEGY_ATOMICS] = SKG_TRIAL_ATOMICS};
-    uint32_t tests = UINT32_C(1) << of_strategies[recipe->strategy];
-    if (recipe->options.precision == SKG_PRECISION_DOUBLE) tests |= UINT32_C(1) << SKG_TRIAL_DOUBLE;
-    if (recipe->options.precision == SKG_PRECISION_HALF) tests |= UINT32_C(1) << SKG_TRIAL_HALF;
-    if (view->projection != SKG_PROJECTION_POINT) tests |= UINT32_C(1) << SKG_TRIAL_PARALLEL;
+    uint64_t tests = UINT64_C(1) << of_strategies[recipe->strategy];
+    if (recipe->options.precision == SKG_PRECISION_DOUBLE) tests |= UINT64_C(1) << SKG_TRIAL_DOUBLE;
+    if (recipe->options.precision == SKG_PRECISION_HALF) tests |= UINT64_C(1) << SKG_TRIAL_HALF;
+    if (view->projection != SKG_PROJECTION_POINT) tests |= UINT64_C(1) << SKG_TRIAL_PARALLEL;
     if (plan->outcome.side)
-        tests |= UINT32_C(1) << (plan->outcome.side > 1 ? SKG_TRIAL_SIDE : SKG_TRIAL_PASSES);
-    for (size_t i = 0; i < sizeof of_effects / sizeof *of_effects; i++)
-        if (effects[of_effects[i].effect].on) tests |= UINT32_C(1) << of_effects[i].test;
+        tests |= UINT64_C(1) << (plan->outcome.side > 1 ? SKG_TRIAL_SIDE : SKG_TRIAL_PASSES);
+    for (int e = 0; e < SKG_EFFECTS; e++) {
+        const char *test = skg_effect_row_get(e)->self_test;
+        if (plan->outcome.effects[e].on && test) tests |= UINT64_C(1) << skg_trial_find(test);
+    }
     return tests;
 }
 
@@ -51,7 +35,7 @@ static skg_status create(skg_context *context, skg_scene *scene, const skg_view 
     SKG_NEEDS_OF("skg_plan_create", scene);
     SKG_NEEDS_OF("skg_plan_create", spectrum);
     SKG_TRY(skg_plan_make(context, scene, view, spectrum, options, plan));
-    const uint32_t tests = tests_of(*plan, view);
+    const uint64_t tests = tests_of(*plan, view);
     for (int test = 0; test < SKG_TRIALS; test++) {
         if (!(tests >> test & 1)) continue;
         const skg_status status = skg_trial_need(context, (skg_trial_number)test);

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Attenuation of the two parts in 1/cm at the energies of the beam, in keV. */
 enum { ENERGIES = SKG_TRIAL_ENERGIES_MAX };
@@ -43,6 +44,12 @@ static const skg_trial trials[SKG_TRIALS] = {
 
 const skg_trial *skg_trial_get(skg_trial_number number) {
     return &trials[number];
+}
+
+skg_trial_number skg_trial_find(const char *name) {
+    int number = 0;
+    while (number < SKG_TRIALS && strcmp(trials[number].name, name) != 0) number++;
+    return (skg_trial_number)number;
 }
 
 static int has_two_parts(const skg_trial_scene *scene) {

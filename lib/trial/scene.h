@@ -57,6 +57,9 @@ typedef struct {
 /* Static storage. */
 const skg_trial *skg_trial_get(skg_trial_number number);
 
+/* The number of the test with this name; SKG_TRIALS: there is none. */
+skg_trial_number skg_trial_find(const char *name);
+
 typedef struct {
     skg_trial_number number;
     skg_box boxes[SKG_TRIAL_BOXES + 1]; /* the last one is a part of its own, if there are two */

@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+_Static_assert(SKG_TRIALS < 64, "each test has a bit of device->passed");
+
 /* What is kept of a finding. */
 static skg_verdict verdict_of(const skg_finding *finding) {
     skg_verdict verdict = {.good = finding->good, .score = finding->score};
@@ -51,7 +53,7 @@ skg_status skg_trial_again(skg_context *context, skg_trial_number number, skg_fi
     skg_verdict_keep(device->store, &device->identity, skg_trial_get(number)->name, &verdict);
     if (finding->good && number == SKG_TRIAL_CORE && !device->info.known)
         skg_platform_trust(device->store, device->platform);
-    if (finding->good) device->passed |= UINT32_C(1) << number;
+    if (finding->good) device->passed |= UINT64_C(1) << number;
     return SKG_OK;
 }
 
@@ -63,7 +65,7 @@ skg_status skg_trial_need(skg_context *context, skg_trial_number number) {
     if (device->kernel_dir || device->simulates || device->passed >> number & 1) return SKG_OK;
     if (skg_verdict_known(device->store, &device->identity, skg_trial_get(number)->name, &known)) {
         if (!known.good) return refuse(device, number, &known);
-        device->passed |= UINT32_C(1) << number;
+        device->passed |= UINT64_C(1) << number;
         return SKG_OK;
     }
     SKG_TRY(skg_trial_again(context, number, &finding));
