@@ -32,7 +32,7 @@ typedef struct skg_device {
     int32_t clang;        /* 1: kernels may use the builtins of clang */
     int32_t caches;       /* 1: the driver caches compiled kernels itself */
     int32_t simulates;    /* 1: a simulator, which is not tested and caches nothing */
-    uint32_t passed;      /* bit n: enum skg_self_test */
+    uint64_t passed;      /* bit n: enum skg_self_test */
     int32_t self_testing; /* > 0: a self-test is running, whose own calls need none */
     skg_watch compiling;
 } skg_device;

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+_Static_assert(SKG_SELF_TESTS < 64, "each self-test has a bit of device->passed");
+
 const char *skg_self_test_name(skg_self_test number) {
     static const char *const names[SKG_SELF_TESTS] = {
         [SKG_SELF_TEST_CORE] = "core",
@@ -63,7 +65,7 @@ skg_status skg_self_test_repeat(skg_context *context, skg_self_test number, skg_
     skg_verdict_keep(device->store, &device->identity, skg_self_test_name(number), verdict);
     if (verdict->good && number == SKG_SELF_TEST_CORE && !device->info.known)
         skg_platform_trust(device->store, device->platform);
-    if (verdict->good) device->passed |= UINT32_C(1) << number;
+    if (verdict->good) device->passed |= UINT64_C(1) << number;
     return SKG_OK;
 }
 
@@ -76,6 +78,6 @@ skg_status skg_self_test_need(skg_context *context, skg_self_test number) {
     if (!skg_verdict_known(device->store, &device->identity, skg_self_test_name(number), &verdict))
         SKG_TRY(skg_self_test_repeat(context, number, &verdict));
     if (!verdict.good) return refuse(device, number, &verdict);
-    device->passed |= UINT32_C(1) << number;
+    device->passed |= UINT64_C(1) << number;
     return SKG_OK;
 }

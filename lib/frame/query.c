@@ -1,6 +1,7 @@
 /* What a plan answers about itself. */
 #include "core/plain.h"
 #include "frame/plan.h"
+#include "plan/effects.h"
 #include "plan/precision.h"
 
 #include <inttypes.h>
@@ -94,17 +95,12 @@ skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count) {
 }
 
 skg_status skg_plan_effect_get(const skg_plan *plan, int64_t index, skg_effect *effect) {
-    static const char *const names[] = {
-#define SKG_EFFECT_TEXT(name, text) text,
-        SKG_EFFECT_LIST(SKG_EFFECT_TEXT)
-#undef SKG_EFFECT_TEXT
-    };
     SKG_NEEDS(plan);
     SKG_TRY(check_index(__func__, "effect", index, SKG_EFFECTS));
     const skg_effect_state *state = &plan->outcome.effects[index];
     const skg_effect ours = {.size = sizeof ours,
                              .on = state->on,
-                             .name = names[index],
+                             .name = skg_effect_row_get(index)->name,
                              .cost = state->cost,
                              .reason = state->reason};
     return skg_struct_write(&ours, sizeof ours, "skg_effect", effect);

@@ -6,7 +6,13 @@
 
 #include <skiagraph/plan.h>
 
-/* Refuses what the options may not be, on this device. */
+/* Fails if a flag is neither 0 nor 1. name: of the option. */
+skg_status skg_check_flag(const char *name, int32_t flag);
+
+/* Fails unless a choice is 0 to last. choices: their names. */
+skg_status skg_check_choice(const char *name, int32_t choice, int32_t last, const char *choices);
+
+/* Refuses options of no effect that cannot be used on this device. */
 skg_status skg_plan_options_check(const skg_plan_options *options, const skg_device_info *device);
 
 #endif

@@ -1,17 +1,5 @@
 #include "plan/outcome.h"
 
-#include <stdarg.h>
-#include <stdio.h>
-
-void skg_effect_set(skg_outcome *outcome, int effect, int on, const char *format, ...) {
-    skg_effect_state *state = &outcome->effects[effect];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(state->reason, sizeof state->reason, format, arguments);
-    va_end(arguments);
-    state->on = on;
-}
-
 void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome) {
     outcome->report.planes = recipe->model.planes;
     outcome->report.accumulators = skg_recipe_accumulators(recipe);

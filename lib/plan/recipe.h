@@ -8,7 +8,7 @@
 #include "core/context.h"
 #include "geometry/samples.h"
 #include "plan/channel.h"
-#include "plan/keep.h"
+#include "plan/copies.h"
 #include "plan/meshes.h"
 #include "spectral/mix.h"
 #include "spectral/model.h"
@@ -27,9 +27,7 @@ struct skg_recipe {
     skg_view view;            /* of frames without a view of their own */
     int64_t structure;        /* of the scene; if it has another one the plan is stale */
     int64_t materials;        /* of the scene when the model was made */
-    double *band_kev;         /* [bands + 1] or NULL; options has it, too */
-    skg_view *views;          /* [view_count] or NULL; options has it, too */
-    skg_kept kept;            /* what options points to of heel, bow-tie and grid */
+    skg_copies copies;        /* what options points to */
 
     skg_plan_meshes meshes;
     skg_model model;

@@ -1,0 +1,181 @@
+/* Effects of the beam, and of what stands in it beside the parts. */
+#include "beam/bowtie.h"
+#include "beam/grid.h"
+#include "core/maths.h"
+#include "core/names.h"
+#include "plan/decide.h"
+#include "plan/effect.h"
+#include "plan/options.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+static const double degree = 180 / SKG_PI; /* of a radian */
+
+/* Why a shade that is asked for is off; NULL: it is on. shades: how many it has. */
+static const char *why_off(const skg_recipe *recipe, int needs_point, int32_t shades) {
+    if (needs_point && recipe->view.projection != SKG_PROJECTION_POINT) return "the beam is parallel";
+    return shades ? NULL : "one energy over its flat field does not show it";
+}
+
+static int has_world(const skg_recipe *recipe) {
+    return recipe->options.world != NULL;
+}
+
+static void find_world(const skg_effect_facts *f, skg_effect_state *state) {
+    const char *world = "vacuum";
+    const int on = has_world(f->recipe) && skg_material_name_get(f->recipe->options.world, &world) == SKG_OK;
+    skg_effect_set(state, on, "the parts stand in %s", world);
+}
+
+static double cost_world(const skg_effect_facts *f) {
+    const double nodes = f->recipe->model.nodes;
+    skg_attenuation shape;
+    skg_decide_attenuation(f->recipe, &shape);
+    return f->counts.passes * (SKG_COST_RAY + (shape.ratio ? nodes * (1 + SKG_COST_EXPONENTIAL) : 0));
+}
+
+static skg_status check_falloff(const skg_plan_options *options) {
+    return options->falloff == SKG_FALLOFF_AUTO ? SKG_OK : skg_check_flag("falloff", options->falloff);
+}
+
+static void find_falloff(const skg_effect_facts *f, skg_effect_state *state) {
+    skg_attenuation shape;
+    skg_decide_attenuation(f->recipe, &shape);
+    if (!shape.falloff)
+        skg_effect_set(state, 0,
+                       f->recipe->options.falloff ? "ratios to the flat field do not show it"
+                                                  : "photons are counted per pixel");
+    else if (f->recipe->view.projection != SKG_PROJECTION_POINT)
+        skg_effect_set(state, 0, "the beam is parallel: its intensity is the same everywhere");
+    else
+        skg_effect_set(
+            state, 1,
+            "inverse square and obliquity, from the foot of the source's perpendicular on the detector's "
+            "plane on");
+}
+
+static double cost_falloff(const skg_effect_facts *f) {
+    return f->counts.passes * SKG_COST_RAY;
+}
+
+void skg_heel_init_sized(void *heel, int32_t size) {
+    const skg_heel defaults = {.anode = 74, .angle_deg = 12, .bin_kev = 1};
+    skg_struct_init(heel, size, &defaults, sizeof defaults);
+}
+
+static skg_status copy_heel(skg_recipe *recipe) {
+    const skg_heel **heel = &recipe->options.heel;
+    if (!*heel) return SKG_OK;
+    return skg_copies_struct(&recipe->copies, *heel, "skg_heel", sizeof **heel, skg_heel_init_sized, heel);
+}
+
+static int has_heel(const skg_recipe *recipe) {
+    return recipe->options.heel != NULL;
+}
+
+static void find_heel(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_shades *shades = &f->recipe->model.shades;
+    const skg_shade_extent *extent = &shades->heel_extent;
+    const char *off = has_heel(f->recipe) ? why_off(f->recipe, 1, shades->heel)
+                                          : "not asked for: the spectrum is the same everywhere";
+    if (off)
+        skg_effect_set(state, 0, "%s", off);
+    else
+        skg_effect_set(
+            state, 1,
+            "photons leave the anode at %.3g to %.3g degrees; %" PRId32 " %s, to %.1g of the logarithm",
+            asin(extent->middle - extent->half) * degree, asin(extent->middle + extent->half) * degree,
+            shades->heel, skg_plural(shades->heel, "shade", "shades"), shades->heel_error);
+}
+
+static double cost_heel(const skg_effect_facts *f) {
+    const skg_model *model = &f->recipe->model;
+    return f->counts.passes * (SKG_COST_RAY + model->shades.heel * (SKG_SHADE_TERMS + (double)model->nodes));
+}
+
+static skg_status copy_bowtie(skg_recipe *recipe) {
+    skg_copies *copies = &recipe->copies;
+    skg_bowtie *ours = NULL;
+    if (!recipe->options.bowtie) return SKG_OK;
+    SKG_TRY(skg_copies_struct(copies, recipe->options.bowtie, "skg_bowtie", sizeof *ours,
+                              skg_bowtie_init_sized, &ours));
+    SKG_TRY(skg_bowtie_check(ours));
+    SKG_TRY(skg_copies_array(copies, ours->count, "bow-tie", &ours->angle_deg));
+    SKG_TRY(skg_copies_array(copies, ours->count, "bow-tie", &ours->path_mm));
+    recipe->options.bowtie = ours;
+    return skg_copies_material(copies, ours->material);
+}
+
+static int has_bowtie(const skg_recipe *recipe) {
+    return recipe->options.bowtie != NULL;
+}
+
+static void find_bowtie(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_shades *shades = &f->recipe->model.shades;
+    const skg_bowtie *bowtie = f->recipe->options.bowtie;
+    const char *off = bowtie ? why_off(f->recipe, 1, shades->bowtie) : "none is given", *name = "";
+    if (off || skg_material_name_get(bowtie->material, &name) != SKG_OK)
+        skg_effect_set(state, 0, "%s", off);
+    else
+        skg_effect_set(state, 1, "of %s, %" PRId64 " rows; rays cross it at %.3g to %.3g degrees in the fan",
+                       name, bowtie->count, shades->fan_angle[0] * degree, shades->fan_angle[1] * degree);
+}
+
+static double cost_bowtie(const skg_effect_facts *f) {
+    return f->counts.passes * (2 * SKG_COST_RAY + SKG_COST_LOOKED_UP + (double)f->recipe->model.nodes);
+}
+
+static skg_status copy_grid(skg_recipe *recipe) {
+    skg_copies *copies = &recipe->copies;
+    skg_grid *ours = NULL;
+    if (!recipe->options.grid) return SKG_OK;
+    SKG_TRY(skg_copies_struct(copies, recipe->options.grid, "skg_grid", sizeof *ours, skg_grid_init_sized,
+                              &ours));
+    SKG_TRY(skg_grid_check(ours));
+    recipe->options.grid = ours;
+    SKG_TRY(skg_copies_material(copies, ours->strip));
+    return skg_copies_material(copies, ours->interspace);
+}
+
+static int has_grid(const skg_recipe *recipe) {
+    return recipe->options.grid != NULL;
+}
+
+static void find_grid(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_shades *shades = &f->recipe->model.shades;
+    const skg_grid *grid = f->recipe->options.grid;
+    const char *off = grid ? why_off(f->recipe, 0, shades->grid) : "none is given";
+    char focus[64] = "parallel strips";
+    if (off) {
+        skg_effect_set(state, 0, "%s", off);
+        return;
+    }
+    if (grid->focus_mm > 0) snprintf(focus, sizeof focus, "focus at %g mm", grid->focus_mm);
+    skg_effect_set(state, 1,
+                   "ratio %g, %g strips per cm, %s; rays lean across the strips by up to %.2g of the width "
+                   "between them; %" PRId32 " shades, to %.1g of the logarithm",
+                   grid->ratio, grid->lines_per_cm, focus, shades->grid_lean * grid->ratio, shades->grid,
+                   shades->grid_error);
+}
+
+static double cost_grid(const skg_effect_facts *f) {
+    const skg_model *model = &f->recipe->model;
+    return f->counts.passes *
+           (2 * SKG_COST_RAY + model->shades.grid * (SKG_COST_LOOKED_UP + (double)model->nodes));
+}
+
+/* clang-format off */
+/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
+const skg_effect_row skg_effect_world = {"world material", NULL,
+    NULL, NULL, has_world, find_world, cost_world};
+const skg_effect_row skg_effect_falloff = {"falloff", NULL,
+    NULL, check_falloff, NULL, find_falloff, cost_falloff};
+const skg_effect_row skg_effect_heel = {"heel effect", "heel effect",
+    copy_heel, NULL, has_heel, find_heel, cost_heel};
+const skg_effect_row skg_effect_bowtie = {"bow-tie filter", "shades",
+    copy_bowtie, NULL, has_bowtie, find_bowtie, cost_bowtie};
+const skg_effect_row skg_effect_grid = {"anti-scatter grid", "shades",
+    copy_grid, NULL, has_grid, find_grid, cost_grid};
+/* clang-format on */

@@ -1,0 +1,314 @@
+/* Effects of the detector: response, noise, blur. */
+#include "beam/spectrum.h"
+#include "core/log.h"
+#include "core/names.h"
+#include "plan/effect.h"
+#include "plan/options.h"
+#include "spectral/quantity.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static void find_response(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_plan_options *options = &f->recipe->options;
+    const int counts = skg_quantity_counts(options);
+    if (options->response)
+        skg_effect_set(state, 1,
+                       counts ? "photons are counted by the share of them that the detector records"
+                              : "photons count by what the detector records of their energy");
+    else
+        skg_effect_set(state, 0,
+                       counts ? "the detector is ideal: it counts all photons"
+                              : "the detector is ideal: all photons, all their energy");
+}
+
+static skg_status check_noise(const skg_plan_options *options) {
+    SKG_TRY(skg_check_flag("noise", options->noise));
+    if (options->swank > 0 && options->swank <= 1) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "the Swank factor is %g; above 0, at most 1", options->swank);
+}
+
+static int has_noise(const skg_recipe *recipe) {
+    return recipe->options.noise;
+}
+
+static void find_noise(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_plan_options *options = &f->recipe->options;
+    const int assumes = skg_response_assumes_efficiency(options->response);
+    const char *all = assumes ? "; every photon is taken as recorded" : "";
+    if (!options->noise) {
+        skg_effect_set(state, 0, "not asked for");
+        return;
+    }
+    if (skg_quantity_counts(options))
+        skg_effect_set(state, 1, "asked for; photons are counted, so the variance is the mean%s", all);
+    else
+        skg_effect_set(
+            state, 1,
+            "asked for; Swank factor %g%s; photon by photon if fewer than %g are detected in a pixel%s",
+            options->swank, options->response ? " times that of the response" : "", SKG_FEW_PHOTONS, all);
+    if (assumes)
+        skg_log(
+            f->context, SKG_LOG_WARNING,
+            "noise with an energy response that gives no efficiency: every photon that arrives is taken as "
+            "recorded, so the noise is the least possible; give the efficiency as a third column, or Meaning "
+            "\"absorbed\" if photons leave either all of their energy or nothing");
+}
+
+static double cost_noise(const skg_effect_facts *f) {
+    const double nodes = f->recipe->model.nodes, channels = f->recipe->model.channels;
+    return f->counts.passes * channels * (nodes + SKG_COST_DEVIATE);
+}
+
+static int has_blur(const skg_recipe *recipe) {
+    return recipe->is_blurred;
+}
+
+static void find_blur(const skg_effect_facts *f, skg_effect_state *state) {
+    if (has_blur(f->recipe) && !f->recipe->options.depth_blur)
+        skg_effect_set(state, 1, "%s of the detector is given", skg_blur_kind(f->layers->blurs[0]));
+    else
+        skg_effect_set(state, 0, "no line or point spread function is given");
+}
+
+static double cost_blur(const skg_effect_facts *f) {
+    return f->recipe->model.channels * (double)skg_blur_samples(f->layers->blurs[0]);
+}
+
+static skg_status check_kev(const skg_plan_options *options, const char *what, double kev) {
+    if (!(kev >= 0 && isfinite(kev))) return skg_fail(SKG_ERR_ARGUMENT, "%s is %g keV; 0 or more", what, kev);
+    if (kev > 0 && skg_quantity_counts(options))
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "electronic noise and quantisation are in keV, but photons are counted; leave them out, or "
+            "take %s",
+            options->quantity == SKG_QUANTITY_PHOTONS ? "another quantity"
+                                                      : "SKG_BAND_WEIGHT_ENERGY (BandWeight)");
+    return SKG_OK;
+}
+
+static skg_status check_electronic(const skg_plan_options *options) {
+    return check_kev(options, "electronic noise", options->electronic_kev);
+}
+
+static int has_electronic(const skg_recipe *recipe) {
+    return recipe->options.electronic_kev > 0;
+}
+
+static void find_electronic(const skg_effect_facts *f, skg_effect_state *state) {
+    if (has_electronic(f->recipe))
+        skg_effect_set(state, 1, "standard deviation of %g keV per pixel", f->recipe->options.electronic_kev);
+    else
+        skg_effect_set(state, 0, "not asked for");
+}
+
+static double cost_electronic(const skg_effect_facts *f) {
+    return f->recipe->model.channels * SKG_COST_DEVIATE;
+}
+
+static skg_status check_quantisation(const skg_plan_options *options) {
+    return check_kev(options, "the quantisation's step", options->quantum_step_kev);
+}
+
+static int has_steps(const skg_recipe *recipe) {
+    return recipe->options.quantum_step_kev > 0;
+}
+
+static void find_quantisation(const skg_effect_facts *f, skg_effect_state *state) {
+    if (has_steps(f->recipe))
+        skg_effect_set(state, 1, "steps of %g keV per pixel", f->recipe->options.quantum_step_kev);
+    else
+        skg_effect_set(state, 0, "no step is given");
+}
+
+static double cost_quantisation(const skg_effect_facts *f) {
+    return f->recipe->model.channels;
+}
+
+/* Refuses a response that is not that of a layer. what: needs the layer; mend: what to do without one. */
+static skg_status check_layer(const skg_plan_options *options, const char *what, const char *mend) {
+    if (skg_response_is_layer(options->response)) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "%s, but the detector %s; give the response of a scintillator, or %s",
+                    what, options->response ? "has a table of energies" : "is ideal", mend);
+}
+
+static skg_status check_oblique(const skg_plan_options *options) {
+    SKG_TRY(skg_check_flag("oblique", options->oblique));
+    if (!options->oblique) return SKG_OK;
+    return check_layer(options, "rays cross the layer of a scintillator obliquely", "leave oblique out");
+}
+
+static int has_oblique(const skg_recipe *recipe) {
+    return recipe->options.oblique;
+}
+
+static void find_oblique(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_shades *shades = &f->recipe->model.shades;
+    const skg_shade_extent *extent = &shades->oblique_extent;
+    if (!has_oblique(f->recipe))
+        skg_effect_set(state, 0,
+                       f->recipe->options.response ? "not asked for: photons cross the layer straight"
+                                                   : "the detector is ideal");
+    else if (shades->oblique == 0)
+        skg_effect_set(state, 0,
+                       extent->half > 0 ? "every ray crosses the layer straight"
+                                        : "one energy over its flat field does not show it");
+    else
+        skg_effect_set(state, 1,
+                       "paths through the layer are up to %.4g times its thickness; %" PRId32
+                       " %s, to %.1g of the logarithm",
+                       1 / (extent->middle - extent->half), shades->oblique,
+                       skg_plural(shades->oblique, "shade", "shades"), shades->oblique_error);
+}
+
+static double cost_oblique(const skg_effect_facts *f) {
+    const skg_model *model = &f->recipe->model;
+    return f->counts.passes *
+           (SKG_COST_RAY + model->shades.oblique * (SKG_SHADE_TERMS + (double)model->nodes));
+}
+
+static void find_escape(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_response *response = f->recipe->options.response;
+    if (skg_response_escapes(response))
+        skg_effect_set(
+            state, 1,
+            "K fluorescence leaves the scintillator: recorded energies and Swank factors are those "
+            "of its pulse heights");
+    else if (!response)
+        skg_effect_set(state, 0, "the detector is ideal");
+    else
+        skg_effect_set(state, 0,
+                       skg_response_is_layer(response)
+                           ? "not asked for: every photon that interacts is absorbed"
+                           : "the response is a table");
+}
+
+/* The blurs of the layers from the number `first` on, and the sums of all layers. */
+static double cost_of_layers(const skg_effect_facts *f, int32_t first) {
+    const skg_model *model = &f->recipe->model;
+    const double nodes = model->nodes, channels = model->channels;
+    double samples = 0;
+    for (int32_t l = first; l < f->layers->count; l++)
+        samples += (double)skg_blur_samples(f->layers->blurs[l]);
+    return channels * samples + f->counts.passes * nodes * (model->layers - 1);
+}
+
+static skg_status copy_depths(skg_recipe *recipe) {
+    skg_depth_blur *ours = NULL;
+    double before = 0;
+    if (!recipe->options.depth_blur) return SKG_OK;
+    if (recipe->options.blur)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "each depth of the scintillator has a blur of its own; leave out the one for all");
+    SKG_TRY(skg_copies_struct(&recipe->copies, recipe->options.depth_blur, "skg_depth_blur", sizeof *ours,
+                              skg_depth_blur_init_sized, &ours));
+    if (ours->count < 1 || ours->count > SKG_DEPTHS_MAX || !ours->to || !ours->blur)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%" PRId64 " depths of a scintillator; 1 to %d, with ends and blurs", ours->count,
+                        (int)SKG_DEPTHS_MAX);
+    SKG_TRY(skg_copies_array(&recipe->copies, ours->count, "depths", &ours->to));
+    for (int64_t d = 0; d < ours->count; before = ours->to[d++])
+        if (!(ours->to[d] > before && ours->to[d] <= 1) || (d == ours->count - 1 && ours->to[d] < 1))
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "depth %" PRId64
+                            " of the scintillator ends at %g of its thickness; ends rise, and the "
+                            "last is 1",
+                            d + 1, ours->to[d]);
+    ours->blur = NULL; /* read when the plan is made */
+    recipe->options.depth_blur = ours;
+    return SKG_OK;
+}
+
+static skg_status check_depths(const skg_plan_options *options) {
+    const int64_t channels = options->bands > 0 ? options->bands : 1;
+    if (!options->depth_blur) return SKG_OK;
+    SKG_TRY(
+        check_layer(options, "a blur by depths needs to know where photons interact", "one blur for all"));
+    if (options->depth_blur->count * channels > SKG_CHANNELS_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " depths of %" PRId64 " bands; at most %d together",
+                        options->depth_blur->count, channels, (int)SKG_CHANNELS_MAX);
+    return SKG_OK;
+}
+
+static void find_depths(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_depth_blur *depths = f->recipe->options.depth_blur;
+    if (depths)
+        skg_effect_set(state, 1,
+                       "%d depths of the scintillator, each with a blur of its own; the deepest has %s",
+                       (int)depths->count, skg_blur_kind(f->layers->blurs[f->layers->count - 1]));
+    else
+        skg_effect_set(state, 0, "not asked for: the blur is the same for all energies");
+}
+
+static double cost_depths(const skg_effect_facts *f) {
+    return cost_of_layers(f, 0);
+}
+
+void skg_dqe_init_sized(void *dqe, int32_t size) {
+    const skg_dqe defaults = {0};
+    skg_struct_init(dqe, size, &defaults, sizeof defaults);
+}
+
+static skg_status copy_dqe(skg_recipe *recipe) {
+    skg_dqe *ours = NULL;
+    if (!recipe->options.dqe) return SKG_OK;
+    SKG_TRY(skg_copies_struct(&recipe->copies, recipe->options.dqe, "skg_dqe", sizeof *ours,
+                              skg_dqe_init_sized, &ours));
+    if (ours->count < 2 || !ours->per_mm || !ours->dqe)
+        return skg_fail(SKG_ERR_ARGUMENT, "a table of the DQE has at least two frequencies");
+    for (int64_t i = 0; i < ours->count; i++)
+        if (!(ours->dqe[i] > 0 && ours->dqe[i] <= 1))
+            return skg_fail(SKG_ERR_ARGUMENT, "DQE, row %" PRId64 ": %g; give more than 0, up to 1", i + 1,
+                            ours->dqe[i]);
+    SKG_TRY(skg_copies_array(&recipe->copies, ours->count, "DQE", &ours->per_mm));
+    SKG_TRY(skg_copies_array(&recipe->copies, ours->count, "DQE", &ours->dqe));
+    recipe->options.dqe = ours;
+    return SKG_OK;
+}
+
+static skg_status check_dqe(const skg_plan_options *options) {
+    if (options->dqe && options->depth_blur)
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "the power of the noise follows from a DQE and from a blur by depths; give one of them");
+    if (options->dqe && options->bands > 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "a DQE by spatial frequency is that of an image without bands");
+    return SKG_OK;
+}
+
+static void find_dqe(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_dqe *dqe = f->recipe->options.dqe;
+    if (dqe && f->recipe->options.noise)
+        skg_effect_set(state, 1, "noise power by a DQE of %g at 0 to %g at %g per mm; noise is blurred by %s",
+                       dqe->dqe[0], dqe->dqe[dqe->count - 1], dqe->per_mm[dqe->count - 1],
+                       skg_blur_kind(f->layers->blurs[f->layers->count - 1]));
+    else
+        skg_effect_set(state, 0,
+                       dqe ? "there is no noise" : "not asked for: noise is blurred as the signal is");
+}
+
+static double cost_dqe(const skg_effect_facts *f) {
+    return cost_of_layers(f, f->layers->count - 1);
+}
+
+/* clang-format off */
+/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
+const skg_effect_row skg_effect_response = {"energy response", NULL,
+    NULL, NULL, NULL, find_response, NULL};
+const skg_effect_row skg_effect_noise = {"quantum noise", "noise",
+    NULL, check_noise, has_noise, find_noise, cost_noise};
+const skg_effect_row skg_effect_blur = {"blur", "blur",
+    NULL, NULL, has_blur, find_blur, cost_blur};
+const skg_effect_row skg_effect_electronic = {"electronic noise", "detector",
+    NULL, check_electronic, has_electronic, find_electronic, cost_electronic};
+const skg_effect_row skg_effect_quantisation = {"quantisation", "detector",
+    NULL, check_quantisation, has_steps, find_quantisation, cost_quantisation};
+const skg_effect_row skg_effect_oblique = {"oblique scintillator", "shades",
+    NULL, check_oblique, has_oblique, find_oblique, cost_oblique};
+const skg_effect_row skg_effect_escape = {"K escape", NULL,
+    NULL, NULL, NULL, find_escape, NULL};
+const skg_effect_row skg_effect_depths = {"blur by depths", "blur by depths",
+    copy_depths, check_depths, has_blur, find_depths, cost_depths};
+const skg_effect_row skg_effect_dqe = {"noise power", "noise power",
+    copy_dqe, check_dqe, NULL, find_dqe, cost_dqe};
+/* clang-format on */

@@ -1,0 +1,125 @@
+/* Effects of meshes and of where they lie. */
+#include "core/names.h"
+#include "plan/effect.h"
+#include "plan/options.h"
+#include "spectral/compress.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static void find_nesting(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_scene *scene = f->recipe->scene;
+    int64_t nested = 0;
+    for (int64_t i = 0; i < scene->count; i++) nested += scene->parts[i].inside >= 0;
+    if (nested)
+        skg_effect_set(state, 1, "%" PRId64 " %s a parent: differences of mu, no pass", nested,
+                       skg_plural(nested, "part displaces", "parts displace"));
+    else
+        skg_effect_set(state, 0, "no part names a parent");
+}
+
+static int has_leaky(const skg_recipe *recipe) {
+    return recipe->leaky_count > 0;
+}
+
+static void find_leaky(const skg_effect_facts *f, skg_effect_state *state) {
+    const int64_t count = f->recipe->leaky_count;
+    if (count)
+        skg_effect_set(state, 1, "%" PRId64 " %s not closed: each has a plane and a count of its own", count,
+                       skg_plural(count, "part is", "parts are"));
+    else
+        skg_effect_set(state, 0, "every mesh is closed: signed hits cancel exactly");
+}
+
+static double cost_leaky(const skg_effect_facts *f) {
+    return f->counts.passes * (double)f->recipe->leaky_count * 2 * SKG_COST_OF_PLANE;
+}
+
+static skg_status check_repair(const skg_plan_options *options) {
+    return skg_check_choice("repair", options->repair, SKG_REPAIR_EXACT,
+                            "SKG_REPAIR_NONE, _NEIGHBOURS or _EXACT");
+}
+
+static void find_repair(const skg_effect_facts *f, skg_effect_state *state) {
+    static const char *const repairs[] = {
+        [SKG_REPAIR_NONE] = "not asked for: bad pixels are left out",
+        [SKG_REPAIR_NEIGHBOURS] = "bad pixels of a part get the mean of its nearest valid ones",
+        [SKG_REPAIR_EXACT] =
+            "rays of bad pixels are traced again on the host, through meshes with their holes capped",
+    };
+    const int32_t repair = f->recipe->options.repair;
+    const int leaky = has_leaky(f->recipe);
+    skg_effect_set(state, leaky && repair != SKG_REPAIR_NONE, "%s",
+                   leaky ? repairs[repair] : "every mesh is closed");
+}
+
+static double cost_repair(const skg_effect_facts *f) {
+    return f->counts.passes * (double)f->recipe->leaky_count * SKG_COST_REPAIRED;
+}
+
+static void find_source_plane(const skg_effect_facts *f, skg_effect_state *state) {
+    if (f->near_source)
+        skg_effect_set(state, 1, "%" PRId64 " %s the plane where rays start", f->near_source,
+                       skg_plural(f->near_source, "part reaches", "parts reach"));
+    else
+        skg_effect_set(state, 0, "no part reaches the plane where rays start");
+}
+
+static skg_status check_overlaps(const skg_plan_options *options) {
+    return skg_check_flag("overlaps", options->overlaps);
+}
+
+static void find_overlaps(const skg_effect_facts *f, skg_effect_state *state) {
+    const int64_t count = f->overlap_count, side = f->overlap_side;
+    char grid[128] = "";
+    if (side > 0 && side < SKG_OVERLAP_SIDE)
+        snprintf(grid, sizeof grid,
+                 "; looked for along %" PRId64 " x %" PRId64
+                 " columns instead of %d x %d, which would meet more than 10^7 surfaces",
+                 side, side, (int)SKG_OVERLAP_SIDE, (int)SKG_OVERLAP_SIDE);
+    if (!f->recipe->options.overlaps)
+        skg_effect_set(state, 0, "not asked for");
+    else
+        skg_effect_set(state, 1, "%" PRId64 " %s%s", count,
+                       skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
+                                  "pairs of parts overlap or leave their parent"),
+                       grid);
+}
+
+static skg_status check_clip(const skg_plan_options *options) {
+    return skg_check_flag("clip", options->clip);
+}
+
+static int has_priority(const skg_recipe *recipe) {
+    return recipe->priority_possible;
+}
+
+static void find_priority(const skg_effect_facts *f, skg_effect_state *state) {
+    if (!has_priority(f->recipe))
+        skg_effect_set(state, 0, "no two parts of one parent differ in priority, and none is clipped");
+    else if (f->competing == 0)
+        skg_effect_set(state, 0, "parts of different priority keep apart in the plan's view");
+    else
+        skg_effect_set(state, 1, "hits of %" PRId64 " parts are listed: they may compete%s", f->competing,
+                       f->recipe->options.clip ? ", or leave their parents" : "");
+}
+
+static double cost_priority(const skg_effect_facts *f) {
+    return f->counts.passes * f->counts.listed * SKG_COST_LISTED;
+}
+
+/* clang-format off */
+/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
+const skg_effect_row skg_effect_nesting = {"nesting", NULL,
+    NULL, NULL, NULL, find_nesting, NULL};
+const skg_effect_row skg_effect_leaky = {"leaky meshes", "leaky meshes",
+    NULL, NULL, has_leaky, find_leaky, cost_leaky};
+const skg_effect_row skg_effect_repair = {"repair", NULL,
+    NULL, check_repair, NULL, find_repair, cost_repair};
+const skg_effect_row skg_effect_source_plane = {"source plane", "source plane",
+    NULL, NULL, NULL, find_source_plane, NULL};
+const skg_effect_row skg_effect_overlaps = {"overlap check", NULL,
+    NULL, check_overlaps, NULL, find_overlaps, NULL};
+const skg_effect_row skg_effect_priority = {"priority", "priority",
+    NULL, check_clip, has_priority, find_priority, cost_priority};
+/* clang-format on */
