@@ -114,18 +114,9 @@
     X(LEAKY_PUT, part) X(LEAKY_PUT, count) X(LEAKY_PUT, pixels) X(LEAKY_PUT, values) X(LEAKY_PUT, shared)
 
 #define SKG_ARGUMENTS_ATTENUATE(X) \
-    X(ATTENUATE, frame) X(ATTENUATE, ray) X(ATTENUATE, copies) X(ATTENUATE, used) X(ATTENUATE, nodes) \
-    X(ATTENUATE, coefficients) X(ATTENUATE, weights) X(ATTENUATE, factor) X(ATTENUATE, limit) \
-    X(ATTENUATE, negative) X(ATTENUATE, output) X(ATTENUATE, offset) X(ATTENUATE, row_stride) \
-    X(ATTENUATE, channel_stride) \
-    X(ATTENUATE, lists) /* SKG_SUMS */ \
-    X(ATTENUATE, world_plane) X(ATTENUATE, world) /* SKG_WORLD */ \
-    X(ATTENUATE, foot) /* SKG_FALLOFF */ \
-    X(ATTENUATE, variances) X(ATTENUATE, key) X(ATTENUATE, photons) /* SKG_NOISE */ \
-    X(ATTENUATE, range) /* SKG_RANGED */ \
-    X(ATTENUATE, shades) /* SKG_SHADES */ \
-    X(ATTENUATE, polynomials) /* SKG_HEEL + SKG_OBLIQUE */ \
-    X(ATTENUATE, tables) /* SKG_BOWTIE + SKG_GRID */
+    X(ATTENUATE, args) X(ATTENUATE, copies) X(ATTENUATE, used) X(ATTENUATE, coefficients) X(ATTENUATE, weights) \
+    X(ATTENUATE, variances) X(ATTENUATE, lists) X(ATTENUATE, range) X(ATTENUATE, polynomials) \
+    X(ATTENUATE, tables) X(ATTENUATE, negative) X(ATTENUATE, output)
 
 #define SKG_ARGUMENTS_LOGARITHM(X) \
     X(LOGARITHM, columns) X(LOGARITHM, rows) X(LOGARITHM, channels) X(LOGARITHM, output) X(LOGARITHM, offset) \

@@ -5,10 +5,12 @@
 #ifdef __OPENCL_C_VERSION__
 #define SKG_INT int
 #define SKG_UINT uint
+#define SKG_LONG long
 #else
 #include <stdint.h>
 #define SKG_INT int32_t
 #define SKG_UINT uint32_t
+#define SKG_LONG int64_t
 #endif
 
 /* Items (triangles or projected vertices) per entry of a block table. */
@@ -138,26 +140,52 @@ typedef struct {
     SKG_INT rows;  /* of the bow-tie, whose table is the first */                                            \
     SKG_INT table; /* where that of the grid begins */
 
-#ifdef __OPENCL_C_VERSION__
+/* Where an image lies in its buffer, in elements. */
 typedef struct {
-    SKG_SHADE_MEMBERS(skg_real)
-} skg_shade_args;
+    SKG_LONG offset, row_stride, channel_stride;
+} skg_image_args;
+
+/* Of skg_attenuate (attenuate.cl). In such a struct the reals come first and the members of one size for both precisions
+ * behind them, so that the host rounds all reals at once (lib/stage/kernels.h). What a program does not use is 0. */
+#define SKG_ATTENUATE_MEMBERS(real, suffix)                                                                  \
+    skg_ray_##suffix ray;                                                                                    \
+    real factor;               /* of intensities */                                                          \
+    real limit;                /* exponents below -limit are counted */                                      \
+    real foot;                 /* mm from the source to the foot of its perpendicular on the detector; */    \
+                               /* SKG_FALLOFF: intensities are multiplied by the cube of foot / |ray| */     \
+    real photons;              /* if fewer are detected in a pixel they are drawn one by one; */             \
+                               /* mean^2 / variance, never more than their number, decides */                \
+    real world[4];             /* world[0] is added to world_plane for each mm of path, which is */          \
+                               /* |ray| (world[1] + world[2] i + world[3] j) */                              \
+    skg_shade_##suffix shades; /* last of the reals, because it ends in integers */                          \
+    skg_frame_args frame;                                                                                    \
+    skg_noise_args key;                                                                                      \
+    SKG_INT nodes, world_plane;                                                                              \
+    skg_image_args image;
+
+/* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
+#define SKG_STRUCTS_WITH(real, suffix)                                                                       \
+    typedef struct {                                                                                         \
+        SKG_RAY_MEMBERS(real)                                                                                \
+    } skg_ray_##suffix;                                                                                      \
+    typedef struct {                                                                                         \
+        SKG_SHADE_MEMBERS(real)                                                                              \
+    } skg_shade_##suffix;                                                                                    \
+    typedef struct {                                                                                         \
+        SKG_ATTENUATE_MEMBERS(real, suffix)                                                                  \
+    } skg_attenuate_##suffix;
+
+#ifdef __OPENCL_C_VERSION__
+SKG_STRUCTS_WITH(skg_real, args)
 typedef struct {
     SKG_PART_MEMBERS(skg_real)
 } skg_part_entry;
 typedef struct {
     SKG_CONTRIBUTION_MEMBERS(skg_real)
 } skg_contribution;
-typedef struct {
-    SKG_RAY_MEMBERS(skg_real)
-} skg_ray_args;
 #else
-typedef struct {
-    SKG_SHADE_MEMBERS(float)
-} skg_shade_float;
-typedef struct {
-    SKG_SHADE_MEMBERS(double)
-} skg_shade_double;
+SKG_STRUCTS_WITH(float, float)
+SKG_STRUCTS_WITH(double, double)
 typedef struct {
     SKG_PART_MEMBERS(float)
 } skg_part_float;
@@ -170,18 +198,14 @@ typedef struct {
 typedef struct {
     SKG_CONTRIBUTION_MEMBERS(double)
 } skg_contribution_double;
-typedef struct {
-    SKG_RAY_MEMBERS(float)
-} skg_ray_float;
-typedef struct {
-    SKG_RAY_MEMBERS(double)
-} skg_ray_double;
 _Static_assert(sizeof(skg_part_float) == 21 * 4 + 12 * 4, "layout of a part, single");
 _Static_assert(sizeof(skg_part_double) == 21 * 8 + 12 * 4, "layout of a part, double");
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_shade_float) == 22 * 4 && sizeof(skg_shade_double) == 21 * 8, "layout of shades");
+_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 128 && sizeof(skg_attenuate_double) == 40 * 8 + 128,
+               "layout of the arguments of skg_attenuate");
 _Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");

@@ -144,7 +144,7 @@ static skg_status get_program(const skg_attenuator *attenuator, const kernel_key
         (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add,
         work.runs, work.strip, (int)key->ranged, (int)key->mixed, (int)key->fine, (int)key->shades,
         (int)key->heel, (int)key->oblique, (int)key->bowtie, (int)key->grid,
-        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
+        key->energies ? " -D SKG_ENERGIES=1" : "");
     return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
 }
 
@@ -166,51 +166,13 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     return SKG_OK;
 }
 
-/* Whether a kernel compiled for this key has an argument. */
-static int has_argument(const kernel_key *key, int argument) {
-    switch (argument) {
-    case SKG_ATTENUATE_lists:
-        return key->mixed;
-    case SKG_ATTENUATE_world_plane:
-    case SKG_ATTENUATE_world:
-        return key->world;
-    case SKG_ATTENUATE_foot:
-        return key->falloff;
-    case SKG_ATTENUATE_variances:
-    case SKG_ATTENUATE_key:
-    case SKG_ATTENUATE_photons:
-        return key->noise;
-    case SKG_ATTENUATE_range:
-        return key->ranged;
-    case SKG_ATTENUATE_shades:
-        return key->shades;
-    case SKG_ATTENUATE_polynomials:
-        return key->heel + key->oblique;
-    case SKG_ATTENUATE_tables:
-        return key->bowtie + key->grid;
-    default:
-        return 1;
-    }
-}
-
-/* Sets the arguments that the kernel has. Behind an absent one they move up. */
-static skg_status set_arguments(cl_kernel kernel, const kernel_key *key, const skg_argument *arguments) {
-    cl_uint position = 0;
-    for (int a = 0; a < SKG_ATTENUATE_ARGUMENTS; a++)
-        if (has_argument(key, a))
-            SKG_TRY(skg_kernel_set(kernel, position++, arguments[a].size, arguments[a].value));
-    return SKG_OK;
-}
-
 /* What |ray| is multiplied by to give the length of the ray's path through the world, behind the weight of the world's
  * plane: 1 for a point source; for a parallel beam, whose |ray| is 1 mm, what lies behind the start. */
-static void find_world(const skg_camera *camera, const skg_attenuation *attenuation, double twice[4],
-                       float single[4]) {
-    twice[0] = attenuation->world_weight;
-    twice[1] = camera->parallel ? 1 - camera->start[0] : 1;
-    twice[2] = -camera->start[1];
-    twice[3] = -camera->start[2];
-    for (int k = 0; k < 4; k++) single[k] = (float)twice[k];
+static void find_world(const skg_camera *camera, const skg_attenuation *attenuation, double world[4]) {
+    world[0] = attenuation->world_weight;
+    world[1] = camera->parallel ? 1 - camera->start[0] : 1;
+    world[2] = -camera->start[1];
+    world[3] = -camera->start[2];
 }
 
 static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const skg_attenuation *attenuation,
@@ -256,6 +218,23 @@ skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_rast
     return get_program(attenuator, &key, NULL);
 }
 
+/* The scalar arguments that do not depend on the caller's factor and share. */
+static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *sums, const skg_camera *camera,
+                                       const skg_attenuation *attenuation, const skg_image_place *place) {
+    skg_attenuate_double args = {
+        .foot = key->falloff ? skg_camera_foot(camera) : 0,
+        .frame = sums->raster->frame,
+        .nodes = attenuation->nodes,
+        .world_plane = attenuation->world_plane,
+        .image = {place->offset, place->row_stride, place->channel_stride},
+    };
+    args.frame.first_plane = sums->pass * args.frame.planes;
+    skg_camera_rays(camera, sums->scale, &args.ray);
+    find_world(camera, attenuation, args.world);
+    if (key->shades) skg_shades_see(attenuation->shades, camera, &args.shades);
+    return args;
+}
+
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                          const skg_attenuation *attenuation, double factor, double share, double least,
                          cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
@@ -263,59 +242,31 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     const skg_raster *raster = sums->raster;
     const kernel_key key = key_of(sums, camera, attenuation, place);
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
-    /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
-    const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
-    skg_real_argument reals[4]; /* factor, limit, foot, photons */
-    double world[4];
-    float world_single[4];
-    skg_shade_double shades = {0};
-    skg_shade_float shades_single;
+    skg_attenuate_double args = scalars_of(&key, sums, camera, attenuation, place);
+    skg_attenuate_float rounded;
     cl_kernel kernel = NULL;
-    skg_ray_double ray;
-    skg_ray_float ray_single;
-    skg_frame_args frame = raster->frame;
-    frame.first_plane = sums->pass * frame.planes;
+    /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
+    args.limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
+    args.factor = factor;
+    args.photons = SKG_FEW_PHOTONS * share;
+    if (noise) args.key = *noise;
+    SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
-    skg_camera_rays(camera, sums->scale, &ray);
-    skg_rays_round(&ray, &ray_single);
-    find_world(camera, attenuation, world, world_single);
-    if (key.shades) skg_shades_see(attenuation->shades, camera, &shades);
-    skg_shades_round(&shades, &shades_single);
-    skg_real_argument_set(&reals[0], is_double, factor);
-    skg_real_argument_set(&reals[1], is_double, limit);
-    skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_foot(camera) : 0);
-    skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * share);
-    const skg_argument arguments[SKG_ATTENUATE_ARGUMENTS] = {
-        SKG_ARGUMENT(ATTENUATE, frame, frame),
-        {SKG_ATTENUATE_ray, is_double ? sizeof ray : sizeof ray_single,
-         is_double ? (const void *)&ray : (const void *)&ray_single},
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT_WITH(ATTENUATE, args, is_double, args, rounded),
         SKG_ARGUMENT(ATTENUATE, copies, raster->sums.memory),
         SKG_ARGUMENT(ATTENUATE, used, raster->used.memory),
-        SKG_ARGUMENT(ATTENUATE, nodes, attenuation->nodes),
         SKG_ARGUMENT(ATTENUATE, coefficients, attenuation->coefficients.memory),
         SKG_ARGUMENT(ATTENUATE, weights, attenuation->weights.memory),
-        {SKG_ATTENUATE_factor, reals[0].size, reals[0].value},
-        {SKG_ATTENUATE_limit, reals[1].size, reals[1].value},
-        SKG_ARGUMENT(ATTENUATE, negative, negative),
-        SKG_ARGUMENT(ATTENUATE, output, place->memory),
-        SKG_ARGUMENT(ATTENUATE, offset, place->offset),
-        SKG_ARGUMENT(ATTENUATE, row_stride, place->row_stride),
-        SKG_ARGUMENT(ATTENUATE, channel_stride, place->channel_stride),
-        SKG_ARGUMENT(ATTENUATE, lists, sums->lists),
-        SKG_ARGUMENT(ATTENUATE, world_plane, attenuation->world_plane),
-        {SKG_ATTENUATE_world, is_double ? sizeof world : sizeof world_single,
-         is_double ? (const void *)world : (const void *)world_single},
-        {SKG_ATTENUATE_foot, reals[2].size, reals[2].value},
         SKG_ARGUMENT(ATTENUATE, variances, attenuation->variances.memory),
-        SKG_ARGUMENT(ATTENUATE, key, *noise),
-        {SKG_ATTENUATE_photons, reals[3].size, reals[3].value},
+        SKG_ARGUMENT(ATTENUATE, lists, sums->lists),
         SKG_ARGUMENT(ATTENUATE, range, attenuation->range.memory),
-        {SKG_ATTENUATE_shades, is_double ? sizeof shades : sizeof shades_single,
-         is_double ? (const void *)&shades : (const void *)&shades_single},
         SKG_ARGUMENT(ATTENUATE, polynomials, attenuation->polynomials.memory),
         SKG_ARGUMENT(ATTENUATE, tables, attenuation->tables.memory),
+        SKG_ARGUMENT(ATTENUATE, negative, negative),
+        SKG_ARGUMENT(ATTENUATE, output, place->memory),
     };
-    SKG_TRY(set_arguments(kernel, &key, arguments));
+    SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
     const work_shape work = shape_of(raster->context, sums->fine);
     const int64_t pixels = skg_kernel_lanes(raster->context, key.options.precision) * work.runs * work.strip;
     const size_t across = (size_t)((raster->frame.columns + pixels - 1) / pixels);

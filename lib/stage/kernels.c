@@ -55,6 +55,14 @@ skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argum
     return SKG_OK;
 }
 
+void skg_arguments_round(const void *twice, size_t reals, size_t size, void *single) {
+    const double *from = twice;
+    float *to = single;
+    const size_t count = reals / sizeof *from;
+    for (size_t i = 0; i < count; i++) to[i] = (float)from[i];
+    memcpy(to + count, from + count, size - reals);
+}
+
 void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, double value) {
     argument->single = (float)value;
     argument->twice = value;

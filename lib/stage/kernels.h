@@ -49,6 +49,19 @@ skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argum
 #define SKG_SET_ARGUMENTS(kernel, arguments)                                                                 \
     skg_kernel_arguments(kernel, (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments)
 
+/* An argument that is a struct in the precision of the kernel. */
+#define SKG_ARGUMENT_WITH(kernel, name, is_double, twice, single)                                            \
+    {                                                                                                        \
+        SKG_##kernel##_##name, (is_double) ? sizeof(twice) : sizeof(single),                                 \
+            (is_double) ? (const void *)&(twice) : (const void *)&(single)                                   \
+    }
+
+/* Rounds a struct of arguments to single precision. first_whole: the first member behind the reals. */
+#define SKG_ROUND_ARGUMENTS(twice, single, first_whole)                                                      \
+    skg_arguments_round(&(twice), (size_t)((const char *)&(twice).first_whole - (const char *)&(twice)),     \
+                        sizeof(twice), &(single))
+void skg_arguments_round(const void *twice, size_t reals, size_t size, void *single);
+
 /* A real number in the precision of a kernel, to be passed as an argument of `size` bytes from `value`. */
 typedef struct {
     float single;

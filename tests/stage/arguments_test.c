@@ -50,9 +50,9 @@ static const struct {
     {{"leaky.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "shades.clh", "planes.clh", "quantum.clh",
       "attenuate.cl"},
-     "-D SKG_SUMS=2 -D SKG_WORLD=1 -D SKG_FALLOFF=1 -D SKG_NOISE=1 -D SKG_RANGED=1 -D SKG_PLANES=5 -D SKG_SHADES=4 "
-     "-D SKG_HEEL=1 -D SKG_OBLIQUE=1 -D SKG_BOWTIE=1 -D SKG_GRID=1",
+     "-D SKG_NOISE=1 -D SKG_PLANES=5 -D SKG_SHADES=4 -D SKG_HEEL=1 -D SKG_OBLIQUE=1 -D SKG_BOWTIE=1 -D SKG_GRID=1",
      0},
+    {{"exponential.clh", "planes.clh", "attenuate.cl"}, "", 0},
     {{"blur.cl"}, "", 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1", 0},
     {{"show_shared.h", "show.cl"}, "", 0},
