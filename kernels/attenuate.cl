@@ -344,12 +344,12 @@ __kernel void skg_attenuate(skg_attenuate_args args, __global const skg_sum *cop
 
 /* Turns means of several passes into attenuations: -ln of the mean, or of the smallest normal float if that is greater. One
  * work-item per run. */
-__kernel void skg_logarithm(int columns, int rows, int channels, __global skg_out *output, long offset,
-                            long row_stride, long channel_stride) {
+__kernel void skg_logarithm(skg_image_args image, __global skg_out *output) {
+    const int columns = image.columns, rows = image.rows;
     const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
     if (column >= columns || row >= rows) return;
-    for (int c = 0; c < channels; c++) {
-        __global skg_out *place = output + offset + row * row_stride + c * channel_stride + column;
+    for (int c = 0; c < image.channels; c++) {
+        __global skg_out *place = output + image.offset + row * image.row_stride + c * image.channel_stride + column;
         skg_out mean[SKG_WIDE];
         for (int k = 0; k < SKG_WIDE; k++) mean[k] = place[min(k, columns - column - 1)];
         const skg_realv value = SKG_OUT_TO_REAL_V(SKG_LOAD_V(outv, mean));

@@ -26,12 +26,12 @@ static void skg_project_passes(const skg_frame_args *frame, __global const skg_p
     }
 }
 
-SKG_APART void skg_draw_passes(int passes, const skg_frame_args *frame, __global const int *corners,
+SKG_APART void skg_draw_passes(const skg_frame_args *frame, __global const int *corners,
                                __global const skg_real *vertices, __global const skg_part_entry *tables,
                                __global const skg_contribution *contributions, __global const int *blocks,
                                __global const int *vertex_blocks, __global skg_real4 *projected, __global skg_sum *sums,
                                __global int *used, __global int *bad_vertex) {
-    const int planes = frame->planes;
+    const int planes = frame->planes, passes = frame->passes;
     skg_target target;
     target.stride = frame->stride;
     target.plane = frame->plane;
@@ -72,7 +72,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_raster_passes(skg_frame_args frame, __global const int *corners, __global const skg_real *vertices,
                   __global const skg_part_entry *tables, __global const skg_contribution *contributions,
                   __global const int *blocks, __global const int *vertex_blocks, __global skg_real4 *projected,
-                  __global skg_sum *sums, __global int *used, __global int *bad_vertex, int passes) {
-    skg_draw_passes(passes, &frame, corners, vertices, tables, contributions, blocks, vertex_blocks,
+                  __global skg_sum *sums, __global int *used, __global int *bad_vertex) {
+    skg_draw_passes(&frame, corners, vertices, tables, contributions, blocks, vertex_blocks,
                     projected + get_group_id(0) * SKG_SIDE * (size_t)(frame.vertices + SKG_RUN), sums, used, bad_vertex);
 }

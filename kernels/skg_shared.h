@@ -90,6 +90,8 @@ typedef struct {
     SKG_INT tiles_across, tiles_down;
     SKG_INT queue;       /* entries of the queue of large triangles */
     SKG_INT first_plane; /* that a pass has, of those of several passes */
+    SKG_INT passes;      /* that are drawn together */
+    SKG_INT reserved;
 } skg_frame_args;
 
 /* Positions of a mesh from the caller's memory, and their bounds, mm from the mesh's origin. */
@@ -113,6 +115,21 @@ typedef struct {
     SKG_UINT low, high;
 } skg_hit_count;
 #define SKG_MOST_HITS 0xffffffffu
+
+/* Of the kernels of hits.cl. window: columns from, rows from, columns to, rows to; nothing is listed outside. chosen: of
+ * skg_hits_list, the first of the runs of triangles that are listed, and the end of these. task: SKG_HITS_... below. */
+typedef struct {
+    skg_frame_args frame;
+    SKG_INT window[4], chosen[2];
+    SKG_INT task, reserved;
+} skg_hits_args;
+
+/* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
+ * get new sums. */
+typedef struct {
+    skg_frame_args frame;
+    SKG_INT parts, part, count, reserved;
+} skg_leaky_args;
 
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_OTHER 0x10000
@@ -140,10 +157,21 @@ typedef struct {
     SKG_INT rows;  /* of the bow-tie, whose table is the first */                                            \
     SKG_INT table; /* where that of the grid begins */
 
-/* Where an image lies in its buffer, in elements. */
+/* An image in its buffer: the place of its first pixel and its strides, in elements, and its size. */
 typedef struct {
     SKG_LONG offset, row_stride, channel_stride;
+    SKG_INT columns, rows, channels, reserved;
 } skg_image_args;
+
+/* Of the kernels of blur.cl. The workspace has rows of `stride` elements, and `high` of them for each channel; its pixel
+ * (0, 0) is pixel (-left, -above) of the image. */
+typedef struct {
+    skg_image_args image;
+    SKG_INT stride, high, left, above;
+    SKG_INT taps;         /* samples of the first pass, an odd number */
+    SKG_INT down, across; /* samples of the second pass along either direction */
+    SKG_INT add;          /* 1: the result is added to the image */
+} skg_blur_args;
 
 /* Of skg_attenuate (attenuate.cl). In such a struct the reals come first and the members of one size for both precisions
  * behind them, so that the host rounds all reals at once (lib/stage/kernels.h). What a program does not use is 0. */
@@ -163,6 +191,15 @@ typedef struct {
     SKG_INT nodes, world_plane;                                                                              \
     skg_image_args image;
 
+/* Of skg_detect (detect.cl). */
+#define SKG_DETECT_MEMBERS(real)                                                                             \
+    real electronic; /* standard deviation of the electronic noise, keV per pixel */                         \
+    real spacing;    /* of the levels of quantisation, keV per pixel */                                      \
+    real scale;      /* of what is shown */                                                                  \
+    real unused;     /* 0: what follows begins at a multiple of 8 bytes */                                   \
+    skg_noise_args key;                                                                                      \
+    skg_image_args image;
+
 /* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
 #define SKG_STRUCTS_WITH(real, suffix)                                                                       \
     typedef struct {                                                                                         \
@@ -173,7 +210,10 @@ typedef struct {
     } skg_shade_##suffix;                                                                                    \
     typedef struct {                                                                                         \
         SKG_ATTENUATE_MEMBERS(real, suffix)                                                                  \
-    } skg_attenuate_##suffix;
+    } skg_attenuate_##suffix;                                                                                \
+    typedef struct {                                                                                         \
+        SKG_DETECT_MEMBERS(real)                                                                             \
+    } skg_detect_##suffix;
 
 #ifdef __OPENCL_C_VERSION__
 SKG_STRUCTS_WITH(skg_real, args)
@@ -204,9 +244,13 @@ _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_d
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_shade_float) == 22 * 4 && sizeof(skg_shade_double) == 21 * 8, "layout of shades");
-_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 128 && sizeof(skg_attenuate_double) == 40 * 8 + 128,
+_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 152 && sizeof(skg_attenuate_double) == 40 * 8 + 152,
                "layout of the arguments of skg_attenuate");
-_Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
+_Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_double) == 4 * 8 + 64,
+               "layout of the arguments of skg_detect");
+_Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72, "layout of images");
+_Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
+_Static_assert(sizeof(skg_frame_args) == 72, "layout of a frame");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");

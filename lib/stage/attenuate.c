@@ -15,7 +15,7 @@ enum { MOST_KERNELS = 16 };
  * to compile by the latter. The rays of a pixel of the image belong to the same runs. */
 typedef struct {
     int runs, strip;
-    size_t local[2];
+    int64_t group[2];
 } work_shape;
 
 static work_shape shape_of(const skg_context *context, int32_t fine) {
@@ -226,7 +226,9 @@ static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *su
         .frame = sums->raster->frame,
         .nodes = attenuation->nodes,
         .world_plane = attenuation->world_plane,
-        .image = {place->offset, place->row_stride, place->channel_stride},
+        .image =
+            skg_image_of(place, sums->raster->frame.columns / sums->fine,
+                         sums->raster->frame.rows / sums->fine, attenuation->channels / attenuation->layers),
     };
     args.frame.first_plane = sums->pass * args.frame.planes;
     skg_camera_rays(camera, sums->scale, &args.ray);
@@ -266,13 +268,14 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, negative, negative),
         SKG_ARGUMENT(ATTENUATE, output, place->memory),
     };
-    SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
-    const work_shape work = shape_of(raster->context, sums->fine);
-    const int64_t pixels = skg_kernel_lanes(raster->context, key.options.precision) * work.runs * work.strip;
-    const size_t across = (size_t)((raster->frame.columns + pixels - 1) / pixels);
-    const size_t global[2] = {(size_t)skg_round_up((int64_t)across, (int64_t)work.local[0]),
-                              (size_t)skg_round_up(raster->frame.rows / sums->fine, (int64_t)work.local[1])};
-    return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, work.local, log);
+    const work_shape shape = shape_of(raster->context, sums->fine);
+    const int64_t pixels =
+        skg_kernel_lanes(raster->context, key.options.precision) * shape.runs * shape.strip;
+    const skg_work_size work = {
+        2,
+        {(raster->frame.columns + pixels - 1) / pixels, raster->frame.rows / sums->fine},
+        {shape.group[0], shape.group[1]}};
+    return SKG_LAUNCH(raster->context, kernel, "attenuate", &work, arguments, log);
 }
 
 skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums,
@@ -293,33 +296,20 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
-    const cl_int channels = attenuation->channels / attenuation->layers;
-    const cl_int columns = sums->raster->frame.columns / sums->fine,
-                 rows = sums->raster->frame.rows / sums->fine;
+    const int64_t columns = sums->raster->frame.columns / sums->fine,
+                  rows = sums->raster->frame.rows / sums->fine;
+    const skg_image_args image =
+        skg_image_of(place, columns, rows, attenuation->channels / attenuation->layers);
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(LOGARITHM, columns, columns),
-        SKG_ARGUMENT(LOGARITHM, rows, rows),
-        SKG_ARGUMENT(LOGARITHM, channels, channels),
+        SKG_ARGUMENT(LOGARITHM, image, image),
         SKG_ARGUMENT(LOGARITHM, output, place->memory),
-        SKG_ARGUMENT(LOGARITHM, offset, place->offset),
-        SKG_ARGUMENT(LOGARITHM, row_stride, place->row_stride),
-        SKG_ARGUMENT(LOGARITHM, channel_stride, place->channel_stride),
     };
     const skg_camera no_camera = {0};
     const skg_sums plain = {.raster = sums->raster, .fine = 1}; /* the image is finished */
     const kernel_key key = key_of(&plain, &no_camera, attenuation, place);
     cl_program program = NULL;
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
     SKG_TRY(get_program(attenuator, &key, &program));
-    SKG_TRY(skg_kernel_create(program, "skg_logarithm", &kernel));
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
     const int64_t lanes = skg_kernel_lanes(attenuator->context, key.options.precision);
-    const size_t local[2] = {8, 16};
-    const size_t global[2] = {(size_t)skg_round_up((columns + lanes - 1) / lanes, 8),
-                              (size_t)skg_round_up(rows, 16)};
-    status = skg_kernel_run(attenuator->context, kernel, "logarithm", 2, global, local, log);
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    const skg_work_size work = {2, {(columns + lanes - 1) / lanes, rows}, {8, 16}};
+    return SKG_LAUNCH_ONCE(attenuator->context, program, "skg_logarithm", "logarithm", &work, arguments, log);
 }

@@ -1,5 +1,6 @@
 #include "stage/kernels.h"
 
+#include "core/maths.h"
 #include "device/signals.h"
 
 #include <skiagraph/plan.h>
@@ -49,12 +50,6 @@ skg_status skg_kernels_get_first(skg_context *context, cl_program *program) {
                            program);
 }
 
-skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments) {
-    for (int32_t i = 0; i < count; i++)
-        SKG_TRY(skg_kernel_set(kernel, arguments[i].position, arguments[i].size, arguments[i].value));
-    return SKG_OK;
-}
-
 void skg_arguments_round(const void *twice, size_t reals, size_t size, void *single) {
     const double *from = twice;
     float *to = single;
@@ -63,20 +58,18 @@ void skg_arguments_round(const void *twice, size_t reals, size_t size, void *sin
     memcpy(to + count, from + count, size - reals);
 }
 
-void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, double value) {
-    argument->single = (float)value;
-    argument->twice = value;
-    argument->size = is_double ? sizeof argument->twice : sizeof argument->single;
-    argument->value = is_double ? (const void *)&argument->twice : (const void *)&argument->single;
-}
-
-skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
-                          const size_t *global, const size_t *local, skg_stage_log *log) {
+static skg_status enqueue(skg_context *context, cl_kernel kernel, const char *stage,
+                          const skg_work_size *work, skg_stage_log *log) {
+    size_t global[3], local[3];
     cl_event event = NULL;
+    for (cl_uint d = 0; d < work->dimensions; d++) {
+        global[d] = (size_t)skg_round_up(work->items[d], work->group[d]);
+        local[d] = (size_t)work->group[d];
+    }
     const int first = context->device->launched < context->device->builds; /* it may compile now */
     if (first) skg_signals_keep();
-    cl_int code = clEnqueueNDRangeKernel(context->device->queue, kernel, dimensions, NULL, global, local, 0,
-                                         NULL, skg_stage_event(log, &event));
+    cl_int code = clEnqueueNDRangeKernel(context->device->queue, kernel, work->dimensions, NULL, global,
+                                         local, 0, NULL, skg_stage_event(log, &event));
     if (first) skg_signals_restore();
     if (code != CL_SUCCESS) {
         skg_cl_fail(code, "clEnqueueNDRangeKernel", __FILE__, __LINE__);
@@ -86,6 +79,24 @@ skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *st
                         "stage %s: %s", stage, skg_cl_name(code));
     }
     return skg_stage_log_add(log, stage, event);
+}
+
+skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char *stage,
+                             const skg_work_size *work, int32_t count, const skg_argument *arguments,
+                             skg_stage_log *log) {
+    for (int32_t i = 0; i < count; i++)
+        SKG_TRY(skg_kernel_set(kernel, arguments[i].position, arguments[i].size, arguments[i].value));
+    return enqueue(context, kernel, stage, work, log);
+}
+
+skg_status skg_program_launch(skg_context *context, cl_program program, const char *function,
+                              const char *stage, const skg_work_size *work, int32_t count,
+                              const skg_argument *arguments, skg_stage_log *log) {
+    cl_kernel kernel = NULL;
+    SKG_TRY(skg_kernel_create(program, function, &kernel));
+    const skg_status status = skg_kernel_launch(context, kernel, stage, work, count, arguments, log);
+    clReleaseKernel(kernel);
+    return status;
 }
 
 skg_status skg_stage_write(skg_context *context, const char *stage, cl_mem buffer, int64_t offset,

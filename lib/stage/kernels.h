@@ -43,11 +43,28 @@ typedef struct {
 #define SKG_ARGUMENT(kernel, name, object)                                                                   \
     { SKG_##kernel##_##name, sizeof(object), &(object) }
 
-skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments);
+/* The work-items of a launch in each of its dimensions; whole groups are launched. */
+typedef struct {
+    cl_uint dimensions;
+    int64_t items[3], group[3];
+} skg_work_size;
 
-/* Sets an array of skg_argument. */
-#define SKG_SET_ARGUMENTS(kernel, arguments)                                                                 \
-    skg_kernel_arguments(kernel, (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments)
+/* Sets a kernel's arguments and enqueues it. arguments: an array of skg_argument; stage: for messages and for the log, which may
+ * be NULL. */
+#define SKG_LAUNCH(context, kernel, stage, work, arguments, log)                                             \
+    skg_kernel_launch(context, kernel, stage, work, (int32_t)(sizeof(arguments) / sizeof *(arguments)),      \
+                      arguments, log)
+skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char *stage,
+                             const skg_work_size *work, int32_t count, const skg_argument *arguments,
+                             skg_stage_log *log);
+
+/* The same with a kernel that is made for this launch alone. */
+#define SKG_LAUNCH_ONCE(context, program, function, stage, work, arguments, log)                             \
+    skg_program_launch(context, program, function, stage, work,                                              \
+                       (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments, log)
+skg_status skg_program_launch(skg_context *context, cl_program program, const char *function,
+                              const char *stage, const skg_work_size *work, int32_t count,
+                              const skg_argument *arguments, skg_stage_log *log);
 
 /* An argument that is a struct in the precision of the kernel. */
 #define SKG_ARGUMENT_WITH(kernel, name, is_double, twice, single)                                            \
@@ -61,20 +78,6 @@ skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argum
     skg_arguments_round(&(twice), (size_t)((const char *)&(twice).first_whole - (const char *)&(twice)),     \
                         sizeof(twice), &(single))
 void skg_arguments_round(const void *twice, size_t reals, size_t size, void *single);
-
-/* A real number in the precision of a kernel, to be passed as an argument of `size` bytes from `value`. */
-typedef struct {
-    float single;
-    double twice;
-    size_t size;
-    const void *value;
-} skg_real_argument;
-void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, double value);
-
-/* Enqueues a kernel. global and local: sizes in `dimensions` dimensions; local may be NULL. stage: for messages and
- * for the log, which may be NULL. */
-skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
-                          const size_t *global, const size_t *local, skg_stage_log *log);
 
 /* Enqueues a write of `bytes` of data. The data must stay until the device has read them. */
 skg_status skg_stage_write(skg_context *context, const char *stage, cl_mem buffer, int64_t offset,

@@ -389,10 +389,9 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
         SKG_ARGUMENT(PROJECT, bad_vertex, geometry->bad.memory),
     };
     const int on_gpu = context->device->info.is_gpu;
-    const size_t local = on_gpu ? 64 : 1, run = on_gpu ? 1 : SKG_CPU_RUN;
-    const size_t global = ((size_t)geometry->vertices + local * run - 1) / (local * run) * local;
-    SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
-    return skg_kernel_run(context, kernel, "project", 1, &global, &local, log);
+    const int64_t run = on_gpu ? 1 : SKG_CPU_RUN;
+    const skg_work_size work = {1, {(geometry->vertices + run - 1) / run}, {on_gpu ? 64 : 1}};
+    return SKG_LAUNCH(context, kernel, "project", &work, arguments, log);
 }
 
 int64_t skg_geometry_bytes(const skg_geometry *geometry) {

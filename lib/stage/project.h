@@ -59,7 +59,9 @@ typedef struct {
 
 /* The arguments that kernels which take triangles have in common. */
 #define SKG_TRIANGLE_ARGUMENTS(kernel, frame_args, geometry)                                                 \
-    SKG_ARGUMENT(kernel, frame, frame_args), SKG_ARGUMENT(kernel, corners, (geometry)->corners.memory),      \
+    SKG_ARGUMENT(kernel, frame, frame_args), SKG_TRIANGLE_BUFFERS(kernel, geometry)
+#define SKG_TRIANGLE_BUFFERS(kernel, geometry)                                                               \
+    SKG_ARGUMENT(kernel, corners, (geometry)->corners.memory),                                               \
         SKG_ARGUMENT(kernel, projected, (geometry)->projected.memory),                                       \
         SKG_ARGUMENT(kernel, parts, (geometry)->part_table.memory),                                          \
         SKG_ARGUMENT(kernel, blocks, (geometry)->triangle_blocks.memory)

@@ -37,12 +37,9 @@ skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem plane
         SKG_ARGUMENT(COUNT_BAD, first, first_verdict),
         SKG_ARGUMENT(COUNT_BAD, verdicts, verdicts),
     };
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->bad_rows, rows_arguments));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->bad, arguments));
-    const size_t group[2] = {16, 1}, rows[2] = {(size_t)skg_round_up(raster->frame.rows, 16), (size_t)count};
-    const size_t one = 1;
-    SKG_TRY(skg_kernel_run(raster->context, raster->bad_rows, "bad pixels", 2, rows, group, log));
-    return skg_kernel_run(raster->context, raster->bad, "bad pixels", 1, &rows[1], &one, log);
+    const skg_work_size rows = {2, {raster->frame.rows, count}, {16, 1}}, planes_each = {1, {count}, {1}};
+    SKG_TRY(SKG_LAUNCH(raster->context, raster->bad_rows, "bad pixels", &rows, rows_arguments, log));
+    return SKG_LAUNCH(raster->context, raster->bad, "bad pixels", &planes_each, arguments, log);
 }
 
 skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {

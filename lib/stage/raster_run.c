@@ -30,16 +30,20 @@ int64_t skg_raster_claim(int64_t triangles, int64_t workers) {
     return claim < 32 ? 32 : claim > 1024 ? 1024 : claim;
 }
 
-/* Enqueues a kernel whose arguments are set, with `groups` work-groups of `local` work-items. */
-static skg_status run(skg_raster *raster, int which, const char *stage, size_t groups, size_t local,
-                      skg_stage_log *log) {
-    const size_t global = groups * local;
-    return skg_kernel_run(raster->context, raster->kernels[which], stage, 1, &global, &local, log);
+/* A work-group of one work-item for each worker, and a work-item for each triangle. */
+static skg_work_size by_worker(const skg_raster *raster) {
+    return (skg_work_size){1, {raster->workers}, {1}};
+}
+static skg_work_size by_triangle(const skg_raster *raster) {
+    return (skg_work_size){1, {raster->frame.triangles}, {GROUP}};
+}
+static skg_work_size in_groups(int64_t groups) {
+    return (skg_work_size){1, {groups * GROUP}, {GROUP}};
 }
 
-static size_t triangle_groups(const skg_raster *raster) {
-    return ((size_t)raster->frame.triangles + GROUP - 1) / GROUP;
-}
+#define LAUNCH(raster, which, stage, work, arguments, log)                                                   \
+    SKG_LAUNCH((raster)->context, (raster)->kernels[which], stage, (const skg_work_size[]){work}, arguments, \
+               log)
 
 static int64_t plane_bytes(const skg_raster *raster) {
     return (int64_t)raster->frame.planes * raster->frame.plane * skg_raster_sum_bytes(raster);
@@ -69,8 +73,7 @@ static skg_status run_copies(skg_raster *raster, const skg_geometry *g, skg_stag
     SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
     if (raster->kernels[SKG_RASTER_SOURCE] || raster->options.more_sums) /* the first copy is added to */
         SKG_TRY(skg_raster_fill(raster, &raster->used, SKG_TO_ZERO, 0, of_int));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
+    return LAUNCH(raster, SKG_RASTER_DRAW, "raster", by_worker(raster), arguments, log);
 }
 
 skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *g, int32_t passes,
@@ -79,6 +82,7 @@ skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *g, int3
         4 * (int64_t)(g->precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float));
     skg_frame_args *frame = &raster->frame;
     SKG_TRY(set_counts(raster, g));
+    frame->passes = passes;
     SKG_TRY(
         skg_buffer_reserve(raster->context, &raster->scratch,
                            raster->workers * skg_raster_side(raster) * (g->vertices + SKG_CPU_RUN) * vertex,
@@ -95,11 +99,9 @@ skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *g, int3
         SKG_ARGUMENT(RASTER_PASSES, sums, raster->sums.memory),
         SKG_ARGUMENT(RASTER_PASSES, used, raster->used.memory),
         SKG_ARGUMENT(RASTER_PASSES, bad_vertex, g->bad.memory),
-        SKG_ARGUMENT(RASTER_PASSES, passes, passes),
     };
     SKG_TRY(skg_raster_fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
+    return LAUNCH(raster, SKG_RASTER_DRAW, "raster", by_worker(raster), arguments, log);
 }
 
 static skg_status run_atomics(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
@@ -115,13 +117,11 @@ static skg_status run_atomics(skg_raster *raster, const skg_geometry *g, skg_sta
         SKG_ARGUMENT(RASTER_QUEUE, sums, raster->sums.memory),
         SKG_ARGUMENT(RASTER_QUEUE, queue, raster->queue.memory),
     };
-    const size_t groups = (size_t)(QUEUE_GROUPS_PER_UNIT * raster->context->device->info.compute_units);
+    const int64_t groups = (int64_t)(QUEUE_GROUPS_PER_UNIT * raster->context->device->info.compute_units);
     SKG_TRY(skg_raster_fill(raster, &raster->sums, 0, 0, plane_bytes(raster)));
     SKG_TRY(skg_raster_fill(raster, &raster->queue, 0, 0, 2 * (int64_t)sizeof(cl_int)));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    SKG_TRY(run(raster, SKG_RASTER_DRAW, "raster", triangle_groups(raster), GROUP, log));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_LARGE], large));
-    return run(raster, SKG_RASTER_LARGE, "large triangles", groups, GROUP, log);
+    SKG_TRY(LAUNCH(raster, SKG_RASTER_DRAW, "raster", by_triangle(raster), arguments, log));
+    return LAUNCH(raster, SKG_RASTER_LARGE, "large triangles", in_groups(groups), large, log);
 }
 
 /* Lists the triangles of each square: counts them, gives each list its place, and fills it. */
@@ -146,12 +146,9 @@ static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_sta
     SKG_TRY(
         skg_raster_fill(raster, &raster->counts, 0, 0,
                         ((int64_t)frame->tiles_across * frame->tiles_down + 1) * (int64_t)sizeof(cl_int)));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_COUNT], count));
-    SKG_TRY(run(raster, SKG_RASTER_COUNT, "tiles: count", triangle_groups(raster), GROUP, log));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_SCAN], scan));
-    SKG_TRY(run(raster, SKG_RASTER_SCAN, "tiles: scan", 1, GROUP, log));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_FILL], fill));
-    return run(raster, SKG_RASTER_FILL, "tiles: fill", triangle_groups(raster), GROUP, log);
+    SKG_TRY(LAUNCH(raster, SKG_RASTER_COUNT, "tiles: count", by_triangle(raster), count, log));
+    SKG_TRY(LAUNCH(raster, SKG_RASTER_SCAN, "tiles: scan", in_groups(1), scan, log));
+    return LAUNCH(raster, SKG_RASTER_FILL, "tiles: fill", by_triangle(raster), fill, log);
 }
 
 static skg_status run_squares(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
@@ -168,9 +165,8 @@ static skg_status run_squares(skg_raster *raster, const skg_geometry *g, skg_sta
          NULL},
     };
     SKG_TRY(run_binning(raster, g, log));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)(frame->tiles_across * frame->tiles_down), GROUP,
-               log);
+    return LAUNCH(raster, SKG_RASTER_DRAW, "raster",
+                  in_groups((int64_t)frame->tiles_across * frame->tiles_down), arguments, log);
 }
 
 static skg_status run_bands(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
@@ -194,10 +190,8 @@ static skg_status run_bands(skg_raster *raster, const skg_geometry *g, skg_stage
     };
     SKG_TRY(skg_raster_fill(raster, &raster->counts, 0, 0, 3 * (int64_t)sizeof(cl_int)));
     SKG_TRY(skg_raster_fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_FILL], sort));
-    SKG_TRY(run(raster, SKG_RASTER_FILL, "tiles", (size_t)raster->workers, 1, log));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    return run(raster, SKG_RASTER_DRAW, "raster", (size_t)raster->workers, 1, log);
+    SKG_TRY(LAUNCH(raster, SKG_RASTER_FILL, "tiles", by_worker(raster), sort, log));
+    return LAUNCH(raster, SKG_RASTER_DRAW, "raster", by_worker(raster), arguments, log);
 }
 
 void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera) {
@@ -214,8 +208,7 @@ static skg_status run_half(skg_raster *raster, const skg_geometry *g, skg_stage_
         SKG_ARGUMENT(RASTER_HALF, ray, raster->rays),
     };
     SKG_TRY(skg_raster_fill(raster, &raster->sums, 0, 0, plane_bytes(raster)));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->kernels[SKG_RASTER_DRAW], arguments));
-    return run(raster, SKG_RASTER_DRAW, "raster", triangle_groups(raster), GROUP, log);
+    return LAUNCH(raster, SKG_RASTER_DRAW, "raster", by_triangle(raster), arguments, log);
 }
 
 size_t skg_raster_source_bands(const skg_raster *raster) {
@@ -233,10 +226,9 @@ static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stag
         SKG_ARGUMENT(SOURCE_PLANE, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(SOURCE_PLANE, sums, raster->sums.memory),
     };
-    const size_t local[2] = {GROUP, 1};
-    const size_t global[2] = {triangle_groups(raster) * GROUP, skg_raster_source_bands(raster)};
-    SKG_TRY(SKG_SET_ARGUMENTS(kernel, arguments));
-    return skg_kernel_run(raster->context, kernel, "source plane", 2, global, local, log);
+    const skg_work_size work = {
+        2, {raster->frame.triangles, (int64_t)skg_raster_source_bands(raster)}, {GROUP, 1}};
+    return SKG_LAUNCH(raster->context, kernel, "source plane", &work, arguments, log);
 }
 
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
