@@ -34,9 +34,10 @@ static void free_scratch(scratch *s) {
 
 static skg_status get_kernels(skg_context *context, scratch *s) {
     static const char *const files[] = {"config.clh", "types.clh", "show_shared.h", "show.cl"};
+    const skg_define lanes = {"SKG_WIDE", skg_kernel_lanes(context, SKG_PRECISION_SINGLE)};
     char options[64];
     cl_program program;
-    snprintf(options, sizeof options, "-D SKG_WIDE=%d", skg_kernel_lanes(context, SKG_PRECISION_SINGLE));
+    SKG_TRY(skg_defines_text(1, &lanes, sizeof options, options));
     SKG_TRY(skg_program_get(context, sizeof files / sizeof *files, files, options, &program));
     SKG_TRY(skg_kernel_create(program, "skg_show_count", &s->count));
     SKG_TRY(skg_kernel_create(program, "skg_show_fill", &s->fill));

@@ -5,7 +5,6 @@
 #include <skiagraph/plan.h>
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* How many kernels an attenuator keeps. */
@@ -28,10 +27,38 @@ static work_shape shape_of(const skg_context *context, int32_t fine) {
 /* log2 of e, to the precision of a double. */
 static const double LOG2_E = 1.4426950408889634;
 
+/* The -D names of the program: X(name, value, value in the program of skg_kernels_get_first). Everything that tells programs of
+ * this stage apart stands here and in the options of its kernels. */
+#define DEFINES(X)                                                                                           \
+    X(PLANES, attenuation->planes, 1)                                                                        \
+    X(CHANNELS, attenuation->channels, 1)                                                                    \
+    X(SHOW, attenuation->shown, SKG_SHOWN_INTENSITY)                                                         \
+    X(WORLD, attenuation->world_plane >= 0, 0)                                                               \
+    X(RATIO, attenuation->ratio, 0)                                                                          \
+    X(FALLOFF, attenuation->falloff && !camera->parallel, 0)                                                 \
+    X(NOISE, attenuation->noise, 0)                                                                          \
+    X(NOISE_APART, attenuation->noise && attenuation->apart, 0)                                              \
+    X(OUTPUT_DOUBLE, place->output_double, 0)                                                                \
+    X(ENERGIES, raster->options.kernels.half && attenuation->energies, 0)                                    \
+    X(ADD, place->add, 0)                                                                                    \
+    X(RUNS, shape.runs, SKG_CPU_RUNS)                                                                        \
+    X(STRIP, shape.strip, SKG_CPU_STRIP)                                                                     \
+    X(RANGED, attenuation->range.memory != NULL, 0)                                                          \
+    X(SUMS, sums->mixed, 0)                                                                                  \
+    X(FINE, sums->fine, 1)                                                                                   \
+    X(SHADES, shades->count, 0)                                                                              \
+    X(HEEL, shades->heel, 0)                                                                                 \
+    X(OBLIQUE, shades->oblique, 0)                                                                           \
+    X(BOWTIE, shades->bowtie, 0)                                                                             \
+    X(GRID, shades->grid, 0)
+#define DEFINE_NUMBER(name, value, first) DEFINE_##name,
+#define DEFINE(name, value, first) {"SKG_" #name, value},
+#define DEFINE_FIRST(name, value, first) {"SKG_" #name, first},
+enum { DEFINES(DEFINE_NUMBER) DEFINE_COUNT };
+
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, noise, apart, output_double, add, ranged,
-        energies, mixed, fine, shades, heel, oblique, bowtie, grid;
+    skg_define defines[DEFINE_COUNT];
 } kernel_key;
 
 struct skg_attenuator {
@@ -117,41 +144,36 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
     skg_free(attenuator);
 }
 
+static int is_same(const kernel_key *a, const kernel_key *b) {
+    for (int d = 0; d < DEFINE_COUNT; d++)
+        if (a->defines[d].value != b->defines[d].value) return 0;
+    return memcmp(&a->options, &b->options, sizeof a->options) == 0;
+}
+
 /* Whether the kernel is in the program of skg_kernels_get_first. Other rasters than that of this program share it. */
 static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
-    const kernel_key first = {.options = key->options, .planes = 1, .channels = 1, .fine = 1};
-    return memcmp(key, &first, sizeof first) == 0 &&
-           skg_kernels_are_first(attenuator->context, &key->options);
+    const kernel_key first = {.options = key->options, .defines = {DEFINES(DEFINE_FIRST)}};
+    return is_same(key, &first) && skg_kernels_are_first(attenuator->context, &key->options);
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
-    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
+    const int64_t noise = key->defines[DEFINE_NOISE].value, shades = key->defines[DEFINE_SHADES].value;
     const char *files[7] = {"exponential.clh"};
     int count = 1;
-    const work_shape work = shape_of(attenuator->context, key->fine);
-    char more[480];
-    if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
-    if (key->shades) files[count++] = "shades.clh";
+    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
+    if (noise) files[count++] = "random.clh", files[count++] = "noise.clh";
+    if (shades) files[count++] = "shades.clh";
     files[count++] = "planes.clh";
-    if (key->noise) files[count++] = "quantum.clh";
+    if (noise) files[count++] = "quantum.clh";
     files[count++] = "attenuate.cl";
-    snprintf(
-        more, sizeof more,
-        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_STRIP=%d -D SKG_RANGED=%d -D SKG_SUMS=%d -D SKG_FINE=%d "
-        "-D SKG_SHADES=%d -D SKG_HEEL=%d -D SKG_OBLIQUE=%d -D SKG_BOWTIE=%d -D SKG_GRID=%d%s",
-        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add,
-        work.runs, work.strip, (int)key->ranged, (int)key->mixed, (int)key->fine, (int)key->shades,
-        (int)key->heel, (int)key->oblique, (int)key->bowtie, (int)key->grid,
-        key->energies ? " -D SKG_ENERGIES=1" : "");
-    return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
+    return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
+                           program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
     cl_program program = NULL;
     for (int32_t i = 0; i < attenuator->count; i++)
-        if (memcmp(&attenuator->keys[i], key, sizeof *key) == 0) {
+        if (is_same(&attenuator->keys[i], key)) {
             *kernel = attenuator->kernels[i];
             return SKG_OK;
         }
@@ -182,28 +204,11 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
     static const skg_shades none = {0};
     const skg_shades *shades = attenuation->shades ? attenuation->shades : &none;
     const skg_raster *raster = sums->raster;
+    const work_shape shape = shape_of(raster->context, sums->fine);
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
                                     .half = raster->options.kernels.half},
-                        .planes = attenuation->planes,
-                        .channels = attenuation->channels,
-                        .shown = attenuation->shown,
-                        .world = attenuation->world_plane >= 0,
-                        .ratio = attenuation->ratio,
-                        .falloff = attenuation->falloff && !camera->parallel,
-                        .noise = attenuation->noise,
-                        .apart = attenuation->noise && attenuation->apart,
-                        .output_double = place->output_double,
-                        .energies = raster->options.kernels.half && attenuation->energies,
-                        .add = place->add,
-                        .mixed = sums->mixed,
-                        .fine = sums->fine,
-                        .shades = shades->count,
-                        .heel = shades->heel,
-                        .oblique = shades->oblique,
-                        .bowtie = shades->bowtie,
-                        .grid = shades->grid,
-                        .ranged = attenuation->range.memory != NULL};
+                        .defines = {DEFINES(DEFINE)}};
 }
 
 skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_raster_options *options,
@@ -214,7 +219,7 @@ skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_rast
     skg_sums own = *sums;
     own.raster = &raster;
     kernel_key key = key_of(&own, camera, attenuation, place);
-    key.ranged = ranged;
+    key.defines[DEFINE_RANGED].value = ranged;
     return get_program(attenuator, &key, NULL);
 }
 
@@ -222,7 +227,7 @@ skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_rast
 static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *sums, const skg_camera *camera,
                                        const skg_attenuation *attenuation, const skg_image_place *place) {
     skg_attenuate_double args = {
-        .foot = key->falloff ? skg_camera_foot(camera) : 0,
+        .foot = key->defines[DEFINE_FALLOFF].value ? skg_camera_foot(camera) : 0,
         .frame = sums->raster->frame,
         .nodes = attenuation->nodes,
         .world_plane = attenuation->world_plane,
@@ -233,7 +238,7 @@ static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *su
     args.frame.first_plane = sums->pass * args.frame.planes;
     skg_camera_rays(camera, sums->scale, &args.ray);
     find_world(camera, attenuation, args.world);
-    if (key->shades) skg_shades_see(attenuation->shades, camera, &args.shades);
+    if (shades_of(attenuation)) skg_shades_see(attenuation->shades, camera, &args.shades);
     return args;
 }
 

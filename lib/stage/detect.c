@@ -1,7 +1,6 @@
 #include "stage/detect.h"
 
 #include <math.h>
-#include <stdio.h>
 
 /* What one type of image needs. */
 typedef struct {
@@ -64,14 +63,14 @@ static skg_status get_type(skg_detector *detector, int is_double, detector_type 
     detector_type *type = *got = &detector->type[is_double];
     cl_program program = NULL;
     float rounded[SKG_CHANNELS_MAX];
-    char more[96];
     if (type->kernel) return SKG_OK;
     for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
     SKG_TRY(skg_buffer_write(detector->context, &type->factor, detection->channels * (int64_t)element,
                              is_double ? (const void *)detector->factor : rounded, "detector"));
-    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d -D SKG_FLAT_FIELD=%d",
-             detection->electronic > 0, detection->step > 0, (int)detection->over_flat_field);
-    SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, more, &program));
+    const skg_define defines[] = {{"SKG_ELECTRONIC", detection->electronic > 0},
+                                  {"SKG_QUANTISED", detection->step > 0},
+                                  {"SKG_FLAT_FIELD", detection->over_flat_field}};
+    SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, SKG_DEFINES(defines), &program));
     return skg_kernel_create(program, "skg_detect", &type->kernel);
 }
 

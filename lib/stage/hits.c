@@ -6,7 +6,6 @@
 #include <skiagraph/plan.h>
 
 #include <inttypes.h>
-#include <stdio.h>
 
 enum { GROUP = 64, ROWS_AT_ONCE = 32 };
 
@@ -53,9 +52,9 @@ typedef struct {
 
 static skg_status compile(const hits_run *run, cl_program *program) {
     static const char *const files[] = {"pixel.clh", "hits.cl", "source_plane.cl"};
-    char slots[32];
-    snprintf(slots, sizeof slots, "-D SKG_SLOTS=%" PRId64, skg_priority_slots(&run->pass->priority));
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, slots, program);
+    const skg_define slots[] = {{"SKG_SLOTS", skg_priority_slots(&run->pass->priority)}};
+    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, SKG_DEFINES(slots),
+                           program);
 }
 
 static skg_status reserve(const hits_run *run, skg_buffer *buffer, int64_t bytes, const char *what) {

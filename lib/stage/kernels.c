@@ -5,6 +5,7 @@
 
 #include <skiagraph/plan.h>
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,24 +15,46 @@ int32_t skg_kernel_lanes(skg_context *context, int32_t precision) {
     return width >= 16 ? 16 : width >= 8 ? 8 : 4;
 }
 
+skg_status skg_defines_text(int32_t count, const skg_define *defines, size_t size, char *text) {
+    size_t length = 0;
+    text[0] = 0;
+    for (int32_t d = 0; d < count; d++) {
+        const int written = snprintf(text + length, size - length, "%s-D %s=%" PRId64, d > 0 ? " " : "",
+                                     defines[d].name, defines[d].value);
+        if (written < 0 || (size_t)written >= size - length)
+            return skg_fail(SKG_ERR_INTERNAL, "%s: too many -D names", defines[d].name);
+        length += (size_t)written;
+    }
+    return SKG_OK;
+}
+
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
-                           const char *const *names, const char *more_options, cl_program *program) {
+                           const char *const *names, const skg_program_options *more, cl_program *program) {
     static const char *const headers[] = {"config.clh",   "types.clh",    "skg_shared.h",
                                           "scalar.clh",   "triangle.clh", "wide.clh",
                                           "triangle.clh", "parts.clh",    "sums.clh"};
-    enum { HEADERS = sizeof headers / sizeof *headers, MOST = 8 };
+    static const skg_program_options none = {.flags = ""};
+    enum { HEADERS = sizeof headers / sizeof *headers, MOST = 8, TEXT = 1024 };
+    const skg_define common[] = {
+        {"SKG_DOUBLE", options->precision == SKG_PRECISION_DOUBLE},
+        {"SKG_BITS", options->bits},
+        {"SKG_WIDE", skg_kernel_lanes(context, options->precision)},
+        {"SKG_PARALLEL", options->parallel != 0},
+        {"SKG_SOURCE_PLANE", options->source_plane != 0},
+        {"SKG_SEAMS", options->seams != 0},
+        {"SKG_LISTED", options->listed != 0},
+        {"SKG_HALF", options->half != 0},
+        {"SKG_CPU", !context->device->info.is_gpu},
+    };
     const char *all[HEADERS + MOST];
-    char text[768];
+    char of_options[TEXT], of_program[TEXT], text[2 * TEXT + 64];
     if (files > MOST) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", names[0]);
+    if (!more) more = &none;
     for (int32_t i = 0; i < HEADERS; i++) all[i] = headers[i];
     for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];
-    snprintf(text, sizeof text,
-             "-D SKG_DOUBLE=%d -D SKG_BITS=%d -D SKG_WIDE=%d -D SKG_PARALLEL=%d -D SKG_SOURCE_PLANE=%d "
-             "-D SKG_SEAMS=%d -D SKG_LISTED=%d -D SKG_HALF=%d -D SKG_CPU=%d %s",
-             options->precision == SKG_PRECISION_DOUBLE, options->bits,
-             skg_kernel_lanes(context, options->precision), options->parallel != 0,
-             options->source_plane != 0, options->seams != 0, options->listed != 0, options->half != 0,
-             !context->device->info.is_gpu, more_options ? more_options : "");
+    SKG_TRY(skg_defines_text(sizeof common / sizeof *common, common, TEXT, of_options));
+    SKG_TRY(skg_defines_text(more->count, more->defines, TEXT, of_program));
+    snprintf(text, sizeof text, "%s %s %s", of_options, of_program, more->flags ? more->flags : "");
     return skg_program_get(context, HEADERS + files, all, text, program);
 }
 
@@ -44,10 +67,9 @@ int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program) {
     static const char *const files[] = {"fine.clh",         "project.cl",      "batch.clh",  "draw.clh",
                                         "raster_copies.cl", "exponential.clh", "planes.clh", "attenuate.cl"};
-    char more[64];
-    snprintf(more, sizeof more, "-D SKG_RUNS=%d -D SKG_STRIP=%d", SKG_CPU_RUNS, SKG_CPU_STRIP);
-    return skg_kernels_get(context, &first_options, (int32_t)(sizeof files / sizeof *files), files, more,
-                           program);
+    static const skg_define shape[] = {{"SKG_RUNS", SKG_CPU_RUNS}, {"SKG_STRIP", SKG_CPU_STRIP}};
+    return skg_kernels_get(context, &first_options, (int32_t)(sizeof files / sizeof *files), files,
+                           SKG_DEFINES(shape), program);
 }
 
 void skg_arguments_round(const void *twice, size_t reals, size_t size, void *single) {

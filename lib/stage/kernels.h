@@ -19,10 +19,28 @@ typedef struct {
 /* How many lanes kernels with wide vectors use on this device. */
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 
-/* The program of these kernel files, behind the headers that all need, from the context's cache or built. program: NULL:
- * it is only expected (skg_expected_begin). */
+/* A -D name of a program and its value. A table of them gives the options of a program, and tells it from others. */
+typedef struct {
+    const char *name;
+    int64_t value;
+} skg_define;
+
+/* The options "-D NAME=VALUE -D ..." of a table. */
+skg_status skg_defines_text(int32_t count, const skg_define *defines, size_t size, char *text);
+
+/* Tables of -D names, and further options of the compiler. */
+typedef struct {
+    int32_t count, reserved;
+    const skg_define *defines; /* [count] */
+    const char *flags;         /* NULL: none */
+} skg_program_options;
+#define SKG_DEFINES(table)                                                                                   \
+    (&(const skg_program_options){.count = (int32_t)(sizeof(table) / sizeof *(table)), .defines = (table)})
+
+/* The program of these kernel files, behind the headers that all need, from the context's cache or built. more: NULL: no -D
+ * names but those of the options; program: NULL: it is only expected (skg_expected_begin). */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
-                           const char *const *names, const char *more_options, cl_program *program);
+                           const char *const *names, const skg_program_options *more, cl_program *program);
 
 /* What a work-item of the stage `attenuate` does on a CPU: vectors of pixels together, and how often. */
 enum { SKG_CPU_RUNS = 4, SKG_CPU_STRIP = 8 };

@@ -23,7 +23,7 @@ static skg_status get_kernel(skg_placement *placement, skg_context *context, int
     const skg_kernel_options options = {.precision = precision, .bits = 32};
     cl_program program = NULL;
     if (placement->kernel) return SKG_OK;
-    SKG_TRY(skg_kernels_get(context, &options, 1, files, "", &program));
+    SKG_TRY(skg_kernels_get(context, &options, 1, files, NULL, &program));
     return skg_kernel_create(program, "skg_place", &placement->kernel);
 }
 

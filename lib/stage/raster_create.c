@@ -153,12 +153,12 @@ typedef struct {
 /* Compiles these files, the projection before them, and makes its kernel and these. */
 static skg_status compile_files(skg_raster *raster, int32_t files, const char *const *names, int kernels,
                                 const named_kernel *kernel) {
-    const char *more = skg_raster_side(raster) > 1 ? "-D SKG_SIDE=4" : NULL;
+    const skg_define side[] = {{"SKG_SIDE", skg_raster_side(raster)}};
     enum { MOST = 6 };
     const char *all[MOST] = {"fine.clh", "project.cl"};
     cl_program program = NULL;
     for (int32_t i = 0; i < files; i++) all[i + 2] = names[i];
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 2, all, more,
+    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 2, all, SKG_DEFINES(side),
                             raster->expected ? NULL : &program));
     if (raster->expected) return SKG_OK;
     SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
