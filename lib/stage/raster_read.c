@@ -43,13 +43,11 @@ skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem plane
 }
 
 skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {
-    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
-    const int64_t tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
-    const skg_buffer *from = skg_raster_has_squares(raster) ? &raster->starts : &raster->counts;
-    const size_t first = skg_raster_has_squares(raster)
-                             ? (size_t)tiles
-                             : 1; /* as the kernels of tiles.cl and bands.cl leave it */
+    int64_t first = 0;
+    if (!raster->strategy->find_listed) return SKG_OK;
+    const skg_buffer *from = raster->strategy->find_listed(raster, &first);
     SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, from->memory, CL_FALSE,
-                                   first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL, NULL));
+                                   (size_t)first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL,
+                                   NULL));
     return SKG_OK;
 }

@@ -46,7 +46,7 @@ static const struct {
     {{"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"}, NAMES, 0},
     {{"pixel.clh", "source_plane.cl"}, NAMES, 0},
     {{"pixel.clh", "hits.cl", "source_plane.cl"}, NAMES, 0},
-    {{"pixel.clh", "half.cl"}, NAMES, 1},
+    {{"pixel.clh", "raster_half.cl"}, NAMES, 1},
     {{"counts.cl"}, NAMES, 0},
     {{"leaky.cl"}, NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "shades.clh", "planes.clh", "quantum.clh",
