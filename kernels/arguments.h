@@ -9,60 +9,60 @@
 
 /* clang-format off */
 #define SKG_ARGUMENTS_PROJECT(X) \
-    X(PROJECT, frame) X(PROJECT, parts) X(PROJECT, blocks) X(PROJECT, vertices) X(PROJECT, projected) \
+    X(PROJECT, layout) X(PROJECT, parts) X(PROJECT, blocks) X(PROJECT, vertices) X(PROJECT, projected) \
     X(PROJECT, bad_vertex)
 
 #define SKG_ARGUMENTS_PLACE(X) \
     X(PLACE, args) X(PLACE, given) X(PLACE, first) X(PLACE, taken) X(PLACE, vertices) X(PLACE, outside)
 
 #define SKG_ARGUMENTS_RASTER_COPIES(X) \
-    X(RASTER_COPIES, frame) X(RASTER_COPIES, corners) X(RASTER_COPIES, projected) X(RASTER_COPIES, parts) \
+    X(RASTER_COPIES, layout) X(RASTER_COPIES, corners) X(RASTER_COPIES, projected) X(RASTER_COPIES, parts) \
     X(RASTER_COPIES, contributions) X(RASTER_COPIES, blocks) X(RASTER_COPIES, copies) X(RASTER_COPIES, used)
 
 #define SKG_ARGUMENTS_RASTER_PASSES(X) \
-    X(RASTER_PASSES, frame) X(RASTER_PASSES, corners) X(RASTER_PASSES, vertices) X(RASTER_PASSES, tables) \
+    X(RASTER_PASSES, layout) X(RASTER_PASSES, corners) X(RASTER_PASSES, vertices) X(RASTER_PASSES, tables) \
     X(RASTER_PASSES, contributions) X(RASTER_PASSES, blocks) X(RASTER_PASSES, vertex_blocks) \
     X(RASTER_PASSES, projected) X(RASTER_PASSES, sums) X(RASTER_PASSES, used) X(RASTER_PASSES, bad_vertex)
 
 #define SKG_ARGUMENTS_RASTER_ATOMICS(X) \
-    X(RASTER_ATOMICS, frame) X(RASTER_ATOMICS, corners) X(RASTER_ATOMICS, projected) X(RASTER_ATOMICS, parts) \
+    X(RASTER_ATOMICS, layout) X(RASTER_ATOMICS, corners) X(RASTER_ATOMICS, projected) X(RASTER_ATOMICS, parts) \
     X(RASTER_ATOMICS, contributions) X(RASTER_ATOMICS, blocks) X(RASTER_ATOMICS, sums) X(RASTER_ATOMICS, queue)
 
 #define SKG_ARGUMENTS_RASTER_QUEUE(X) \
-    X(RASTER_QUEUE, frame) X(RASTER_QUEUE, corners) X(RASTER_QUEUE, projected) X(RASTER_QUEUE, parts) \
+    X(RASTER_QUEUE, layout) X(RASTER_QUEUE, corners) X(RASTER_QUEUE, projected) X(RASTER_QUEUE, parts) \
     X(RASTER_QUEUE, contributions) X(RASTER_QUEUE, blocks) X(RASTER_QUEUE, sums) X(RASTER_QUEUE, queue)
 
 #define SKG_ARGUMENTS_TILES_COUNT(X) \
-    X(TILES_COUNT, frame) X(TILES_COUNT, corners) X(TILES_COUNT, projected) X(TILES_COUNT, parts) \
+    X(TILES_COUNT, layout) X(TILES_COUNT, corners) X(TILES_COUNT, projected) X(TILES_COUNT, parts) \
     X(TILES_COUNT, blocks) X(TILES_COUNT, counts)
 
-#define SKG_ARGUMENTS_TILES_SCAN(X) X(TILES_SCAN, frame) X(TILES_SCAN, counts) X(TILES_SCAN, starts)
+#define SKG_ARGUMENTS_TILES_SCAN(X) X(TILES_SCAN, layout) X(TILES_SCAN, counts) X(TILES_SCAN, starts)
 
 #define SKG_ARGUMENTS_TILES_FILL(X) \
-    X(TILES_FILL, frame) X(TILES_FILL, corners) X(TILES_FILL, projected) X(TILES_FILL, parts) \
+    X(TILES_FILL, layout) X(TILES_FILL, corners) X(TILES_FILL, projected) X(TILES_FILL, parts) \
     X(TILES_FILL, blocks) X(TILES_FILL, counts) X(TILES_FILL, starts) X(TILES_FILL, list) X(TILES_FILL, for_all)
 
 #define SKG_ARGUMENTS_RASTER_SQUARES(X) \
-    X(RASTER_SQUARES, frame) X(RASTER_SQUARES, corners) X(RASTER_SQUARES, projected) X(RASTER_SQUARES, parts) \
+    X(RASTER_SQUARES, layout) X(RASTER_SQUARES, corners) X(RASTER_SQUARES, projected) X(RASTER_SQUARES, parts) \
     X(RASTER_SQUARES, contributions) X(RASTER_SQUARES, blocks) X(RASTER_SQUARES, starts) X(RASTER_SQUARES, list) \
     X(RASTER_SQUARES, for_all) X(RASTER_SQUARES, sums) X(RASTER_SQUARES, local_sums)
 
 #define SKG_ARGUMENTS_BANDS_SORT(X) \
-    X(BANDS_SORT, frame) X(BANDS_SORT, corners) X(BANDS_SORT, projected) X(BANDS_SORT, parts) \
+    X(BANDS_SORT, layout) X(BANDS_SORT, corners) X(BANDS_SORT, projected) X(BANDS_SORT, parts) \
     X(BANDS_SORT, blocks) X(BANDS_SORT, counters) X(BANDS_SORT, pieces) X(BANDS_SORT, pool) X(BANDS_SORT, for_all)
 
 #define SKG_ARGUMENTS_RASTER_BANDS(X) \
-    X(RASTER_BANDS, frame) X(RASTER_BANDS, corners) X(RASTER_BANDS, projected) X(RASTER_BANDS, parts) \
+    X(RASTER_BANDS, layout) X(RASTER_BANDS, corners) X(RASTER_BANDS, projected) X(RASTER_BANDS, parts) \
     X(RASTER_BANDS, contributions) X(RASTER_BANDS, blocks) X(RASTER_BANDS, counters) X(RASTER_BANDS, pieces) \
     X(RASTER_BANDS, pool) X(RASTER_BANDS, for_all) X(RASTER_BANDS, sums) X(RASTER_BANDS, scratch) \
     X(RASTER_BANDS, used)
 
 #define SKG_ARGUMENTS_RASTER_HALF(X) \
-    X(RASTER_HALF, frame) X(RASTER_HALF, corners) X(RASTER_HALF, projected) X(RASTER_HALF, parts) \
+    X(RASTER_HALF, layout) X(RASTER_HALF, corners) X(RASTER_HALF, projected) X(RASTER_HALF, parts) \
     X(RASTER_HALF, contributions) X(RASTER_HALF, blocks) X(RASTER_HALF, sums) X(RASTER_HALF, ray)
 
 #define SKG_ARGUMENTS_SOURCE_PLANE(X) \
-    X(SOURCE_PLANE, frame) X(SOURCE_PLANE, corners) X(SOURCE_PLANE, projected) X(SOURCE_PLANE, parts) \
+    X(SOURCE_PLANE, layout) X(SOURCE_PLANE, corners) X(SOURCE_PLANE, projected) X(SOURCE_PLANE, parts) \
     X(SOURCE_PLANE, blocks) X(SOURCE_PLANE, vertices) X(SOURCE_PLANE, contributions) X(SOURCE_PLANE, sums)
 
 #define SKG_ARGUMENTS_HITS_LIST(X) \
@@ -84,11 +84,11 @@
     X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
-    X(COUNT_BAD_ROWS, frame) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
+    X(COUNT_BAD_ROWS, layout) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
     X(COUNT_BAD_ROWS, rows_bad)
 
 #define SKG_ARGUMENTS_COUNT_BAD(X) \
-    X(COUNT_BAD, frame) X(COUNT_BAD, copies) X(COUNT_BAD, used) X(COUNT_BAD, planes) X(COUNT_BAD, rows_bad) \
+    X(COUNT_BAD, layout) X(COUNT_BAD, copies) X(COUNT_BAD, used) X(COUNT_BAD, planes) X(COUNT_BAD, rows_bad) \
     X(COUNT_BAD, first) X(COUNT_BAD, verdicts)
 
 /* All kernels of leaky.cl begin with the arguments of LEAKY_BATCH. */

@@ -124,7 +124,7 @@ static void skg_count_outside(const skg_strip *strip, const skg_pixels *pixels) 
             most[r] = above > most[r] ? above : most[r];
         }
     }
-    skg_count(most, 0, strip->args.frame.columns - strip->column, strip->negative + 1);
+    skg_count(most, 0, strip->args.layout.columns - strip->column, strip->negative + 1);
 }
 #endif
 
@@ -240,7 +240,7 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
 static void skg_show_channel(const skg_strip *strip, const skg_realv *values, int channel) {
     __global skg_out *place = strip->output + strip->args.image.offset + channel * strip->args.image.channel_stride +
                               strip->row / SKG_FINE * strip->args.image.row_stride + strip->column / SKG_FINE;
-    const int left = strip->args.frame.columns - strip->column;
+    const int left = strip->args.layout.columns - strip->column;
     skg_count_infinite(values, left, strip->negative + 2);
 #if SKG_FINE > 1
     skg_show_rays(values, place, strip->row % SKG_FINE, left / SKG_FINE);
@@ -251,7 +251,7 @@ static void skg_show_channel(const skg_strip *strip, const skg_realv *values, in
 
 /* Counts negative exponents. Of the rays of a pixel the last one counts, as the last of several passes does. */
 static void skg_count_negative(const skg_strip *strip, const skg_pixels *pixels) {
-    const int left = strip->args.frame.columns - strip->column;
+    const int left = strip->args.layout.columns - strip->column;
 #if SKG_FINE > 1
     skg_realv last[SKG_RUNS];
     if (strip->row % SKG_FINE < SKG_FINE - 1) return;
@@ -298,14 +298,14 @@ static void skg_attenuate_runs(const skg_strip *strip) {
 /* SKG_STRIP times as many pixels, as far as the row reaches; of all rows of rays that make a row of the image. */
 SKG_APART void skg_attenuate_strip(const skg_strip *whole) {
     skg_strip strip = *whole; /* a copy that stores cannot alias */
-    const int end = min(strip.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, strip.args.frame.columns);
+    const int end = min(strip.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, strip.args.layout.columns);
     for (int row = 0; row < SKG_FINE; row++, strip.row++)
         for (strip.column = whole->column; strip.column < end; strip.column += SKG_RUNS * SKG_WIDE)
             skg_attenuate_runs(&strip);
 }
 
 /* A work-item takes a strip of a row of the image. If SKG_FINE x SKG_FINE rays make a pixel of it, the pixels of
- * `args.frame` and of this comment are those of the rays. Buffers of effects that are off are NULL.
+ * `args.layout` and of this comment are those of the rays. Buffers of effects that are off are NULL.
  *
  * args           skg_shared.h says what each member is
  * coefficients   of -exponent * log2(e), or of the exponent if that is shown
@@ -326,7 +326,7 @@ __kernel void skg_attenuate(skg_attenuate_args args, __global const skg_sum *cop
     skg_strip strip;
     strip.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
     strip.row = SKG_FINE * (int)get_global_id(1);
-    if (strip.row >= args.frame.rows) return;
+    if (strip.row >= args.layout.rows) return;
     strip.args = args;
     strip.copies = copies;
     strip.used = used;

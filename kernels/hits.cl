@@ -30,8 +30,10 @@ static int skg_slot_of(const skg_lists *lists, int part) {
     return slot < 0 || other != (lists->task / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
 }
 
-/* Whether hits at a pixel are listed: those of others only where a winner is. Where none is, starts are 0 while hits are
- * counted, and SKG_MOST_HITS once they have their places. */
+/* Whether a hit at a pixel is listed. Winners are the parts that displace another one; their hits always are. Hits of the other
+ * competitors are listed only in pixels where a winner was hit, too: elsewhere nothing displaces them. `starts` says where that
+ * is. While hits are counted it holds the number of winners' hits of each pixel, which is 0 if there are none. Afterwards it
+ * holds the place of each pixel's list, which is SKG_MOST_HITS if there are none. */
 static int skg_is_listed(const skg_lists *lists, int pixel) {
     const uint none = (lists->task & SKG_HITS_LIST) == 0 ? 0 : SKG_MOST_HITS;
     return !(lists->task & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
@@ -63,7 +65,8 @@ static int2 skg_columns_of(const skg_line *line, const skg_box *box) {
     return (int2)((int)low, high > left ? (int)ceil(high) : box->i0);
 }
 
-/* Restricts a box to the columns of a row where hits are listed: of others, those between the winners' outermost hits. */
+/* The columns of a row in which hits of a triangle may be listed: of a winner all columns of the triangle's box, of another
+ * competitor only those from the first column in which a winner was hit (span[0]) to the last (span[1] - 1). */
 static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int task) {
     skg_box seen = *box;
     if (task & SKG_HITS_OF_OTHERS) {
@@ -101,7 +104,7 @@ __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __g
         skg_line line;
         skg_row(&f, (skg_real)row, &line);
         const int enters = skg_negative(&f, &line) != 0;
-        const int first = (range.pixel_j + row) * args.frame.columns + range.pixel_i;
+        const int first = (range.pixel_j + row) * args.layout.columns + range.pixel_i;
         const int2 columns = skg_columns_of(&line, &seen);
         if (args.task == SKG_HITS_COUNT && columns.x < columns.y) {
             atomic_min(span, range.pixel_i + columns.x);
@@ -127,7 +130,7 @@ __kernel void skg_hits_place(skg_hits_args args, __global int *counts, __global 
                              __global skg_hit_count *total) {
     const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
     if (column >= args.window[2] || row >= args.window[3]) return;
-    const int pixel = row * args.frame.columns + column;
+    const int pixel = row * args.layout.columns + column;
     const int count = counts[pixel];
     starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_MOST_HITS;
     counts[pixel] = 0;
@@ -175,10 +178,10 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
                               __global skg_sum *sums) {
     const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
     if (column >= args.window[2] || row >= args.window[3]) return;
-    const int count = counts[row * args.frame.columns + column];
+    const int count = counts[row * args.layout.columns + column];
     if (count == 0) return;
-    hits += starts[row * args.frame.columns + column];
-    __global skg_sum *place = sums + (row * args.frame.stride + column);
+    hits += starts[row * args.layout.columns + column];
+    __global skg_sum *place = sums + (row * args.layout.stride + column);
     int winding[SKG_SLOTS];
     uint active[SKG_WORDS];
     skg_sort_hits(hits, count);
@@ -200,7 +203,7 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
                 __global const int *entry = table + s * SKG_ENTRY;
                 if (!skg_loses(entry, active, dropped)) continue;
                 dropped[w] |= lowest;
-                skg_take_off(&parts[entry[0]], contributions, args.frame.plane, length * (skg_real)winding[s], place);
+                skg_take_off(&parts[entry[0]], contributions, args.layout.plane, length * (skg_real)winding[s], place);
             }
     }
 }
@@ -208,7 +211,7 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
 /* Makes the kernel of source_plane.cl list hits, too. */
 #define SKG_SOURCE_KERNEL skg_hits_source_plane
 #define SKG_SOURCE_ARGS skg_hits_args args
-#define SKG_SOURCE_FRAME args.frame
+#define SKG_SOURCE_LAYOUT args.layout
 #define SKG_SOURCE_BUFFERS SKG_LIST_ARGUMENTS
 #define SKG_SOURCE_BEGIN(range)                                                                                       \
     const skg_lists lists = {slots, shifts, counts, starts, hits, args.task};                                         \
@@ -216,5 +219,5 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
     if (slot < 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                        \
     if ((row) >= args.window[1] && (row) < args.window[3] && (column) >= args.window[0] &&                            \
-        (column) < args.window[2] && skg_is_listed(&lists, (row) * args.frame.columns + (column)))                    \
-    skg_list(&lists, slot, (row) * args.frame.columns + (column), q, p->reference, (factor) < 0)
+        (column) < args.window[2] && skg_is_listed(&lists, (row) * args.layout.columns + (column)))                    \
+    skg_list(&lists, slot, (row) * args.layout.columns + (column), q, p->reference, (factor) < 0)

@@ -79,7 +79,7 @@
     real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
 
-/* What the launches of a frame need to know. The accumulator of pixel (row, column) of a plane of a copy is number
+/* How a raster lays out its accumulators and tiles, and the sizes of the scene that its launches need. The accumulator of pixel (row, column) of a plane of a copy is number
  * copy * planes * plane + (number of the plane) * plane + row * stride + column. */
 typedef struct {
     SKG_INT parts, vertices, triangles;
@@ -92,7 +92,7 @@ typedef struct {
     SKG_INT first_plane; /* that a pass has, of those of several passes */
     SKG_INT passes;      /* that are drawn together */
     SKG_INT reserved;
-} skg_frame_args;
+} skg_raster_layout;
 
 /* Positions of a mesh from the caller's memory, and their bounds, mm from the mesh's origin. */
 typedef struct {
@@ -119,7 +119,7 @@ typedef struct {
 /* Of the kernels of hits.cl. window: columns from, rows from, columns to, rows to; nothing is listed outside. chosen: of
  * skg_hits_list, the first of the runs of triangles that are listed, and the end of these. task: SKG_HITS_... below. */
 typedef struct {
-    skg_frame_args frame;
+    skg_raster_layout layout;
     SKG_INT window[4], chosen[2];
     SKG_INT task, reserved;
 } skg_hits_args;
@@ -127,7 +127,7 @@ typedef struct {
 /* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
  * get new sums. */
 typedef struct {
-    skg_frame_args frame;
+    skg_raster_layout layout;
     SKG_INT parts, part, count, reserved;
 } skg_leaky_args;
 
@@ -186,7 +186,7 @@ typedef struct {
     real world[4];             /* world[0] is added to world_plane for each mm of path, which is */          \
                                /* |ray| (world[1] + world[2] i + world[3] j) */                              \
     skg_shade_##suffix shades; /* last of the reals, because it ends in integers */                          \
-    skg_frame_args frame;                                                                                    \
+    skg_raster_layout layout;                                                                                \
     skg_noise_args key;                                                                                      \
     SKG_INT nodes, world_plane;                                                                              \
     skg_image_args image;
@@ -250,7 +250,7 @@ _Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_doubl
                "layout of the arguments of skg_detect");
 _Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72, "layout of images");
 _Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
-_Static_assert(sizeof(skg_frame_args) == 72, "layout of a frame");
+_Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");

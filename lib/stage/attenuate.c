@@ -228,14 +228,13 @@ static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *su
                                        const skg_attenuation *attenuation, const skg_image_place *place) {
     skg_attenuate_double args = {
         .foot = key->defines[DEFINE_FALLOFF].value ? skg_camera_foot(camera) : 0,
-        .frame = sums->raster->frame,
+        .layout = sums->raster->layout,
         .nodes = attenuation->nodes,
         .world_plane = attenuation->world_plane,
-        .image =
-            skg_image_of(place, sums->raster->frame.columns / sums->fine,
-                         sums->raster->frame.rows / sums->fine, attenuation->channels / attenuation->layers),
+        .image = skg_image_of(place, sums->raster->layout.columns / sums->fine,
+                              sums->raster->layout.rows / sums->fine, attenuation->channels),
     };
-    args.frame.first_plane = sums->pass * args.frame.planes;
+    args.layout.first_plane = sums->pass * args.layout.planes;
     skg_camera_rays(camera, sums->scale, &args.ray);
     find_world(camera, attenuation, args.world);
     if (shades_of(attenuation)) skg_shades_see(attenuation->shades, camera, &args.shades);
@@ -278,7 +277,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         skg_kernel_lanes(raster->context, key.options.precision) * shape.runs * shape.strip;
     const skg_work_size work = {
         2,
-        {(raster->frame.columns + pixels - 1) / pixels, raster->frame.rows / sums->fine},
+        {(raster->layout.columns + pixels - 1) / pixels, raster->layout.rows / sums->fine},
         {shape.group[0], shape.group[1]}};
     return SKG_LAUNCH(raster->context, kernel, "attenuate", &work, arguments, log);
 }
@@ -290,7 +289,7 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
     skg_raster nothing = *sums->raster;
     skg_sums no_sums = *sums;
     skg_attenuation quiet = *attenuation;
-    nothing.frame.copies = 0; /* sums over no copies are 0 */
+    nothing.layout.copies = 0; /* sums over no copies are 0 */
     no_sums.raster = &nothing;
     quiet.noise = 0;
     quiet.range = (skg_buffer){0};
@@ -301,8 +300,8 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
-    const int64_t columns = sums->raster->frame.columns / sums->fine,
-                  rows = sums->raster->frame.rows / sums->fine;
+    const int64_t columns = sums->raster->layout.columns / sums->fine,
+                  rows = sums->raster->layout.rows / sums->fine;
     const skg_image_args image =
         skg_image_of(place, columns, rows, attenuation->channels / attenuation->layers);
     const skg_argument arguments[] = {

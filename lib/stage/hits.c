@@ -110,7 +110,7 @@ static cl_int4 window_of(const hits_run *run) {
 /* The scalar arguments of all kernels. task: SKG_HITS_... */
 static skg_hits_args scalars_of(const hits_run *run, SKG_INT task) {
     const cl_int4 window = window_of(run);
-    return (skg_hits_args){.frame = run->raster->frame,
+    return (skg_hits_args){.layout = run->raster->layout,
                            .window = {window.s[0], window.s[1], window.s[2], window.s[3]},
                            .task = task};
 }
@@ -151,7 +151,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
 static skg_status list_hits_at_source(const hits_run *run, SKG_INT task) {
     const skg_hits_args args = scalars_of(run, task);
     const skg_work_size work = {
-        2, {run->raster->frame.triangles, (int64_t)skg_raster_source_bands(run->raster)}, {GROUP, 1}};
+        2, {run->raster->layout.triangles, (int64_t)skg_raster_source_bands(run->raster)}, {GROUP, 1}};
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_SOURCE_PLANE, args, args),
         SKG_TRIANGLE_BUFFERS(HITS_SOURCE_PLANE, run->geometry),
@@ -218,17 +218,17 @@ static skg_status settle(const hits_run *run) {
 
 /* Reserves and clears what the window's rows need. No other row is read. */
 static skg_status clear(const hits_run *run) {
-    const skg_frame_args *frame = &run->raster->frame;
+    const skg_raster_layout *layout = &run->raster->layout;
     cl_command_queue queue = run->context->device->queue;
     skg_hits_memory *m = run->memory;
-    const int64_t pixels = (int64_t)frame->rows * frame->columns * (int64_t)sizeof(cl_int);
+    const int64_t pixels = (int64_t)layout->rows * layout->columns * (int64_t)sizeof(cl_int);
     const cl_int4 window = window_of(run);
-    const size_t row = (size_t)frame->columns * sizeof(cl_int), rows = (size_t)(window.s[3] - window.s[1]);
+    const size_t row = (size_t)layout->columns * sizeof(cl_int), rows = (size_t)(window.s[3] - window.s[1]);
     /* Winners that reach the source's plane are listed by a kernel that leaves the spans alone. */
-    const cl_int2 anywhere = {.s = {0, frame->columns}}, nowhere = {.s = {frame->columns, 0}};
+    const cl_int2 anywhere = {.s = {0, layout->columns}}, nowhere = {.s = {layout->columns, 0}};
     const cl_int2 *span = run->raster->options.kernels.source_plane ? &anywhere : &nowhere;
     const cl_int none = 0;
-    SKG_TRY(reserve(run, &m->spans, (int64_t)frame->rows * (int64_t)sizeof *span, "hits of the rows"));
+    SKG_TRY(reserve(run, &m->spans, (int64_t)layout->rows * (int64_t)sizeof *span, "hits of the rows"));
     SKG_TRY(reserve(run, &m->counts, pixels, "hits of the pixels"));
     SKG_TRY(reserve(run, &m->starts, pixels, "hits of the pixels"));
     SKG_TRY(reserve(run, &m->total, sizeof(skg_hit_count), "hits of the pixels"));
@@ -244,7 +244,8 @@ static skg_status clear(const hits_run *run) {
 static skg_status count_others(const hits_run *run) {
     const skg_hits_memory *m = run->memory;
     const cl_int4 window = window_of(run);
-    const size_t row = (size_t)run->raster->frame.columns * sizeof(cl_int), first = (size_t)window.s[1] * row;
+    const size_t row = (size_t)run->raster->layout.columns * sizeof(cl_int),
+                 first = (size_t)window.s[1] * row;
     if (run->pass->priority.others == 0) return SKG_OK;
     SKG_CL_TRY(clEnqueueCopyBuffer(run->context->device->queue, m->counts.memory, m->starts.memory, first,
                                    first, (size_t)(window.s[3] - window.s[1]) * row, 0, NULL, NULL));

@@ -50,7 +50,7 @@ static skg_status get_raster(batching *b, skg_raster_cache *rasters) {
         most = planes > most ? planes : most;
         total += planes;
     }
-    const int64_t capacity = BATCH_BYTES / (shared->frame.plane * skg_raster_sum_bytes(shared));
+    const int64_t capacity = BATCH_BYTES / (shared->layout.plane * skg_raster_sum_bytes(shared));
     b->planes = total < capacity ? total : capacity;
     b->planes = b->planes > most ? b->planes : most;
     options.kernels = b->pass->kernels;
@@ -90,7 +90,7 @@ static void fill_batch(const batching *b, const skg_leaky_batch *batch, cl_int *
 }
 
 static skg_status add_sums(const skg_leaky_batch *batch) {
-    const skg_frame_args *layout = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
     const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_context *context = batch->raster->context;
     const int on_gpu = context->device->info.is_gpu;

@@ -30,7 +30,7 @@ skg_status skg_leaky_program(const skg_leaky_batch *batch, cl_program *program) 
 }
 
 skg_leaky_args skg_leaky_scalars(const skg_leaky_batch *batch) {
-    return (skg_leaky_args){.frame = batch->raster->frame, .parts = (SKG_INT)batch->parts};
+    return (skg_leaky_args){.layout = batch->raster->layout, .parts = (SKG_INT)batch->parts};
 }
 
 skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,

@@ -379,9 +379,10 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
                                 const skg_camera *camera, const skg_geometry_part *part, double scale,
                                 skg_stage_log *log) {
     SKG_TRY(skg_geometry_weigh(context, geometry, camera, part, scale));
-    const skg_frame_args frame = {.parts = (SKG_INT)geometry->parts, .vertices = (SKG_INT)geometry->vertices};
+    const skg_raster_layout layout = {.parts = (SKG_INT)geometry->parts,
+                                      .vertices = (SKG_INT)geometry->vertices};
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(PROJECT, frame, frame),
+        SKG_ARGUMENT(PROJECT, layout, layout),
         SKG_ARGUMENT(PROJECT, parts, geometry->part_table.memory),
         SKG_ARGUMENT(PROJECT, blocks, geometry->vertex_blocks.memory),
         SKG_ARGUMENT(PROJECT, vertices, geometry->offsets.memory),

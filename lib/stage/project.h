@@ -58,8 +58,8 @@ typedef struct {
 } skg_geometry;
 
 /* The arguments that kernels which take triangles have in common. */
-#define SKG_TRIANGLE_ARGUMENTS(kernel, frame_args, geometry)                                                 \
-    SKG_ARGUMENT(kernel, frame, frame_args), SKG_TRIANGLE_BUFFERS(kernel, geometry)
+#define SKG_TRIANGLE_ARGUMENTS(kernel, raster_layout, geometry)                                              \
+    SKG_ARGUMENT(kernel, layout, raster_layout), SKG_TRIANGLE_BUFFERS(kernel, geometry)
 #define SKG_TRIANGLE_BUFFERS(kernel, geometry)                                                               \
     SKG_ARGUMENT(kernel, corners, (geometry)->corners.memory),                                               \
         SKG_ARGUMENT(kernel, projected, (geometry)->projected.memory),                                       \

@@ -15,25 +15,25 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 }
 
 static skg_status lay_out(skg_raster *raster) {
-    raster->frame.queue = QUEUE_ENTRIES;
+    raster->layout.queue = QUEUE_ENTRIES;
     return SKG_OK;
 }
 
 static skg_status allocate(skg_raster *raster) {
     return skg_raster_reserve(raster, &raster->queue,
-                              (2 * (int64_t)raster->frame.queue + 2) * (int64_t)sizeof(cl_int),
+                              (2 * (int64_t)raster->layout.queue + 2) * (int64_t)sizeof(cl_int),
                               "queue of large triangles");
 }
 
 static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const skg_argument arguments[] = {
-        SKG_TRIANGLE_ARGUMENTS(RASTER_ATOMICS, raster->frame, g),
+        SKG_TRIANGLE_ARGUMENTS(RASTER_ATOMICS, raster->layout, g),
         SKG_ARGUMENT(RASTER_ATOMICS, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(RASTER_ATOMICS, sums, raster->sums.memory),
         SKG_ARGUMENT(RASTER_ATOMICS, queue, raster->queue.memory),
     };
     const skg_argument large[] = {
-        SKG_TRIANGLE_ARGUMENTS(RASTER_QUEUE, raster->frame, g),
+        SKG_TRIANGLE_ARGUMENTS(RASTER_QUEUE, raster->layout, g),
         SKG_ARGUMENT(RASTER_QUEUE, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(RASTER_QUEUE, sums, raster->sums.memory),
         SKG_ARGUMENT(RASTER_QUEUE, queue, raster->queue.memory),

@@ -25,9 +25,9 @@ int64_t skg_raster_band_rows(int64_t rows_of_detector, int64_t row_bytes, int64_
 }
 
 static SKG_INT band_rows(const skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
+    const skg_raster_layout *layout = &raster->layout;
     return (SKG_INT)skg_raster_band_rows(
-        frame->rows, frame->stride * frame->planes * skg_raster_sum_bytes(raster), raster->workers);
+        layout->rows, layout->stride * layout->planes * skg_raster_sum_bytes(raster), raster->workers);
 }
 
 static int takes(const skg_context *context, const skg_raster_options *options) {
@@ -36,37 +36,38 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 }
 
 static skg_status lay_out(skg_raster *raster) {
-    skg_frame_args *frame = &raster->frame;
-    frame->tile_rows = raster->options.tile ? raster->options.tile : band_rows(raster);
-    if ((frame->rows + frame->tile_rows - 1) / frame->tile_rows > SKG_MOST_BANDS)
+    skg_raster_layout *layout = &raster->layout;
+    layout->tile_rows = raster->options.tile ? raster->options.tile : band_rows(raster);
+    if ((layout->rows + layout->tile_rows - 1) / layout->tile_rows > SKG_MOST_BANDS)
         return skg_fail(SKG_ERR_ARGUMENT, "bands of %d rows are more than %d; make them higher",
-                        (int)frame->tile_rows, SKG_MOST_BANDS);
+                        (int)layout->tile_rows, SKG_MOST_BANDS);
     return SKG_OK;
 }
 
 static skg_status allocate(skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    const int64_t of_int = sizeof(cl_int), tiles = (int64_t)frame->tiles_across * frame->tiles_down;
+    const skg_raster_layout *layout = &raster->layout;
+    const int64_t of_int = sizeof(cl_int), tiles = (int64_t)layout->tiles_across * layout->tiles_down;
     const int64_t chunks = (raster->options.triangles + SKG_CHUNK - 1) / SKG_CHUNK;
     SKG_TRY(skg_raster_reserve(raster, &raster->counts, 3 * of_int, "tiles"));
     SKG_TRY(skg_raster_reserve(raster, &raster->starts, 2 * chunks * tiles * of_int, "tiles"));
     SKG_TRY(skg_raster_reserve_lists(raster));
     return skg_raster_reserve(raster, &raster->scratch,
-                              (int64_t)raster->workers * frame->planes * frame->stride *
-                                  (frame->tile_rows + (int64_t)SKG_SPARE_ROWS) * skg_raster_sum_bytes(raster),
+                              (int64_t)raster->workers * layout->planes * layout->stride *
+                                  (layout->tile_rows + (int64_t)SKG_SPARE_ROWS) *
+                                  skg_raster_sum_bytes(raster),
                               "bands");
 }
 
 static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const skg_argument sort[] = {
-        SKG_TRIANGLE_ARGUMENTS(BANDS_SORT, raster->frame, g),
+        SKG_TRIANGLE_ARGUMENTS(BANDS_SORT, raster->layout, g),
         SKG_ARGUMENT(BANDS_SORT, counters, raster->counts.memory),
         SKG_ARGUMENT(BANDS_SORT, pieces, raster->starts.memory),
         SKG_ARGUMENT(BANDS_SORT, pool, raster->list.memory),
         SKG_ARGUMENT(BANDS_SORT, for_all, raster->for_all.memory),
     };
     const skg_argument arguments[] = {
-        SKG_TRIANGLE_ARGUMENTS(RASTER_BANDS, raster->frame, g),
+        SKG_TRIANGLE_ARGUMENTS(RASTER_BANDS, raster->layout, g),
         SKG_ARGUMENT(RASTER_BANDS, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(RASTER_BANDS, counters, raster->counts.memory),
         SKG_ARGUMENT(RASTER_BANDS, pieces, raster->starts.memory),

@@ -9,7 +9,7 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 }
 
 static skg_status lay_out(skg_raster *raster) {
-    raster->frame.copies = raster->workers;
+    raster->layout.copies = raster->workers;
     return SKG_OK;
 }
 
@@ -21,15 +21,15 @@ static skg_status get_program(const skg_raster *raster, cl_program *program) {
 }
 
 static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
-    const skg_frame_args *frame = &raster->frame;
+    const skg_raster_layout *layout = &raster->layout;
     const int64_t of_int = sizeof(cl_int);
     const skg_argument arguments[] = {
-        SKG_TRIANGLE_ARGUMENTS(RASTER_COPIES, *frame, g),
+        SKG_TRIANGLE_ARGUMENTS(RASTER_COPIES, *layout, g),
         SKG_ARGUMENT(RASTER_COPIES, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(RASTER_COPIES, copies, raster->sums.memory),
         SKG_ARGUMENT(RASTER_COPIES, used, raster->used.memory),
     };
-    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (frame->copies + 1) * of_int));
+    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (layout->copies + 1) * of_int));
     if (raster->source || raster->options.more_sums) /* the first copy is added to */
         SKG_TRY(skg_raster_fill(raster, &raster->used, SKG_TO_ZERO, 0, of_int));
     return SKG_RASTER_LAUNCH(raster, 0, "raster", skg_raster_by_worker(raster), arguments, log);

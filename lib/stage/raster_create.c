@@ -25,25 +25,25 @@ int64_t skg_raster_sum_bytes(const skg_raster *raster) {
 
 static skg_status lay_out(skg_raster *raster) {
     const skg_raster_options *o = &raster->options;
-    skg_frame_args *frame = &raster->frame;
+    skg_raster_layout *layout = &raster->layout;
     /* PoCL gives two work-groups unevenly to two threads, but not one work-group more than there are threads. */
     raster->workers = raster->context->device->info.compute_units + 1;
-    frame->columns = (SKG_INT)o->columns;
-    frame->rows = (SKG_INT)o->rows;
-    frame->stride = (SKG_INT)skg_round_up(o->columns + SKG_SPARE_COLUMNS, 16);
-    const int64_t plane = frame->stride * (o->rows + SKG_SPARE_ROWS);
+    layout->columns = (SKG_INT)o->columns;
+    layout->rows = (SKG_INT)o->rows;
+    layout->stride = (SKG_INT)skg_round_up(o->columns + SKG_SPARE_COLUMNS, 16);
+    const int64_t plane = layout->stride * (o->rows + SKG_SPARE_ROWS);
     if (skg_raster_side(raster) * plane * o->planes > INT32_MAX)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%d planes of this detector are more than 2^31 accumulators",
                         (int)o->planes);
-    frame->plane = (SKG_INT)plane;
-    frame->planes = (SKG_INT)o->planes;
-    frame->copies = 1;
-    frame->tile_columns = frame->columns;
-    frame->tile_rows = frame->rows;
+    layout->plane = (SKG_INT)plane;
+    layout->planes = (SKG_INT)o->planes;
+    layout->copies = 1;
+    layout->tile_columns = layout->columns;
+    layout->tile_rows = layout->rows;
     SKG_TRY(choose_strategy(raster));
     if (raster->strategy->lay_out) SKG_TRY(raster->strategy->lay_out(raster));
-    frame->tiles_across = (frame->columns + frame->tile_columns - 1) / frame->tile_columns;
-    frame->tiles_down = (frame->rows + frame->tile_rows - 1) / frame->tile_rows;
+    layout->tiles_across = (layout->columns + layout->tile_columns - 1) / layout->tile_columns;
+    layout->tiles_down = (layout->rows + layout->tile_rows - 1) / layout->tile_rows;
     return SKG_OK;
 }
 
@@ -52,13 +52,13 @@ skg_status skg_raster_reserve(skg_raster *raster, skg_buffer *buffer, int64_t by
 }
 
 static int64_t bytes_of_sums(const skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    return (int64_t)frame->copies * skg_raster_passes(raster) * frame->planes * frame->plane *
+    const skg_raster_layout *layout = &raster->layout;
+    return (int64_t)layout->copies * skg_raster_passes(raster) * layout->planes * layout->plane *
            skg_raster_sum_bytes(raster);
 }
 
 int64_t skg_raster_plane_bytes(const skg_raster *raster) {
-    return (int64_t)raster->frame.planes * raster->frame.plane * skg_raster_sum_bytes(raster);
+    return (int64_t)raster->layout.planes * raster->layout.plane * skg_raster_sum_bytes(raster);
 }
 
 skg_status skg_raster_reserve_lists(skg_raster *raster) {
@@ -69,11 +69,11 @@ skg_status skg_raster_reserve_lists(skg_raster *raster) {
 }
 
 static skg_status allocate(skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    const int64_t planes = (int64_t)skg_raster_passes(raster) * frame->planes;
+    const skg_raster_layout *layout = &raster->layout;
+    const int64_t planes = (int64_t)skg_raster_passes(raster) * layout->planes;
     SKG_TRY(skg_raster_reserve(raster, &raster->sums, bytes_of_sums(raster), "accumulators"));
     SKG_TRY(skg_raster_reserve(raster, &raster->used,
-                               SKG_EXTENT(frame->copies, planes) * (int64_t)sizeof(cl_int),
+                               SKG_EXTENT(layout->copies, planes) * (int64_t)sizeof(cl_int),
                                "accumulators in use"));
     return raster->strategy->allocate ? raster->strategy->allocate(raster) : SKG_OK;
 }
@@ -87,12 +87,12 @@ skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, c
 
 /* On the host the whole detector for each plane; on the device any extent, until a frame sends its own. */
 static skg_status make_extents(skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    SKG_TRY(skg_alloc(4 * (1 + (int64_t)skg_raster_passes(raster)) * frame->planes, sizeof *raster->whole,
+    const skg_raster_layout *layout = &raster->layout;
+    SKG_TRY(skg_alloc(4 * (1 + (int64_t)skg_raster_passes(raster)) * layout->planes, sizeof *raster->whole,
                       "extents", &raster->whole));
-    raster->sent = raster->whole + 4 * frame->planes;
-    for (int32_t p = 0; p < frame->planes; p++)
-        raster->whole[4 * p + 1] = frame->rows, raster->whole[4 * p + 3] = frame->stride;
+    raster->sent = raster->whole + 4 * layout->planes;
+    for (int32_t p = 0; p < layout->planes; p++)
+        raster->whole[4 * p + 1] = layout->rows, raster->whole[4 * p + 3] = layout->stride;
     return skg_raster_fill(raster, &raster->used, 1, 0, raster->used.bytes);
 }
 
@@ -131,17 +131,17 @@ static skg_status compile(skg_raster *raster) {
 /* Expects the accumulators, of which a frame writes the rows of the extents. Of more copies than threads, the last finds
  * no triangles left. */
 static skg_status expect_sums(const skg_raster *raster, const cl_int *extents) {
-    const skg_frame_args *frame = &raster->frame;
+    const skg_raster_layout *layout = &raster->layout;
     const int64_t threads = raster->context->device->info.compute_units, bytes = skg_raster_sum_bytes(raster);
-    const int64_t images = (int64_t)frame->copies * skg_raster_passes(raster); /* one of the two is 1 */
-    const int64_t count = (frame->copies > 1 && images > threads ? threads : images) * frame->planes;
+    const int64_t images = (int64_t)layout->copies * skg_raster_passes(raster); /* one of the two is 1 */
+    const int64_t count = (layout->copies > 1 && images > threads ? threads : images) * layout->planes;
     skg_byte_range *rows = NULL;
     SKG_TRY(skg_alloc(count, sizeof *rows, "accumulators", &rows));
     for (int64_t k = 0; k < count; k++) {
-        const cl_int *extent = extents + 4 * (k % frame->planes);
-        const int64_t end = extent[1] < frame->rows ? extent[1] : frame->rows; /* extents are rounded up */
-        rows[k] = (skg_byte_range){(k * frame->plane + (int64_t)extent[0] * frame->stride) * bytes,
-                                   (k * frame->plane + end * frame->stride) * bytes};
+        const cl_int *extent = extents + 4 * (k % layout->planes);
+        const int64_t end = extent[1] < layout->rows ? extent[1] : layout->rows; /* extents are rounded up */
+        rows[k] = (skg_byte_range){(k * layout->plane + (int64_t)extent[0] * layout->stride) * bytes,
+                                   (k * layout->plane + end * layout->stride) * bytes};
     }
     skg_buffer_expect(raster->context, bytes_of_sums(raster), count, rows);
     skg_free(&rows);
@@ -197,9 +197,9 @@ cl_kernel skg_raster_projection(const skg_raster *raster) {
 }
 
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles) {
-    *columns = raster->frame.tile_columns;
-    *rows = raster->frame.tile_rows;
-    *tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
+    *columns = raster->layout.tile_columns;
+    *rows = raster->layout.tile_rows;
+    *tiles = (int64_t)raster->layout.tiles_across * raster->layout.tiles_down;
 }
 
 int64_t skg_raster_bytes(const skg_raster *raster) {

@@ -10,7 +10,7 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 
 static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const skg_argument arguments[] = {
-        SKG_TRIANGLE_ARGUMENTS(RASTER_HALF, raster->frame, g),
+        SKG_TRIANGLE_ARGUMENTS(RASTER_HALF, raster->layout, g),
         SKG_ARGUMENT(RASTER_HALF, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(RASTER_HALF, sums, raster->sums.memory),
         SKG_ARGUMENT(RASTER_HALF, ray, raster->rays),

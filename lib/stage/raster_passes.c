@@ -16,7 +16,7 @@ static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *
                            raster->workers * skg_raster_side(raster) * (g->vertices + SKG_CPU_RUN) * vertex,
                            CL_MEM_READ_WRITE, "projected vertices"));
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(RASTER_PASSES, frame, raster->frame),
+        SKG_ARGUMENT(RASTER_PASSES, layout, raster->layout),
         SKG_ARGUMENT(RASTER_PASSES, corners, g->corners.memory),
         SKG_ARGUMENT(RASTER_PASSES, vertices, g->offsets.memory),
         SKG_ARGUMENT(RASTER_PASSES, tables, g->part_table.memory),

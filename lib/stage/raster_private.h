@@ -34,7 +34,7 @@ struct skg_raster {
     skg_context *context;
     skg_raster_options options;
     const skg_raster_strategy *strategy;
-    skg_frame_args frame;
+    skg_raster_layout layout;
     skg_ray_float rays; /* half */
     int32_t workers;    /* persistent work-groups, if the strategy has such */
     skg_buffer sums;
@@ -72,7 +72,7 @@ static inline skg_work_size skg_raster_by_worker(const skg_raster *raster) {
     return (skg_work_size){1, {raster->workers}, {1}};
 }
 static inline skg_work_size skg_raster_by_triangle(const skg_raster *raster) {
-    return (skg_work_size){1, {raster->frame.triangles}, {SKG_RASTER_GROUP}};
+    return (skg_work_size){1, {raster->layout.triangles}, {SKG_RASTER_GROUP}};
 }
 static inline skg_work_size skg_raster_in_groups(int64_t groups) {
     return (skg_work_size){1, {groups * SKG_RASTER_GROUP}, {SKG_RASTER_GROUP}};

@@ -7,14 +7,14 @@
 
 skg_status skg_raster_place_pass(skg_raster *raster, int32_t pass, const cl_int *extents,
                                  skg_stage_log *log) {
-    const skg_frame_args *frame = &raster->frame;
-    const size_t bytes = 4 * (size_t)frame->planes * sizeof *extents;
-    cl_int *sent = raster->sent + 4 * (size_t)pass * (size_t)frame->planes;
+    const skg_raster_layout *layout = &raster->layout;
+    const size_t bytes = 4 * (size_t)layout->planes * sizeof *extents;
+    cl_int *sent = raster->sent + 4 * (size_t)pass * (size_t)layout->planes;
     if (!extents) extents = raster->whole;
     if (memcmp(extents, sent, bytes) == 0) return SKG_OK;
     SKG_TRY(
         skg_stage_write(raster->context, "upload", raster->used.memory,
-                        SKG_EXTENT(frame->copies, (int64_t)pass * frame->planes) * (int64_t)sizeof *extents,
+                        SKG_EXTENT(layout->copies, (int64_t)pass * layout->planes) * (int64_t)sizeof *extents,
                         (int64_t)bytes, extents, log));
     memcpy(sent, extents, bytes);
     return SKG_OK;
@@ -27,11 +27,11 @@ int64_t skg_raster_claim(int64_t triangles, int64_t workers) {
 
 /* What the launches need to know of the scene. */
 static skg_status set_counts(skg_raster *raster, const skg_geometry *geometry) {
-    skg_frame_args *frame = &raster->frame;
-    frame->parts = (SKG_INT)geometry->parts;
-    frame->vertices = (SKG_INT)geometry->vertices;
-    frame->triangles = (SKG_INT)geometry->triangles;
-    frame->claim = (SKG_INT)skg_raster_claim(geometry->triangles, raster->workers - 1);
+    skg_raster_layout *layout = &raster->layout;
+    layout->parts = (SKG_INT)geometry->parts;
+    layout->vertices = (SKG_INT)geometry->vertices;
+    layout->triangles = (SKG_INT)geometry->triangles;
+    layout->claim = (SKG_INT)skg_raster_claim(geometry->triangles, raster->workers - 1);
     if (geometry->triangles > raster->options.triangles)
         return skg_fail(SKG_ERR_INTERNAL, "a frame of more triangles than the stage was made for");
     return SKG_OK;
@@ -45,20 +45,20 @@ void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera) {
 
 size_t skg_raster_source_bands(const skg_raster *raster) {
     const skg_device_info *device = &raster->context->device->info;
-    const size_t most = ((size_t)raster->frame.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS;
+    const size_t most = ((size_t)raster->layout.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS;
     const size_t enough = 2 * (size_t)device->compute_units;
     return device->is_gpu || most < enough ? most : enough;
 }
 
 static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
     const skg_argument arguments[] = {
-        SKG_TRIANGLE_ARGUMENTS(SOURCE_PLANE, raster->frame, g),
+        SKG_TRIANGLE_ARGUMENTS(SOURCE_PLANE, raster->layout, g),
         SKG_ARGUMENT(SOURCE_PLANE, vertices, g->offsets.memory),
         SKG_ARGUMENT(SOURCE_PLANE, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(SOURCE_PLANE, sums, raster->sums.memory),
     };
     const skg_work_size work = {
-        2, {raster->frame.triangles, (int64_t)skg_raster_source_bands(raster)}, {SKG_RASTER_GROUP, 1}};
+        2, {raster->layout.triangles, (int64_t)skg_raster_source_bands(raster)}, {SKG_RASTER_GROUP, 1}};
     return SKG_LAUNCH(raster->context, raster->source, "source plane", &work, arguments, log);
 }
 
@@ -73,6 +73,6 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, cons
 skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *geometry, int32_t passes,
                                  skg_stage_log *log) {
     SKG_TRY(set_counts(raster, geometry));
-    raster->frame.passes = passes;
+    raster->layout.passes = passes;
     return raster->strategy->run(raster, geometry, log);
 }

@@ -14,7 +14,7 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 
 static skg_status square_side(const skg_raster *raster, SKG_INT *side) {
     const int64_t capacity = raster->context->device->info.local_memory,
-                  pixel = raster->frame.planes * skg_raster_sum_bytes(raster);
+                  pixel = raster->layout.planes * skg_raster_sum_bytes(raster);
     if (!raster->options.tile)
         while (*side > 8 && *side * *side * pixel > capacity / 2) *side /= 2;
     if (*side * *side * pixel > capacity)
@@ -22,20 +22,20 @@ static skg_status square_side(const skg_raster *raster, SKG_INT *side) {
             SKG_ERR_UNSUPPORTED,
             "tiles of %d x %d pixels with %d planes do not fit the local memory of %s; choose smaller "
             "tiles or strategy atomics",
-            (int)*side, (int)*side, (int)raster->frame.planes, raster->context->device->info.name);
+            (int)*side, (int)*side, (int)raster->layout.planes, raster->context->device->info.name);
     return SKG_OK;
 }
 
 static skg_status lay_out(skg_raster *raster) {
     SKG_INT side = raster->options.tile ? raster->options.tile : SQUARE;
     SKG_TRY(square_side(raster, &side));
-    raster->frame.tile_columns = side;
-    raster->frame.tile_rows = side;
+    raster->layout.tile_columns = side;
+    raster->layout.tile_rows = side;
     return SKG_OK;
 }
 
 static int64_t count_tiles(const skg_raster *raster) {
-    return (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
+    return (int64_t)raster->layout.tiles_across * raster->layout.tiles_down;
 }
 
 static skg_status allocate(skg_raster *raster) {
@@ -47,18 +47,18 @@ static skg_status allocate(skg_raster *raster) {
 
 /* Lists the triangles of each square: counts them, gives each list its place, and fills it. */
 static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
-    const skg_frame_args *frame = &raster->frame;
+    const skg_raster_layout *layout = &raster->layout;
     const skg_argument count[] = {
-        SKG_TRIANGLE_ARGUMENTS(TILES_COUNT, *frame, g),
+        SKG_TRIANGLE_ARGUMENTS(TILES_COUNT, *layout, g),
         SKG_ARGUMENT(TILES_COUNT, counts, raster->counts.memory),
     };
     const skg_argument scan[] = {
-        SKG_ARGUMENT(TILES_SCAN, frame, *frame),
+        SKG_ARGUMENT(TILES_SCAN, layout, *layout),
         SKG_ARGUMENT(TILES_SCAN, counts, raster->counts.memory),
         SKG_ARGUMENT(TILES_SCAN, starts, raster->starts.memory),
     };
     const skg_argument fill[] = {
-        SKG_TRIANGLE_ARGUMENTS(TILES_FILL, *frame, g),
+        SKG_TRIANGLE_ARGUMENTS(TILES_FILL, *layout, g),
         SKG_ARGUMENT(TILES_FILL, counts, raster->counts.memory),
         SKG_ARGUMENT(TILES_FILL, starts, raster->starts.memory),
         SKG_ARGUMENT(TILES_FILL, list, raster->list.memory),
@@ -66,28 +66,28 @@ static skg_status run_binning(skg_raster *raster, const skg_geometry *g, skg_sta
     };
     SKG_TRY(
         skg_raster_fill(raster, &raster->counts, 0, 0,
-                        ((int64_t)frame->tiles_across * frame->tiles_down + 1) * (int64_t)sizeof(cl_int)));
+                        ((int64_t)layout->tiles_across * layout->tiles_down + 1) * (int64_t)sizeof(cl_int)));
     SKG_TRY(SKG_RASTER_LAUNCH(raster, COUNT, "tiles: count", skg_raster_by_triangle(raster), count, log));
     SKG_TRY(SKG_RASTER_LAUNCH(raster, SCAN, "tiles: scan", skg_raster_in_groups(1), scan, log));
     return SKG_RASTER_LAUNCH(raster, FILL, "tiles: fill", skg_raster_by_triangle(raster), fill, log);
 }
 
 static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {
-    const skg_frame_args *frame = &raster->frame;
+    const skg_raster_layout *layout = &raster->layout;
     const skg_argument arguments[] = {
-        SKG_TRIANGLE_ARGUMENTS(RASTER_SQUARES, *frame, g),
+        SKG_TRIANGLE_ARGUMENTS(RASTER_SQUARES, *layout, g),
         SKG_ARGUMENT(RASTER_SQUARES, contributions, g->contribution_table.memory),
         SKG_ARGUMENT(RASTER_SQUARES, starts, raster->starts.memory),
         SKG_ARGUMENT(RASTER_SQUARES, list, raster->list.memory),
         SKG_ARGUMENT(RASTER_SQUARES, for_all, raster->for_all.memory),
         SKG_ARGUMENT(RASTER_SQUARES, sums, raster->sums.memory),
         {SKG_RASTER_SQUARES_local_sums,
-         (size_t)(frame->tile_columns * frame->tile_rows * frame->planes * skg_raster_sum_bytes(raster)),
+         (size_t)(layout->tile_columns * layout->tile_rows * layout->planes * skg_raster_sum_bytes(raster)),
          NULL},
     };
     SKG_TRY(run_binning(raster, g, log));
     return SKG_RASTER_LAUNCH(raster, DRAW, "raster",
-                             skg_raster_in_groups((int64_t)frame->tiles_across * frame->tiles_down),
+                             skg_raster_in_groups((int64_t)layout->tiles_across * layout->tiles_down),
                              arguments, log);
 }
 

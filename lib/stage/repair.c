@@ -9,14 +9,14 @@
 #include <string.h>
 
 static skg_status find_gaps(const skg_leaky_batch *batch) {
-    const skg_frame_args *frame = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
     const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_buffer *gaps = &batch->memory->gaps;
     skg_context *context = batch->raster->context;
-    const skg_work_size work = {2, {frame->rows, batch->parts}, {16, 1}};
+    const skg_work_size work = {2, {layout->rows, batch->parts}, {16, 1}};
     cl_program program = NULL;
     SKG_TRY(skg_buffer_reserve(context, gaps,
-                               batch->parts * frame->rows * frame->columns * (int64_t)sizeof(cl_int),
+                               batch->parts * layout->rows * layout->columns * (int64_t)sizeof(cl_int),
                                CL_MEM_READ_WRITE, "bad pixels"));
     SKG_TRY(skg_leaky_program(batch, &program));
     const skg_argument arguments[] = {
@@ -29,11 +29,11 @@ static skg_status find_gaps(const skg_leaky_batch *batch) {
 }
 
 static skg_status take_neighbours(const skg_leaky_batch *batch) {
-    const skg_frame_args *frame = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
     const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_context *context = batch->raster->context;
     const int on_gpu = context->device->info.is_gpu;
-    const skg_work_size work = {2, {on_gpu ? frame->columns : 1, frame->rows}, {on_gpu ? 16 : 1, 8}};
+    const skg_work_size work = {2, {on_gpu ? layout->columns : 1, layout->rows}, {on_gpu ? 16 : 1, 8}};
     const skg_argument arguments[] = {
         SKG_LEAKY_ARGUMENTS(LEAKY_REPAIR, args, batch),
         SKG_ARGUMENT(LEAKY_REPAIR, rows_bad, batch->raster->rows_bad.memory),
@@ -65,7 +65,7 @@ static skg_status read_now(const tracing *t, cl_mem memory, int64_t first, int64
 
 /* Marks the bad pixels of a part. */
 static skg_status mark_bad(const tracing *t, int64_t part) {
-    const skg_frame_args *layout = &t->batch->raster->frame;
+    const skg_raster_layout *layout = &t->batch->raster->layout;
     const cl_int *rows_bad = t->rows_bad + 3 * part * layout->rows;
     const int64_t columns = layout->columns;
     int64_t first = 0, end = layout->rows;
@@ -157,7 +157,7 @@ cleanup:
 /* Traces the bad pixels of a part, and those whose ray passes a cap: the hits of a ray that goes in through one hole and
  * out through another cancel, although the ray is wrong. */
 static skg_status trace_part(const tracing *t, int64_t part) {
-    const skg_frame_args *layout = &t->batch->raster->frame;
+    const skg_raster_layout *layout = &t->batch->raster->layout;
     const skg_pass *pass = t->batch->pass;
     const int64_t number = skg_leaky_part(t->batch, part);
     const skg_mesh *mesh = pass->scene->parts[number].mesh;
@@ -175,7 +175,7 @@ static skg_status trace_part(const tracing *t, int64_t part) {
 }
 
 static skg_status trace_again(const skg_leaky_batch *batch) {
-    const skg_frame_args *layout = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
     const int64_t rows = batch->parts * layout->rows;
     tracing t = {.batch = batch};
     int any = 0;

@@ -20,10 +20,10 @@ enum { BUFFERS = 7, PLACES = 16 };
 /* What the device's compiler makes of skg_shared.h: sizes, and places of the last fields. */
 static const char layout_kernel[] =
     "__kernel void layout(__global int *out, __global const skg_part_entry *p, __global const skg_contribution *w,\n"
-    "                     __global const skg_ray_args *r, __global const skg_frame_args *f,\n"
+    "                     __global const skg_ray_args *r, __global const skg_raster_layout *f,\n"
     "                     __global const skg_attenuate_args *a, __global const skg_detect_args *d) {\n"
     "    out[0] = sizeof(skg_part_entry); out[1] = sizeof(skg_contribution); out[2] = sizeof(skg_ray_args);\n"
-    "    out[3] = sizeof(skg_frame_args);\n"
+    "    out[3] = sizeof(skg_raster_layout);\n"
     "    out[4] = (int)((__global const char *)&p->pixel_i - (__global const char *)p);\n"
     "    out[5] = (int)((__global const char *)&p->contributions - (__global const char *)p);\n"
     "    out[6] = (int)((__global const char *)&w->plane - (__global const char *)w);\n"
@@ -72,12 +72,12 @@ START_TEST(structs_are_laid_out_alike) {
     const int32_t single[PLACES] = {sizeof(skg_part_float),
                                     sizeof(skg_contribution_float),
                                     sizeof(skg_ray_float),
-                                    sizeof(skg_frame_args),
+                                    sizeof(skg_raster_layout),
                                     offsetof(skg_part_float, pixel_i),
                                     offsetof(skg_part_float, contributions),
                                     offsetof(skg_contribution_float, plane),
                                     offsetof(skg_ray_float, unit),
-                                    offsetof(skg_frame_args, queue),
+                                    offsetof(skg_raster_layout, queue),
                                     sizeof(skg_attenuate_float),
                                     sizeof(skg_detect_float),
                                     offsetof(skg_attenuate_float, image),
@@ -88,12 +88,12 @@ START_TEST(structs_are_laid_out_alike) {
     const int32_t twice[PLACES] = {sizeof(skg_part_double),
                                    sizeof(skg_contribution_double),
                                    sizeof(skg_ray_double),
-                                   sizeof(skg_frame_args),
+                                   sizeof(skg_raster_layout),
                                    offsetof(skg_part_double, pixel_i),
                                    offsetof(skg_part_double, contributions),
                                    offsetof(skg_contribution_double, plane),
                                    offsetof(skg_ray_double, unit),
-                                   offsetof(skg_frame_args, queue),
+                                   offsetof(skg_raster_layout, queue),
                                    sizeof(skg_attenuate_double),
                                    sizeof(skg_detect_double),
                                    offsetof(skg_attenuate_double, image),

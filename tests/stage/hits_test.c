@@ -37,7 +37,7 @@ END_TEST
 static void place(const cl_int counts[4], cl_uint starts[4], skg_hit_count *total) {
     static const char *const files[] = {"pixel.clh", "hits.cl"};
     const skg_kernel_options options = {.bits = 32};
-    const skg_hits_args args = {.frame.columns = 2, .window = {0, 0, 2, 2}};
+    const skg_hits_args args = {.layout.columns = 2, .window = {0, 0, 2, 2}};
     const skg_work_size work = {2, {2, 2}, {2, 1}};
     const skg_hit_count none = {0, 0};
     cl_command_queue queue = context->device->queue;
