@@ -1,151 +1,129 @@
 /* The arguments of every kernel, named once in the order of the kernel's signature. The host sets arguments by these
  * names alone (lib/stage); a test compares each list with the names that the OpenCL compiler reports for the kernel.
  *
- * SKG_ARGUMENTS_<KERNEL>(X) is X(KERNEL, name) for each argument. Arguments that depend on a -D name come last and are
- * marked with it; where one is absent, those behind it move up. Host only. */
+ * SKG_ARGUMENTS_<KERNEL>(X) is X(KERNEL, name) for each argument. Scalars stand in one struct of skg_shared.h, the first
+ * argument; every buffer is an argument of its own, because OpenCL 1.2 has no pointers in such structs. The lists do not
+ * depend on -D names: a buffer that a program does not use is NULL. Host only. */
 #ifndef SKG_ARGUMENTS_H
 #define SKG_ARGUMENTS_H
 
 /* clang-format off */
 #define SKG_ARGUMENTS_PROJECT(X) \
-    X(PROJECT, frame) X(PROJECT, parts) X(PROJECT, blocks) X(PROJECT, vertices) X(PROJECT, projected) \
+    X(PROJECT, layout) X(PROJECT, parts) X(PROJECT, blocks) X(PROJECT, vertices) X(PROJECT, projected) \
     X(PROJECT, bad_vertex)
 
 #define SKG_ARGUMENTS_PLACE(X) \
     X(PLACE, args) X(PLACE, given) X(PLACE, first) X(PLACE, taken) X(PLACE, vertices) X(PLACE, outside)
 
 #define SKG_ARGUMENTS_RASTER_COPIES(X) \
-    X(RASTER_COPIES, frame) X(RASTER_COPIES, corners) X(RASTER_COPIES, projected) X(RASTER_COPIES, parts) \
+    X(RASTER_COPIES, layout) X(RASTER_COPIES, corners) X(RASTER_COPIES, projected) X(RASTER_COPIES, parts) \
     X(RASTER_COPIES, contributions) X(RASTER_COPIES, blocks) X(RASTER_COPIES, copies) X(RASTER_COPIES, used)
 
 #define SKG_ARGUMENTS_RASTER_PASSES(X) \
-    X(RASTER_PASSES, frame) X(RASTER_PASSES, corners) X(RASTER_PASSES, vertices) X(RASTER_PASSES, tables) \
+    X(RASTER_PASSES, layout) X(RASTER_PASSES, corners) X(RASTER_PASSES, vertices) X(RASTER_PASSES, tables) \
     X(RASTER_PASSES, contributions) X(RASTER_PASSES, blocks) X(RASTER_PASSES, vertex_blocks) \
-    X(RASTER_PASSES, projected) X(RASTER_PASSES, sums) X(RASTER_PASSES, used) X(RASTER_PASSES, bad_vertex) \
-    X(RASTER_PASSES, passes)
+    X(RASTER_PASSES, projected) X(RASTER_PASSES, sums) X(RASTER_PASSES, used) X(RASTER_PASSES, bad_vertex)
 
 #define SKG_ARGUMENTS_RASTER_ATOMICS(X) \
-    X(RASTER_ATOMICS, frame) X(RASTER_ATOMICS, corners) X(RASTER_ATOMICS, projected) X(RASTER_ATOMICS, parts) \
+    X(RASTER_ATOMICS, layout) X(RASTER_ATOMICS, corners) X(RASTER_ATOMICS, projected) X(RASTER_ATOMICS, parts) \
     X(RASTER_ATOMICS, contributions) X(RASTER_ATOMICS, blocks) X(RASTER_ATOMICS, sums) X(RASTER_ATOMICS, queue)
 
 #define SKG_ARGUMENTS_RASTER_QUEUE(X) \
-    X(RASTER_QUEUE, frame) X(RASTER_QUEUE, corners) X(RASTER_QUEUE, projected) X(RASTER_QUEUE, parts) \
+    X(RASTER_QUEUE, layout) X(RASTER_QUEUE, corners) X(RASTER_QUEUE, projected) X(RASTER_QUEUE, parts) \
     X(RASTER_QUEUE, contributions) X(RASTER_QUEUE, blocks) X(RASTER_QUEUE, sums) X(RASTER_QUEUE, queue)
 
 #define SKG_ARGUMENTS_TILES_COUNT(X) \
-    X(TILES_COUNT, frame) X(TILES_COUNT, corners) X(TILES_COUNT, projected) X(TILES_COUNT, parts) \
+    X(TILES_COUNT, layout) X(TILES_COUNT, corners) X(TILES_COUNT, projected) X(TILES_COUNT, parts) \
     X(TILES_COUNT, blocks) X(TILES_COUNT, counts)
 
-#define SKG_ARGUMENTS_TILES_SCAN(X) X(TILES_SCAN, frame) X(TILES_SCAN, counts) X(TILES_SCAN, starts)
+#define SKG_ARGUMENTS_TILES_SCAN(X) X(TILES_SCAN, layout) X(TILES_SCAN, counts) X(TILES_SCAN, starts)
 
 #define SKG_ARGUMENTS_TILES_FILL(X) \
-    X(TILES_FILL, frame) X(TILES_FILL, corners) X(TILES_FILL, projected) X(TILES_FILL, parts) \
+    X(TILES_FILL, layout) X(TILES_FILL, corners) X(TILES_FILL, projected) X(TILES_FILL, parts) \
     X(TILES_FILL, blocks) X(TILES_FILL, counts) X(TILES_FILL, starts) X(TILES_FILL, list) X(TILES_FILL, for_all)
 
 #define SKG_ARGUMENTS_RASTER_SQUARES(X) \
-    X(RASTER_SQUARES, frame) X(RASTER_SQUARES, corners) X(RASTER_SQUARES, projected) X(RASTER_SQUARES, parts) \
+    X(RASTER_SQUARES, layout) X(RASTER_SQUARES, corners) X(RASTER_SQUARES, projected) X(RASTER_SQUARES, parts) \
     X(RASTER_SQUARES, contributions) X(RASTER_SQUARES, blocks) X(RASTER_SQUARES, starts) X(RASTER_SQUARES, list) \
     X(RASTER_SQUARES, for_all) X(RASTER_SQUARES, sums) X(RASTER_SQUARES, local_sums)
 
 #define SKG_ARGUMENTS_BANDS_SORT(X) \
-    X(BANDS_SORT, frame) X(BANDS_SORT, corners) X(BANDS_SORT, projected) X(BANDS_SORT, parts) \
+    X(BANDS_SORT, layout) X(BANDS_SORT, corners) X(BANDS_SORT, projected) X(BANDS_SORT, parts) \
     X(BANDS_SORT, blocks) X(BANDS_SORT, counters) X(BANDS_SORT, pieces) X(BANDS_SORT, pool) X(BANDS_SORT, for_all)
 
 #define SKG_ARGUMENTS_RASTER_BANDS(X) \
-    X(RASTER_BANDS, frame) X(RASTER_BANDS, corners) X(RASTER_BANDS, projected) X(RASTER_BANDS, parts) \
+    X(RASTER_BANDS, layout) X(RASTER_BANDS, corners) X(RASTER_BANDS, projected) X(RASTER_BANDS, parts) \
     X(RASTER_BANDS, contributions) X(RASTER_BANDS, blocks) X(RASTER_BANDS, counters) X(RASTER_BANDS, pieces) \
     X(RASTER_BANDS, pool) X(RASTER_BANDS, for_all) X(RASTER_BANDS, sums) X(RASTER_BANDS, scratch) \
     X(RASTER_BANDS, used)
 
 #define SKG_ARGUMENTS_RASTER_HALF(X) \
-    X(RASTER_HALF, frame) X(RASTER_HALF, corners) X(RASTER_HALF, projected) X(RASTER_HALF, parts) \
+    X(RASTER_HALF, layout) X(RASTER_HALF, corners) X(RASTER_HALF, projected) X(RASTER_HALF, parts) \
     X(RASTER_HALF, contributions) X(RASTER_HALF, blocks) X(RASTER_HALF, sums) X(RASTER_HALF, ray)
 
 #define SKG_ARGUMENTS_SOURCE_PLANE(X) \
-    X(SOURCE_PLANE, frame) X(SOURCE_PLANE, corners) X(SOURCE_PLANE, projected) X(SOURCE_PLANE, parts) \
+    X(SOURCE_PLANE, layout) X(SOURCE_PLANE, corners) X(SOURCE_PLANE, projected) X(SOURCE_PLANE, parts) \
     X(SOURCE_PLANE, blocks) X(SOURCE_PLANE, vertices) X(SOURCE_PLANE, contributions) X(SOURCE_PLANE, sums)
 
 #define SKG_ARGUMENTS_HITS_LIST(X) \
-    X(HITS_LIST, frame) X(HITS_LIST, corners) X(HITS_LIST, projected) X(HITS_LIST, parts) X(HITS_LIST, runs) \
-    X(HITS_LIST, chosen) X(HITS_LIST, spans) X(HITS_LIST, slots) X(HITS_LIST, shifts) X(HITS_LIST, counts) \
-    X(HITS_LIST, starts) X(HITS_LIST, hits) X(HITS_LIST, window) X(HITS_LIST, doing)
+    X(HITS_LIST, args) X(HITS_LIST, corners) X(HITS_LIST, projected) X(HITS_LIST, parts) X(HITS_LIST, runs) \
+    X(HITS_LIST, spans) X(HITS_LIST, slots) X(HITS_LIST, shifts) X(HITS_LIST, counts) X(HITS_LIST, starts) \
+    X(HITS_LIST, hits)
 
 #define SKG_ARGUMENTS_HITS_SOURCE_PLANE(X) \
-    X(HITS_SOURCE_PLANE, frame) X(HITS_SOURCE_PLANE, corners) X(HITS_SOURCE_PLANE, projected) \
+    X(HITS_SOURCE_PLANE, args) X(HITS_SOURCE_PLANE, corners) X(HITS_SOURCE_PLANE, projected) \
     X(HITS_SOURCE_PLANE, parts) X(HITS_SOURCE_PLANE, blocks) X(HITS_SOURCE_PLANE, vertices) \
     X(HITS_SOURCE_PLANE, slots) X(HITS_SOURCE_PLANE, shifts) X(HITS_SOURCE_PLANE, counts) \
-    X(HITS_SOURCE_PLANE, starts) X(HITS_SOURCE_PLANE, hits) X(HITS_SOURCE_PLANE, window) \
-    X(HITS_SOURCE_PLANE, doing)
+    X(HITS_SOURCE_PLANE, starts) X(HITS_SOURCE_PLANE, hits)
 
 #define SKG_ARGUMENTS_HITS_PLACE(X) \
-    X(HITS_PLACE, columns) X(HITS_PLACE, window) X(HITS_PLACE, counts) X(HITS_PLACE, starts) X(HITS_PLACE, total)
+    X(HITS_PLACE, args) X(HITS_PLACE, counts) X(HITS_PLACE, starts) X(HITS_PLACE, total)
 
 #define SKG_ARGUMENTS_HITS_SETTLE(X) \
-    X(HITS_SETTLE, frame) X(HITS_SETTLE, parts) X(HITS_SETTLE, contributions) X(HITS_SETTLE, counts) \
-    X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums) \
-    X(HITS_SETTLE, window)
+    X(HITS_SETTLE, args) X(HITS_SETTLE, parts) X(HITS_SETTLE, contributions) X(HITS_SETTLE, counts) \
+    X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
-    X(COUNT_BAD_ROWS, frame) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
+    X(COUNT_BAD_ROWS, layout) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
     X(COUNT_BAD_ROWS, rows_bad)
 
 #define SKG_ARGUMENTS_COUNT_BAD(X) \
-    X(COUNT_BAD, frame) X(COUNT_BAD, copies) X(COUNT_BAD, used) X(COUNT_BAD, planes) X(COUNT_BAD, rows_bad) \
+    X(COUNT_BAD, layout) X(COUNT_BAD, copies) X(COUNT_BAD, used) X(COUNT_BAD, planes) X(COUNT_BAD, rows_bad) \
     X(COUNT_BAD, first) X(COUNT_BAD, verdicts)
 
 /* All kernels of leaky.cl begin with the arguments of LEAKY_BATCH. */
 #define SKG_ARGUMENTS_LEAKY_BATCH(X) \
-    X(LEAKY_BATCH, frame) X(LEAKY_BATCH, copies) X(LEAKY_BATCH, used) X(LEAKY_BATCH, parts) X(LEAKY_BATCH, table)
+    X(LEAKY_BATCH, args) X(LEAKY_BATCH, copies) X(LEAKY_BATCH, used) X(LEAKY_BATCH, table)
 
 #define SKG_ARGUMENTS_LEAKY_ADD(X) \
-    X(LEAKY_ADD, frame) X(LEAKY_ADD, copies) X(LEAKY_ADD, used) X(LEAKY_ADD, parts) X(LEAKY_ADD, table) \
-    X(LEAKY_ADD, shared)
+    X(LEAKY_ADD, args) X(LEAKY_ADD, copies) X(LEAKY_ADD, used) X(LEAKY_ADD, table) X(LEAKY_ADD, shared)
 
 #define SKG_ARGUMENTS_LEAKY_GAPS(X) \
-    X(LEAKY_GAPS, frame) X(LEAKY_GAPS, copies) X(LEAKY_GAPS, used) X(LEAKY_GAPS, parts) X(LEAKY_GAPS, table) \
-    X(LEAKY_GAPS, rows_bad) X(LEAKY_GAPS, gaps)
+    X(LEAKY_GAPS, args) X(LEAKY_GAPS, copies) X(LEAKY_GAPS, used) X(LEAKY_GAPS, table) X(LEAKY_GAPS, rows_bad) \
+    X(LEAKY_GAPS, gaps)
 
 #define SKG_ARGUMENTS_LEAKY_REPAIR(X) \
-    X(LEAKY_REPAIR, frame) X(LEAKY_REPAIR, copies) X(LEAKY_REPAIR, used) X(LEAKY_REPAIR, parts) \
-    X(LEAKY_REPAIR, table) X(LEAKY_REPAIR, rows_bad) X(LEAKY_REPAIR, gaps) X(LEAKY_REPAIR, shared)
+    X(LEAKY_REPAIR, args) X(LEAKY_REPAIR, copies) X(LEAKY_REPAIR, used) X(LEAKY_REPAIR, table) \
+    X(LEAKY_REPAIR, rows_bad) X(LEAKY_REPAIR, gaps) X(LEAKY_REPAIR, shared)
 
 #define SKG_ARGUMENTS_LEAKY_PUT(X) \
-    X(LEAKY_PUT, frame) X(LEAKY_PUT, copies) X(LEAKY_PUT, used) X(LEAKY_PUT, parts) X(LEAKY_PUT, table) \
-    X(LEAKY_PUT, part) X(LEAKY_PUT, count) X(LEAKY_PUT, pixels) X(LEAKY_PUT, values) X(LEAKY_PUT, shared)
+    X(LEAKY_PUT, args) X(LEAKY_PUT, copies) X(LEAKY_PUT, used) X(LEAKY_PUT, table) X(LEAKY_PUT, pixels) \
+    X(LEAKY_PUT, values) X(LEAKY_PUT, shared)
 
 #define SKG_ARGUMENTS_ATTENUATE(X) \
-    X(ATTENUATE, frame) X(ATTENUATE, ray) X(ATTENUATE, copies) X(ATTENUATE, used) X(ATTENUATE, nodes) \
-    X(ATTENUATE, coefficients) X(ATTENUATE, weights) X(ATTENUATE, factor) X(ATTENUATE, limit) \
-    X(ATTENUATE, negative) X(ATTENUATE, output) X(ATTENUATE, offset) X(ATTENUATE, row_stride) \
-    X(ATTENUATE, channel_stride) \
-    X(ATTENUATE, lists) /* SKG_SUMS */ \
-    X(ATTENUATE, world_plane) X(ATTENUATE, world) /* SKG_WORLD */ \
-    X(ATTENUATE, foot) /* SKG_FALLOFF */ \
-    X(ATTENUATE, variances) X(ATTENUATE, key) X(ATTENUATE, photons) /* SKG_NOISE */ \
-    X(ATTENUATE, range) /* SKG_RANGED */ \
-    X(ATTENUATE, shades) /* SKG_SHADES */ \
-    X(ATTENUATE, polynomials) /* SKG_HEEL + SKG_OBLIQUE */ \
-    X(ATTENUATE, tables) /* SKG_BOWTIE + SKG_GRID */
+    X(ATTENUATE, args) X(ATTENUATE, copies) X(ATTENUATE, used) X(ATTENUATE, coefficients) X(ATTENUATE, weights) \
+    X(ATTENUATE, variances) X(ATTENUATE, lists) X(ATTENUATE, range) X(ATTENUATE, polynomials) \
+    X(ATTENUATE, tables) X(ATTENUATE, negative) X(ATTENUATE, output)
 
-#define SKG_ARGUMENTS_LOGARITHM(X) \
-    X(LOGARITHM, columns) X(LOGARITHM, rows) X(LOGARITHM, channels) X(LOGARITHM, output) X(LOGARITHM, offset) \
-    X(LOGARITHM, row_stride) X(LOGARITHM, channel_stride)
+#define SKG_ARGUMENTS_LOGARITHM(X) X(LOGARITHM, image) X(LOGARITHM, output)
 
 #define SKG_ARGUMENTS_BLUR_DOWN(X) \
-    X(BLUR_DOWN, image) X(BLUR_DOWN, offset) X(BLUR_DOWN, row_stride) X(BLUR_DOWN, channel_stride) \
-    X(BLUR_DOWN, columns) X(BLUR_DOWN, rows) X(BLUR_DOWN, taps) X(BLUR_DOWN, weights) X(BLUR_DOWN, workspace) \
-    X(BLUR_DOWN, stride) X(BLUR_DOWN, high) X(BLUR_DOWN, left) X(BLUR_DOWN, above)
+    X(BLUR_DOWN, args) X(BLUR_DOWN, image) X(BLUR_DOWN, weights) X(BLUR_DOWN, workspace)
 
 #define SKG_ARGUMENTS_BLUR_ACROSS(X) \
-    X(BLUR_ACROSS, workspace) X(BLUR_ACROSS, stride) X(BLUR_ACROSS, high) X(BLUR_ACROSS, down) \
-    X(BLUR_ACROSS, across) X(BLUR_ACROSS, weights) X(BLUR_ACROSS, image) X(BLUR_ACROSS, offset) \
-    X(BLUR_ACROSS, row_stride) X(BLUR_ACROSS, channel_stride) X(BLUR_ACROSS, columns) X(BLUR_ACROSS, rows) \
-    X(BLUR_ACROSS, add)
+    X(BLUR_ACROSS, args) X(BLUR_ACROSS, workspace) X(BLUR_ACROSS, weights) X(BLUR_ACROSS, image)
 
-#define SKG_ARGUMENTS_DETECT(X) \
-    X(DETECT, image) X(DETECT, offset) X(DETECT, row_stride) X(DETECT, channel_stride) X(DETECT, columns) \
-    X(DETECT, rows) X(DETECT, key) X(DETECT, electronic) X(DETECT, spacing) X(DETECT, factor) X(DETECT, scale) \
-    X(DETECT, flat_field) /* SKG_FLAT_FIELD */
+#define SKG_ARGUMENTS_DETECT(X) X(DETECT, args) X(DETECT, factor) X(DETECT, flat_field) X(DETECT, image)
 
 #define SKG_ARGUMENTS_SHOW_COUNT(X) \
     X(SHOW_COUNT, args) X(SHOW_COUNT, vertices) X(SHOW_COUNT, corners) X(SHOW_COUNT, normals) \

@@ -2,7 +2,9 @@
  * plane's weights. The exponent of node n is the sum over planes of coefficient[n][p] * x_p, and channel c shows the sum over
  * nodes of weight[n][c] * exp(-exponent_n). The host multiplies coefficients by -log2(e), because powers of two are computed. */
 
-#ifndef SKG_HALF_UNIT
+#if SKG_ENERGIES
+#define SKG_HALF_UNIT 0.001f
+#else
 #define SKG_HALF_UNIT 1.0f
 #endif
 #if SKG_DOUBLE
@@ -110,8 +112,8 @@ static void skg_count_infinite(const skg_realv *shown, int pixels, __global int 
 
 #if SKG_RANGED
 /* Pixels that have a plane outside range[plane]. */
-static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels) {
-    __constant const skg_real *range = pass->range;
+static void skg_count_outside(const skg_strip *strip, const skg_pixels *pixels) {
+    __constant const skg_real *range = strip->range;
     skg_realv most[SKG_RUNS]; /* mm by which a plane is outside */
     SKG_EACH_RUN most[r] = (skg_realv)(range[0]) - pixels->x[0][r];
     SKG_EACH_PLANE(0) {
@@ -122,25 +124,25 @@ static void skg_count_outside(const skg_pass *pass, const skg_pixels *pixels) {
             most[r] = above > most[r] ? above : most[r];
         }
     }
-    skg_count(most, 0, pass->frame->columns - pass->column, pass->negative + 1);
+    skg_count(most, 0, strip->args.layout.columns - strip->column, strip->negative + 1);
 }
 #endif
 
 /* shown = sum over nodes of weight * 2^power. For the logarithm it is divided by 2^highest, so that nothing underflows. */
-static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
+static void skg_add_nodes(const skg_strip *strip, skg_pixels *pixels) {
     skg_realv power[SKG_RUNS];
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->shown[c][r] = (skg_realv)(0);
 #if SKG_NOISE
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->spread[c][r] = (skg_realv)(0);
 #endif
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
-    for (int n = 1; n < pass->nodes; n++) {
-        skg_exponents(pass->coefficients + n * SKG_PLANES, pixels, power);
+    for (int n = 1; n < strip->args.nodes; n++) {
+        skg_exponents(strip->coefficients + n * SKG_PLANES, pixels, power);
         SKG_EACH_RUN pixels->highest[r] = power[r] > pixels->highest[r] ? power[r] : pixels->highest[r];
     }
 #endif
-    for (int n = 0; n < pass->nodes; n++) {
-        skg_exponents(pass->coefficients + n * SKG_PLANES, pixels, power);
+    for (int n = 0; n < strip->args.nodes; n++) {
+        skg_exponents(strip->coefficients + n * SKG_PLANES, pixels, power);
         SKG_EACH_RUN {
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
             const skg_realv passed = skg_exp2_v(power[r] - pixels->highest[r]);
@@ -148,10 +150,10 @@ static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
             const skg_realv passed = skg_exp2_v(power[r]);
 #endif
             SKG_EACH_CHANNEL pixels->shown[c][r] =
-                fma((skg_realv)(pass->weights[n * SKG_CHANNELS + c]), passed, pixels->shown[c][r]);
+                fma((skg_realv)(strip->weights[n * SKG_CHANNELS + c]), passed, pixels->shown[c][r]);
 #if SKG_NOISE
             SKG_EACH_CHANNEL pixels->spread[c][r] =
-                fma((skg_realv)(pass->variances[n * SKG_CHANNELS + c]), passed, pixels->spread[c][r]);
+                fma((skg_realv)(strip->variances[n * SKG_CHANNELS + c]), passed, pixels->spread[c][r]);
 #endif
         }
     }
@@ -159,264 +161,195 @@ static void skg_add_nodes(const skg_pass *pass, skg_pixels *pixels) {
 
 #if SKG_RATIO
 /* The power of two of node n in the flat field, in which there are the world and the shades alone, less `base`. */
-static skg_realv skg_open_power(const skg_pass *pass, const skg_pixels *pixels, int n, int r, skg_realv base) {
+static skg_realv skg_open_power(const skg_strip *strip, const skg_pixels *pixels, int n, int r, skg_realv base) {
     skg_realv power = -base;
 #if SKG_SHADES
-    power += skg_shade_power(pass, pixels, n, r);
+    power += skg_shade_power(strip, pixels, n, r);
 #endif
 #if SKG_WORLD
-    power = fma((skg_realv)(pass->coefficients[n * SKG_PLANES + pass->world_plane]), pixels->world[r], power);
+    power = fma((skg_realv)(strip->coefficients[n * SKG_PLANES + strip->args.world_plane]), pixels->world[r], power);
 #endif
     return power;
 }
 
 /* The greatest power of two of the flat field. */
-static skg_realv skg_highest_flat_field(const skg_pass *pass, const skg_pixels *pixels, int r) {
+static skg_realv skg_highest_flat_field(const skg_strip *strip, const skg_pixels *pixels, int r) {
     const skg_realv zero = (skg_realv)(0);
-    skg_realv highest = skg_open_power(pass, pixels, 0, r, zero);
-    for (int n = 1; n < pass->nodes; n++) {
-        const skg_realv power = skg_open_power(pass, pixels, n, r, zero);
+    skg_realv highest = skg_open_power(strip, pixels, 0, r, zero);
+    for (int n = 1; n < strip->args.nodes; n++) {
+        const skg_realv power = skg_open_power(strip, pixels, n, r, zero);
         highest = power > highest ? power : highest;
     }
     return highest;
 }
 
 /* The sum over nodes of weight * 2^(power - base) for one channel of the flat field. */
-static skg_realv skg_flat_field(const skg_pass *pass, const skg_pixels *pixels, int channel, int r, skg_realv base) {
+static skg_realv skg_flat_field(const skg_strip *strip, const skg_pixels *pixels, int channel, int r, skg_realv base) {
     skg_realv flat = (skg_realv)(0);
-    for (int n = 0; n < pass->nodes; n++)
-        flat = fma((skg_realv)(pass->weights[n * SKG_CHANNELS + channel]),
-                   skg_exp2_v(skg_open_power(pass, pixels, n, r, base)), flat);
+    for (int n = 0; n < strip->args.nodes; n++)
+        flat = fma((skg_realv)(strip->weights[n * SKG_CHANNELS + channel]),
+                   skg_exp2_v(skg_open_power(strip, pixels, n, r, base)), flat);
     return flat;
 }
 #endif
 
 /* From sums over nodes to what is shown of run r. */
-static void skg_finish(const skg_pass *pass, skg_pixels *pixels, int r) {
+static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
 #if SKG_SHOW == SKG_SHOW_LOGARITHM && !SKG_NOISE /* the factor cancels */
 #elif SKG_FALLOFF
     const skg_realv near =
-        pass->foot / skg_ray_lengths_v(pass->ray, pass->column + r * SKG_WIDE, pass->row);
-    const skg_realv all = near * near * near * pass->factor;
+        strip->args.foot / skg_ray_lengths_v(&strip->args.ray, strip->column + r * SKG_WIDE, strip->row);
+    const skg_realv all = near * near * near * strip->args.factor;
 #else
-    const skg_realv all = (skg_realv)(pass->factor);
+    const skg_realv all = (skg_realv)(strip->args.factor);
 #endif
 #if SKG_RATIO
-    const skg_realv top = skg_highest_flat_field(pass, pixels, r);
+    const skg_realv top = skg_highest_flat_field(strip, pixels, r);
 #endif
     SKG_EACH_CHANNEL {
         skg_realv value = pixels->shown[c][r];
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
         value = -fma(pixels->highest[r], (skg_realv)(SKG_LN2), skg_log_v(value));
 #if SKG_RATIO
-        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_flat_field(pass, pixels, c, r, top)));
+        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_flat_field(strip, pixels, c, r, top)));
 #endif
 #elif SKG_RATIO
-        value = value / skg_flat_field(pass, pixels, c, r, top) * skg_exp2_v(-top) * all;
+        value = value / skg_flat_field(strip, pixels, c, r, top) * skg_exp2_v(-top) * all;
 #else
         value *= all;
 #endif
         pixels->shown[c][r] = value;
 #if SKG_NOISE_APART
-        pixels->spread[c][r] = skg_noisy_v(pass, pixels, r, c, all) - value;
+        pixels->spread[c][r] = skg_noisy_v(strip, pixels, r, c, all) - value;
 #elif SKG_NOISE
-        pixels->shown[c][r] = skg_noisy_v(pass, pixels, r, c, all);
+        pixels->shown[c][r] = skg_noisy_v(strip, pixels, r, c, all);
 #endif
     }
     /* Only what the parts subtract is counted as negative. */
 #if SKG_SHADES
     pixels->highest[r] = (skg_realv)(0);
     SKG_EACH_SUMMED
-    pixels->highest[r] = fma((skg_realv)(pass->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
+    pixels->highest[r] = fma((skg_realv)(strip->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
 #endif
 #if SKG_WORLD
-    pixels->highest[r] -= pass->coefficients[pass->world_plane] * pixels->world[r];
+    pixels->highest[r] -= strip->coefficients[strip->args.world_plane] * pixels->world[r];
 #endif
 }
 
 /* Writes the values of a channel of the runs. */
-static void skg_show_channel(const skg_pass *pass, const skg_realv *values, int channel) {
-    __global skg_out *place = pass->output + pass->offset + channel * pass->channel_stride +
-                              pass->row / SKG_FINE * pass->row_stride + pass->column / SKG_FINE;
-    const int left = pass->frame->columns - pass->column;
-    skg_count_infinite(values, left, pass->negative + 2);
+static void skg_show_channel(const skg_strip *strip, const skg_realv *values, int channel) {
+    __global skg_out *place = strip->output + strip->args.image.offset + channel * strip->args.image.channel_stride +
+                              strip->row / SKG_FINE * strip->args.image.row_stride + strip->column / SKG_FINE;
+    const int left = strip->args.layout.columns - strip->column;
+    skg_count_infinite(values, left, strip->negative + 2);
 #if SKG_FINE > 1
-    skg_show_rays(values, place, pass->row % SKG_FINE, left / SKG_FINE);
+    skg_show_rays(values, place, strip->row % SKG_FINE, left / SKG_FINE);
 #else
     skg_show(values, place, left);
 #endif
 }
 
 /* Counts negative exponents. Of the rays of a pixel the last one counts, as the last of several passes does. */
-static void skg_count_negative(const skg_pass *pass, const skg_pixels *pixels) {
-    const int left = pass->frame->columns - pass->column;
+static void skg_count_negative(const skg_strip *strip, const skg_pixels *pixels) {
+    const int left = strip->args.layout.columns - strip->column;
 #if SKG_FINE > 1
     skg_realv last[SKG_RUNS];
-    if (pass->row % SKG_FINE < SKG_FINE - 1) return;
+    if (strip->row % SKG_FINE < SKG_FINE - 1) return;
     SKG_EACH_RUN {
-        const skg_intv column = pass->column + r * SKG_WIDE + SKG_TO_INT_V(SKG_LANES);
+        const skg_intv column = strip->column + r * SKG_WIDE + SKG_TO_INT_V(SKG_LANES);
         const skg_intv counts = column % SKG_FINE == SKG_FINE - 1;
-        last[r] = SKG_TO_MASK_V(counts) ? pixels->highest[r] : (skg_realv)(pass->limit);
+        last[r] = SKG_TO_MASK_V(counts) ? pixels->highest[r] : (skg_realv)(strip->args.limit);
     }
-    skg_count(last, pass->limit, left, pass->negative);
+    skg_count(last, strip->args.limit, left, strip->negative);
 #else
-    skg_count(pixels->highest, pass->limit, left, pass->negative);
+    skg_count(pixels->highest, strip->args.limit, left, strip->negative);
 #endif
 }
 
 /* SKG_RUNS runs of SKG_WIDE pixels of a row. */
-static void skg_attenuate_runs(const skg_pass *pass) {
+static void skg_attenuate_runs(const skg_strip *strip) {
     skg_pixels pixels;
-    skg_read_planes(pass, &pixels);
+    skg_read_planes(strip, &pixels);
 #if SKG_RANGED
-    skg_count_outside(pass, &pixels);
+    skg_count_outside(strip, &pixels);
 #endif
 #if SKG_SPARSE
     skg_list_planes(&pixels);
 #endif
-    skg_exponents(pass->coefficients, &pixels, pixels.highest);
+    skg_exponents(strip->coefficients, &pixels, pixels.highest);
 #if SKG_SHOW == SKG_SHOW_EXPONENT
     SKG_EACH_RUN {
         pixels.shown[0][r] = pixels.highest[r];
         pixels.highest[r] = -pixels.highest[r];
     }
 #else
-    skg_add_nodes(pass, &pixels);
-    SKG_EACH_RUN skg_finish(pass, &pixels, r);
+    skg_add_nodes(strip, &pixels);
+    SKG_EACH_RUN skg_finish(strip, &pixels, r);
 #endif
     SKG_EACH_CHANNEL {
-        skg_show_channel(pass, pixels.shown[c], c);
+        skg_show_channel(strip, pixels.shown[c], c);
 #if SKG_NOISE_APART
-        skg_show_channel(pass, pixels.spread[c], SKG_CHANNELS + c);
+        skg_show_channel(strip, pixels.spread[c], SKG_CHANNELS + c);
 #endif
     }
-    skg_count_negative(pass, &pixels);
+    skg_count_negative(strip, &pixels);
 }
 
 /* SKG_STRIP times as many pixels, as far as the row reaches; of all rows of rays that make a row of the image. */
-SKG_APART void skg_attenuate_strip(const skg_pass *first) {
-    skg_pass pass = *first; /* a copy that stores cannot alias */
-    const int end = min(pass.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, pass.frame->columns);
-    for (int row = 0; row < SKG_FINE; row++, pass.row++)
-        for (pass.column = first->column; pass.column < end; pass.column += SKG_RUNS * SKG_WIDE)
-            skg_attenuate_runs(&pass);
+SKG_APART void skg_attenuate_strip(const skg_strip *whole) {
+    skg_strip strip = *whole; /* a copy that stores cannot alias */
+    const int end = min(strip.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, strip.args.layout.columns);
+    for (int row = 0; row < SKG_FINE; row++, strip.row++)
+        for (strip.column = whole->column; strip.column < end; strip.column += SKG_RUNS * SKG_WIDE)
+            skg_attenuate_runs(&strip);
 }
 
-/* A work-item takes a strip of a row of the image. If SKG_FINE x SKG_FINE rays make a pixel of it, the pixels of `frame` and of
- * this comment are those of the rays.
+/* A work-item takes a strip of a row of the image. If SKG_FINE x SKG_FINE rays make a pixel of it, the pixels of
+ * `args.layout` and of this comment are those of the rays. Buffers of effects that are off are NULL.
  *
+ * args           skg_shared.h says what each member is
  * coefficients   of -exponent * log2(e), or of the exponent if that is shown
- * factor         of intensities
- * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `limit` (the exponent is
- *                below -limit): more was subtracted for children than their parent has there
- *                negative[2] counts the values that are not finite
- * output         strides and offset in elements; with SKG_NOISE_APART, deviations follow behind the means of all channels
- * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p
- * world          world.x is added to world_plane for each mm of path; the path is |ray| (world.y + world.z i + world.w j)
- * foot           distance from the source to the foot of its perpendicular on the plane of the detector: intensities are
- *                multiplied by the cube of foot / |ray|
- * variances      of the nodes, as weights
- * photons        if fewer are detected in a pixel they are drawn one by one; mean^2 / variance, which is never more than
- *                their number, decides
- * shades         how the amounts of shades, which are the last planes, follow from the rays
+ * variances      of the nodes, as weights; SKG_NOISE
+ * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p; SKG_SUMS
+ * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range; SKG_RANGED
  * polynomials    [shades of heel and oblique scintillator][SKG_TERMS] coefficients of 1, z, z^2, ...
  * tables         of bow-tie and grid (lib/spectral/shades.h)
- * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range */
-__kernel void skg_attenuate(skg_frame_args frame, skg_ray_args ray, __global const skg_sum *copies,
-                            __global const int *used, int nodes, __constant const skg_real *coefficients,
-                            __constant const skg_real *weights, skg_real factor, skg_real limit,
-                            __global int *negative, __global skg_out *output, long offset, long row_stride,
-                            long channel_stride
-#if SKG_SUMS
-                            ,
-                            __constant const skg_real *lists
-#endif
-#if SKG_WORLD
-                            ,
-                            int world_plane, skg_real4 world
-#endif
-#if SKG_FALLOFF
-                            ,
-                            skg_real foot
-#endif
-#if SKG_NOISE
-                            ,
-                            __constant const skg_real *variances, skg_noise_args key, skg_real photons
-#endif
-#if SKG_RANGED
-                            ,
-                            __constant const skg_real *range
-#endif
-#if SKG_SHADES
-                            ,
-                            skg_shade_args shades
-#endif
-#if SKG_HEEL + SKG_OBLIQUE
-                            ,
-                            __constant const skg_real *polynomials
-#endif
-#if SKG_BOWTIE + SKG_GRID
-                            ,
-                            __global const skg_real *tables
-#endif
-) {
-    skg_pass pass;
-    pass.frame = &frame;
-    pass.ray = &ray;
-    pass.nodes = nodes;
-    pass.copies = copies;
-    pass.used = used;
-    pass.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
-    pass.row = SKG_FINE * (int)get_global_id(1);
-    pass.coefficients = coefficients;
-    pass.weights = weights;
-    pass.factor = factor;
-    pass.limit = limit;
-    pass.negative = negative;
-    pass.output = output;
-    pass.offset = offset;
-    pass.row_stride = row_stride;
-    pass.channel_stride = channel_stride;
-#if SKG_SUMS
-    pass.lists = lists;
-#endif
-#if SKG_WORLD
-    pass.world_plane = world_plane;
-    pass.world = world;
-#endif
-#if SKG_FALLOFF
-    pass.foot = foot;
-#endif
-#if SKG_NOISE
-    pass.variances = variances;
-    pass.key = &key;
-    pass.photons = photons;
-#endif
-#if SKG_RANGED
-    pass.range = range;
-#endif
-#if SKG_SHADES
-    pass.shades = &shades;
-    pass.polynomials = 0;
-    pass.tables = 0;
-#endif
-#if SKG_HEEL + SKG_OBLIQUE
-    pass.polynomials = polynomials;
-#endif
-#if SKG_BOWTIE + SKG_GRID
-    pass.tables = tables;
-#endif
-    if (pass.row < frame.rows) skg_attenuate_strip(&pass);
+ * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `args.limit` (the exponent
+ *                is below -limit): more was subtracted for children than their parent has there
+ *                negative[2] counts the values that are not finite
+ * output         the image; with SKG_NOISE_APART, deviations follow behind the means of all channels */
+__kernel void skg_attenuate(skg_attenuate_args args, __global const skg_sum *copies, __global const int *used,
+                            __constant const skg_real *coefficients, __constant const skg_real *weights,
+                            __constant const skg_real *variances, __constant const skg_real *lists,
+                            __constant const skg_real *range, __constant const skg_real *polynomials,
+                            __global const skg_real *tables, __global int *negative, __global skg_out *output) {
+    skg_strip strip;
+    strip.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
+    strip.row = SKG_FINE * (int)get_global_id(1);
+    if (strip.row >= args.layout.rows) return;
+    strip.args = args;
+    strip.copies = copies;
+    strip.used = used;
+    strip.coefficients = coefficients;
+    strip.weights = weights;
+    strip.variances = variances;
+    strip.lists = lists;
+    strip.range = range;
+    strip.polynomials = polynomials;
+    strip.tables = tables;
+    strip.negative = negative;
+    strip.output = output;
+    skg_attenuate_strip(&strip);
 }
 
 /* Turns means of several passes into attenuations: -ln of the mean, or of the smallest normal float if that is greater. One
  * work-item per run. */
-__kernel void skg_logarithm(int columns, int rows, int channels, __global skg_out *output, long offset,
-                            long row_stride, long channel_stride) {
+__kernel void skg_logarithm(skg_image_args image, __global skg_out *output) {
+    const int columns = image.columns, rows = image.rows;
     const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
     if (column >= columns || row >= rows) return;
-    for (int c = 0; c < channels; c++) {
-        __global skg_out *place = output + offset + row * row_stride + c * channel_stride + column;
+    for (int c = 0; c < image.channels; c++) {
+        __global skg_out *place = output + image.offset + row * image.row_stride + c * image.channel_stride + column;
         skg_out mean[SKG_WIDE];
         for (int k = 0; k < SKG_WIDE; k++) mean[k] = place[min(k, columns - column - 1)];
         const skg_realv value = SKG_OUT_TO_REAL_V(SKG_LOAD_V(outv, mean));

@@ -3,25 +3,25 @@
  * pieces[chunk * bands + band] is where the band's triangles of that chunk are, and how many. Triangles that meet more than
  * SKG_MOST_TILES bands are in one list for all. */
 
-SKG_APART void skg_sort_bands(const skg_frame_args *frame, __global const int *corners,
+SKG_APART void skg_sort_bands(const skg_raster_layout *layout, __global const int *corners,
                               __global const skg_real4 *projected, __global const skg_part_entry *parts,
                               __global const int *blocks, __global int *counters, __global int2 *pieces,
                               __global int *pool, __global int *for_all) {
     int count[SKG_MOST_BANDS];
     ushort first_band[SKG_CHUNK];
     uchar met[SKG_CHUNK];
-    const int bands = frame->tiles_down;
+    const int bands = layout->tiles_down;
     for (;;) {
         const int chunk = atomic_inc(&counters[0]), start = chunk * SKG_CHUNK;
-        if (start >= frame->triangles) break;
-        const int end = min(start + SKG_CHUNK, frame->triangles);
+        if (start >= layout->triangles) break;
+        const int end = min(start + SKG_CHUNK, layout->triangles);
         int total = 0, triangle = start;
         for (int k = 0; k < bands; k++) count[k] = 0;
         int part = skg_part_of_triangle(parts, blocks, triangle);
         while (triangle < end) {
             skg_range range;
             skg_range_of(parts, part++, &range);
-            const int4 window = skg_window(&range, 0, 0, frame->columns, frame->rows);
+            const int4 window = skg_window(&range, 0, 0, layout->columns, layout->rows);
             for (const int last = min(end, range.end); triangle < last; triangle++) {
                 skg_real4 a, b, c;
                 skg_box box;
@@ -29,8 +29,8 @@ SKG_APART void skg_sort_bands(const skg_frame_args *frame, __global const int *c
                 if (range.contributions == 0) continue;
                 skg_corners(corners, projected, &range, triangle, &a, &b, &c);
                 if (!skg_bounds(a, b, c, window, range.shift, &box)) continue;
-                const int from = (box.j0 + range.pixel_j) / frame->tile_rows;
-                const int to = (box.j1 - 1 + range.pixel_j) / frame->tile_rows;
+                const int from = (box.j0 + range.pixel_j) / layout->tile_rows;
+                const int to = (box.j1 - 1 + range.pixel_j) / layout->tile_rows;
                 if (to - from >= SKG_MOST_TILES) {
                     for_all[atomic_inc(&counters[2])] = triangle;
                     continue;
@@ -54,8 +54,8 @@ SKG_APART void skg_sort_bands(const skg_frame_args *frame, __global const int *c
 
 /* counters: the next chunk; entries of the pool in use; triangles in the list for all. */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
-skg_bands_sort(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
+skg_bands_sort(skg_raster_layout layout, __global const int *corners, __global const skg_real4 *projected,
                __global const skg_part_entry *parts, __global const int *blocks, __global int *counters,
                __global int2 *pieces, __global int *pool, __global int *for_all) {
-    skg_sort_bands(&frame, corners, projected, parts, blocks, counters, pieces, pool, for_all);
+    skg_sort_bands(&layout, corners, projected, parts, blocks, counters, pieces, pool, for_all);
 }

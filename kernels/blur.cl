@@ -16,24 +16,22 @@ static skg_realv skg_border_v(__global const skg_real *row, int column, int colu
     return SKG_LOAD_V(realv, lanes);
 }
 
-/* First pass. taps: how many weights, odd; weights: [SKG_BLUR_ROWS - 1 + taps + SKG_BLUR_ROWS - 1], with zeros before and
- * behind the taps; stride, high: elements of a row, and rows, of the workspace. Its pixel (0, 0) is pixel (-left, -above) of
- * the image. */
-__kernel void skg_blur_down(__global const skg_real *image, long offset, long row_stride, long channel_stride,
-                            int columns, int rows, int taps, __global const skg_real *weights,
-                            __global skg_real *workspace, int stride, int high, int left, int above) {
+/* First pass. weights: [SKG_BLUR_ROWS - 1 + taps + SKG_BLUR_ROWS - 1], with zeros before and behind the taps. */
+__kernel void skg_blur_down(skg_blur_args args, __global const skg_real *image, __global const skg_real *weights,
+                            __global skg_real *workspace) {
+    const int stride = args.stride, high = args.high, taps = args.taps;
     const int to = SKG_BLUR_VECTORS * SKG_WIDE * (int)get_global_id(0);
     const int row = SKG_BLUR_ROWS * (int)get_global_id(1), channel = (int)get_global_id(2);
     if (to >= stride || row >= high) return;
     skg_realv sum[SKG_BLUR_ROWS][SKG_BLUR_VECTORS];
     SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++)
         SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) sum[r][v] = (skg_realv)(0);
-    const int first = row - above - taps / 2;
-    image += offset + channel * channel_stride;
+    const int first = row - args.above - taps / 2;
+    image += args.image.offset + channel * args.image.channel_stride;
     for (int k = 0; k < taps + SKG_BLUR_ROWS - 1; k++) {
-        __global const skg_real *from = image + clamp(first + k, 0, rows - 1) * row_stride;
+        __global const skg_real *from = image + clamp(first + k, 0, args.image.rows - 1) * args.image.row_stride;
         SKG_UNROLL for (int v = 0; v < SKG_BLUR_VECTORS; v++) {
-            const skg_realv value = skg_border_v(from, to + v * SKG_WIDE - left, columns);
+            const skg_realv value = skg_border_v(from, to + v * SKG_WIDE - args.left, args.image.columns);
             SKG_UNROLL for (int r = 0; r < SKG_BLUR_ROWS; r++)
                 sum[r][v] = fma((skg_realv)(weights[SKG_BLUR_ROWS - 1 + k - r]), value, sum[r][v]);
         }
@@ -46,22 +44,22 @@ __kernel void skg_blur_down(__global const skg_real *image, long offset, long ro
 }
 
 /* Second pass. weights: [down][across]. Pixel (row, column) of the image is the sum over the weights times the workspace from
- * its pixel (row, column) on; if `add` is 1, this is added to what is there. */
-__kernel void skg_blur_across(__global const skg_real *workspace, int stride, int high, int down, int across,
-                              __global const skg_real *weights, __global skg_real *image, long offset,
-                              long row_stride, long channel_stride, int columns, int rows, int add) {
+ * its pixel (row, column) on; if `args.add` is 1, this is added to what is there. */
+__kernel void skg_blur_across(skg_blur_args args, __global const skg_real *workspace, __global const skg_real *weights,
+                              __global skg_real *image) {
+    const int columns = args.image.columns, rows = args.image.rows, add = args.add;
     const int column = SKG_BLUR_RUN * SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
     const int channel = (int)get_global_id(2);
     if (column >= columns || row >= rows) return;
     skg_realv sum[SKG_BLUR_RUN];
     SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++) sum[v] = (skg_realv)(0);
-    for (int j = 0; j < down; j++) {
-        __global const skg_real *from = workspace + ((long)channel * high + row + j) * stride + column;
-        for (int i = 0; i < across; i++)
+    for (int j = 0; j < args.down; j++) {
+        __global const skg_real *from = workspace + ((long)channel * args.high + row + j) * args.stride + column;
+        for (int i = 0; i < args.across; i++)
             SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++)
-                sum[v] = fma((skg_realv)(weights[j * across + i]), SKG_LOAD_GLOBAL_V(realv, from + i + v * SKG_WIDE), sum[v]);
+                sum[v] = fma((skg_realv)(weights[j * args.across + i]), SKG_LOAD_GLOBAL_V(realv, from + i + v * SKG_WIDE), sum[v]);
     }
-    image += offset + channel * channel_stride + row * row_stride + column;
+    image += args.image.offset + channel * args.image.channel_stride + row * args.image.row_stride + column;
     SKG_UNROLL for (int v = 0; v < SKG_BLUR_RUN; v++) {
         const int pixels = columns - column - v * SKG_WIDE;
         __global skg_real *place = image + v * SKG_WIDE;

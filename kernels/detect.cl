@@ -1,24 +1,17 @@
 /* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
  * shown. The image is changed in place, in the type of skg_real. One work-item per SKG_WIDE pixels of a row of a channel.
  *
- * electronic   standard deviation of the electronic noise, keV per pixel
- * spacing      of the levels of quantisation, keV per pixel
- * factor       [channels] times `scale`: from keV or photons per pixel to what is shown
- * flat_field   [channels][rows][columns] that values are divided by */
-__kernel void skg_detect(__global skg_real *image, long offset, long row_stride, long channel_stride, int columns,
-                         int rows, skg_noise_args key, skg_real electronic, skg_real spacing,
-                         __constant const skg_real *factor, skg_real scale
-#if SKG_FLAT_FIELD
-                         ,
-                         __global const skg_real *flat_field
-#endif
-) {
+ * factor       [channels] times `args.scale`: from keV or photons per pixel to what is shown
+ * flat_field   [channels][rows][columns] that values are divided by; NULL without SKG_FLAT_FIELD */
+__kernel void skg_detect(skg_detect_args args, __constant const skg_real *factor,
+                         __global const skg_real *flat_field, __global skg_real *image) {
+    const int columns = args.image.columns, rows = args.image.rows;
     const int column = SKG_WIDE * (int)get_global_id(0), row = (int)get_global_id(1);
     const int channel = (int)get_global_id(2), pixels = columns - column;
     if (pixels <= 0 || row >= rows) return;
     skg_real rest[SKG_WIDE];
     skg_realv value;
-    image += offset + channel * channel_stride + row * row_stride + column;
+    image += args.image.offset + channel * args.image.channel_stride + row * args.image.row_stride + column;
     if (pixels >= SKG_WIDE)
         value = SKG_LOAD_GLOBAL_V(realv, image);
     else {
@@ -27,13 +20,13 @@ __kernel void skg_detect(__global skg_real *image, long offset, long row_stride,
     }
 #if SKG_ELECTRONIC
     skg_uintv draw[4];
-    skg_draw_v(&key, row * columns + column, SKG_DRAW_WORD(SKG_DRAW_ELECTRONIC, channel, 0), draw);
-    value = fma((skg_realv)(electronic), SKG_TO_REAL_V(skg_normal_v(draw[0])), value);
+    skg_draw_v(&args.key, row * columns + column, SKG_DRAW_WORD(SKG_DRAW_ELECTRONIC, channel, 0), draw);
+    value = fma((skg_realv)(args.electronic), SKG_TO_REAL_V(skg_normal_v(draw[0])), value);
 #endif
 #if SKG_QUANTISED
-    value = rint(value / spacing) * spacing;
+    value = rint(value / args.spacing) * args.spacing;
 #endif
-    value *= factor[channel] * scale;
+    value *= factor[channel] * args.scale;
 #if SKG_FLAT_FIELD
     skg_real flat[SKG_WIDE];
     flat_field += ((long)channel * rows + row) * columns + column;

@@ -20,27 +20,29 @@ typedef struct {
     __global int *counts;            /* [rows][columns] */
     __global const uint *starts;
     __global skg_listed *hits;
-    int doing; /* SKG_HITS_... */
+    int task; /* SKG_HITS_... */
 } skg_lists;
 
 /* The slot of a part whose hits this launch takes; -1: it does not take them. */
 static int skg_slot_of(const skg_lists *lists, int part) {
     const int slot = lists->slots[part];
     const int other = slot >= SKG_HITS_OTHER;
-    return slot < 0 || other != (lists->doing / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
+    return slot < 0 || other != (lists->task / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
 }
 
-/* Whether hits at a pixel are listed: those of others only where a winner is. Where none is, starts are 0 while hits are
- * counted, and SKG_MOST_HITS once they have their places. */
+/* Whether a hit at a pixel is listed. Winners are the parts that displace another one; their hits always are. Hits of the other
+ * competitors are listed only in pixels where a winner was hit, too: elsewhere nothing displaces them. `starts` says where that
+ * is. While hits are counted it holds the number of winners' hits of each pixel, which is 0 if there are none. Afterwards it
+ * holds the place of each pixel's list, which is SKG_MOST_HITS if there are none. */
 static int skg_is_listed(const skg_lists *lists, int pixel) {
-    const uint none = (lists->doing & SKG_HITS_LIST) == 0 ? 0 : SKG_MOST_HITS;
-    return !(lists->doing & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
+    const uint none = (lists->task & SKG_HITS_LIST) == 0 ? 0 : SKG_MOST_HITS;
+    return !(lists->task & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
 }
 
 /* Counts or lists one hit. q: its depth as skg_depth returns it. */
 static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, skg_real reference, int enters) {
     const int place = atomic_inc(&lists->counts[pixel]);
-    if (!(lists->doing & SKG_HITS_LIST)) return;
+    if (!(lists->task & SKG_HITS_LIST)) return;
 #if SKG_PARALLEL
     const skg_real depth = q + lists->shifts[slot];
 #else
@@ -51,7 +53,7 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
 
 #define SKG_LIST_ARGUMENTS                                                                                            \
     __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
-        __global skg_listed *hits, int4 window, int doing
+        __global skg_listed *hits
 
 /* The columns of a row between its two crossings, which alone can be hit. */
 static int2 skg_columns_of(const skg_line *line, const skg_box *box) {
@@ -63,10 +65,11 @@ static int2 skg_columns_of(const skg_line *line, const skg_box *box) {
     return (int2)((int)low, high > left ? (int)ceil(high) : box->i0);
 }
 
-/* Restricts a box to the columns of a row where hits are listed: of others, those between the winners' outermost hits. */
-static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int doing) {
+/* The columns of a row in which hits of a triangle may be listed: of a winner all columns of the triangle's box, of another
+ * competitor only those from the first column in which a winner was hit (span[0]) to the last (span[1] - 1). */
+static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int task) {
     skg_box seen = *box;
-    if (doing & SKG_HITS_OF_OTHERS) {
+    if (task & SKG_HITS_OF_OTHERS) {
         seen.i0 = max(seen.i0, span[0] - pixel_i);
         seen.i1 = min(seen.i1, span[1] - pixel_i);
     }
@@ -74,16 +77,15 @@ static skg_box skg_between_winners(const skg_box *box, __global const int *span,
 }
 
 /* Each work-item takes every get_global_size(1)-th row of one triangle. runs: of the competitors' triangles, each the number of
- * its first work-item, its part and its slot; those from chosen.x to chosen.y - 1 are listed. spans: of each row the columns,
- * from and to, where winners may be; they grow while winners are counted. window: columns from, rows from, columns to, rows to;
- * nothing is listed outside. */
-__kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
-                            __global const skg_part_entry *parts, __global const int *runs, int2 chosen,
+ * its first work-item, its part and its slot; those from chosen[0] to chosen[1] - 1 are listed. spans: of each row the columns,
+ * from and to, where winners may be; they grow while winners are counted. */
+__kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __global const skg_real4 *projected,
+                            __global const skg_part_entry *parts, __global const int *runs,
                             __global int *spans, SKG_LIST_ARGUMENTS) {
-    const skg_lists lists = {slots, shifts, counts, starts, hits, doing};
+    const skg_lists lists = {slots, shifts, counts, starts, hits, args.task};
     const int item = (int)get_global_id(0);
-    int run = chosen.x;
-    while (run + 1 < chosen.y && item >= runs[3 * (run + 1)]) run++;
+    int run = args.chosen[0];
+    while (run + 1 < args.chosen[1] && item >= runs[3 * (run + 1)]) run++;
     const int number = runs[3 * run + 1], slot = runs[3 * run + 2];
     if (item - runs[3 * run] >= parts[number].triangles) return;
     skg_range range;
@@ -92,19 +94,19 @@ __kernel void skg_hits_list(skg_frame_args frame, __global const int *corners, _
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, range.first + item - runs[3 * run], &a, &b, &c);
-    if (!skg_bounds(a, b, c, skg_window(&range, window.x, window.y, window.z, window.w), range.shift, &box)) return;
+    if (!skg_bounds(a, b, c, skg_window(&range, args.window[0], args.window[1], args.window[2], args.window[3]), range.shift, &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {
         __global int *span = spans + 2 * (range.pixel_j + row);
-        const skg_box seen = skg_between_winners(&box, span, range.pixel_i, doing);
+        const skg_box seen = skg_between_winners(&box, span, range.pixel_i, args.task);
         if (seen.i0 >= seen.i1) continue;
         skg_line line;
         skg_row(&f, (skg_real)row, &line);
         const int enters = skg_negative(&f, &line) != 0;
-        const int first = (range.pixel_j + row) * frame.columns + range.pixel_i;
+        const int first = (range.pixel_j + row) * args.layout.columns + range.pixel_i;
         const int2 columns = skg_columns_of(&line, &seen);
-        if (doing == SKG_HITS_COUNT && columns.x < columns.y) {
+        if (args.task == SKG_HITS_COUNT && columns.x < columns.y) {
             atomic_min(span, range.pixel_i + columns.x);
             atomic_max(span + 1, range.pixel_i + columns.y);
         }
@@ -124,11 +126,11 @@ static uint skg_add_hits(__global skg_hit_count *total, uint count) {
 
 /* Gives each pixel of the window a stretch of the list for its hits, in any order, and counts all hits in *total. Counts become
  * 0 and then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_MOST_HITS. */
-__kernel void skg_hits_place(int columns, int4 window, __global int *counts, __global uint *starts,
+__kernel void skg_hits_place(skg_hits_args args, __global int *counts, __global uint *starts,
                              __global skg_hit_count *total) {
-    const int column = window.x + (int)get_global_id(0), row = window.y + (int)get_global_id(1);
-    if (column >= window.z || row >= window.w) return;
-    const int pixel = row * columns + column;
+    const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
+    if (column >= args.window[2] || row >= args.window[3]) return;
+    const int pixel = row * args.layout.columns + column;
     const int count = counts[pixel];
     starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_MOST_HITS;
     counts[pixel] = 0;
@@ -170,16 +172,16 @@ static void skg_take_off(__global const skg_part_entry *part, __global const skg
 
 /* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their
  * children. sums: the first copy. */
-__kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entry *parts,
+__kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry *parts,
                               __global const skg_contribution *contributions, __global const int *counts,
                               __global const uint *starts, __global skg_listed *hits, __global const int *table,
-                              __global skg_sum *sums, int4 window) {
-    const int column = window.x + (int)get_global_id(0), row = window.y + (int)get_global_id(1);
-    if (column >= window.z || row >= window.w) return;
-    const int count = counts[row * frame.columns + column];
+                              __global skg_sum *sums) {
+    const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
+    if (column >= args.window[2] || row >= args.window[3]) return;
+    const int count = counts[row * args.layout.columns + column];
     if (count == 0) return;
-    hits += starts[row * frame.columns + column];
-    __global skg_sum *place = sums + (row * frame.stride + column);
+    hits += starts[row * args.layout.columns + column];
+    __global skg_sum *place = sums + (row * args.layout.stride + column);
     int winding[SKG_SLOTS];
     uint active[SKG_WORDS];
     skg_sort_hits(hits, count);
@@ -201,19 +203,21 @@ __kernel void skg_hits_settle(skg_frame_args frame, __global const skg_part_entr
                 __global const int *entry = table + s * SKG_ENTRY;
                 if (!skg_loses(entry, active, dropped)) continue;
                 dropped[w] |= lowest;
-                skg_take_off(&parts[entry[0]], contributions, frame.plane, length * (skg_real)winding[s], place);
+                skg_take_off(&parts[entry[0]], contributions, args.layout.plane, length * (skg_real)winding[s], place);
             }
     }
 }
 
 /* Makes the kernel of source_plane.cl list hits, too. */
 #define SKG_SOURCE_KERNEL skg_hits_source_plane
-#define SKG_SOURCE_ARGUMENTS SKG_LIST_ARGUMENTS
+#define SKG_SOURCE_ARGS skg_hits_args args
+#define SKG_SOURCE_LAYOUT args.layout
+#define SKG_SOURCE_BUFFERS SKG_LIST_ARGUMENTS
 #define SKG_SOURCE_BEGIN(range)                                                                                       \
-    const skg_lists lists = {slots, shifts, counts, starts, hits, doing};                                             \
+    const skg_lists lists = {slots, shifts, counts, starts, hits, args.task};                                         \
     const int slot = skg_slot_of(&lists, range.number);                                                               \
     if (slot < 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                        \
-    if ((row) >= window.y && (row) < window.w && (column) >= window.x && (column) < window.z &&                       \
-        skg_is_listed(&lists, (row) * frame.columns + (column)))                                                      \
-    skg_list(&lists, slot, (row) * frame.columns + (column), q, p->reference, (factor) < 0)
+    if ((row) >= args.window[1] && (row) < args.window[3] && (column) >= args.window[0] &&                            \
+        (column) < args.window[2] && skg_is_listed(&lists, (row) * args.layout.columns + (column)))                    \
+    skg_list(&lists, slot, (row) * args.layout.columns + (column), q, p->reference, (factor) < 0)

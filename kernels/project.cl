@@ -22,10 +22,10 @@ static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_p
 }
 
 /* Vertices from this number on. projected: the place of the first of them. */
-SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global const skg_part_entry *parts,
+SKG_APART void skg_project_run(int number, const skg_raster_layout *layout, __global const skg_part_entry *parts,
                                __global const int *blocks, __global const skg_real *vertices,
                                __global skg_real4 *projected, __global int *bad_vertex) {
-    const int first = number, end = min(number + SKG_RUN, frame->vertices), all_parts = frame->parts;
+    const int first = number, end = min(number + SKG_RUN, layout->vertices), all_parts = layout->parts;
     if (number >= end) return;
     int part = skg_part_of_vertex(parts, all_parts, blocks, number);
     while (number < end && part < all_parts) {
@@ -59,9 +59,9 @@ SKG_APART void skg_project_run(int number, const skg_frame_args *frame, __global
     }
 }
 
-__kernel void skg_project(skg_frame_args frame, __global const skg_part_entry *parts, __global const int *blocks,
+__kernel void skg_project(skg_raster_layout layout, __global const skg_part_entry *parts, __global const int *blocks,
                           __global const skg_real *vertices, __global skg_real4 *projected,
                           __global int *bad_vertex) {
     const int first = SKG_RUN * (int)get_global_id(0);
-    skg_project_run(first, &frame, parts, blocks, vertices, projected + first, bad_vertex);
+    skg_project_run(first, &layout, parts, blocks, vertices, projected + first, bad_vertex);
 }

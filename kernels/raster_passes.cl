@@ -5,15 +5,15 @@
 
 /* Projects the vertices of SKG_SIDE passes. Of several, x of a vertex in all passes stand side by side, then y, z and t; behind
  * those of all vertices there is room for a run of each pass. */
-static void skg_project_passes(const skg_frame_args *frame, __global const skg_part_entry *const *parts,
+static void skg_project_passes(const skg_raster_layout *layout, __global const skg_part_entry *const *parts,
                                __global const int *blocks, __global const skg_real *vertices,
                                __global skg_real4 *projected, __global int *bad_vertex) {
-    for (int first = 0; first < frame->vertices; first += SKG_RUN) {
+    for (int first = 0; first < layout->vertices; first += SKG_RUN) {
 #if SKG_SIDE > 1
-        __global skg_real4 *run = projected + SKG_SIDE * frame->vertices, *to = projected + SKG_SIDE * first;
+        __global skg_real4 *run = projected + SKG_SIDE * layout->vertices, *to = projected + SKG_SIDE * first;
         for (int side = 0; side < SKG_SIDE; side++)
-            skg_project_run(first, frame, parts[side], blocks, vertices, run + side * SKG_RUN, bad_vertex);
-        for (int k = 0; k < min(SKG_RUN, frame->vertices - first); k++) {
+            skg_project_run(first, layout, parts[side], blocks, vertices, run + side * SKG_RUN, bad_vertex);
+        for (int k = 0; k < min(SKG_RUN, layout->vertices - first); k++) {
             const skg_real4 p = run[k], q = run[k + SKG_RUN], r = run[k + 2 * SKG_RUN], s = run[k + 3 * SKG_RUN];
             to[4 * k] = (skg_real4)(p.x, q.x, r.x, s.x);
             to[4 * k + 1] = (skg_real4)(p.y, q.y, r.y, s.y);
@@ -21,58 +21,58 @@ static void skg_project_passes(const skg_frame_args *frame, __global const skg_p
             to[4 * k + 3] = (skg_real4)(p.w, q.w, r.w, s.w);
         }
 #else
-        skg_project_run(first, frame, parts[0], blocks, vertices, projected + first, bad_vertex);
+        skg_project_run(first, layout, parts[0], blocks, vertices, projected + first, bad_vertex);
 #endif
     }
 }
 
-SKG_APART void skg_draw_passes(int passes, const skg_frame_args *frame, __global const int *corners,
+SKG_APART void skg_draw_passes(const skg_raster_layout *layout, __global const int *corners,
                                __global const skg_real *vertices, __global const skg_part_entry *tables,
                                __global const skg_contribution *contributions, __global const int *blocks,
                                __global const int *vertex_blocks, __global skg_real4 *projected, __global skg_sum *sums,
                                __global int *used, __global int *bad_vertex) {
-    const int planes = frame->planes;
+    const int planes = layout->planes, passes = layout->passes;
     skg_target target;
-    target.stride = frame->stride;
-    target.plane = frame->plane;
-    target.columns = frame->columns;
+    target.stride = layout->stride;
+    target.plane = layout->plane;
+    target.columns = layout->columns;
     target.first_row = 0;
-    target.last_row = frame->rows;
+    target.last_row = layout->rows;
     target.corners = corners;
     target.projected = projected;
     target.contributions = contributions;
 #if SKG_SIDE > 1
-    target.image_size = planes * frame->plane;
+    target.image_size = planes * layout->plane;
 #endif
     skg_batch batch;
     skg_begin(&batch);
     for (;;) {
-        const int first = SKG_SIDE * atomic_inc(&used[frame->copies]);
+        const int first = SKG_SIDE * atomic_inc(&used[layout->copies]);
         if (first >= passes) break;
         __global const skg_part_entry *parts[SKG_SIDE];
         for (int side = 0; side < SKG_SIDE; side++) {
             const int pass = min(first + side, passes - 1);
-            parts[side] = tables + pass * frame->parts;
-            target.image = sums + (size_t)((first + side) * planes) * (size_t)frame->plane;
-            skg_zero(&target, used + SKG_EXTENT(frame->copies, pass * planes), planes, 0, frame->rows);
+            parts[side] = tables + pass * layout->parts;
+            target.image = sums + (size_t)((first + side) * planes) * (size_t)layout->plane;
+            skg_zero(&target, used + SKG_EXTENT(layout->copies, pass * planes), planes, 0, layout->rows);
         }
-        skg_project_passes(frame, parts, vertex_blocks, vertices, projected, bad_vertex);
-        target.image = sums + (size_t)(first * planes) * (size_t)frame->plane;
+        skg_project_passes(layout, parts, vertex_blocks, vertices, projected, bad_vertex);
+        target.image = sums + (size_t)(first * planes) * (size_t)layout->plane;
         target.parts = parts[0];
 #if SKG_SIDE > 1
         for (int side = 0; side < SKG_SIDE; side++) target.tables[side] = parts[side];
 #endif
-        skg_draw_triangles(&target, &batch, blocks, 0, frame->triangles);
+        skg_draw_triangles(&target, &batch, blocks, 0, layout->triangles);
         skg_flush(&target, &batch);
     }
 }
 
 /* tables: [passes][parts]; projected: [work-groups][vertices + SKG_RUN][SKG_SIDE]; sums: [passes][planes], passes a multiple of SKG_SIDE */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
-skg_raster_passes(skg_frame_args frame, __global const int *corners, __global const skg_real *vertices,
+skg_raster_passes(skg_raster_layout layout, __global const int *corners, __global const skg_real *vertices,
                   __global const skg_part_entry *tables, __global const skg_contribution *contributions,
                   __global const int *blocks, __global const int *vertex_blocks, __global skg_real4 *projected,
-                  __global skg_sum *sums, __global int *used, __global int *bad_vertex, int passes) {
-    skg_draw_passes(passes, &frame, corners, vertices, tables, contributions, blocks, vertex_blocks,
-                    projected + get_group_id(0) * SKG_SIDE * (size_t)(frame.vertices + SKG_RUN), sums, used, bad_vertex);
+                  __global skg_sum *sums, __global int *used, __global int *bad_vertex) {
+    skg_draw_passes(&layout, corners, vertices, tables, contributions, blocks, vertex_blocks,
+                    projected + get_group_id(0) * SKG_SIDE * (size_t)(layout.vertices + SKG_RUN), sums, used, bad_vertex);
 }

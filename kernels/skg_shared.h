@@ -5,10 +5,12 @@
 #ifdef __OPENCL_C_VERSION__
 #define SKG_INT int
 #define SKG_UINT uint
+#define SKG_LONG long
 #else
 #include <stdint.h>
 #define SKG_INT int32_t
 #define SKG_UINT uint32_t
+#define SKG_LONG int64_t
 #endif
 
 /* Items (triangles or projected vertices) per entry of a block table. */
@@ -77,7 +79,7 @@
     real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
 
-/* What the launches of a frame need to know. The accumulator of pixel (row, column) of a plane of a copy is number
+/* How a raster lays out its accumulators and tiles, and the sizes of the scene that its launches need. The accumulator of pixel (row, column) of a plane of a copy is number
  * copy * planes * plane + (number of the plane) * plane + row * stride + column. */
 typedef struct {
     SKG_INT parts, vertices, triangles;
@@ -88,7 +90,9 @@ typedef struct {
     SKG_INT tiles_across, tiles_down;
     SKG_INT queue;       /* entries of the queue of large triangles */
     SKG_INT first_plane; /* that a pass has, of those of several passes */
-} skg_frame_args;
+    SKG_INT passes;      /* that are drawn together */
+    SKG_INT reserved;
+} skg_raster_layout;
 
 /* Positions of a mesh from the caller's memory, and their bounds, mm from the mesh's origin. */
 typedef struct {
@@ -111,6 +115,21 @@ typedef struct {
     SKG_UINT low, high;
 } skg_hit_count;
 #define SKG_MOST_HITS 0xffffffffu
+
+/* Of the kernels of hits.cl. window: columns from, rows from, columns to, rows to; nothing is listed outside. chosen: of
+ * skg_hits_list, the first of the runs of triangles that are listed, and the end of these. task: SKG_HITS_... below. */
+typedef struct {
+    skg_raster_layout layout;
+    SKG_INT window[4], chosen[2];
+    SKG_INT task, reserved;
+} skg_hits_args;
+
+/* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
+ * get new sums. */
+typedef struct {
+    skg_raster_layout layout;
+    SKG_INT parts, part, count, reserved;
+} skg_leaky_args;
 
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_OTHER 0x10000
@@ -138,26 +157,75 @@ typedef struct {
     SKG_INT rows;  /* of the bow-tie, whose table is the first */                                            \
     SKG_INT table; /* where that of the grid begins */
 
-#ifdef __OPENCL_C_VERSION__
+/* An image in its buffer: the place of its first pixel and its strides, in elements, and its size. */
 typedef struct {
-    SKG_SHADE_MEMBERS(skg_real)
-} skg_shade_args;
+    SKG_LONG offset, row_stride, channel_stride;
+    SKG_INT columns, rows, channels, reserved;
+} skg_image_args;
+
+/* Of the kernels of blur.cl. The workspace has rows of `stride` elements, and `high` of them for each channel; its pixel
+ * (0, 0) is pixel (-left, -above) of the image. */
+typedef struct {
+    skg_image_args image;
+    SKG_INT stride, high, left, above;
+    SKG_INT taps;         /* samples of the first pass, an odd number */
+    SKG_INT down, across; /* samples of the second pass along either direction */
+    SKG_INT add;          /* 1: the result is added to the image */
+} skg_blur_args;
+
+/* Of skg_attenuate (attenuate.cl). In such a struct the reals come first and the members of one size for both precisions
+ * behind them, so that the host rounds all reals at once (lib/stage/kernels.h). What a program does not use is 0. */
+#define SKG_ATTENUATE_MEMBERS(real, suffix)                                                                  \
+    skg_ray_##suffix ray;                                                                                    \
+    real factor;               /* of intensities */                                                          \
+    real limit;                /* exponents below -limit are counted */                                      \
+    real foot;                 /* mm from the source to the foot of its perpendicular on the detector; */    \
+                               /* SKG_FALLOFF: intensities are multiplied by the cube of foot / |ray| */     \
+    real photons;              /* if fewer are detected in a pixel they are drawn one by one; */             \
+                               /* mean^2 / variance, never more than their number, decides */                \
+    real world[4];             /* world[0] is added to world_plane for each mm of path, which is */          \
+                               /* |ray| (world[1] + world[2] i + world[3] j) */                              \
+    skg_shade_##suffix shades; /* last of the reals, because it ends in integers */                          \
+    skg_raster_layout layout;                                                                                \
+    skg_noise_args key;                                                                                      \
+    SKG_INT nodes, world_plane;                                                                              \
+    skg_image_args image;
+
+/* Of skg_detect (detect.cl). */
+#define SKG_DETECT_MEMBERS(real)                                                                             \
+    real electronic; /* standard deviation of the electronic noise, keV per pixel */                         \
+    real spacing;    /* of the levels of quantisation, keV per pixel */                                      \
+    real scale;      /* of what is shown */                                                                  \
+    real unused;     /* 0: what follows begins at a multiple of 8 bytes */                                   \
+    skg_noise_args key;                                                                                      \
+    skg_image_args image;
+
+/* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
+#define SKG_STRUCTS_WITH(real, suffix)                                                                       \
+    typedef struct {                                                                                         \
+        SKG_RAY_MEMBERS(real)                                                                                \
+    } skg_ray_##suffix;                                                                                      \
+    typedef struct {                                                                                         \
+        SKG_SHADE_MEMBERS(real)                                                                              \
+    } skg_shade_##suffix;                                                                                    \
+    typedef struct {                                                                                         \
+        SKG_ATTENUATE_MEMBERS(real, suffix)                                                                  \
+    } skg_attenuate_##suffix;                                                                                \
+    typedef struct {                                                                                         \
+        SKG_DETECT_MEMBERS(real)                                                                             \
+    } skg_detect_##suffix;
+
+#ifdef __OPENCL_C_VERSION__
+SKG_STRUCTS_WITH(skg_real, args)
 typedef struct {
     SKG_PART_MEMBERS(skg_real)
 } skg_part_entry;
 typedef struct {
     SKG_CONTRIBUTION_MEMBERS(skg_real)
 } skg_contribution;
-typedef struct {
-    SKG_RAY_MEMBERS(skg_real)
-} skg_ray_args;
 #else
-typedef struct {
-    SKG_SHADE_MEMBERS(float)
-} skg_shade_float;
-typedef struct {
-    SKG_SHADE_MEMBERS(double)
-} skg_shade_double;
+SKG_STRUCTS_WITH(float, float)
+SKG_STRUCTS_WITH(double, double)
 typedef struct {
     SKG_PART_MEMBERS(float)
 } skg_part_float;
@@ -170,19 +238,19 @@ typedef struct {
 typedef struct {
     SKG_CONTRIBUTION_MEMBERS(double)
 } skg_contribution_double;
-typedef struct {
-    SKG_RAY_MEMBERS(float)
-} skg_ray_float;
-typedef struct {
-    SKG_RAY_MEMBERS(double)
-} skg_ray_double;
 _Static_assert(sizeof(skg_part_float) == 21 * 4 + 12 * 4, "layout of a part, single");
 _Static_assert(sizeof(skg_part_double) == 21 * 8 + 12 * 4, "layout of a part, double");
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_shade_float) == 22 * 4 && sizeof(skg_shade_double) == 21 * 8, "layout of shades");
-_Static_assert(sizeof(skg_frame_args) == 64, "layout of a frame");
+_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 152 && sizeof(skg_attenuate_double) == 40 * 8 + 152,
+               "layout of the arguments of skg_attenuate");
+_Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_double) == 4 * 8 + 64,
+               "layout of the arguments of skg_detect");
+_Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72, "layout of images");
+_Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
+_Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");

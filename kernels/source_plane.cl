@@ -125,19 +125,21 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
 /* What is done with a hit. It is added to the sums, unless a file before this one (hits.cl) says otherwise. */
 #ifndef SKG_SOURCE_HIT
 #define SKG_SOURCE_KERNEL skg_source_plane
-#define SKG_SOURCE_ARGUMENTS __global const skg_contribution *contributions, __global skg_sum *sums
+#define SKG_SOURCE_ARGS skg_raster_layout layout
+#define SKG_SOURCE_LAYOUT layout
+#define SKG_SOURCE_BUFFERS __global const skg_contribution *contributions, __global skg_sum *sums
 #define SKG_SOURCE_BEGIN(range) if (range.contributions == 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                \
-    skg_deposit_global(sums + ((row) * frame.stride + (column)), frame.plane, contributions, &range, q, factor)
+    skg_deposit_global(sums + ((row) * layout.stride + (column)), layout.plane, contributions, &range, q, factor)
 #endif
 
 /* Each work-item takes every get_global_size(1)-th block of SKG_SOURCE_ROWS rows of one triangle. */
-__kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corners,
+__kernel void SKG_SOURCE_KERNEL(SKG_SOURCE_ARGS, __global const int *corners,
                                __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                __global const int *blocks, __global const skg_real *vertices,
-                               SKG_SOURCE_ARGUMENTS) {
-    const int triangle = (int)get_global_id(0);
-    if (triangle >= frame.triangles) return;
+                               SKG_SOURCE_BUFFERS) {
+    const int triangle = (int)get_global_id(0), rows = SKG_SOURCE_LAYOUT.rows;
+    if (triangle >= SKG_SOURCE_LAYOUT.triangles) return;
     skg_range range;
     skg_range_of(parts, skg_part_of_triangle(parts, blocks, triangle), &range);
     SKG_SOURCE_BEGIN(range);
@@ -150,10 +152,10 @@ __kernel void SKG_SOURCE_KERNEL(skg_frame_args frame, __global const int *corner
     skg_corner_of(p, vertices, corner[0], a, &k[0]);
     skg_corner_of(p, vertices, corner[1], b, &k[1]);
     skg_corner_of(p, vertices, corner[2], c, &k[2]);
-    const int left = -range.pixel_i, right = frame.columns + left;
-    if (skg_is_aside(k, -range.pixel_j, frame.rows - 1 - range.pixel_j)) return;
-    for (int block = (int)get_global_id(1); SKG_SOURCE_ROWS * block < frame.rows; block += (int)get_global_size(1)) {
-        const int first = SKG_SOURCE_ROWS * block, end = min(first + SKG_SOURCE_ROWS, frame.rows);
+    const int left = -range.pixel_i, right = SKG_SOURCE_LAYOUT.columns + left;
+    if (skg_is_aside(k, -range.pixel_j, rows - 1 - range.pixel_j)) return;
+    for (int block = (int)get_global_id(1); SKG_SOURCE_ROWS * block < rows; block += (int)get_global_size(1)) {
+        const int first = SKG_SOURCE_ROWS * block, end = min(first + SKG_SOURCE_ROWS, rows);
         if (skg_is_aside(k, first - range.pixel_j, end - 1 - range.pixel_j)) continue;
         for (int row = first; row < end; row++) {
             skg_cut up, down;

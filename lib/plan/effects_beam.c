@@ -168,14 +168,14 @@ static double cost_grid(const skg_effect_facts *f) {
 
 /* clang-format off */
 /* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_world = {"world material", NULL,
+const skg_effect_row skg_effect_world = {"world material", SKG_SELF_TEST_CORE,
     NULL, NULL, has_world, find_world, cost_world};
-const skg_effect_row skg_effect_falloff = {"falloff", NULL,
+const skg_effect_row skg_effect_falloff = {"falloff", SKG_SELF_TEST_CORE,
     NULL, check_falloff, NULL, find_falloff, cost_falloff};
-const skg_effect_row skg_effect_heel = {"heel effect", "heel effect",
+const skg_effect_row skg_effect_heel = {"heel effect", SKG_SELF_TEST_HEEL,
     copy_heel, NULL, has_heel, find_heel, cost_heel};
-const skg_effect_row skg_effect_bowtie = {"bow-tie filter", "shades",
+const skg_effect_row skg_effect_bowtie = {"bow-tie filter", SKG_SELF_TEST_SHADES,
     copy_bowtie, NULL, has_bowtie, find_bowtie, cost_bowtie};
-const skg_effect_row skg_effect_grid = {"anti-scatter grid", "shades",
+const skg_effect_row skg_effect_grid = {"anti-scatter grid", SKG_SELF_TEST_SHADES,
     copy_grid, NULL, has_grid, find_grid, cost_grid};
 /* clang-format on */

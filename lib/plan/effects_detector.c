@@ -293,22 +293,22 @@ static double cost_dqe(const skg_effect_facts *f) {
 
 /* clang-format off */
 /* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_response = {"energy response", NULL,
+const skg_effect_row skg_effect_response = {"energy response", SKG_SELF_TEST_CORE,
     NULL, NULL, NULL, find_response, NULL};
-const skg_effect_row skg_effect_noise = {"quantum noise", "noise",
+const skg_effect_row skg_effect_noise = {"quantum noise", SKG_SELF_TEST_NOISE,
     NULL, check_noise, has_noise, find_noise, cost_noise};
-const skg_effect_row skg_effect_blur = {"blur", "blur",
+const skg_effect_row skg_effect_blur = {"blur", SKG_SELF_TEST_BLUR,
     NULL, NULL, has_blur, find_blur, cost_blur};
-const skg_effect_row skg_effect_electronic = {"electronic noise", "detector",
+const skg_effect_row skg_effect_electronic = {"electronic noise", SKG_SELF_TEST_DETECTOR,
     NULL, check_electronic, has_electronic, find_electronic, cost_electronic};
-const skg_effect_row skg_effect_quantisation = {"quantisation", "detector",
+const skg_effect_row skg_effect_quantisation = {"quantisation", SKG_SELF_TEST_DETECTOR,
     NULL, check_quantisation, has_steps, find_quantisation, cost_quantisation};
-const skg_effect_row skg_effect_oblique = {"oblique scintillator", "shades",
+const skg_effect_row skg_effect_oblique = {"oblique scintillator", SKG_SELF_TEST_SHADES,
     NULL, check_oblique, has_oblique, find_oblique, cost_oblique};
-const skg_effect_row skg_effect_escape = {"K escape", NULL,
+const skg_effect_row skg_effect_escape = {"K escape", SKG_SELF_TEST_CORE,
     NULL, NULL, NULL, find_escape, NULL};
-const skg_effect_row skg_effect_depths = {"blur by depths", "blur by depths",
+const skg_effect_row skg_effect_depths = {"blur by depths", SKG_SELF_TEST_DEPTHS,
     copy_depths, check_depths, has_blur, find_depths, cost_depths};
-const skg_effect_row skg_effect_dqe = {"noise power", "noise power",
+const skg_effect_row skg_effect_dqe = {"noise power", SKG_SELF_TEST_APART,
     copy_dqe, check_dqe, NULL, find_dqe, cost_dqe};
 /* clang-format on */

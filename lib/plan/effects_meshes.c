@@ -110,16 +110,16 @@ static double cost_priority(const skg_effect_facts *f) {
 
 /* clang-format off */
 /* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_nesting = {"nesting", NULL,
+const skg_effect_row skg_effect_nesting = {"nesting", SKG_SELF_TEST_CORE,
     NULL, NULL, NULL, find_nesting, NULL};
-const skg_effect_row skg_effect_leaky = {"leaky meshes", "leaky meshes",
+const skg_effect_row skg_effect_leaky = {"leaky meshes", SKG_SELF_TEST_LEAKY,
     NULL, NULL, has_leaky, find_leaky, cost_leaky};
-const skg_effect_row skg_effect_repair = {"repair", NULL,
+const skg_effect_row skg_effect_repair = {"repair", SKG_SELF_TEST_CORE,
     NULL, check_repair, NULL, find_repair, cost_repair};
-const skg_effect_row skg_effect_source_plane = {"source plane", "source plane",
+const skg_effect_row skg_effect_source_plane = {"source plane", SKG_SELF_TEST_SOURCE_PLANE,
     NULL, NULL, NULL, find_source_plane, NULL};
-const skg_effect_row skg_effect_overlaps = {"overlap check", NULL,
+const skg_effect_row skg_effect_overlaps = {"overlap check", SKG_SELF_TEST_CORE,
     NULL, check_overlaps, NULL, find_overlaps, NULL};
-const skg_effect_row skg_effect_priority = {"priority", "priority",
+const skg_effect_row skg_effect_priority = {"priority", SKG_SELF_TEST_PRIORITY,
     NULL, check_clip, has_priority, find_priority, cost_priority};
 /* clang-format on */

@@ -134,12 +134,12 @@ static double cost_compression(const skg_effect_facts *f) {
 
 /* clang-format off */
 /* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_energies = {"several energies", "several energies",
+const skg_effect_row skg_effect_energies = {"several energies", SKG_SELF_TEST_ENERGIES,
     copy_bands, check_bands, NULL, find_energies, cost_energies};
-const skg_effect_row skg_effect_source = {"extended source", NULL,
+const skg_effect_row skg_effect_source = {"extended source", SKG_SELF_TEST_CORE,
     NULL, NULL, NULL, find_source, cost_source};
-const skg_effect_row skg_effect_supersampling = {"supersampling", "supersampling",
+const skg_effect_row skg_effect_supersampling = {"supersampling", SKG_SELF_TEST_RAYS,
     NULL, NULL, NULL, find_supersampling, cost_supersampling};
-const skg_effect_row skg_effect_compression = {"spectral compression", NULL,
+const skg_effect_row skg_effect_compression = {"spectral compression", SKG_SELF_TEST_CORE,
     NULL, check_tolerance, NULL, find_compression, cost_compression};
 /* clang-format on */

@@ -34,9 +34,10 @@ static void free_scratch(scratch *s) {
 
 static skg_status get_kernels(skg_context *context, scratch *s) {
     static const char *const files[] = {"config.clh", "types.clh", "show_shared.h", "show.cl"};
+    const skg_define lanes = {"SKG_WIDE", skg_kernel_lanes(context, SKG_PRECISION_SINGLE)};
     char options[64];
     cl_program program;
-    snprintf(options, sizeof options, "-D SKG_WIDE=%d", skg_kernel_lanes(context, SKG_PRECISION_SINGLE));
+    SKG_TRY(skg_defines_text(1, &lanes, sizeof options, options));
     SKG_TRY(skg_program_get(context, sizeof files / sizeof *files, files, options, &program));
     SKG_TRY(skg_kernel_create(program, "skg_show_count", &s->count));
     SKG_TRY(skg_kernel_create(program, "skg_show_fill", &s->fill));
@@ -80,11 +81,6 @@ static skg_status upload(skg_context *context, const skg_show_model *model, cons
                               "picture of the 3D view");
 }
 
-static skg_status run(skg_context *context, cl_kernel kernel, size_t items, size_t local) {
-    const size_t global = (size_t)skg_round_up((int64_t)items, (int64_t)local);
-    return skg_kernel_run(context, kernel, "3D view", 1, &global, &local, NULL);
-}
-
 /* Counts the triangles of each tile and places the lists one after the other. starts: [SKG_SHOW_LISTS * tiles + 1]. */
 static skg_status place_lists(skg_context *context, const skg_show_args *args, scratch *s, int32_t *starts) {
     const int64_t lists = (int64_t)SKG_SHOW_LISTS * args->across * args->down;
@@ -100,8 +96,8 @@ static skg_status place_lists(skg_context *context, const skg_show_args *args, s
                                       SKG_ARGUMENT(SHOW_COUNT, colours, s->colours.memory),
                                       SKG_ARGUMENT(SHOW_COUNT, faces, s->faces.memory),
                                       SKG_ARGUMENT(SHOW_COUNT, counts, s->counts.memory)};
-    SKG_TRY(SKG_SET_ARGUMENTS(s->count, arguments));
-    SKG_TRY(run(context, s->count, (size_t)args->triangles, GROUP));
+    const skg_work_size work = {1, {args->triangles}, {GROUP}};
+    SKG_TRY(SKG_LAUNCH(context, s->count, "3D view", &work, arguments, NULL));
     SKG_CL_TRY(clEnqueueReadBuffer(context->device->queue, s->counts.memory, CL_TRUE, 0,
                                    (size_t)lists * sizeof *starts, starts, 0, NULL, NULL));
     for (int64_t i = 0; i <= lists; i++) {
@@ -123,8 +119,10 @@ static skg_status place_lists(skg_context *context, const skg_show_args *args, s
 }
 
 static skg_status draw_lists(skg_context *context, const skg_show_args *args, scratch *s) {
-    const size_t strips = (size_t)(SKG_SHOW_TILE / skg_kernel_lanes(context, SKG_PRECISION_SINGLE));
-    const size_t items = (size_t)args->across * (size_t)args->down * strips;
+    const int64_t strips = SKG_SHOW_TILE / skg_kernel_lanes(context, SKG_PRECISION_SINGLE);
+    const skg_work_size triangles = {1, {args->triangles}, {GROUP}};
+    const skg_work_size tiles = {
+        1, {(int64_t)args->across * args->down * strips}, {context->device->info.is_cpu ? 1 : GROUP}};
     const skg_argument fill[] = {SKG_ARGUMENT(SHOW_FILL, args, *args),
                                  SKG_ARGUMENT(SHOW_FILL, faces, s->faces.memory),
                                  SKG_ARGUMENT(SHOW_FILL, cursors, s->counts.memory),
@@ -135,10 +133,8 @@ static skg_status draw_lists(skg_context *context, const skg_show_args *args, sc
                                  SKG_ARGUMENT(SHOW_DRAW, entries, s->entries.memory),
                                  SKG_ARGUMENT(SHOW_DRAW, image, s->image.memory),
                                  SKG_ARGUMENT(SHOW_DRAW, rgba, s->rgba.memory)};
-    SKG_TRY(SKG_SET_ARGUMENTS(s->fill, fill));
-    SKG_TRY(SKG_SET_ARGUMENTS(s->draw, draw));
-    SKG_TRY(run(context, s->fill, (size_t)args->triangles, GROUP));
-    return run(context, s->draw, items, context->device->info.is_cpu ? 1 : GROUP);
+    SKG_TRY(SKG_LAUNCH(context, s->fill, "3D view", &triangles, fill, NULL));
+    return SKG_LAUNCH(context, s->draw, "3D view", &tiles, draw, NULL);
 }
 
 skg_status skg_show_draw(skg_context *context, const skg_show_model *model, const skg_show_camera *camera,

@@ -69,16 +69,3 @@ void skg_shades_see(const skg_shades *shades, const skg_camera *camera, skg_shad
         args->table = (SKG_INT)(2 * shades->rows);
     }
 }
-
-static void round_all(const double *from, int count, float *to) {
-    for (int k = 0; k < count; k++) to[k] = (float)from[k];
-}
-
-void skg_shades_round(const skg_shade_double *from, skg_shade_float *to) {
-    *to = (skg_shade_float){.rows = from->rows, .table = from->table};
-    round_all(from->heel, 4, to->heel);
-    round_all(from->oblique, 2, to->oblique);
-    round_all(from->fan, 6, to->fan);
-    round_all(from->tilt, 4, to->tilt);
-    round_all(from->path, 4, to->path);
-}

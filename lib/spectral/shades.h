@@ -24,7 +24,4 @@ void skg_shades_release(skg_shades *shades);
 /* What the kernel needs to know of a camera. */
 void skg_shades_see(const skg_shades *shades, const skg_camera *camera, skg_shade_double *args);
 
-/* The same in single precision. */
-void skg_shades_round(const skg_shade_double *from, skg_shade_float *to);
-
 #endif

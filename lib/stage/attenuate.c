@@ -5,7 +5,6 @@
 #include <skiagraph/plan.h>
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* How many kernels an attenuator keeps. */
@@ -15,7 +14,7 @@ enum { MOST_KERNELS = 16 };
  * to compile by the latter. The rays of a pixel of the image belong to the same runs. */
 typedef struct {
     int runs, strip;
-    size_t local[2];
+    int64_t group[2];
 } work_shape;
 
 static work_shape shape_of(const skg_context *context, int32_t fine) {
@@ -28,10 +27,38 @@ static work_shape shape_of(const skg_context *context, int32_t fine) {
 /* log2 of e, to the precision of a double. */
 static const double LOG2_E = 1.4426950408889634;
 
+/* The -D names of the program: X(name, value, value in the program of skg_kernels_get_first). Everything that tells programs of
+ * this stage apart stands here and in the options of its kernels. */
+#define DEFINES(X)                                                                                           \
+    X(PLANES, attenuation->planes, 1)                                                                        \
+    X(CHANNELS, attenuation->channels, 1)                                                                    \
+    X(SHOW, attenuation->shown, SKG_SHOWN_INTENSITY)                                                         \
+    X(WORLD, attenuation->world_plane >= 0, 0)                                                               \
+    X(RATIO, attenuation->ratio, 0)                                                                          \
+    X(FALLOFF, attenuation->falloff && !camera->parallel, 0)                                                 \
+    X(NOISE, attenuation->noise, 0)                                                                          \
+    X(NOISE_APART, attenuation->noise && attenuation->apart, 0)                                              \
+    X(OUTPUT_DOUBLE, place->output_double, 0)                                                                \
+    X(ENERGIES, raster->options.kernels.half && attenuation->energies, 0)                                    \
+    X(ADD, place->add, 0)                                                                                    \
+    X(RUNS, shape.runs, SKG_CPU_RUNS)                                                                        \
+    X(STRIP, shape.strip, SKG_CPU_STRIP)                                                                     \
+    X(RANGED, attenuation->range.memory != NULL, 0)                                                          \
+    X(SUMS, sums->mixed, 0)                                                                                  \
+    X(FINE, sums->fine, 1)                                                                                   \
+    X(SHADES, shades->count, 0)                                                                              \
+    X(HEEL, shades->heel, 0)                                                                                 \
+    X(OBLIQUE, shades->oblique, 0)                                                                           \
+    X(BOWTIE, shades->bowtie, 0)                                                                             \
+    X(GRID, shades->grid, 0)
+#define DEFINE_NUMBER(name, value, first) DEFINE_##name,
+#define DEFINE(name, value, first) {"SKG_" #name, value},
+#define DEFINE_FIRST(name, value, first) {"SKG_" #name, first},
+enum { DEFINES(DEFINE_NUMBER) DEFINE_COUNT };
+
 typedef struct {
     skg_kernel_options options;
-    int32_t planes, channels, shown, world, ratio, falloff, noise, apart, output_double, add, ranged,
-        energies, mixed, fine, shades, heel, oblique, bowtie, grid;
+    skg_define defines[DEFINE_COUNT];
 } kernel_key;
 
 struct skg_attenuator {
@@ -117,41 +144,36 @@ void skg_attenuator_release(skg_attenuator **attenuator) {
     skg_free(attenuator);
 }
 
+static int is_same(const kernel_key *a, const kernel_key *b) {
+    for (int d = 0; d < DEFINE_COUNT; d++)
+        if (a->defines[d].value != b->defines[d].value) return 0;
+    return memcmp(&a->options, &b->options, sizeof a->options) == 0;
+}
+
 /* Whether the kernel is in the program of skg_kernels_get_first. Other rasters than that of this program share it. */
 static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
-    const kernel_key first = {.options = key->options, .planes = 1, .channels = 1, .fine = 1};
-    return memcmp(key, &first, sizeof first) == 0 &&
-           skg_kernels_are_first(attenuator->context, &key->options);
+    const kernel_key first = {.options = key->options, .defines = {DEFINES(DEFINE_FIRST)}};
+    return is_same(key, &first) && skg_kernels_are_first(attenuator->context, &key->options);
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
-    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
+    const int64_t noise = key->defines[DEFINE_NOISE].value, shades = key->defines[DEFINE_SHADES].value;
     const char *files[7] = {"exponential.clh"};
     int count = 1;
-    const work_shape work = shape_of(attenuator->context, key->fine);
-    char more[480];
-    if (key->noise) files[count++] = "random.clh", files[count++] = "noise.clh";
-    if (key->shades) files[count++] = "shades.clh";
+    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
+    if (noise) files[count++] = "random.clh", files[count++] = "noise.clh";
+    if (shades) files[count++] = "shades.clh";
     files[count++] = "planes.clh";
-    if (key->noise) files[count++] = "quantum.clh";
+    if (noise) files[count++] = "quantum.clh";
     files[count++] = "attenuate.cl";
-    snprintf(
-        more, sizeof more,
-        "-D SKG_PLANES=%d -D SKG_CHANNELS=%d -D SKG_SHOW=%d -D SKG_WORLD=%d -D SKG_RATIO=%d -D SKG_FALLOFF=%d "
-        "-D SKG_NOISE=%d -D SKG_NOISE_APART=%d -D SKG_OUTPUT_DOUBLE=%d -D SKG_ADD=%d -D SKG_RUNS=%d -D SKG_STRIP=%d -D SKG_RANGED=%d -D SKG_SUMS=%d -D SKG_FINE=%d "
-        "-D SKG_SHADES=%d -D SKG_HEEL=%d -D SKG_OBLIQUE=%d -D SKG_BOWTIE=%d -D SKG_GRID=%d%s",
-        (int)key->planes, (int)key->channels, (int)key->shown, (int)key->world, (int)key->ratio,
-        (int)key->falloff, (int)key->noise, (int)key->apart, (int)key->output_double, (int)key->add,
-        work.runs, work.strip, (int)key->ranged, (int)key->mixed, (int)key->fine, (int)key->shades,
-        (int)key->heel, (int)key->oblique, (int)key->bowtie, (int)key->grid,
-        key->energies ? " -D SKG_HALF_UNIT=0.001f" : "");
-    return skg_kernels_get(attenuator->context, &key->options, count, files, more, program);
+    return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
+                           program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
     cl_program program = NULL;
     for (int32_t i = 0; i < attenuator->count; i++)
-        if (memcmp(&attenuator->keys[i], key, sizeof *key) == 0) {
+        if (is_same(&attenuator->keys[i], key)) {
             *kernel = attenuator->kernels[i];
             return SKG_OK;
         }
@@ -166,51 +188,13 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     return SKG_OK;
 }
 
-/* Whether a kernel compiled for this key has an argument. */
-static int has_argument(const kernel_key *key, int argument) {
-    switch (argument) {
-    case SKG_ATTENUATE_lists:
-        return key->mixed;
-    case SKG_ATTENUATE_world_plane:
-    case SKG_ATTENUATE_world:
-        return key->world;
-    case SKG_ATTENUATE_foot:
-        return key->falloff;
-    case SKG_ATTENUATE_variances:
-    case SKG_ATTENUATE_key:
-    case SKG_ATTENUATE_photons:
-        return key->noise;
-    case SKG_ATTENUATE_range:
-        return key->ranged;
-    case SKG_ATTENUATE_shades:
-        return key->shades;
-    case SKG_ATTENUATE_polynomials:
-        return key->heel + key->oblique;
-    case SKG_ATTENUATE_tables:
-        return key->bowtie + key->grid;
-    default:
-        return 1;
-    }
-}
-
-/* Sets the arguments that the kernel has. Behind an absent one they move up. */
-static skg_status set_arguments(cl_kernel kernel, const kernel_key *key, const skg_argument *arguments) {
-    cl_uint position = 0;
-    for (int a = 0; a < SKG_ATTENUATE_ARGUMENTS; a++)
-        if (has_argument(key, a))
-            SKG_TRY(skg_kernel_set(kernel, position++, arguments[a].size, arguments[a].value));
-    return SKG_OK;
-}
-
 /* What |ray| is multiplied by to give the length of the ray's path through the world, behind the weight of the world's
  * plane: 1 for a point source; for a parallel beam, whose |ray| is 1 mm, what lies behind the start. */
-static void find_world(const skg_camera *camera, const skg_attenuation *attenuation, double twice[4],
-                       float single[4]) {
-    twice[0] = attenuation->world_weight;
-    twice[1] = camera->parallel ? 1 - camera->start[0] : 1;
-    twice[2] = -camera->start[1];
-    twice[3] = -camera->start[2];
-    for (int k = 0; k < 4; k++) single[k] = (float)twice[k];
+static void find_world(const skg_camera *camera, const skg_attenuation *attenuation, double world[4]) {
+    world[0] = attenuation->world_weight;
+    world[1] = camera->parallel ? 1 - camera->start[0] : 1;
+    world[2] = -camera->start[1];
+    world[3] = -camera->start[2];
 }
 
 static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const skg_attenuation *attenuation,
@@ -220,28 +204,11 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
     static const skg_shades none = {0};
     const skg_shades *shades = attenuation->shades ? attenuation->shades : &none;
     const skg_raster *raster = sums->raster;
+    const work_shape shape = shape_of(raster->context, sums->fine);
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
                                     .half = raster->options.kernels.half},
-                        .planes = attenuation->planes,
-                        .channels = attenuation->channels,
-                        .shown = attenuation->shown,
-                        .world = attenuation->world_plane >= 0,
-                        .ratio = attenuation->ratio,
-                        .falloff = attenuation->falloff && !camera->parallel,
-                        .noise = attenuation->noise,
-                        .apart = attenuation->noise && attenuation->apart,
-                        .output_double = place->output_double,
-                        .energies = raster->options.kernels.half && attenuation->energies,
-                        .add = place->add,
-                        .mixed = sums->mixed,
-                        .fine = sums->fine,
-                        .shades = shades->count,
-                        .heel = shades->heel,
-                        .oblique = shades->oblique,
-                        .bowtie = shades->bowtie,
-                        .grid = shades->grid,
-                        .ranged = attenuation->range.memory != NULL};
+                        .defines = {DEFINES(DEFINE)}};
 }
 
 skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_raster_options *options,
@@ -252,8 +219,26 @@ skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_rast
     skg_sums own = *sums;
     own.raster = &raster;
     kernel_key key = key_of(&own, camera, attenuation, place);
-    key.ranged = ranged;
+    key.defines[DEFINE_RANGED].value = ranged;
     return get_program(attenuator, &key, NULL);
+}
+
+/* The scalar arguments that do not depend on the caller's factor and share. */
+static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *sums, const skg_camera *camera,
+                                       const skg_attenuation *attenuation, const skg_image_place *place) {
+    skg_attenuate_double args = {
+        .foot = key->defines[DEFINE_FALLOFF].value ? skg_camera_foot(camera) : 0,
+        .layout = sums->raster->layout,
+        .nodes = attenuation->nodes,
+        .world_plane = attenuation->world_plane,
+        .image = skg_image_of(place, sums->raster->layout.columns / sums->fine,
+                              sums->raster->layout.rows / sums->fine, attenuation->channels),
+    };
+    args.layout.first_plane = sums->pass * args.layout.planes;
+    skg_camera_rays(camera, sums->scale, &args.ray);
+    find_world(camera, attenuation, args.world);
+    if (shades_of(attenuation)) skg_shades_see(attenuation->shades, camera, &args.shades);
+    return args;
 }
 
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
@@ -263,65 +248,38 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     const skg_raster *raster = sums->raster;
     const kernel_key key = key_of(sums, camera, attenuation, place);
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
-    /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
-    const double limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
-    skg_real_argument reals[4]; /* factor, limit, foot, photons */
-    double world[4];
-    float world_single[4];
-    skg_shade_double shades = {0};
-    skg_shade_float shades_single;
+    skg_attenuate_double args = scalars_of(&key, sums, camera, attenuation, place);
+    skg_attenuate_float rounded;
     cl_kernel kernel = NULL;
-    skg_ray_double ray;
-    skg_ray_float ray_single;
-    skg_frame_args frame = raster->frame;
-    frame.first_plane = sums->pass * frame.planes;
+    /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
+    args.limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
+    args.factor = factor;
+    args.photons = SKG_FEW_PHOTONS * share;
+    if (noise) args.key = *noise;
+    SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
-    skg_camera_rays(camera, sums->scale, &ray);
-    skg_rays_round(&ray, &ray_single);
-    find_world(camera, attenuation, world, world_single);
-    if (key.shades) skg_shades_see(attenuation->shades, camera, &shades);
-    skg_shades_round(&shades, &shades_single);
-    skg_real_argument_set(&reals[0], is_double, factor);
-    skg_real_argument_set(&reals[1], is_double, limit);
-    skg_real_argument_set(&reals[2], is_double, key.falloff ? skg_camera_foot(camera) : 0);
-    skg_real_argument_set(&reals[3], is_double, SKG_FEW_PHOTONS * share);
-    const skg_argument arguments[SKG_ATTENUATE_ARGUMENTS] = {
-        SKG_ARGUMENT(ATTENUATE, frame, frame),
-        {SKG_ATTENUATE_ray, is_double ? sizeof ray : sizeof ray_single,
-         is_double ? (const void *)&ray : (const void *)&ray_single},
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT_WITH(ATTENUATE, args, is_double, args, rounded),
         SKG_ARGUMENT(ATTENUATE, copies, raster->sums.memory),
         SKG_ARGUMENT(ATTENUATE, used, raster->used.memory),
-        SKG_ARGUMENT(ATTENUATE, nodes, attenuation->nodes),
         SKG_ARGUMENT(ATTENUATE, coefficients, attenuation->coefficients.memory),
         SKG_ARGUMENT(ATTENUATE, weights, attenuation->weights.memory),
-        {SKG_ATTENUATE_factor, reals[0].size, reals[0].value},
-        {SKG_ATTENUATE_limit, reals[1].size, reals[1].value},
-        SKG_ARGUMENT(ATTENUATE, negative, negative),
-        SKG_ARGUMENT(ATTENUATE, output, place->memory),
-        SKG_ARGUMENT(ATTENUATE, offset, place->offset),
-        SKG_ARGUMENT(ATTENUATE, row_stride, place->row_stride),
-        SKG_ARGUMENT(ATTENUATE, channel_stride, place->channel_stride),
-        SKG_ARGUMENT(ATTENUATE, lists, sums->lists),
-        SKG_ARGUMENT(ATTENUATE, world_plane, attenuation->world_plane),
-        {SKG_ATTENUATE_world, is_double ? sizeof world : sizeof world_single,
-         is_double ? (const void *)world : (const void *)world_single},
-        {SKG_ATTENUATE_foot, reals[2].size, reals[2].value},
         SKG_ARGUMENT(ATTENUATE, variances, attenuation->variances.memory),
-        SKG_ARGUMENT(ATTENUATE, key, *noise),
-        {SKG_ATTENUATE_photons, reals[3].size, reals[3].value},
+        SKG_ARGUMENT(ATTENUATE, lists, sums->lists),
         SKG_ARGUMENT(ATTENUATE, range, attenuation->range.memory),
-        {SKG_ATTENUATE_shades, is_double ? sizeof shades : sizeof shades_single,
-         is_double ? (const void *)&shades : (const void *)&shades_single},
         SKG_ARGUMENT(ATTENUATE, polynomials, attenuation->polynomials.memory),
         SKG_ARGUMENT(ATTENUATE, tables, attenuation->tables.memory),
+        SKG_ARGUMENT(ATTENUATE, negative, negative),
+        SKG_ARGUMENT(ATTENUATE, output, place->memory),
     };
-    SKG_TRY(set_arguments(kernel, &key, arguments));
-    const work_shape work = shape_of(raster->context, sums->fine);
-    const int64_t pixels = skg_kernel_lanes(raster->context, key.options.precision) * work.runs * work.strip;
-    const size_t across = (size_t)((raster->frame.columns + pixels - 1) / pixels);
-    const size_t global[2] = {(size_t)skg_round_up((int64_t)across, (int64_t)work.local[0]),
-                              (size_t)skg_round_up(raster->frame.rows / sums->fine, (int64_t)work.local[1])};
-    return skg_kernel_run(raster->context, kernel, "attenuate", 2, global, work.local, log);
+    const work_shape shape = shape_of(raster->context, sums->fine);
+    const int64_t pixels =
+        skg_kernel_lanes(raster->context, key.options.precision) * shape.runs * shape.strip;
+    const skg_work_size work = {
+        2,
+        {(raster->layout.columns + pixels - 1) / pixels, raster->layout.rows / sums->fine},
+        {shape.group[0], shape.group[1]}};
+    return SKG_LAUNCH(raster->context, kernel, "attenuate", &work, arguments, log);
 }
 
 skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums,
@@ -331,7 +289,7 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
     skg_raster nothing = *sums->raster;
     skg_sums no_sums = *sums;
     skg_attenuation quiet = *attenuation;
-    nothing.frame.copies = 0; /* sums over no copies are 0 */
+    nothing.layout.copies = 0; /* sums over no copies are 0 */
     no_sums.raster = &nothing;
     quiet.noise = 0;
     quiet.range = (skg_buffer){0};
@@ -342,33 +300,20 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
-    const cl_int channels = attenuation->channels / attenuation->layers;
-    const cl_int columns = sums->raster->frame.columns / sums->fine,
-                 rows = sums->raster->frame.rows / sums->fine;
+    const int64_t columns = sums->raster->layout.columns / sums->fine,
+                  rows = sums->raster->layout.rows / sums->fine;
+    const skg_image_args image =
+        skg_image_of(place, columns, rows, attenuation->channels / attenuation->layers);
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(LOGARITHM, columns, columns),
-        SKG_ARGUMENT(LOGARITHM, rows, rows),
-        SKG_ARGUMENT(LOGARITHM, channels, channels),
+        SKG_ARGUMENT(LOGARITHM, image, image),
         SKG_ARGUMENT(LOGARITHM, output, place->memory),
-        SKG_ARGUMENT(LOGARITHM, offset, place->offset),
-        SKG_ARGUMENT(LOGARITHM, row_stride, place->row_stride),
-        SKG_ARGUMENT(LOGARITHM, channel_stride, place->channel_stride),
     };
     const skg_camera no_camera = {0};
     const skg_sums plain = {.raster = sums->raster, .fine = 1}; /* the image is finished */
     const kernel_key key = key_of(&plain, &no_camera, attenuation, place);
     cl_program program = NULL;
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
     SKG_TRY(get_program(attenuator, &key, &program));
-    SKG_TRY(skg_kernel_create(program, "skg_logarithm", &kernel));
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
     const int64_t lanes = skg_kernel_lanes(attenuator->context, key.options.precision);
-    const size_t local[2] = {8, 16};
-    const size_t global[2] = {(size_t)skg_round_up((columns + lanes - 1) / lanes, 8),
-                              (size_t)skg_round_up(rows, 16)};
-    status = skg_kernel_run(attenuator->context, kernel, "logarithm", 2, global, local, log);
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    const skg_work_size work = {2, {(columns + lanes - 1) / lanes, rows}, {8, 16}};
+    return SKG_LAUNCH_ONCE(attenuator->context, program, "skg_logarithm", "logarithm", &work, arguments, log);
 }

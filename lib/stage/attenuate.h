@@ -57,6 +57,17 @@ typedef struct {
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
+/* The same for a kernel, with the size of the image. */
+static inline skg_image_args skg_image_of(const skg_image_place *place, int64_t columns, int64_t rows,
+                                          int64_t channels) {
+    return (skg_image_args){.offset = place->offset,
+                            .row_stride = place->row_stride,
+                            .channel_stride = place->channel_stride,
+                            .columns = (SKG_INT)columns,
+                            .rows = (SKG_INT)rows,
+                            .channels = (SKG_INT)channels};
+}
+
 /* The sums that a frame has left, and how they become planes. */
 typedef struct {
     const skg_raster *raster;

@@ -167,98 +167,68 @@ static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
     return skg_kernel_create(program, "skg_blur_across", &type->across_kernel);
 }
 
-/* The arguments that say where an image is. */
-#define IMAGE_ARGUMENTS(kernel, place)                                                                       \
-    SKG_ARGUMENT(kernel, image, (place)->memory), SKG_ARGUMENT(kernel, offset, (place)->offset),             \
-        SKG_ARGUMENT(kernel, row_stride, (place)->row_stride),                                               \
-        SKG_ARGUMENT(kernel, channel_stride, (place)->channel_stride)
-
-/* Enqueues a kernel over `across` x `down` work-items of each channel. */
-static skg_status run(const skg_blur *blur, cl_kernel kernel, int64_t across, int64_t down, int64_t channels,
-                      skg_stage_log *log) {
-    const size_t local[3] = {4, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
-    const size_t global[3] = {(size_t)skg_round_up(across, 4), (size_t)skg_round_up(down, 16),
-                              (size_t)channels};
-    return skg_kernel_run(blur->context, kernel, "blur", 3, global, local, log);
-}
-
-/* The sizes that both passes work with. */
-typedef struct {
-    cl_int columns, rows;      /* of the image */
-    cl_int stride, high;       /* of the workspace */
-    cl_int left, above;        /* pixels of the workspace before the image's first */
-    cl_int taps, down, across; /* samples of the first pass; of the second, down and across */
-    int64_t lanes;
-} blur_layout;
-
-static blur_layout lay_out(const skg_blur *blur, int is_double, int64_t columns, int64_t rows) {
-    const int64_t lanes =
-        skg_kernel_lanes(blur->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
+/* Where both passes work; `image` and `add` are set for each. */
+static skg_blur_args lay_out(const skg_blur *blur, int64_t lanes, int64_t columns) {
     const int64_t left = blur->columns / 2, above = blur->separable ? 0 : blur->rows / 2;
     /* The last run of a row in the second pass may end past the image, and reads `left` samples beyond its end like every
      * other. */
     const int64_t stride =
         skg_round_up(skg_round_up(columns, BLUR_RUN * lanes) + 2 * left, BLUR_VECTORS * lanes);
-    return (blur_layout){.columns = (cl_int)columns,
-                         .rows = (cl_int)rows,
-                         .stride = (cl_int)stride,
-                         .high = (cl_int)(rows + 2 * above),
-                         .left = (cl_int)left,
-                         .above = (cl_int)above,
-                         .taps = blur->separable ? (cl_int)blur->rows : 1,
-                         .down = blur->separable ? 1 : (cl_int)blur->rows,
-                         .across = (cl_int)blur->columns,
-                         .lanes = lanes};
+    return (skg_blur_args){.stride = (SKG_INT)stride,
+                           .left = (SKG_INT)left,
+                           .above = (SKG_INT)above,
+                           .taps = blur->separable ? (SKG_INT)blur->rows : 1,
+                           .down = blur->separable ? 1 : (SKG_INT)blur->rows,
+                           .across = (SKG_INT)blur->columns};
 }
 
-static skg_status run_down(const skg_blur *blur, const blur_type *type, const blur_layout *at,
-                           const skg_image_place *image, int64_t channels, skg_stage_log *log) {
+/* Enqueues a kernel over `across` x `down` work-items of each channel. */
+#define RUN(blur, kernel, across, down, channels, arguments, log)                                            \
+    SKG_LAUNCH((blur)->context, kernel, "blur",                                                              \
+               (&(const skg_work_size){                                                                      \
+                   3, {across, down, channels}, {4, 16, 1}}), /* large groups, as in detect.c */             \
+               arguments, log)
+
+static skg_status run_down(const skg_blur *blur, const blur_type *type, const skg_blur_args *args,
+                           int64_t lanes, cl_mem image, skg_stage_log *log) {
     const skg_argument arguments[] = {
-        IMAGE_ARGUMENTS(BLUR_DOWN, image),
-        SKG_ARGUMENT(BLUR_DOWN, columns, at->columns),
-        SKG_ARGUMENT(BLUR_DOWN, rows, at->rows),
-        SKG_ARGUMENT(BLUR_DOWN, taps, at->taps),
+        SKG_ARGUMENT(BLUR_DOWN, args, *args),
+        SKG_ARGUMENT(BLUR_DOWN, image, image),
         SKG_ARGUMENT(BLUR_DOWN, weights, type->down.memory),
         SKG_ARGUMENT(BLUR_DOWN, workspace, blur->workspace.memory),
-        SKG_ARGUMENT(BLUR_DOWN, stride, at->stride),
-        SKG_ARGUMENT(BLUR_DOWN, high, at->high),
-        SKG_ARGUMENT(BLUR_DOWN, left, at->left),
-        SKG_ARGUMENT(BLUR_DOWN, above, at->above),
     };
-    SKG_TRY(SKG_SET_ARGUMENTS(type->down_kernel, arguments));
-    return run(blur, type->down_kernel, at->stride / (BLUR_VECTORS * at->lanes),
-               ((int64_t)at->high + BLUR_ROWS - 1) / BLUR_ROWS, channels, log);
+    return RUN(blur, type->down_kernel, args->stride / (BLUR_VECTORS * lanes),
+               ((int64_t)args->high + BLUR_ROWS - 1) / BLUR_ROWS, args->image.channels, arguments, log);
 }
 
-static skg_status run_across(const skg_blur *blur, const blur_type *type, const blur_layout *at,
-                             const skg_image_place *image, int64_t channels, skg_stage_log *log) {
+static skg_status run_across(const skg_blur *blur, const blur_type *type, const skg_blur_args *args,
+                             int64_t lanes, cl_mem image, skg_stage_log *log) {
     const skg_argument arguments[] = {
+        SKG_ARGUMENT(BLUR_ACROSS, args, *args),
         SKG_ARGUMENT(BLUR_ACROSS, workspace, blur->workspace.memory),
-        SKG_ARGUMENT(BLUR_ACROSS, stride, at->stride),
-        SKG_ARGUMENT(BLUR_ACROSS, high, at->high),
-        SKG_ARGUMENT(BLUR_ACROSS, down, at->down),
-        SKG_ARGUMENT(BLUR_ACROSS, across, at->across),
         SKG_ARGUMENT(BLUR_ACROSS, weights, type->across.memory),
-        IMAGE_ARGUMENTS(BLUR_ACROSS, image),
-        SKG_ARGUMENT(BLUR_ACROSS, columns, at->columns),
-        SKG_ARGUMENT(BLUR_ACROSS, rows, at->rows),
-        SKG_ARGUMENT(BLUR_ACROSS, add, image->add),
+        SKG_ARGUMENT(BLUR_ACROSS, image, image),
     };
-    SKG_TRY(SKG_SET_ARGUMENTS(type->across_kernel, arguments));
-    return run(blur, type->across_kernel, (at->columns + BLUR_RUN * at->lanes - 1) / (BLUR_RUN * at->lanes),
-               at->rows, channels, log);
+    return RUN(blur, type->across_kernel, (args->image.columns + BLUR_RUN * lanes - 1) / (BLUR_RUN * lanes),
+               args->image.rows, args->image.channels, arguments, log);
 }
 
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
                         int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log) {
     const int is_double = image->output_double != 0;
-    const blur_layout layout = lay_out(blur, is_double, columns, rows);
+    const int64_t lanes =
+        skg_kernel_lanes(blur->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
+    skg_blur_args args = lay_out(blur, lanes, columns);
     blur_type *type = NULL;
+    args.high = (SKG_INT)rows + 2 * args.above;
     SKG_TRY(get_type(blur, is_double, &type));
     SKG_TRY(skg_buffer_reserve(blur->context, &blur->workspace,
-                               (int64_t)layout.stride * layout.high * channels *
+                               (int64_t)args.stride * args.high * channels *
                                    (int64_t)(is_double ? sizeof(cl_double) : sizeof(cl_float)),
                                CL_MEM_READ_WRITE, "blur"));
-    SKG_TRY(run_down(blur, type, &layout, from, channels, log));
-    return run_across(blur, type, &layout, image, channels, log);
+    args.image = skg_image_of(from, columns, rows, channels);
+    SKG_TRY(run_down(blur, type, &args, lanes, from->memory, log));
+    args.image = skg_image_of(image, columns, rows, channels);
+    args.add = image->add;
+    return run_across(blur, type, &args, lanes, image->memory, log);
 }

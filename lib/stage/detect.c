@@ -1,7 +1,6 @@
 #include "stage/detect.h"
 
 #include <math.h>
-#include <stdio.h>
 
 /* What one type of image needs. */
 typedef struct {
@@ -64,14 +63,14 @@ static skg_status get_type(skg_detector *detector, int is_double, detector_type 
     detector_type *type = *got = &detector->type[is_double];
     cl_program program = NULL;
     float rounded[SKG_CHANNELS_MAX];
-    char more[96];
     if (type->kernel) return SKG_OK;
     for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
     SKG_TRY(skg_buffer_write(detector->context, &type->factor, detection->channels * (int64_t)element,
                              is_double ? (const void *)detector->factor : rounded, "detector"));
-    snprintf(more, sizeof more, "-D SKG_ELECTRONIC=%d -D SKG_QUANTISED=%d -D SKG_FLAT_FIELD=%d",
-             detection->electronic > 0, detection->step > 0, (int)detection->over_flat_field);
-    SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, more, &program));
+    const skg_define defines[] = {{"SKG_ELECTRONIC", detection->electronic > 0},
+                                  {"SKG_QUANTISED", detection->step > 0},
+                                  {"SKG_FLAT_FIELD", detection->over_flat_field}};
+    SKG_TRY(skg_kernels_get(detector->context, &options, 4, files, SKG_DEFINES(defines), &program));
     return skg_kernel_create(program, "skg_detect", &type->kernel);
 }
 
@@ -80,35 +79,27 @@ skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, d
                             skg_stage_log *log) {
     const skg_detection *detection = &detector->detection;
     const int is_double = image->output_double != 0;
-    const cl_int size[2] = {(cl_int)columns, (cl_int)rows};
     detector_type *type = NULL;
-    skg_real_argument electronic, spacing, scale;
+    skg_detect_float rounded;
     SKG_TRY(get_type(detector, is_double, &type));
-    /* Each part has its own; their mean has that of one exposure. */
-    skg_real_argument_set(&electronic, is_double, detection->electronic * sqrt((double)key->parts));
-    skg_real_argument_set(&spacing, is_double, detection->step);
-    skg_real_argument_set(&scale, is_double, factor);
-    const skg_argument arguments[SKG_DETECT_ARGUMENTS] = {
-        SKG_ARGUMENT(DETECT, image, image->memory),
-        SKG_ARGUMENT(DETECT, offset, image->offset),
-        SKG_ARGUMENT(DETECT, row_stride, image->row_stride),
-        SKG_ARGUMENT(DETECT, channel_stride, image->channel_stride),
-        SKG_ARGUMENT(DETECT, columns, size[0]),
-        SKG_ARGUMENT(DETECT, rows, size[1]),
-        SKG_ARGUMENT(DETECT, key, *key),
-        {SKG_DETECT_electronic, electronic.size, electronic.value},
-        {SKG_DETECT_spacing, spacing.size, spacing.value},
-        SKG_ARGUMENT(DETECT, factor, type->factor.memory),
-        {SKG_DETECT_scale, scale.size, scale.value},
-        SKG_ARGUMENT(DETECT, flat_field, flat_field),
+    const skg_detect_double args = {
+        /* Each part has its own; their mean has that of one exposure. */
+        .electronic = detection->electronic * sqrt((double)key->parts),
+        .spacing = detection->step,
+        .scale = factor,
+        .key = *key,
+        .image = skg_image_of(image, columns, rows, detection->channels),
     };
-    /* The kernel has its last argument only if values are divided by a flat field. */
-    SKG_TRY(
-        skg_kernel_arguments(type->kernel, SKG_DETECT_ARGUMENTS - !detection->over_flat_field, arguments));
+    SKG_ROUND_ARGUMENTS(args, rounded, key);
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT_WITH(DETECT, args, is_double, args, rounded),
+        SKG_ARGUMENT(DETECT, factor, type->factor.memory),
+        SKG_ARGUMENT(DETECT, flat_field, flat_field),
+        SKG_ARGUMENT(DETECT, image, image->memory),
+    };
     const int64_t lanes =
         skg_kernel_lanes(detector->context, is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE);
-    const size_t local[3] = {8, 16, 1}; /* large groups: PoCL takes some 20 ns for each */
-    const size_t global[3] = {(size_t)((columns + 8 * lanes - 1) / (8 * lanes) * 8),
-                              (size_t)((rows + 15) / 16 * 16), (size_t)detection->channels};
-    return skg_kernel_run(detector->context, type->kernel, "detect", 3, global, local, log);
+    /* Large groups: PoCL takes some 20 ns for each. */
+    const skg_work_size work = {3, {(columns + lanes - 1) / lanes, rows, detection->channels}, {8, 16, 1}};
+    return SKG_LAUNCH(detector->context, type->kernel, "detect", &work, arguments, log);
 }

@@ -6,7 +6,6 @@
 #include <skiagraph/plan.h>
 
 #include <inttypes.h>
-#include <stdio.h>
 
 enum { GROUP = 64, ROWS_AT_ONCE = 32 };
 
@@ -53,9 +52,9 @@ typedef struct {
 
 static skg_status compile(const hits_run *run, cl_program *program) {
     static const char *const files[] = {"pixel.clh", "hits.cl", "source_plane.cl"};
-    char slots[32];
-    snprintf(slots, sizeof slots, "-D SKG_SLOTS=%" PRId64, skg_priority_slots(&run->pass->priority));
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, slots, program);
+    const skg_define slots[] = {{"SKG_SLOTS", skg_priority_slots(&run->pass->priority)}};
+    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, SKG_DEFINES(slots),
+                           program);
 }
 
 static skg_status reserve(const hits_run *run, skg_buffer *buffer, int64_t bytes, const char *what) {
@@ -102,100 +101,90 @@ static skg_status upload_tables(hits_run *run) {
     return upload_shifts(run);
 }
 
-/* Runs one of the kernels that list hits, over so many triangles and `rows` work-items along the rows. */
-static skg_status list_with(const hits_run *run, const char *name, int32_t count,
-                            const skg_argument *arguments, int64_t triangles, size_t rows) {
-    const size_t local[2] = {GROUP, 1};
-    const size_t global[2] = {(size_t)skg_round_up(triangles, GROUP), rows};
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_kernel_create(run->program, name, &kernel));
-    SKG_TRY_CLEANUP(skg_kernel_arguments(kernel, count, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(run->context, kernel, "priority", 2, global, local, &run->staging->log));
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
-}
-
 /* Columns from, rows from, columns to, rows to, as skg_window takes them. */
 static cl_int4 window_of(const hits_run *run) {
     const int32_t *pixels = run->pass->priority.window;
     return (cl_int4){.s = {pixels[2], pixels[0], pixels[3], pixels[1]}};
 }
 
+/* The scalar arguments of all kernels. task: SKG_HITS_... */
+static skg_hits_args scalars_of(const hits_run *run, SKG_INT task) {
+    const cl_int4 window = window_of(run);
+    return (skg_hits_args){.layout = run->raster->layout,
+                           .window = {window.s[0], window.s[1], window.s[2], window.s[3]},
+                           .task = task};
+}
+
 /* The arguments by which both kernels take the lists. */
-#define LIST_ARGUMENTS(kernel, lists, place, doing)                                                          \
+#define LIST_ARGUMENTS(kernel, lists)                                                                        \
     SKG_ARGUMENT(kernel, slots, (lists)->slots.memory),                                                      \
         SKG_ARGUMENT(kernel, shifts, (lists)->shifts.memory),                                                \
         SKG_ARGUMENT(kernel, counts, (lists)->counts.memory),                                                \
         SKG_ARGUMENT(kernel, starts, (lists)->starts.memory),                                                \
-        SKG_ARGUMENT(kernel, hits, (lists)->hits.memory), SKG_ARGUMENT(kernel, window, place),               \
-        SKG_ARGUMENT(kernel, doing, doing)
+        SKG_ARGUMENT(kernel, hits, (lists)->hits.memory)
 
-/* Lists the hits of triangles in front of the source. doing: SKG_HITS_... */
-static skg_status list_hits(const hits_run *run, cl_int doing) {
+/* Lists the hits of triangles in front of the source. */
+static skg_status list_hits(const hits_run *run, SKG_INT task) {
     const skg_priority *priority = &run->pass->priority;
-    const cl_int winners = (cl_int)(priority->count - priority->others), all = (cl_int)priority->count;
-    const int others = (doing & SKG_HITS_OF_OTHERS) != 0;
-    const cl_int2 chosen = {.s = {others ? winners : 0, others ? all : winners}};
-    const cl_int4 window = window_of(run);
-    const skg_argument arguments[SKG_HITS_LIST_ARGUMENTS] = {
-        SKG_ARGUMENT(HITS_LIST, frame, run->raster->frame),
+    const SKG_INT winners = (SKG_INT)(priority->count - priority->others), all = (SKG_INT)priority->count;
+    const int others = (task & SKG_HITS_OF_OTHERS) != 0;
+    const skg_work_size work = {
+        2, {run->triangles[others], run->context->device->info.is_gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
+    skg_hits_args args = scalars_of(run, task);
+    args.chosen[0] = others ? winners : 0;
+    args.chosen[1] = others ? all : winners;
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(HITS_LIST, args, args),
         SKG_ARGUMENT(HITS_LIST, corners, run->geometry->corners.memory),
         SKG_ARGUMENT(HITS_LIST, projected, run->geometry->projected.memory),
         SKG_ARGUMENT(HITS_LIST, parts, run->geometry->part_table.memory),
         SKG_ARGUMENT(HITS_LIST, runs, run->memory->runs.memory),
-        SKG_ARGUMENT(HITS_LIST, chosen, chosen),
         SKG_ARGUMENT(HITS_LIST, spans, run->memory->spans.memory),
-        LIST_ARGUMENTS(HITS_LIST, run->memory, window, doing),
+        LIST_ARGUMENTS(HITS_LIST, run->memory),
     };
     if (run->triangles[others] == 0) return SKG_OK;
-    return list_with(run, "skg_hits_list", SKG_HITS_LIST_ARGUMENTS, arguments, run->triangles[others],
-                     run->context->device->info.is_gpu ? ROWS_AT_ONCE : 1);
+    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_list", "priority", &work, arguments,
+                           &run->staging->log);
 }
 
 /* Lists the hits of triangles that reach the source's plane. */
-static skg_status list_hits_at_source(const hits_run *run, cl_int doing) {
-    const cl_int4 window = window_of(run);
-    const skg_argument arguments[SKG_HITS_SOURCE_PLANE_ARGUMENTS] = {
-        SKG_TRIANGLE_ARGUMENTS(HITS_SOURCE_PLANE, run->raster->frame, run->geometry),
+static skg_status list_hits_at_source(const hits_run *run, SKG_INT task) {
+    const skg_hits_args args = scalars_of(run, task);
+    const skg_work_size work = {
+        2, {run->raster->layout.triangles, (int64_t)skg_raster_source_bands(run->raster)}, {GROUP, 1}};
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(HITS_SOURCE_PLANE, args, args),
+        SKG_TRIANGLE_BUFFERS(HITS_SOURCE_PLANE, run->geometry),
         SKG_ARGUMENT(HITS_SOURCE_PLANE, vertices, run->geometry->offsets.memory),
-        LIST_ARGUMENTS(HITS_SOURCE_PLANE, run->memory, window, doing),
+        LIST_ARGUMENTS(HITS_SOURCE_PLANE, run->memory),
     };
-    return list_with(run, "skg_hits_source_plane", SKG_HITS_SOURCE_PLANE_ARGUMENTS, arguments,
-                     run->raster->frame.triangles, skg_raster_source_bands(run->raster));
+    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_source_plane", "priority", &work, arguments,
+                           &run->staging->log);
 }
 
-static skg_status list_all(const hits_run *run, cl_int doing) {
+static skg_status list_all(const hits_run *run, SKG_INT task) {
     const skg_kernel_options *kernels = &run->raster->options.kernels;
-    SKG_TRY(list_hits(run, doing));
-    return kernels->source_plane && !kernels->parallel ? list_hits_at_source(run, doing) : SKG_OK;
+    SKG_TRY(list_hits(run, task));
+    return kernels->source_plane && !kernels->parallel ? list_hits_at_source(run, task) : SKG_OK;
 }
 
 /* Gives each pixel its stretch of the list, and counts all hits. */
 static skg_status place_hits(const hits_run *run) {
     const cl_int none = 0;
-    const cl_int4 window = window_of(run);
-    const size_t local[2] = {GROUP, 1}, global[2] = {(size_t)skg_round_up(window.s[2] - window.s[0], GROUP),
-                                                     (size_t)(window.s[3] - window.s[1])};
+    const skg_hits_args args = scalars_of(run, SKG_HITS_LIST);
+    const skg_work_size work = {
+        2, {args.window[2] - args.window[0], args.window[3] - args.window[1]}, {GROUP, 1}};
     const skg_hits_memory *m = run->memory;
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(HITS_PLACE, columns, run->raster->frame.columns),
-        SKG_ARGUMENT(HITS_PLACE, window, window),
+        SKG_ARGUMENT(HITS_PLACE, args, args),
         SKG_ARGUMENT(HITS_PLACE, counts, m->counts.memory),
         SKG_ARGUMENT(HITS_PLACE, starts, m->starts.memory),
         SKG_ARGUMENT(HITS_PLACE, total, m->total.memory),
     };
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
     SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, m->total.memory, &none, sizeof none, 0,
                                    sizeof(skg_hit_count), 0, NULL, NULL));
-    SKG_TRY(skg_kernel_create(run->program, "skg_hits_place", &kernel));
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(run->context, kernel, "priority", 2, global, local, &run->staging->log));
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_place", "priority", &work, arguments,
+                           &run->staging->log);
 }
 
 /* Waits for the count of hits and reserves their list. */
@@ -209,11 +198,12 @@ static skg_status reserve_hits(const hits_run *run) {
 }
 
 static skg_status settle(const hits_run *run) {
-    const skg_frame_args *frame = &run->raster->frame;
-    const cl_int4 window = window_of(run);
+    const skg_hits_args args = scalars_of(run, SKG_HITS_LIST);
+    const skg_work_size work = {
+        2, {args.window[2] - args.window[0], args.window[3] - args.window[1]}, {16, 16}};
     const skg_hits_memory *m = run->memory;
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(HITS_SETTLE, frame, *frame),
+        SKG_ARGUMENT(HITS_SETTLE, args, args),
         SKG_ARGUMENT(HITS_SETTLE, parts, run->geometry->part_table.memory),
         SKG_ARGUMENT(HITS_SETTLE, contributions, run->geometry->contribution_table.memory),
         SKG_ARGUMENT(HITS_SETTLE, counts, m->counts.memory),
@@ -221,34 +211,24 @@ static skg_status settle(const hits_run *run) {
         SKG_ARGUMENT(HITS_SETTLE, hits, m->hits.memory),
         SKG_ARGUMENT(HITS_SETTLE, table, m->table.memory),
         SKG_ARGUMENT(HITS_SETTLE, sums, run->raster->sums.memory),
-        SKG_ARGUMENT(HITS_SETTLE, window, window),
     };
-    const size_t local[2] = {16, 16};
-    const size_t global[2] = {(size_t)skg_round_up(window.s[2] - window.s[0], 16),
-                              (size_t)skg_round_up(window.s[3] - window.s[1], 16)};
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_kernel_create(run->program, "skg_hits_settle", &kernel));
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(run->context, kernel, "priority", 2, global, local, &run->staging->log));
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_settle", "priority", &work, arguments,
+                           &run->staging->log);
 }
 
 /* Reserves and clears what the window's rows need. No other row is read. */
 static skg_status clear(const hits_run *run) {
-    const skg_frame_args *frame = &run->raster->frame;
+    const skg_raster_layout *layout = &run->raster->layout;
     cl_command_queue queue = run->context->device->queue;
     skg_hits_memory *m = run->memory;
-    const int64_t pixels = (int64_t)frame->rows * frame->columns * (int64_t)sizeof(cl_int);
+    const int64_t pixels = (int64_t)layout->rows * layout->columns * (int64_t)sizeof(cl_int);
     const cl_int4 window = window_of(run);
-    const size_t row = (size_t)frame->columns * sizeof(cl_int), rows = (size_t)(window.s[3] - window.s[1]);
+    const size_t row = (size_t)layout->columns * sizeof(cl_int), rows = (size_t)(window.s[3] - window.s[1]);
     /* Winners that reach the source's plane are listed by a kernel that leaves the spans alone. */
-    const cl_int2 anywhere = {.s = {0, frame->columns}}, nowhere = {.s = {frame->columns, 0}};
+    const cl_int2 anywhere = {.s = {0, layout->columns}}, nowhere = {.s = {layout->columns, 0}};
     const cl_int2 *span = run->raster->options.kernels.source_plane ? &anywhere : &nowhere;
     const cl_int none = 0;
-    SKG_TRY(reserve(run, &m->spans, (int64_t)frame->rows * (int64_t)sizeof *span, "hits of the rows"));
+    SKG_TRY(reserve(run, &m->spans, (int64_t)layout->rows * (int64_t)sizeof *span, "hits of the rows"));
     SKG_TRY(reserve(run, &m->counts, pixels, "hits of the pixels"));
     SKG_TRY(reserve(run, &m->starts, pixels, "hits of the pixels"));
     SKG_TRY(reserve(run, &m->total, sizeof(skg_hit_count), "hits of the pixels"));
@@ -264,7 +244,8 @@ static skg_status clear(const hits_run *run) {
 static skg_status count_others(const hits_run *run) {
     const skg_hits_memory *m = run->memory;
     const cl_int4 window = window_of(run);
-    const size_t row = (size_t)run->raster->frame.columns * sizeof(cl_int), first = (size_t)window.s[1] * row;
+    const size_t row = (size_t)run->raster->layout.columns * sizeof(cl_int),
+                 first = (size_t)window.s[1] * row;
     if (run->pass->priority.others == 0) return SKG_OK;
     SKG_CL_TRY(clEnqueueCopyBuffer(run->context->device->queue, m->counts.memory, m->starts.memory, first,
                                    first, (size_t)(window.s[3] - window.s[1]) * row, 0, NULL, NULL));

@@ -19,10 +19,28 @@ typedef struct {
 /* How many lanes kernels with wide vectors use on this device. */
 int32_t skg_kernel_lanes(skg_context *context, int32_t precision);
 
-/* The program of these kernel files, behind the headers that all need, from the context's cache or built. program: NULL:
- * it is only expected (skg_expected_begin). */
+/* A -D name of a program and its value. A table of them gives the options of a program, and tells it from others. */
+typedef struct {
+    const char *name;
+    int64_t value;
+} skg_define;
+
+/* The options "-D NAME=VALUE -D ..." of a table. */
+skg_status skg_defines_text(int32_t count, const skg_define *defines, size_t size, char *text);
+
+/* Tables of -D names, and further options of the compiler. */
+typedef struct {
+    int32_t count, reserved;
+    const skg_define *defines; /* [count] */
+    const char *flags;         /* NULL: none */
+} skg_program_options;
+#define SKG_DEFINES(table)                                                                                   \
+    (&(const skg_program_options){.count = (int32_t)(sizeof(table) / sizeof *(table)), .defines = (table)})
+
+/* The program of these kernel files, behind the headers that all need, from the context's cache or built. more: NULL: no -D
+ * names but those of the options; program: NULL: it is only expected (skg_expected_begin). */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
-                           const char *const *names, const char *more_options, cl_program *program);
+                           const char *const *names, const skg_program_options *more, cl_program *program);
 
 /* What a work-item of the stage `attenuate` does on a CPU: vectors of pixels together, and how often. */
 enum { SKG_CPU_RUNS = 4, SKG_CPU_STRIP = 8 };
@@ -43,25 +61,41 @@ typedef struct {
 #define SKG_ARGUMENT(kernel, name, object)                                                                   \
     { SKG_##kernel##_##name, sizeof(object), &(object) }
 
-skg_status skg_kernel_arguments(cl_kernel kernel, int32_t count, const skg_argument *arguments);
-
-/* Sets an array of skg_argument. */
-#define SKG_SET_ARGUMENTS(kernel, arguments)                                                                 \
-    skg_kernel_arguments(kernel, (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments)
-
-/* A real number in the precision of a kernel, to be passed as an argument of `size` bytes from `value`. */
+/* The work-items of a launch in each of its dimensions; whole groups are launched. */
 typedef struct {
-    float single;
-    double twice;
-    size_t size;
-    const void *value;
-} skg_real_argument;
-void skg_real_argument_set(skg_real_argument *argument, int32_t is_double, double value);
+    cl_uint dimensions;
+    int64_t items[3], group[3];
+} skg_work_size;
 
-/* Enqueues a kernel. global and local: sizes in `dimensions` dimensions; local may be NULL. stage: for messages and
- * for the log, which may be NULL. */
-skg_status skg_kernel_run(skg_context *context, cl_kernel kernel, const char *stage, cl_uint dimensions,
-                          const size_t *global, const size_t *local, skg_stage_log *log);
+/* Sets a kernel's arguments and enqueues it. arguments: an array of skg_argument; stage: for messages and for the log, which may
+ * be NULL. */
+#define SKG_LAUNCH(context, kernel, stage, work, arguments, log)                                             \
+    skg_kernel_launch(context, kernel, stage, work, (int32_t)(sizeof(arguments) / sizeof *(arguments)),      \
+                      arguments, log)
+skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char *stage,
+                             const skg_work_size *work, int32_t count, const skg_argument *arguments,
+                             skg_stage_log *log);
+
+/* The same with a kernel that is made for this launch alone. */
+#define SKG_LAUNCH_ONCE(context, program, function, stage, work, arguments, log)                             \
+    skg_program_launch(context, program, function, stage, work,                                              \
+                       (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments, log)
+skg_status skg_program_launch(skg_context *context, cl_program program, const char *function,
+                              const char *stage, const skg_work_size *work, int32_t count,
+                              const skg_argument *arguments, skg_stage_log *log);
+
+/* An argument that is a struct in the precision of the kernel. */
+#define SKG_ARGUMENT_WITH(kernel, name, is_double, twice, single)                                            \
+    {                                                                                                        \
+        SKG_##kernel##_##name, (is_double) ? sizeof(twice) : sizeof(single),                                 \
+            (is_double) ? (const void *)&(twice) : (const void *)&(single)                                   \
+    }
+
+/* Rounds a struct of arguments to single precision. first_whole: the first member behind the reals. */
+#define SKG_ROUND_ARGUMENTS(twice, single, first_whole)                                                      \
+    skg_arguments_round(&(twice), (size_t)((const char *)&(twice).first_whole - (const char *)&(twice)),     \
+                        sizeof(twice), &(single))
+void skg_arguments_round(const void *twice, size_t reals, size_t size, void *single);
 
 /* Enqueues a write of `bytes` of data. The data must stay until the device has read them. */
 skg_status skg_stage_write(skg_context *context, const char *stage, cl_mem buffer, int64_t offset,

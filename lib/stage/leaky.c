@@ -50,7 +50,7 @@ static skg_status get_raster(batching *b, skg_raster_cache *rasters) {
         most = planes > most ? planes : most;
         total += planes;
     }
-    const int64_t capacity = BATCH_BYTES / (shared->frame.plane * skg_raster_sum_bytes(shared));
+    const int64_t capacity = BATCH_BYTES / (shared->layout.plane * skg_raster_sum_bytes(shared));
     b->planes = total < capacity ? total : capacity;
     b->planes = b->planes > most ? b->planes : most;
     options.kernels = b->pass->kernels;
@@ -90,23 +90,22 @@ static void fill_batch(const batching *b, const skg_leaky_batch *batch, cl_int *
 }
 
 static skg_status add_sums(const skg_leaky_batch *batch) {
-    const skg_frame_args *layout = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
+    const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_context *context = batch->raster->context;
     const int on_gpu = context->device->info.is_gpu;
     const int64_t lanes = skg_kernel_lanes(context, batch->raster->options.kernels.precision);
     /* On a CPU one work-item takes a whole row. */
-    const size_t across = on_gpu ? (size_t)((layout->columns + 8 * lanes - 1) / (8 * lanes)) * 8 : 1;
-    const size_t local[2] = {on_gpu ? 8 : 1, 8};
-    const size_t global[2] = {across, (size_t)((layout->rows + 7) / 8 * 8)};
-    const skg_argument arguments[] = {SKG_ARGUMENT(LEAKY_ADD, shared, batch->shared->sums.memory)};
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_leaky_kernel(batch, "skg_leaky_add", &kernel));
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(context, kernel, "leaky meshes", 2, global, local, &batch->staging->log));
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    const skg_work_size work = {
+        2, {on_gpu ? (layout->columns + lanes - 1) / lanes : 1, layout->rows}, {on_gpu ? 8 : 1, 8}};
+    const skg_argument arguments[] = {
+        SKG_LEAKY_ARGUMENTS(LEAKY_ADD, args, batch),
+        SKG_ARGUMENT(LEAKY_ADD, shared, batch->shared->sums.memory),
+    };
+    cl_program program = NULL;
+    SKG_TRY(skg_leaky_program(batch, &program));
+    return SKG_LAUNCH_ONCE(context, program, "skg_leaky_add", "leaky meshes", &work, arguments,
+                           &batch->staging->log);
 }
 
 /* Takes parts from `first` in the verdicts on, as long as the planes suffice. */

@@ -21,28 +21,16 @@ int64_t skg_leaky_memory_bytes(const skg_leaky_memory *memory) {
     return memory->verdicts.bytes + memory->gaps.bytes;
 }
 
-skg_status skg_leaky_kernel(const skg_leaky_batch *batch, const char *name, cl_kernel *kernel) {
+skg_status skg_leaky_program(const skg_leaky_batch *batch, cl_program *program) {
     static const char *const files[] = {"leaky.cl"};
     const skg_raster *raster = batch->raster;
     const skg_kernel_options options = {.precision = raster->options.kernels.precision,
                                         .bits = raster->options.kernels.bits};
-    const cl_int parts = (cl_int)batch->parts;
-    const skg_argument arguments[] = {
-        SKG_ARGUMENT(LEAKY_BATCH, frame, raster->frame),
-        SKG_ARGUMENT(LEAKY_BATCH, copies, raster->sums.memory),
-        SKG_ARGUMENT(LEAKY_BATCH, used, raster->used.memory),
-        SKG_ARGUMENT(LEAKY_BATCH, parts, parts),
-        SKG_ARGUMENT(LEAKY_BATCH, table, batch->memory->table.memory),
-    };
-    cl_program program = NULL;
-    *kernel = NULL;
-    SKG_TRY(skg_kernels_get(raster->context, &options, 1, files, NULL, &program));
-    SKG_TRY(skg_kernel_create(program, name, kernel));
-    const skg_status status = SKG_SET_ARGUMENTS(*kernel, arguments);
-    if (status == SKG_OK) return SKG_OK;
-    clReleaseKernel(*kernel);
-    *kernel = NULL;
-    return status;
+    return skg_kernels_get(raster->context, &options, 1, files, NULL, program);
+}
+
+skg_leaky_args skg_leaky_scalars(const skg_leaky_batch *batch) {
+    return (skg_leaky_args){.layout = batch->raster->layout, .parts = (SKG_INT)batch->parts};
 }
 
 skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,

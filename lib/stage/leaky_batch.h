@@ -38,8 +38,17 @@ static inline int64_t skg_leaky_part(const skg_leaky_batch *batch, int64_t k) {
     return batch->leaky[batch->indices[k]];
 }
 
-/* A kernel of leaky.cl with the arguments of LEAKY_BATCH set. The caller releases it with clReleaseKernel. */
-skg_status skg_leaky_kernel(const skg_leaky_batch *batch, const char *name, cl_kernel *kernel);
+/* The program leaky.cl for a batch. */
+skg_status skg_leaky_program(const skg_leaky_batch *batch, cl_program *program);
+
+/* The scalar arguments of its kernels. */
+skg_leaky_args skg_leaky_scalars(const skg_leaky_batch *batch);
+
+/* The arguments that its kernels have in common. */
+#define SKG_LEAKY_ARGUMENTS(kernel, scalars, batch)                                                          \
+    SKG_ARGUMENT(kernel, args, scalars), SKG_ARGUMENT(kernel, copies, (batch)->raster->sums.memory),         \
+        SKG_ARGUMENT(kernel, used, (batch)->raster->used.memory),                                            \
+        SKG_ARGUMENT(kernel, table, (batch)->memory->table.memory)
 
 /* The caps of a leaky part, made at the first call. index: into the leaky parts. */
 skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,

@@ -1,5 +1,6 @@
-/* One pass of a frame: from the vertices to the sums of one sample of the source, and of one sample or all of the pixel. What the stages need to know of
- * it, filled by lib/frame. Private. */
+/* One pass of a frame. The image of a focal spot with several samples, or of pixels with several rays, is the mean of several
+ * passes. Each has one sample of the source, and one ray in each pixel or all rays of the pixels together (`fine`). It projects
+ * the vertices and adds up path lengths in the planes of a raster. lib/frame fills this struct for the stages. Private. */
 #ifndef SKG_PASS_H
 #define SKG_PASS_H
 

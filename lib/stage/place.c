@@ -23,7 +23,7 @@ static skg_status get_kernel(skg_placement *placement, skg_context *context, int
     const skg_kernel_options options = {.precision = precision, .bits = 32};
     cl_program program = NULL;
     if (placement->kernel) return SKG_OK;
-    SKG_TRY(skg_kernels_get(context, &options, 1, files, "", &program));
+    SKG_TRY(skg_kernels_get(context, &options, 1, files, NULL, &program));
     return skg_kernel_create(program, "skg_place", &placement->kernel);
 }
 
@@ -66,12 +66,10 @@ static skg_status run(skg_placement *placement, skg_context *context, const skg_
         SKG_ARGUMENT(PLACE, vertices, geometry->offsets.memory),
         SKG_ARGUMENT(PLACE, outside, placement->outside.memory),
     };
-    const size_t local = context->device->info.is_gpu ? 64 : 16,
-                 global = ((size_t)vertices + local - 1) / local * local;
+    const skg_work_size work = {1, {vertices}, {context->device->info.is_gpu ? 64 : 16}};
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, placement->outside.memory, &none, sizeof none,
                                    (size_t)index * sizeof none, sizeof none, 0, NULL, NULL));
-    SKG_TRY(SKG_SET_ARGUMENTS(placement->kernel, arguments));
-    return skg_kernel_run(context, placement->kernel, "place", 1, &global, &local, NULL);
+    return SKG_LAUNCH(context, placement->kernel, "place", &work, arguments, NULL);
 }
 
 skg_status skg_placement_place(skg_placement *placement, skg_context *context, skg_geometry *geometry,

@@ -12,6 +12,8 @@
 #include "stage/kernels.h"
 #include "stage/staging.h"
 
+#include <skiagraph/plan.h>
+
 /* A part in one frame. */
 typedef struct {
     const double *pose;   /* 4x4, row by row */
@@ -57,9 +59,29 @@ typedef struct {
     skg_buffer bad;
 } skg_geometry;
 
+/* Bytes of a number, and of an entry of the tables of parts and contributions. */
+static inline int skg_geometry_is_double(const skg_geometry *geometry) {
+    return geometry->precision == SKG_PRECISION_DOUBLE;
+}
+static inline size_t skg_geometry_real_size(const skg_geometry *geometry) {
+    return skg_geometry_is_double(geometry) ? sizeof(double) : sizeof(float);
+}
+static inline size_t skg_geometry_entry_size(const skg_geometry *geometry) {
+    return skg_geometry_is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
+}
+static inline size_t skg_geometry_contribution_size(const skg_geometry *geometry) {
+    return skg_geometry_is_double(geometry) ? sizeof(skg_contribution_double)
+                                            : sizeof(skg_contribution_float);
+}
+
+/* Waits until the device has read what a slot was last filled with: only then may it be filled again. */
+skg_status skg_table_slot_wait(skg_table_slot *slot);
+
 /* The arguments that kernels which take triangles have in common. */
-#define SKG_TRIANGLE_ARGUMENTS(kernel, frame_args, geometry)                                                 \
-    SKG_ARGUMENT(kernel, frame, frame_args), SKG_ARGUMENT(kernel, corners, (geometry)->corners.memory),      \
+#define SKG_TRIANGLE_ARGUMENTS(kernel, raster_layout, geometry)                                              \
+    SKG_ARGUMENT(kernel, layout, raster_layout), SKG_TRIANGLE_BUFFERS(kernel, geometry)
+#define SKG_TRIANGLE_BUFFERS(kernel, geometry)                                                               \
+    SKG_ARGUMENT(kernel, corners, (geometry)->corners.memory),                                               \
         SKG_ARGUMENT(kernel, projected, (geometry)->projected.memory),                                       \
         SKG_ARGUMENT(kernel, parts, (geometry)->part_table.memory),                                          \
         SKG_ARGUMENT(kernel, blocks, (geometry)->triangle_blocks.memory)

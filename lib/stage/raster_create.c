@@ -5,125 +5,77 @@
 
 #include <string.h>
 
-/* Planes fill only parts of a band, and a triangle is set up in each band that it meets: of the thorax with 17 accumulators,
- * bands of 8, 16, 24, 32 and 64 rows took 3.0, 2.4, 2.3, 2.2 and 2.2 ms at 1024^2, 11.1, 7.0, 6.7, 6.4 and 6.3 ms at 2048^2
- * (EPYC, 2 cores). */
-enum {
-    CACHE_BYTES = 256 * 1024, /* of a band: half of the level 2 cache of common CPUs */
-    HIGH_BAND = 32,           /* rows that a band may have even so */
-    MOST_BAND_ROWS = 256,
-    SQUARE = 32,            /* side of a tile on a GPU */
-    QUEUE_ENTRIES = 1 << 20 /* strips of large triangles; more are drawn without the queue */
-};
+/* The strategies. The first that takes the options draws. */
+static const skg_raster_strategy *const strategies[] = {&skg_raster_half,    &skg_raster_passes_together,
+                                                        &skg_raster_copies,  &skg_raster_atomics,
+                                                        &skg_raster_squares, &skg_raster_bands};
+
+static skg_status choose_strategy(skg_raster *raster) {
+    for (size_t k = 0; k < sizeof strategies / sizeof *strategies; k++)
+        if (strategies[k]->takes(raster->context, &raster->options)) {
+            raster->strategy = strategies[k];
+            return SKG_OK;
+        }
+    return skg_fail(SKG_ERR_INTERNAL, "no strategy %d", (int)raster->options.strategy);
+}
 
 int64_t skg_raster_sum_bytes(const skg_raster *raster) {
     return raster->options.kernels.bits / 8;
 }
 
-int skg_raster_has_squares(const skg_raster *raster) {
-    const int32_t shape = raster->options.shape;
-    return shape == SKG_TILE_SQUARES || (shape == SKG_TILE_AUTO && raster->context->device->info.is_gpu);
-}
-
-int64_t skg_raster_band_rows(int64_t rows_of_detector, int64_t row_bytes, int64_t groups) {
-    const int64_t fit = CACHE_BYTES / row_bytes, even = rows_of_detector / (4 * groups);
-    int64_t rows = fit > HIGH_BAND ? fit : HIGH_BAND;
-    rows = rows < even ? rows : even; /* some bands for each worker */
-    rows = rows < MOST_BAND_ROWS ? rows : MOST_BAND_ROWS;
-    const int64_t least = (rows_of_detector + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
-    rows = rows > 8 ? rows : 8;
-    return rows > least ? rows : least;
-}
-
-static SKG_INT band_rows(const skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    return (SKG_INT)skg_raster_band_rows(
-        frame->rows, frame->stride * frame->planes * skg_raster_sum_bytes(raster), raster->workers);
-}
-
-static skg_status square_side(const skg_raster *raster, SKG_INT *side) {
-    const int64_t capacity = raster->context->device->info.local_memory,
-                  pixel = raster->frame.planes * skg_raster_sum_bytes(raster);
-    if (!raster->options.tile)
-        while (*side > 8 && *side * *side * pixel > capacity / 2) *side /= 2;
-    if (*side * *side * pixel > capacity)
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "tiles of %d x %d pixels with %d planes do not fit the local memory of %s; choose smaller "
-            "tiles or strategy atomics",
-            (int)*side, (int)*side, (int)raster->frame.planes, raster->context->device->info.name);
-    return SKG_OK;
-}
-
 static skg_status lay_out(skg_raster *raster) {
     const skg_raster_options *o = &raster->options;
-    skg_frame_args *frame = &raster->frame;
+    skg_raster_layout *layout = &raster->layout;
     /* PoCL gives two work-groups unevenly to two threads, but not one work-group more than there are threads. */
     raster->workers = raster->context->device->info.compute_units + 1;
-    frame->columns = (SKG_INT)o->columns;
-    frame->rows = (SKG_INT)o->rows;
-    frame->stride = (SKG_INT)skg_round_up(o->columns + SKG_SPARE_COLUMNS, 16);
-    const int64_t plane = frame->stride * (o->rows + SKG_SPARE_ROWS);
+    layout->columns = (SKG_INT)o->columns;
+    layout->rows = (SKG_INT)o->rows;
+    layout->stride = (SKG_INT)skg_round_up(o->columns + SKG_SPARE_COLUMNS, 16);
+    const int64_t plane = layout->stride * (o->rows + SKG_SPARE_ROWS);
     if (skg_raster_side(raster) * plane * o->planes > INT32_MAX)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%d planes of this detector are more than 2^31 accumulators",
                         (int)o->planes);
-    frame->plane = (SKG_INT)plane;
-    frame->planes = (SKG_INT)o->planes;
-    frame->copies =
-        o->strategy == SKG_STRATEGY_COPIES && skg_raster_passes(raster) == 1 ? raster->workers : 1;
-    frame->tile_columns = frame->columns;
-    frame->tile_rows = frame->rows;
-    if (o->strategy == SKG_STRATEGY_TILES) {
-        SKG_INT side = o->tile ? o->tile : skg_raster_has_squares(raster) ? SQUARE : band_rows(raster);
-        if (skg_raster_has_squares(raster)) {
-            SKG_TRY(square_side(raster, &side));
-            frame->tile_columns = side;
-        }
-        frame->tile_rows = side;
-        if (!skg_raster_has_squares(raster) && (frame->rows + side - 1) / side > SKG_MOST_BANDS)
-            return skg_fail(SKG_ERR_ARGUMENT, "bands of %d rows are more than %d; make them higher",
-                            (int)side, SKG_MOST_BANDS);
-    }
-    frame->tiles_across = (frame->columns + frame->tile_columns - 1) / frame->tile_columns;
-    frame->tiles_down = (frame->rows + frame->tile_rows - 1) / frame->tile_rows;
-    frame->queue = o->strategy == SKG_STRATEGY_ATOMICS ? QUEUE_ENTRIES : 0;
+    layout->plane = (SKG_INT)plane;
+    layout->planes = (SKG_INT)o->planes;
+    layout->copies = 1;
+    layout->tile_columns = layout->columns;
+    layout->tile_rows = layout->rows;
+    SKG_TRY(choose_strategy(raster));
+    if (raster->strategy->lay_out) SKG_TRY(raster->strategy->lay_out(raster));
+    layout->tiles_across = (layout->columns + layout->tile_columns - 1) / layout->tile_columns;
+    layout->tiles_down = (layout->rows + layout->tile_rows - 1) / layout->tile_rows;
     return SKG_OK;
 }
 
-static skg_status reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes, const char *what) {
+skg_status skg_raster_reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes, const char *what) {
     return skg_buffer_reserve(raster->context, buffer, bytes, CL_MEM_READ_WRITE, what);
 }
 
 static int64_t bytes_of_sums(const skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    return (int64_t)frame->copies * skg_raster_passes(raster) * frame->planes * frame->plane *
+    const skg_raster_layout *layout = &raster->layout;
+    return (int64_t)layout->copies * skg_raster_passes(raster) * layout->planes * layout->plane *
            skg_raster_sum_bytes(raster);
 }
 
+int64_t skg_raster_plane_bytes(const skg_raster *raster) {
+    return (int64_t)raster->layout.planes * raster->layout.plane * skg_raster_sum_bytes(raster);
+}
+
+skg_status skg_raster_reserve_lists(skg_raster *raster) {
+    const int64_t of_int = sizeof(cl_int), triangles = raster->options.triangles;
+    SKG_TRY(
+        skg_raster_reserve(raster, &raster->list, triangles * SKG_MOST_TILES * of_int, "lists of the tiles"));
+    return skg_raster_reserve(raster, &raster->for_all, triangles * of_int, "list for all tiles");
+}
+
 static skg_status allocate(skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    const int64_t of_int = sizeof(cl_int), tiles = (int64_t)frame->tiles_across * frame->tiles_down;
-    const int64_t planes = (int64_t)skg_raster_passes(raster) * frame->planes;
-    SKG_TRY(reserve(raster, &raster->sums, bytes_of_sums(raster), "accumulators"));
-    SKG_TRY(
-        reserve(raster, &raster->used, SKG_EXTENT(frame->copies, planes) * of_int, "accumulators in use"));
-    if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
-        SKG_TRY(reserve(raster, &raster->queue, (2 * (int64_t)frame->queue + 2) * of_int,
-                        "queue of large triangles"));
-    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
-    const int64_t chunks = (raster->options.triangles + SKG_CHUNK - 1) / SKG_CHUNK;
-    SKG_TRY(
-        reserve(raster, &raster->counts, (skg_raster_has_squares(raster) ? tiles + 1 : 3) * of_int, "tiles"));
-    SKG_TRY(reserve(raster, &raster->starts,
-                    (skg_raster_has_squares(raster) ? tiles + 2 : 2 * chunks * tiles) * of_int, "tiles"));
-    SKG_TRY(reserve(raster, &raster->list, raster->options.triangles * SKG_MOST_TILES * of_int,
-                    "lists of the tiles"));
-    SKG_TRY(reserve(raster, &raster->for_all, raster->options.triangles * of_int, "list for all tiles"));
-    if (skg_raster_has_squares(raster)) return SKG_OK;
-    return reserve(raster, &raster->scratch,
-                   (int64_t)raster->workers * frame->planes * frame->stride *
-                       (frame->tile_rows + (int64_t)SKG_SPARE_ROWS) * skg_raster_sum_bytes(raster),
-                   "bands");
+    const skg_raster_layout *layout = &raster->layout;
+    const int64_t planes = (int64_t)skg_raster_passes(raster) * layout->planes;
+    SKG_TRY(skg_raster_reserve(raster, &raster->sums, bytes_of_sums(raster), "accumulators"));
+    SKG_TRY(skg_raster_reserve(raster, &raster->used,
+                               SKG_EXTENT(layout->copies, planes) * (int64_t)sizeof(cl_int),
+                               "accumulators in use"));
+    return raster->strategy->allocate ? raster->strategy->allocate(raster) : SKG_OK;
 }
 
 skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,
@@ -135,74 +87,34 @@ skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, c
 
 /* On the host the whole detector for each plane; on the device any extent, until a frame sends its own. */
 static skg_status make_extents(skg_raster *raster) {
-    const skg_frame_args *frame = &raster->frame;
-    SKG_TRY(skg_alloc(4 * (1 + (int64_t)skg_raster_passes(raster)) * frame->planes, sizeof *raster->whole,
+    const skg_raster_layout *layout = &raster->layout;
+    SKG_TRY(skg_alloc(4 * (1 + (int64_t)skg_raster_passes(raster)) * layout->planes, sizeof *raster->whole,
                       "extents", &raster->whole));
-    raster->sent = raster->whole + 4 * frame->planes;
-    for (int32_t p = 0; p < frame->planes; p++)
-        raster->whole[4 * p + 1] = frame->rows, raster->whole[4 * p + 3] = frame->stride;
+    raster->sent = raster->whole + 4 * layout->planes;
+    for (int32_t p = 0; p < layout->planes; p++)
+        raster->whole[4 * p + 1] = layout->rows, raster->whole[4 * p + 3] = layout->stride;
     return skg_raster_fill(raster, &raster->used, 1, 0, raster->used.bytes);
 }
 
-/* A kernel of a raster, by its name. */
-typedef struct {
-    int which;
-    const char *name;
-} named_kernel;
-
-/* Compiles these files, the projection before them, and makes its kernel and these. */
-static skg_status compile_files(skg_raster *raster, int32_t files, const char *const *names, int kernels,
-                                const named_kernel *kernel) {
-    const char *more = skg_raster_side(raster) > 1 ? "-D SKG_SIDE=4" : NULL;
-    enum { MOST = 6 };
-    const char *all[MOST] = {"fine.clh", "project.cl"};
-    cl_program program = NULL;
-    for (int32_t i = 0; i < files; i++) all[i + 2] = names[i];
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, files + 2, all, more,
-                            raster->expected ? NULL : &program));
-    if (raster->expected) return SKG_OK;
-    SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
-    for (int k = 0; k < kernels; k++)
-        SKG_TRY(skg_kernel_create(program, kernel[k].name, &raster->kernels[kernel[k].which]));
-    return SKG_OK;
-}
-
-static skg_status compile_copies(skg_raster *raster) {
-    cl_program program = NULL;
-    SKG_TRY(skg_kernels_get_first(raster->context, raster->expected ? NULL : &program));
-    if (raster->expected) return SKG_OK;
-    SKG_TRY(skg_kernel_create(program, "skg_project", &raster->kernels[SKG_RASTER_PROJECT]));
-    return skg_kernel_create(program, "skg_raster_copies", &raster->kernels[SKG_RASTER_DRAW]);
+skg_status skg_raster_get_program(const skg_raster *raster, cl_program *program) {
+    const char *files[2 + SKG_STRATEGY_FILES] = {"fine.clh", "project.cl"};
+    const skg_define side[] = {{"SKG_SIDE", skg_raster_side(raster)}};
+    int32_t count = 2;
+    for (int32_t f = 0; f < SKG_STRATEGY_FILES && raster->strategy->files[f]; f++)
+        files[count++] = raster->strategy->files[f];
+    return skg_kernels_get(raster->context, &raster->options.kernels, count, files, SKG_DEFINES(side),
+                           program);
 }
 
 static skg_status compile_strategy(skg_raster *raster) {
-    static const char *const half[] = {"pixel.clh", "half.cl"};
-    static const char *const copies[] = {"batch.clh", "draw.clh", "raster_copies.cl"};
-    static const char *const passes[] = {"batch.clh", "draw.clh", "raster_passes.cl"};
-    static const char *const atomics[] = {"pixel.clh", "raster_atomics.cl"};
-    static const char *const squares[] = {"pixel.clh", "tiles.cl", "raster_squares.cl"};
-    static const char *const bands[] = {"bands.cl", "batch.clh", "draw.clh", "raster_bands.cl"};
-    static const named_kernel of_half[] = {{SKG_RASTER_DRAW, "skg_raster_half"}};
-    static const named_kernel of_copies[] = {{SKG_RASTER_DRAW, "skg_raster_copies"}};
-    static const named_kernel of_passes[] = {{SKG_RASTER_DRAW, "skg_raster_passes"}};
-    static const named_kernel of_atomics[] = {{SKG_RASTER_DRAW, "skg_raster_atomics"},
-                                              {SKG_RASTER_LARGE, "skg_raster_queue"}};
-    static const named_kernel of_squares[] = {{SKG_RASTER_COUNT, "skg_tiles_count"},
-                                              {SKG_RASTER_SCAN, "skg_tiles_scan"},
-                                              {SKG_RASTER_FILL, "skg_tiles_fill"},
-                                              {SKG_RASTER_DRAW, "skg_raster_squares"}};
-    static const named_kernel of_bands[] = {{SKG_RASTER_FILL, "skg_bands_sort"},
-                                            {SKG_RASTER_DRAW, "skg_raster_bands"}};
-    if (raster->options.kernels.half) return compile_files(raster, 2, half, 1, of_half);
-    if (skg_raster_passes(raster) > 1) return compile_files(raster, 3, passes, 1, of_passes);
-    if (raster->options.strategy == SKG_STRATEGY_COPIES)
-        return skg_kernels_are_first(raster->context, &raster->options.kernels)
-                   ? compile_copies(raster)
-                   : compile_files(raster, 3, copies, 1, of_copies);
-    if (raster->options.strategy == SKG_STRATEGY_ATOMICS)
-        return compile_files(raster, 2, atomics, 2, of_atomics);
-    return skg_raster_has_squares(raster) ? compile_files(raster, 3, squares, 4, of_squares)
-                                          : compile_files(raster, 4, bands, 2, of_bands);
+    const skg_raster_strategy *strategy = raster->strategy;
+    cl_program program = NULL, *wanted = raster->expected ? NULL : &program;
+    SKG_TRY((strategy->get_program ? strategy->get_program : skg_raster_get_program)(raster, wanted));
+    if (raster->expected) return SKG_OK;
+    SKG_TRY(skg_kernel_create(program, "skg_project", &raster->project));
+    for (int k = 0; k < SKG_STRATEGY_KERNELS && strategy->kernels[k]; k++)
+        SKG_TRY(skg_kernel_create(program, strategy->kernels[k], &raster->kernels[k]));
+    return SKG_OK;
 }
 
 static skg_status compile(skg_raster *raster) {
@@ -213,23 +125,23 @@ static skg_status compile(skg_raster *raster) {
     if (!options->source_plane || options->parallel || options->half) return SKG_OK;
     SKG_TRY(skg_kernels_get(raster->context, options, 2, source, NULL, raster->expected ? NULL : &program));
     if (raster->expected) return SKG_OK;
-    return skg_kernel_create(program, "skg_source_plane", &raster->kernels[SKG_RASTER_SOURCE]);
+    return skg_kernel_create(program, "skg_source_plane", &raster->source);
 }
 
 /* Expects the accumulators, of which a frame writes the rows of the extents. Of more copies than threads, the last finds
  * no triangles left. */
 static skg_status expect_sums(const skg_raster *raster, const cl_int *extents) {
-    const skg_frame_args *frame = &raster->frame;
+    const skg_raster_layout *layout = &raster->layout;
     const int64_t threads = raster->context->device->info.compute_units, bytes = skg_raster_sum_bytes(raster);
-    const int64_t images = (int64_t)frame->copies * skg_raster_passes(raster); /* one of the two is 1 */
-    const int64_t count = (frame->copies > 1 && images > threads ? threads : images) * frame->planes;
+    const int64_t images = (int64_t)layout->copies * skg_raster_passes(raster); /* one of the two is 1 */
+    const int64_t count = (layout->copies > 1 && images > threads ? threads : images) * layout->planes;
     skg_byte_range *rows = NULL;
     SKG_TRY(skg_alloc(count, sizeof *rows, "accumulators", &rows));
     for (int64_t k = 0; k < count; k++) {
-        const cl_int *extent = extents + 4 * (k % frame->planes);
-        const int64_t end = extent[1] < frame->rows ? extent[1] : frame->rows; /* extents are rounded up */
-        rows[k] = (skg_byte_range){(k * frame->plane + (int64_t)extent[0] * frame->stride) * bytes,
-                                   (k * frame->plane + end * frame->stride) * bytes};
+        const cl_int *extent = extents + 4 * (k % layout->planes);
+        const int64_t end = extent[1] < layout->rows ? extent[1] : layout->rows; /* extents are rounded up */
+        rows[k] = (skg_byte_range){(k * layout->plane + (int64_t)extent[0] * layout->stride) * bytes,
+                                   (k * layout->plane + end * layout->stride) * bytes};
     }
     skg_buffer_expect(raster->context, bytes_of_sums(raster), count, rows);
     skg_free(&rows);
@@ -271,7 +183,9 @@ void skg_raster_release(skg_raster **raster) {
     skg_buffer *const buffers[] = {&r->sums, &r->used,    &r->scratch, &r->counts,  &r->starts,
                                    &r->list, &r->for_all, &r->queue,   &r->rows_bad};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
-    for (int i = 0; i < SKG_RASTER_KERNELS; i++) release_kernel(r->kernels[i]);
+    for (int i = 0; i < SKG_STRATEGY_KERNELS; i++) release_kernel(r->kernels[i]);
+    release_kernel(r->project);
+    release_kernel(r->source);
     skg_free(&r->whole);
     release_kernel(r->bad_rows);
     release_kernel(r->bad);
@@ -279,13 +193,13 @@ void skg_raster_release(skg_raster **raster) {
 }
 
 cl_kernel skg_raster_projection(const skg_raster *raster) {
-    return raster->kernels[SKG_RASTER_PROJECT];
+    return raster->project;
 }
 
 void skg_raster_tiles(const skg_raster *raster, int64_t *columns, int64_t *rows, int64_t *tiles) {
-    *columns = raster->frame.tile_columns;
-    *rows = raster->frame.tile_rows;
-    *tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
+    *columns = raster->layout.tile_columns;
+    *rows = raster->layout.tile_rows;
+    *tiles = (int64_t)raster->layout.tiles_across * raster->layout.tiles_down;
 }
 
 int64_t skg_raster_bytes(const skg_raster *raster) {

@@ -5,20 +5,36 @@
 #include "stage/raster.h"
 
 enum {
-    SKG_RASTER_PROJECT,
-    SKG_RASTER_COUNT,
-    SKG_RASTER_SCAN,
-    SKG_RASTER_FILL,
-    SKG_RASTER_DRAW,
-    SKG_RASTER_LARGE,
-    SKG_RASTER_SOURCE,
-    SKG_RASTER_KERNELS
+    SKG_RASTER_GROUP = 64, /* local size where a work-item takes a triangle */
+    SKG_STRATEGY_FILES = 5,
+    SKG_STRATEGY_KERNELS = 4
 };
+
+/* How triangles are added up, in one file: raster_*.c, and kernels/raster_*.cl. raster_create.c lists the strategies. A member
+ * that is NULL is not needed. */
+typedef struct {
+    /* Whether it draws rasters with these options. */
+    int (*takes)(const skg_context *context, const skg_raster_options *options);
+    const char *files[SKG_STRATEGY_FILES];     /* of its program, behind those of the projection */
+    const char *kernels[SKG_STRATEGY_KERNELS]; /* functions that become skg_raster.kernels */
+    /* Sets what the layout has beside the sizes of detector and planes: copies, shape of tiles, entries of a queue. */
+    skg_status (*lay_out)(skg_raster *raster);
+    skg_status (*allocate)(skg_raster *raster); /* buffers beside sums and used */
+    /* Its program, instead of skg_raster_get_program. program: NULL: it is only expected. */
+    skg_status (*get_program)(const skg_raster *raster, cl_program *program);
+    /* Enqueues one frame. */
+    skg_status (*run)(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
+    /* The buffer that holds the two ints of skg_raster_read_listed, and the first of them. */
+    const skg_buffer *(*find_listed)(const skg_raster *raster, int64_t *first);
+} skg_raster_strategy;
+extern const skg_raster_strategy skg_raster_half, skg_raster_passes_together, skg_raster_copies,
+    skg_raster_atomics, skg_raster_squares, skg_raster_bands;
 
 struct skg_raster {
     skg_context *context;
     skg_raster_options options;
-    skg_frame_args frame;
+    const skg_raster_strategy *strategy;
+    skg_raster_layout layout;
     skg_ray_float rays; /* half */
     int32_t workers;    /* persistent work-groups, if the strategy has such */
     skg_buffer sums;
@@ -30,19 +46,42 @@ struct skg_raster {
         for_all;         /* tiles; for bands: counters, pieces, pool, list for all bands */
     skg_buffer queue;    /* atomics: strips of large triangles */
     skg_buffer rows_bad; /* [count planes][rows][3] of the last verdicts, as counts.cl leaves it */
-    cl_kernel kernels[SKG_RASTER_KERNELS]; /* NULL: not used by the strategy */
-    cl_kernel bad_rows, bad;               /* made on demand */
-    int32_t expected;                      /* 1: its programs are only expected */
+    cl_kernel kernels[SKG_STRATEGY_KERNELS]; /* of the strategy */
+    cl_kernel project;                       /* of the same program */
+    cl_kernel source;                        /* for the source's plane; NULL: no triangle reaches it */
+    cl_kernel bad_rows, bad;                 /* made on demand */
+    int32_t expected;                        /* 1: its programs are only expected */
 };
-
-/* Whether tiles are squares. */
-int skg_raster_has_squares(const skg_raster *raster);
 
 /* How many passes a worker draws side by side: SKG_SIDE of the kernels. */
 int32_t skg_raster_side(const skg_raster *raster);
 
-/* Bytes of an accumulator. */
+/* Bytes of an accumulator, and of all planes of one copy. */
 int64_t skg_raster_sum_bytes(const skg_raster *raster);
+int64_t skg_raster_plane_bytes(const skg_raster *raster);
+
+/* Reserves a buffer of a raster; the lists of the tiles, and the list for all tiles. */
+skg_status skg_raster_reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes, const char *what);
+skg_status skg_raster_reserve_lists(skg_raster *raster);
+
+/* The program of the strategy's files. program: NULL: it is only expected. */
+skg_status skg_raster_get_program(const skg_raster *raster, cl_program *program);
+
+/* The sizes of launches: a work-group of one work-item for each worker; a work-item for each triangle; whole work-groups. */
+static inline skg_work_size skg_raster_by_worker(const skg_raster *raster) {
+    return (skg_work_size){1, {raster->workers}, {1}};
+}
+static inline skg_work_size skg_raster_by_triangle(const skg_raster *raster) {
+    return (skg_work_size){1, {raster->layout.triangles}, {SKG_RASTER_GROUP}};
+}
+static inline skg_work_size skg_raster_in_groups(int64_t groups) {
+    return (skg_work_size){1, {groups * SKG_RASTER_GROUP}, {SKG_RASTER_GROUP}};
+}
+
+/* Launches a kernel of the strategy, by its number in the list of kernels. */
+#define SKG_RASTER_LAUNCH(raster, number, stage, work, arguments, log)                                       \
+    SKG_LAUNCH((raster)->context, (raster)->kernels[number], stage, (const skg_work_size[]){work},           \
+               arguments, log)
 
 /* Enqueues a fill of `bytes` bytes of a buffer from byte `from` on. */
 skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,

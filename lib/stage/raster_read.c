@@ -16,20 +16,20 @@ static skg_status get_bad_kernels(skg_raster *raster) {
 
 skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem planes, int64_t first,
                                  cl_mem verdicts, skg_stage_log *log) {
-    const int64_t row_bytes = 3 * raster->frame.rows * (int64_t)sizeof(cl_int);
+    const int64_t row_bytes = 3 * raster->layout.rows * (int64_t)sizeof(cl_int);
     const cl_int first_verdict = (cl_int)first;
     SKG_TRY(get_bad_kernels(raster));
     SKG_TRY(skg_buffer_reserve(raster->context, &raster->rows_bad, count * row_bytes, CL_MEM_READ_WRITE,
                                "bad pixels of the rows"));
     const skg_argument rows_arguments[] = {
-        SKG_ARGUMENT(COUNT_BAD_ROWS, frame, raster->frame),
+        SKG_ARGUMENT(COUNT_BAD_ROWS, layout, raster->layout),
         SKG_ARGUMENT(COUNT_BAD_ROWS, copies, raster->sums.memory),
         SKG_ARGUMENT(COUNT_BAD_ROWS, used, raster->used.memory),
         SKG_ARGUMENT(COUNT_BAD_ROWS, planes, planes),
         SKG_ARGUMENT(COUNT_BAD_ROWS, rows_bad, raster->rows_bad.memory),
     };
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(COUNT_BAD, frame, raster->frame),
+        SKG_ARGUMENT(COUNT_BAD, layout, raster->layout),
         SKG_ARGUMENT(COUNT_BAD, copies, raster->sums.memory),
         SKG_ARGUMENT(COUNT_BAD, used, raster->used.memory),
         SKG_ARGUMENT(COUNT_BAD, planes, planes),
@@ -37,22 +37,17 @@ skg_status skg_raster_bad_pixels(skg_raster *raster, int64_t count, cl_mem plane
         SKG_ARGUMENT(COUNT_BAD, first, first_verdict),
         SKG_ARGUMENT(COUNT_BAD, verdicts, verdicts),
     };
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->bad_rows, rows_arguments));
-    SKG_TRY(SKG_SET_ARGUMENTS(raster->bad, arguments));
-    const size_t group[2] = {16, 1}, rows[2] = {(size_t)skg_round_up(raster->frame.rows, 16), (size_t)count};
-    const size_t one = 1;
-    SKG_TRY(skg_kernel_run(raster->context, raster->bad_rows, "bad pixels", 2, rows, group, log));
-    return skg_kernel_run(raster->context, raster->bad, "bad pixels", 1, &rows[1], &one, log);
+    const skg_work_size rows = {2, {raster->layout.rows, count}, {16, 1}}, planes_each = {1, {count}, {1}};
+    SKG_TRY(SKG_LAUNCH(raster->context, raster->bad_rows, "bad pixels", &rows, rows_arguments, log));
+    return SKG_LAUNCH(raster->context, raster->bad, "bad pixels", &planes_each, arguments, log);
 }
 
 skg_status skg_raster_read_listed(const skg_raster *raster, int32_t *listed) {
-    if (raster->options.strategy != SKG_STRATEGY_TILES) return SKG_OK;
-    const int64_t tiles = (int64_t)raster->frame.tiles_across * raster->frame.tiles_down;
-    const skg_buffer *from = skg_raster_has_squares(raster) ? &raster->starts : &raster->counts;
-    const size_t first = skg_raster_has_squares(raster)
-                             ? (size_t)tiles
-                             : 1; /* as the kernels of tiles.cl and bands.cl leave it */
+    int64_t first = 0;
+    if (!raster->strategy->find_listed) return SKG_OK;
+    const skg_buffer *from = raster->strategy->find_listed(raster, &first);
     SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, from->memory, CL_FALSE,
-                                   first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL, NULL));
+                                   (size_t)first * sizeof(cl_int), 2 * sizeof(cl_int), listed, 0, NULL,
+                                   NULL));
     return SKG_OK;
 }

@@ -9,48 +9,41 @@
 #include <string.h>
 
 static skg_status find_gaps(const skg_leaky_batch *batch) {
-    const skg_frame_args *frame = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
+    const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_buffer *gaps = &batch->memory->gaps;
     skg_context *context = batch->raster->context;
-    const size_t local[2] = {16, 1},
-                 global[2] = {(size_t)skg_round_up(frame->rows, 16), (size_t)batch->parts};
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
+    const skg_work_size work = {2, {layout->rows, batch->parts}, {16, 1}};
+    cl_program program = NULL;
     SKG_TRY(skg_buffer_reserve(context, gaps,
-                               batch->parts * frame->rows * frame->columns * (int64_t)sizeof(cl_int),
+                               batch->parts * layout->rows * layout->columns * (int64_t)sizeof(cl_int),
                                CL_MEM_READ_WRITE, "bad pixels"));
-    SKG_TRY(skg_leaky_kernel(batch, "skg_leaky_gaps", &kernel));
+    SKG_TRY(skg_leaky_program(batch, &program));
     const skg_argument arguments[] = {
+        SKG_LEAKY_ARGUMENTS(LEAKY_GAPS, args, batch),
         SKG_ARGUMENT(LEAKY_GAPS, rows_bad, batch->raster->rows_bad.memory),
         SKG_ARGUMENT(LEAKY_GAPS, gaps, gaps->memory),
     };
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(context, kernel, "repair", 2, global, local, &batch->staging->log));
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    return SKG_LAUNCH_ONCE(context, program, "skg_leaky_gaps", "repair", &work, arguments,
+                           &batch->staging->log);
 }
 
 static skg_status take_neighbours(const skg_leaky_batch *batch) {
-    const skg_frame_args *frame = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
+    const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_context *context = batch->raster->context;
     const int on_gpu = context->device->info.is_gpu;
-    const size_t local[2] = {on_gpu ? 16 : 1, 8};
-    const size_t global[2] = {on_gpu ? (size_t)skg_round_up(frame->columns, 16) : 1,
-                              (size_t)skg_round_up(frame->rows, 8)};
+    const skg_work_size work = {2, {on_gpu ? layout->columns : 1, layout->rows}, {on_gpu ? 16 : 1, 8}};
     const skg_argument arguments[] = {
+        SKG_LEAKY_ARGUMENTS(LEAKY_REPAIR, args, batch),
         SKG_ARGUMENT(LEAKY_REPAIR, rows_bad, batch->raster->rows_bad.memory),
         SKG_ARGUMENT(LEAKY_REPAIR, gaps, batch->memory->gaps.memory),
         SKG_ARGUMENT(LEAKY_REPAIR, shared, batch->shared->sums.memory),
     };
-    cl_kernel kernel = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_leaky_kernel(batch, "skg_leaky_repair", &kernel));
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(kernel, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(context, kernel, "repair", 2, global, local, &batch->staging->log));
-cleanup:
-    clReleaseKernel(kernel);
-    return status;
+    cl_program program = NULL;
+    SKG_TRY(skg_leaky_program(batch, &program));
+    return SKG_LAUNCH_ONCE(context, program, "skg_leaky_repair", "repair", &work, arguments,
+                           &batch->staging->log);
 }
 
 /* --- rays traced again on the host */
@@ -60,7 +53,7 @@ typedef struct {
     const skg_leaky_batch *batch;
     cl_int *rows_bad; /* [parts][rows][3] as counts.cl leaves it */
     cl_int *marks;    /* [rows][columns] 1: a pixel of the part at hand that is traced again; else 0 */
-    cl_kernel put;
+    cl_program program;
 } tracing;
 
 static skg_status read_now(const tracing *t, cl_mem memory, int64_t first, int64_t count, cl_int *to) {
@@ -72,7 +65,7 @@ static skg_status read_now(const tracing *t, cl_mem memory, int64_t first, int64
 
 /* Marks the bad pixels of a part. */
 static skg_status mark_bad(const tracing *t, int64_t part) {
-    const skg_frame_args *layout = &t->batch->raster->frame;
+    const skg_raster_layout *layout = &t->batch->raster->layout;
     const cl_int *rows_bad = t->rows_bad + 3 * part * layout->rows;
     const int64_t columns = layout->columns;
     int64_t first = 0, end = layout->rows;
@@ -107,8 +100,8 @@ static skg_status put_sums(const tracing *t, int64_t part, int64_t count, int64_
                            const cl_int *pixels, const cl_long *values) {
     skg_context *context = t->batch->raster->context;
     skg_stage_log *log = &t->batch->staging->log;
-    const cl_int number = (cl_int)part, pixel_count = (cl_int)count;
-    const size_t local = 64, global = (size_t)skg_round_up(count, 64);
+    skg_leaky_args args = skg_leaky_scalars(t->batch);
+    const skg_work_size work = {1, {count}, {64}};
     const int64_t bytes[2] = {count * (int64_t)sizeof *pixels,
                               count * contributions * (int64_t)sizeof *values};
     const void *const from[2] = {pixels, values};
@@ -119,15 +112,15 @@ static skg_status put_sums(const tracing *t, int64_t part, int64_t count, int64_
             skg_buffer_reserve(context, &on_device[k], bytes[k], CL_MEM_READ_ONLY, "repaired pixels"));
         SKG_TRY_CLEANUP(skg_stage_write(context, "repair", on_device[k].memory, 0, bytes[k], from[k], log));
     }
+    args.part = (SKG_INT)part;
+    args.count = (SKG_INT)count;
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(LEAKY_PUT, part, number),
-        SKG_ARGUMENT(LEAKY_PUT, count, pixel_count),
+        SKG_LEAKY_ARGUMENTS(LEAKY_PUT, args, t->batch),
         SKG_ARGUMENT(LEAKY_PUT, pixels, on_device[0].memory),
         SKG_ARGUMENT(LEAKY_PUT, values, on_device[1].memory),
         SKG_ARGUMENT(LEAKY_PUT, shared, t->batch->shared->sums.memory),
     };
-    SKG_TRY_CLEANUP(SKG_SET_ARGUMENTS(t->put, arguments));
-    SKG_TRY_CLEANUP(skg_kernel_run(context, t->put, "repair", 1, &global, &local, log));
+    SKG_TRY_CLEANUP(SKG_LAUNCH_ONCE(context, t->program, "skg_leaky_put", "repair", &work, arguments, log));
 cleanup:
     for (int k = 0; k < 2; k++)
         skg_buffer_release(&on_device[k]); /* OpenCL keeps them for what is enqueued */
@@ -164,7 +157,7 @@ cleanup:
 /* Traces the bad pixels of a part, and those whose ray passes a cap: the hits of a ray that goes in through one hole and
  * out through another cancel, although the ray is wrong. */
 static skg_status trace_part(const tracing *t, int64_t part) {
-    const skg_frame_args *layout = &t->batch->raster->frame;
+    const skg_raster_layout *layout = &t->batch->raster->layout;
     const skg_pass *pass = t->batch->pass;
     const int64_t number = skg_leaky_part(t->batch, part);
     const skg_mesh *mesh = pass->scene->parts[number].mesh;
@@ -182,12 +175,12 @@ static skg_status trace_part(const tracing *t, int64_t part) {
 }
 
 static skg_status trace_again(const skg_leaky_batch *batch) {
-    const skg_frame_args *layout = &batch->raster->frame;
+    const skg_raster_layout *layout = &batch->raster->layout;
     const int64_t rows = batch->parts * layout->rows;
     tracing t = {.batch = batch};
     int any = 0;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_leaky_kernel(batch, "skg_leaky_put", &t.put));
+    SKG_TRY_CLEANUP(skg_leaky_program(batch, &t.program));
     SKG_TRY_CLEANUP(skg_alloc(rows, 3 * sizeof *t.rows_bad, "bad pixels", &t.rows_bad));
     SKG_TRY_CLEANUP(
         skg_alloc((int64_t)layout->rows * layout->columns, sizeof *t.marks, "bad pixels", &t.marks));
@@ -196,7 +189,6 @@ static skg_status trace_again(const skg_leaky_batch *batch) {
     if (any) SKG_TRY_CLEANUP(find_gaps(batch));
     for (int64_t part = 0; part < batch->parts; part++) SKG_TRY_CLEANUP(trace_part(&t, part));
 cleanup:
-    if (t.put) clReleaseKernel(t.put);
     skg_free(&t.rows_bad);
     skg_free(&t.marks);
     return status;

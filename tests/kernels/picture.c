@@ -219,7 +219,7 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
 
 /* Sums of the copies in use, by the host. */
 static skg_status read_sums(skg_context *context, const skg_raster *raster, int32_t bits, picture *result) {
-    const skg_frame_args *f = &raster->frame;
+    const skg_raster_layout *f = &raster->layout;
     const size_t count = (size_t)f->copies * (size_t)f->planes * (size_t)f->plane, bytes = (size_t)bits / 8;
     unsigned char *all = malloc(count * bytes);
     cl_int *used = malloc((size_t)f->copies * sizeof *used);

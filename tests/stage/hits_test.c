@@ -37,32 +37,26 @@ END_TEST
 static void place(const cl_int counts[4], cl_uint starts[4], skg_hit_count *total) {
     static const char *const files[] = {"pixel.clh", "hits.cl"};
     const skg_kernel_options options = {.bits = 32};
-    const cl_int columns = 2;
-    const cl_int4 window = {.s = {0, 0, 2, 2}};
-    const size_t global[2] = {2, 2}, local[2] = {2, 1};
+    const skg_hits_args args = {.layout.columns = 2, .window = {0, 0, 2, 2}};
+    const skg_work_size work = {2, {2, 2}, {2, 1}};
     const skg_hit_count none = {0, 0};
     cl_command_queue queue = context->device->queue;
     skg_buffer buffers[3] = {{0}, {0}, {0}};
     cl_program program = NULL;
-    cl_kernel kernel = NULL;
     for (int k = 0; k < 3; k++)
         ck_skg(skg_buffer_reserve(context, &buffers[k], 16, CL_MEM_READ_WRITE, "hits"));
     const skg_argument arguments[] = {
-        SKG_ARGUMENT(HITS_PLACE, columns, columns),
-        SKG_ARGUMENT(HITS_PLACE, window, window),
+        SKG_ARGUMENT(HITS_PLACE, args, args),
         SKG_ARGUMENT(HITS_PLACE, counts, buffers[0].memory),
         SKG_ARGUMENT(HITS_PLACE, starts, buffers[1].memory),
         SKG_ARGUMENT(HITS_PLACE, total, buffers[2].memory),
     };
     ck_skg(skg_kernels_get(context, &options, 2, files, NULL, &program));
-    ck_skg(skg_kernel_create(program, "skg_hits_place", &kernel));
-    ck_skg(SKG_SET_ARGUMENTS(kernel, arguments));
     clEnqueueWriteBuffer(queue, buffers[0].memory, CL_TRUE, 0, 16, counts, 0, NULL, NULL);
     clEnqueueWriteBuffer(queue, buffers[2].memory, CL_TRUE, 0, sizeof none, &none, 0, NULL, NULL);
-    ck_skg(skg_kernel_run(context, kernel, "priority", 2, global, local, NULL));
+    ck_skg(SKG_LAUNCH_ONCE(context, program, "skg_hits_place", "priority", &work, arguments, NULL));
     clEnqueueReadBuffer(queue, buffers[1].memory, CL_TRUE, 0, 16, starts, 0, NULL, NULL);
     clEnqueueReadBuffer(queue, buffers[2].memory, CL_TRUE, 0, sizeof *total, total, 0, NULL, NULL);
-    clReleaseKernel(kernel);
     for (int k = 0; k < 3; k++) skg_buffer_release(&buffers[k]);
 }
 

@@ -15,11 +15,11 @@ static float skg_ray_length(const skg_ray_args *ray, int column, int row) {
     return sqrt(fma(x, x, fma(y, y, z * z)));
 }
 
-__kernel void skg_raster_half(skg_frame_args frame, __global const int *corners, __global const skg_real4 *projected,
+__kernel void skg_raster_half(skg_raster_layout layout, __global const int *corners, __global const skg_real4 *projected,
                               __global const skg_part_entry *parts, __global const skg_contribution *contributions,
                               __global const int *blocks, __global skg_sum *sums, skg_ray_args ray) {
     const int triangle = (int)get_global_id(0);
-    if (triangle >= frame.triangles) return;
+    if (triangle >= layout.triangles) return;
     const int part = skg_part_of_triangle(parts, blocks, triangle);
     const float reference = parts[part].reference;
     skg_range range;
@@ -27,7 +27,7 @@ __kernel void skg_raster_half(skg_frame_args frame, __global const int *corners,
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, frame.columns, frame.rows), range.shift, &box)) return;
+    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), range.shift, &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0; row < box.j1; row++) {
@@ -41,7 +41,7 @@ __kernel void skg_raster_half(skg_frame_args frame, __global const int *corners,
             const int units = sign * skg_half_units(t * skg_ray_length(&ray, i, j) * 1e-3f);
             for (int w = 0; w < range.contributions; w++) {
                 __global const skg_contribution *contribution = &contributions[range.first_contribution + w];
-                skg_add_global(sums + contribution->plane * frame.plane + j * frame.stride + i,
+                skg_add_global(sums + contribution->plane * layout.plane + j * layout.stride + i,
                                (skg_sum)(contribution->weight < 0 ? -units : units));
             }
         }
