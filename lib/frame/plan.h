@@ -18,12 +18,13 @@ struct skg_plan {
 skg_status skg_plan_make(skg_context *context, skg_scene *scene, const skg_view *view, skg_spectrum *spectrum,
                          const skg_plan_options *options, skg_plan **plan);
 
-/* As skg_plan_lengths, skg_plan_lengths_cl and skg_plan_positions_set_cl, but they test nothing. */
-skg_status skg_plan_lengths_enqueue(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                    const skg_frame *frames, const skg_output *output, skg_job **job);
-skg_status skg_plan_lengths_enqueue_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                       const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                                       int64_t offset, const skg_caller_events *events, skg_job **job);
+/* As skg_plan_outputs_submit and skg_plan_submit_cl, but tests nothing. call: the name of the public function. events: NULL:
+ * none. */
+skg_status skg_plan_enqueue(const char *call, skg_plan *plan, int64_t count, const skg_frame *frames,
+                            int64_t output_count, const skg_output *outputs, const skg_caller_events *events,
+                            skg_job **job);
+
+/* As skg_plan_positions_set_cl, but tests nothing. */
 skg_status skg_plan_positions_enqueue(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
                                       const float *lowest, const float *highest,
                                       const skg_caller_events *events);

@@ -1,6 +1,6 @@
 #include "core/plain.h"
 #include "frame/caller.h"
-#include "frame/plan.h"
+#include "frame/submission.h"
 
 #include <skiagraph/opencl.h>
 
@@ -63,6 +63,7 @@ skg_status skg_plan_positions_enqueue(skg_plan *plan, int64_t part, cl_mem buffe
     skg_place_source source = {.memory = buffer};
     SKG_NEEDS_OF(CALL, plan);
     SKG_TRY(skg_context_enter(plan->context));
+    skg_submission_flush(plan->context);
     SKG_TRY(skg_caller_events_check(CALL, events));
     SKG_TRY(check_part(plan, part));
     SKG_TRY(check_bounds(lowest, highest, &source));
