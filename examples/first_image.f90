@@ -34,7 +34,10 @@ program first_image
     call skg_check(skg_plan_create(context, scene, view, beam, plan=plan))
     call skg_init(output)
     output%data = c_loc(lengths)
-    call skg_check(skg_plan_lengths(plan, id, SKG_LENGTHS_SURFACE, 1_c_int64_t, output=output, job=job))
+    output%kind = SKG_OUTPUT_LENGTHS
+    output%lengths = SKG_LENGTHS_SURFACE
+    output%part = id
+    call skg_check(skg_plan_submit(plan, 1_c_int64_t, output=output, job=job))
     call skg_check(skg_job_wait(job))
     middle = lengths(side / 2, side / 2)
     print '(a, f9.5, a)', 'path length through the middle: ', middle, ' mm'

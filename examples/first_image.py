@@ -23,7 +23,8 @@ class View(c.Structure):
 
 class Output(c.Structure):
     _fields_ = [("size", c.c_int32), ("type", c.c_int32), ("data", c.c_void_p), ("row_stride", c.c_int64),
-                ("channel_stride", c.c_int64), ("frame_stride", c.c_int64)]
+                ("channel_stride", c.c_int64), ("frame_stride", c.c_int64), ("kind", c.c_int32), ("lengths", c.c_int32),
+                ("part", c.c_int64), ("buffer", c.c_void_p), ("offset", c.c_int64)]
 
 
 def check(status):
@@ -69,8 +70,8 @@ output.data = c.addressof(image)
 check(skg.skg_plan_image(plan, c.byref(output)))
 
 lengths = (c.c_double * (SIDE * SIDE))()
-output.type, output.data = 1, c.addressof(lengths)
-job = make("skg_plan_lengths", plan, number, 0, c.c_int64(1), None, c.byref(output))
+output.type, output.data, output.kind, output.part = 1, c.addressof(lengths), 1, number  # SKG_OUTPUT_LENGTHS
+job = make("skg_plan_submit", plan, c.c_int64(1), None, c.byref(output))
 check(skg.skg_job_wait(c.byref(job)))
 
 middle = SIDE // 2 * SIDE + SIDE // 2

@@ -38,11 +38,13 @@ static int run(skg_plan *plan, skg_scene *scene, int64_t id, const skg_view *vie
     output.data = lengths;
     if (failed(skg_scene_part_get(scene, id, &part))) return 1;
     memcpy(pose, part.pose, sizeof pose);
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.part = id;
+    output.lengths = SKG_LENGTHS_SURFACE;
     for (int step = 0; step < STEPS; step++, pose[3] += STEP) {
         skg_job *job = NULL;
         if (failed(skg_scene_pose_set(scene, id, pose)) ||
-            failed(skg_plan_lengths(plan, id, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job)) ||
-            failed(skg_job_wait(&job)))
+            failed(skg_plan_submit(plan, 1, NULL, &output, &job)) || failed(skg_job_wait(&job)))
             return 1;
         look(lengths, view, &longest, &column);
         if (step == 0) first = column;

@@ -89,7 +89,9 @@ static void lengths_of(const tools *t, const solid *s, const skg_view *view, int
     skg_frame_init(&frame);
     output.type = precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     output.data = lengths;
-    bench_try(skg_plan_lengths(plan, 0, SKG_LENGTHS_SURFACE, 1, &frame, &output, &job), "lengths");
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.lengths = SKG_LENGTHS_SURFACE;
+    bench_try(skg_plan_submit(plan, 1, &frame, &output, &job), "lengths");
     bench_try(skg_job_wait(&job), "lengths");
     skg_plan_release(&plan);
 }

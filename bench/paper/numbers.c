@@ -78,7 +78,10 @@ static ray trace(const paper_study *study, skg_material *bone, skg_material *sof
         out.kev = pixels[MIDDLE];
         for (int64_t part = 0; part < 2; part++) {
             skg_job *job = NULL;
-            bench_try(skg_plan_lengths(plan, part, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job), "lengths");
+            output.kind = SKG_OUTPUT_LENGTHS;
+            output.part = part;
+            output.lengths = SKG_LENGTHS_SURFACE;
+            bench_try(skg_plan_submit(plan, 1, NULL, &output, &job), "lengths");
             bench_try(skg_job_wait(&job), "lengths");
             out.lengths[part] = pixels[MIDDLE];
         }

@@ -42,8 +42,9 @@ library *library_create(skg_context *context, const bench_shape *shape, const sk
 void library_frame(void *contender) {
     library *self = contender;
     skg_job *job = NULL;
-    bench_try(skg_plan_lengths(self->plan, 0, SKG_LENGTHS_SURFACE, 1, &self->frame, &self->output, &job),
-              "lengths");
+    self->output.kind = SKG_OUTPUT_LENGTHS;
+    self->output.lengths = SKG_LENGTHS_SURFACE;
+    bench_try(skg_plan_submit(self->plan, 1, &self->frame, &self->output, &job), "lengths");
     bench_try(skg_job_wait(&job), "lengths");
 }
 

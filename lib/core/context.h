@@ -23,6 +23,7 @@ struct skg_context {
     skg_error_handler error;
     skg_mailbox *driver; /* messages of the OpenCL driver's threads */
     struct skg_device *device;
+    struct skg_job *held; /* the job some of whose frames are not enqueued yet (lib/frame); NULL: none */
 };
 
 /* To be called first by every public call that uses a context: SKG_ERR_ARGUMENT for NULL, SKG_ERR_FORK in a child

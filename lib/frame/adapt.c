@@ -40,10 +40,8 @@ static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_out
     linear->linear = 1;
     linear->samples.spot_count = samples;
     linear->samples.shifts = linear->samples.fine = 1;
-    skg_submission s = {
-        .recipe = linear, .machine = machine, .outcome = outcome, .count = 1, .lengths_of = -1};
-    SKG_TRY_CLEANUP(skg_submission_check(&s, &output));
-    SKG_TRY_CLEANUP(skg_submission_enqueue(&s, &job));
+    SKG_TRY_CLEANUP(skg_job_create("skg_plan_create", linear, machine, outcome, 1, 1, &output, &job));
+    SKG_TRY_CLEANUP(skg_submission_enqueue(&job, NULL, 1));
     status = skg_job_complete(&job);
     if (status == SKG_RANGE) status = SKG_OK; /* the change does not depend on the verified range */
 cleanup:

@@ -123,30 +123,37 @@ static skg_sums layout_of(const skg_machine *machine, const skg_recipe *recipe, 
                       .lists = machine->mix_lists.memory.memory};
 }
 
+/* Uploads the positions of meshes that have changed. After the submission they are no longer looked at. */
+static skg_status update_meshes(skg_job *job) {
+    const skg_recipe *recipe = job->recipe;
+    if (job->then.meshes) return SKG_OK;
+    SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
+    return skg_geometry_update(&job->machine->geometry, recipe->meshes.meshes, &job->staging);
+}
+
 /* Enqueues the raster of all parts, and what priorities and leaky parts change in its sums. */
-static skg_status enqueue_sums(const skg_frame_means *means, const skg_pass *pass) {
-    skg_machine *machine = means->machine;
-    const skg_recipe *recipe = means->recipe;
-    skg_stage_log *log = &means->staging->log;
+static skg_status enqueue_sums(skg_job *job, const skg_pass *pass) {
+    skg_machine *machine = job->machine;
+    const skg_recipe *recipe = job->recipe;
+    skg_stage_log *log = &job->staging.log;
     const skg_leaky_parts leaky = {.count = recipe->leaky_count,
                                    .parts = recipe->leaky,
                                    .repair = recipe->options.repair,
                                    .strategy = recipe->leaky_strategy,
                                    .tile = recipe->options.tile};
     cl_int *extents = NULL;
-    SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
-    SKG_TRY(skg_geometry_update(&machine->geometry, recipe->meshes.meshes, means->staging));
+    SKG_TRY(update_meshes(job));
     SKG_TRY(skg_geometry_project(machine->context, &machine->geometry,
                                  skg_raster_projection(pass->main.raster), &pass->camera, pass->parts,
                                  pass->scale.scale, log));
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
-    SKG_TRY(skg_staging_take(means->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
+    SKG_TRY(skg_staging_take(&job->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
     skg_pass_extents(pass, extents);
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));
-    if (pass->priority.count) SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, means->staging));
+    if (pass->priority.count) SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, &job->staging));
     if (leaky.count == 0) return SKG_OK;
     return skg_leaky_run(&leaky, pass, &machine->geometry, &machine->rasters, &machine->leaky,
-                         &means->results->leaky, means->staging);
+                         &job->results.leaky, &job->staging);
 }
 
 /* What the weights of the model are multiplied by for a view: those of a ratio hold for any. */
@@ -157,10 +164,10 @@ static double exposure_of(const skg_recipe *recipe, const skg_view *view) {
 }
 
 /* Enqueues the image of one pass from the sums. */
-static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_work *work, int64_t number,
+static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_t number,
                                 const skg_pass *pass, int32_t place_of_pass) {
-    const skg_recipe *recipe = means->recipe;
-    skg_machine *machine = means->machine;
+    const skg_recipe *recipe = job->recipe;
+    skg_machine *machine = job->machine;
     const int lengths = work->lengths_of >= 0;
     /* Noise is that of photons in a pixel; its area is divided by later. */
     const int areas =
@@ -187,10 +194,10 @@ static skg_status enqueue_image(const skg_frame_means *means, const skg_frame_wo
     if (pass->mix.sums)
         SKG_TRY(skg_mix_lists_send(&machine->mix_lists, pass->mix.lists,
                                    (int64_t)recipe->mixed * recipe->model.planes,
-                                   recipe->options.precision == SKG_PRECISION_DOUBLE, means->staging));
+                                   recipe->options.precision == SKG_PRECISION_DOUBLE, &job->staging));
     const skg_sums sums = sums_of(machine, recipe, pass, place_of_pass);
     return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, share, least,
-                         machine->negative.memory, &noise, &place, &means->staging->log);
+                         machine->negative.memory, &noise, &place, &job->staging.log);
 }
 
 /* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
@@ -202,15 +209,15 @@ typedef struct {
 } gathered;
 
 /* Enqueues the passes that wait, from the vertices to their shares of the image. */
-static skg_status enqueue_gathered(const skg_frame_means *means, const skg_frame_work *work, gathered *g) {
-    skg_machine *machine = means->machine;
+static skg_status enqueue_gathered(skg_job *job, const skg_frame_work *work, gathered *g) {
+    skg_machine *machine = job->machine;
     skg_status status = SKG_OK;
     if (g->count) status = skg_geometry_send_passes(machine->context, &machine->geometry, &g->tables);
     if (g->count && status == SKG_OK)
         status =
-            skg_raster_run_passes(g->passes->main.raster, &machine->geometry, g->count, &means->staging->log);
+            skg_raster_run_passes(g->passes->main.raster, &machine->geometry, g->count, &job->staging.log);
     for (int32_t p = 0; p < g->count; p++) {
-        if (status == SKG_OK) status = enqueue_image(means, work, g->first + p, &g->passes[p], p);
+        if (status == SKG_OK) status = enqueue_image(job, work, g->first + p, &g->passes[p], p);
         skg_pass_release(&g->passes[p]);
     }
     g->count = 0;
@@ -218,8 +225,8 @@ static skg_status enqueue_gathered(const skg_frame_means *means, const skg_frame
 }
 
 /* Adds a pass to those that wait, which takes it over. */
-static skg_status gather(const skg_frame_means *means, const skg_pass *pass, int64_t number, gathered *g) {
-    skg_machine *machine = means->machine;
+static skg_status gather(skg_job *job, const skg_pass *pass, int64_t number, gathered *g) {
+    skg_machine *machine = job->machine;
     cl_int *extents = NULL;
     if (g->count == 0) {
         g->room = skg_raster_passes(pass->main.raster);
@@ -227,47 +234,44 @@ static skg_status gather(const skg_frame_means *means, const skg_pass *pass, int
         g->tables = (skg_pass_tables){0};
         SKG_TRY(skg_realloc(g->room, sizeof *g->passes, "passes", &g->passes));
     }
-    SKG_TRY(skg_plan_meshes_check(&means->recipe->meshes, means->recipe->scene));
-    SKG_TRY(skg_geometry_update(&machine->geometry, means->recipe->meshes.meshes, means->staging));
+    SKG_TRY(update_meshes(job));
     SKG_TRY(skg_geometry_weigh_pass(&machine->geometry, &pass->camera, pass->parts, pass->scale.scale,
-                                    g->room, &g->tables, means->staging));
-    SKG_TRY(skg_staging_take(means->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
+                                    g->room, &g->tables, &job->staging));
+    SKG_TRY(skg_staging_take(&job->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
     skg_pass_extents(pass, extents);
-    SKG_TRY(skg_raster_place_pass(pass->main.raster, g->count, extents, &means->staging->log));
+    SKG_TRY(skg_raster_place_pass(pass->main.raster, g->count, extents, &job->staging.log));
     g->passes[g->count++] = *pass;
     return SKG_OK;
 }
 
 /* One pass: from the vertices to its share of the image, or to those that wait. */
-static skg_status enqueue_pass(const skg_frame_means *means, const skg_frame_work *work, int64_t number,
-                               gathered *g) {
-    skg_machine *machine = means->machine;
+static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t number, gathered *g) {
+    skg_machine *machine = job->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_pass_fill(means->recipe, work, number, &machine->pass, &pass));
-    SKG_TRY_CLEANUP(pin_raster(means->recipe, machine, number, &pass, means->outcome));
-    skg_raster_pin_copy(&pass.main, means->main);
-    skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, means->outcome);
+    SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &machine->pass, &pass));
+    SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, job->outcome));
+    skg_raster_pin_copy(&pass.main, &job->main);
+    skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, job->outcome);
     if (g->count && (g->count == g->room || g->passes->main.raster != pass.main.raster))
-        SKG_TRY_CLEANUP(enqueue_gathered(means, work, g));
+        SKG_TRY_CLEANUP(enqueue_gathered(job, work, g));
     if (skg_raster_passes(pass.main.raster) > 1) {
-        SKG_TRY_CLEANUP(gather(means, &pass, number, g));
+        SKG_TRY_CLEANUP(gather(job, &pass, number, g));
         return SKG_OK;
     }
-    SKG_TRY_CLEANUP(enqueue_sums(means, &pass));
-    status = enqueue_image(means, work, number, &pass, 0);
+    SKG_TRY_CLEANUP(enqueue_sums(job, &pass));
+    status = enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
     return status;
 }
 
 /* The passes from number `first` on, before `end`. */
-static skg_status enqueue_passes(const skg_frame_means *means, const skg_frame_work *work, int64_t first,
-                                 int64_t end) {
+static skg_status enqueue_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
     gathered g = {0};
     skg_status status = SKG_OK;
-    for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(enqueue_pass(means, work, p, &g));
-    status = enqueue_gathered(means, work, &g);
+    for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(enqueue_pass(job, work, p, &g));
+    status = enqueue_gathered(job, work, &g);
 cleanup:
     for (int32_t p = 0; p < g.count; p++) skg_pass_release(&g.passes[p]);
     skg_free(&g.passes);
@@ -275,10 +279,10 @@ cleanup:
 }
 
 /* Enqueues the flat field of a frame's view, in the layout of the last pass. */
-static skg_status find_flat_field(const skg_frame_means *means, const skg_frame_work *work) {
-    const skg_recipe *recipe = means->recipe;
-    skg_machine *machine = means->machine;
-    const skg_sums sums = layout_of(machine, recipe, means->main);
+static skg_status find_flat_field(skg_job *job, const skg_frame_work *work) {
+    const skg_recipe *recipe = job->recipe;
+    skg_machine *machine = job->machine;
+    const skg_sums sums = layout_of(machine, recipe, &job->main);
     const skg_flat_field_work flat = {.samples = skg_recipe_averages(recipe) ? &recipe->samples : NULL,
                                       .sums = &sums,
                                       .attenuator = machine->attenuator,
@@ -287,48 +291,47 @@ static skg_status find_flat_field(const skg_frame_means *means, const skg_frame_
                                       .negative = machine->negative.memory,
                                       .exposure = exposure_of(recipe, work->view)};
     return skg_flat_field_find(&machine->flat_field, &flat, work->view, work->place.output_double,
-                               means->staging);
+                               &job->staging);
 }
 
 /* How many layers an image has; mean intensities alone have none of noise. */
-static int32_t layers_of(const skg_frame_means *means) {
-    const int32_t count = means->machine->layers.count, least = means->recipe->model.layers;
-    return means->recipe->linear && least < count ? least : count;
+static int32_t layers_of(skg_job *job) {
+    const int32_t count = job->machine->layers.count, least = job->recipe->model.layers;
+    return job->recipe->linear && least < count ? least : count;
 }
 
 /* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps. layers: where these are. */
-static skg_status detect(const skg_frame_means *means, const skg_frame_work *work,
-                         const skg_image_place *layers) {
-    const skg_recipe *recipe = means->recipe;
-    skg_machine *machine = means->machine;
+static skg_status detect(skg_job *job, const skg_frame_work *work, const skg_image_place *layers) {
+    const skg_recipe *recipe = job->recipe;
+    skg_machine *machine = job->machine;
     const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
-    skg_stage_log *log = &means->staging->log;
+    skg_stage_log *log = &job->staging.log;
     skg_camera camera;
-    SKG_TRY(skg_layers_blur(&machine->layers, layers_of(means), layers, &work->place, columns, rows,
+    SKG_TRY(skg_layers_blur(&machine->layers, layers_of(job), layers, &work->place, columns, rows,
                             recipe->model.channels, log));
     if (!machine->detector || recipe->linear) return SKG_OK;
     SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
     const int has_flat_field = skg_detector_wants_flat_field(machine->detector);
     double factor = recipe->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
     if (skg_quantity_is_ratio(&recipe->options) && !has_flat_field) factor /= exposure_of(recipe, work->view);
-    if (has_flat_field) SKG_TRY(find_flat_field(means, work));
+    if (has_flat_field) SKG_TRY(find_flat_field(job, work));
     return skg_detector_run(machine->detector, &work->noise, factor, machine->flat_field.image.memory,
                             &work->place, columns, rows, log);
 }
 
-skg_status skg_frame_enqueue(const skg_frame_means *means, const skg_frame_work *work) {
-    const skg_recipe *recipe = means->recipe;
-    if (work->lengths_of >= 0) return enqueue_passes(means, work, -1, 0);
+skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
+    const skg_recipe *recipe = job->recipe;
+    if (work->lengths_of >= 0) return enqueue_passes(job, work, -1, 0);
     const int64_t first = first_of(recipe);
     const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
     skg_frame_work layered = *work;
-    SKG_TRY(skg_layers_place(means->machine->context, &means->machine->layers, layers_of(means), &work->place,
+    SKG_TRY(skg_layers_place(job->machine->context, &job->machine->layers, layers_of(job), &work->place,
                              recipe->view.columns, recipe->view.rows, recipe->model.channels,
                              &layered.place));
-    SKG_TRY(enqueue_passes(means, &layered, first, end));
-    SKG_TRY(detect(means, work, &layered.place));
+    SKG_TRY(enqueue_passes(job, &layered, first, end));
+    SKG_TRY(detect(job, work, &layered.place));
     if (!skg_decide_late_logarithm(recipe)) return SKG_OK;
-    const skg_sums sums = layout_of(means->machine, recipe, means->main);
-    return skg_attenuate_logarithm(means->machine->attenuator, &sums, &means->machine->images, &work->place,
-                                   &means->staging->log);
+    const skg_sums sums = layout_of(job->machine, recipe, &job->main);
+    return skg_attenuate_logarithm(job->machine->attenuator, &sums, &job->machine->images, &work->place,
+                                   &job->staging.log);
 }

@@ -2,19 +2,7 @@
 #ifndef SKG_FRAME_H
 #define SKG_FRAME_H
 
-#include "frame/work.h"
-#include "plan/report.h"
-#include "stage/machine.h"
-
-/* What a frame is made with. */
-typedef struct {
-    const skg_recipe *recipe;
-    skg_machine *machine;
-    skg_outcome *outcome; /* takes what is known of a frame when it is enqueued, and remembers warnings */
-    skg_staging *staging;
-    skg_results *results;
-    skg_raster_pin *main; /* the raster of the closed parts of the last pass; the caller releases it */
-} skg_frame_means;
+#include "frame/job.h"
 
 /* Expects the programs of images of the recipe's view (skg_expected_begin), as far as they are known before a frame. What fails
  * here fails again, and is reported, where it is needed. */
@@ -24,6 +12,6 @@ void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine);
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome);
 
 /* Enqueues a frame. When the device is done with it the result is in its place. */
-skg_status skg_frame_enqueue(const skg_frame_means *means, const skg_frame_work *work);
+skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work);
 
 #endif

@@ -1,47 +1,90 @@
-#include "frame/job.h"
+#include "frame/submission.h"
 
 #include "core/plain.h"
 #include "driver/driver.h"
 
-skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
-                          int64_t frames, skg_job **job) {
-    SKG_TRY(skg_alloc(1, sizeof **job, "job", job));
-    skg_job *made = *job;
-    skg_results *results = &made->results;
+#include <inttypes.h>
+
+skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machine *machine,
+                          skg_outcome *outcome, int64_t count, int64_t output_count,
+                          const skg_output *outputs, skg_job **job) {
+    skg_job *made = NULL;
     skg_status status = SKG_OK;
+    if (count < 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " frames were asked for; at least one", count);
+    if (output_count < 1 || !outputs)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: there is no output to put images into", call);
+    SKG_TRY(skg_alloc(1, sizeof *made, "job", &made));
+    skg_results *results = &made->results;
     made->recipe = skg_recipe_retain(recipe);
     made->machine = machine;
     skg_work_begin();
     made->outcome = outcome;
+    made->count = results->frames = count;
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
+    SKG_TRY_CLEANUP(
+        skg_staging_take(&made->staging, output_count, sizeof *made->outputs, "outputs", &made->outputs));
+    for (; made->output_count < output_count; made->output_count++)
+        SKG_TRY_CLEANUP(skg_frame_output_read(call, recipe, machine, count, outputs, made->output_count,
+                                              &made->outputs[made->output_count]));
+    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, count, sizeof *made->ends, "events", &made->ends));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 3, sizeof *results->negative, "counters", &results->negative));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
-    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, frames, sizeof *results->bad_vertex, "counters",
+    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, count, sizeof *results->bad_vertex, "counters",
                                      &results->bad_vertex));
-    results->frames = frames;
     SKG_TRY_CLEANUP(skg_leaky_verdicts_create(recipe->leaky_count, &made->staging, &results->leaky));
+    *job = made;
     return SKG_OK;
 cleanup:
-    skg_job_release(job);
+    skg_job_release(&made);
     return status;
 }
 
 void skg_job_release(skg_job **job) {
     if (!job || !*job) return;
     skg_job *done = *job;
+    skg_context *context = done->machine->context;
+    if (context->held == done) context->held = NULL;
     /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged memory. */
     if (!done->finished) {
-        clFinish(done->machine->context->device->queue);
+        clFinish(context->device->queue);
         skg_work_end();
     }
+    for (int64_t f = 0; done->ends && f < done->enqueued; f++) clReleaseEvent(done->ends[f]);
     if (done->last) clReleaseEvent(done->last);
+    skg_raster_pin_release(&done->main);
     skg_staging_release(&done->staging);
     skg_recipe_release(&done->recipe);
     skg_plan_release(&done->plan);
+    skg_free(&done->sentence);
     skg_free(job);
+}
+
+/* Waits until every frame that will be made is, and gives the device those that were held back. */
+static cl_int wait_for_frames(skg_job *job) {
+    cl_int code = CL_SUCCESS;
+    while (code == CL_SUCCESS && !job->last) {
+        skg_submission_continue(job);
+        if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) break;
+        code = clWaitForEvents(1, &job->ends[job->done]);
+        job->done++;
+    }
+    return code;
+}
+
+/* What became of a job whose commands are done. */
+static skg_status outcome_of(skg_job *job) {
+    const skg_status reported = skg_report_work(job->recipe, job->machine->context, &job->machine->geometry,
+                                                &job->results, &job->staging.log, job->outcome);
+    if (job->failure != SKG_OK)
+        return skg_fail(job->failure, "%s", job->sentence ? job->sentence : "out of host memory");
+    if (job->enqueued == job->count) return reported;
+    return skg_fail(SKG_ERR_CANCELLED,
+                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place", job->enqueued,
+                    job->count);
 }
 
 skg_status skg_job_complete(skg_job **job) {
@@ -49,37 +92,75 @@ skg_status skg_job_complete(skg_job **job) {
     skg_context *context = done->machine->context;
     const int64_t programs = context->device->builds + context->device->loads;
     const int first = context->device->launched < programs;
+    skg_status status = SKG_OK;
     if (first) skg_signals_keep();
-    const cl_int code = clWaitForEvents(1, &done->last);
+    cl_int code = wait_for_frames(done);
+    if (code == CL_SUCCESS) status = skg_submission_finish(done);
+    if (code == CL_SUCCESS && status == SKG_OK) code = clWaitForEvents(1, &done->last);
     if (first) skg_signals_restore();
     context->device->launched = programs;
-    done->finished = code == CL_SUCCESS;
+    done->finished = code == CL_SUCCESS && status == SKG_OK;
     if (done->finished) {
         skg_work_end();
         skg_programs_launched(context);
+        status = outcome_of(done);
+    } else if (status == SKG_OK) {
+        status = skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     }
-    const skg_status status = code == CL_SUCCESS
-                                  ? skg_report_work(done->recipe, context, &done->machine->geometry,
-                                                    &done->results, &done->staging.log, done->outcome)
-                                  : skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     skg_job_release(job);
     return status;
 }
 
-static skg_status test(const skg_job *job, int32_t *done) {
-    SKG_NEEDS_OF("skg_job_test", job);
-    SKG_NEEDS_OF("skg_job_test", done);
-    SKG_TRY(skg_context_enter(job->machine->context));
+/* Whether a command is over. A failed one has a negative status: skg_job_wait reports it. */
+static skg_status is_over(cl_event event, int *over) {
     cl_int stage = CL_COMPLETE;
-    SKG_CL_TRY(clGetEventInfo(job->last, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage, NULL));
-    /* A failed command has a negative status: it is over, and skg_job_wait reports it. */
-    *done = stage <= CL_COMPLETE;
+    SKG_CL_TRY(clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage, NULL));
+    *over = stage <= CL_COMPLETE;
     return SKG_OK;
 }
 
-skg_status skg_job_test(const skg_job *job, int32_t *done) {
+/* Counts the frames that are done, and gives the device others. */
+static skg_status look(skg_job *job) {
+    SKG_TRY(skg_context_enter(job->machine->context));
+    for (int over = 1; over && job->done < job->enqueued; job->done += over)
+        SKG_TRY(is_over(job->ends[job->done], &over));
+    skg_submission_continue(job);
+    return SKG_OK;
+}
+
+static skg_status test(skg_job *job, int32_t *done) {
+    int over = 1;
+    SKG_NEEDS_OF("skg_job_test", job);
+    SKG_NEEDS_OF("skg_job_test", done);
+    SKG_TRY(look(job));
+    const int ends_early = job->failure != SKG_OK || atomic_load(&job->cancelled);
+    if (job->last) SKG_TRY(is_over(job->last, &over));
+    *done = job->last ? over : ends_early && job->done == job->enqueued;
+    return SKG_OK;
+}
+
+skg_status skg_job_test(skg_job *job, int32_t *done) {
     const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
     return skg_call_end(handler, test(job, done));
+}
+
+static skg_status progress(skg_job *job, int64_t *done, int64_t *total) {
+    SKG_NEEDS_OF("skg_job_progress", job);
+    SKG_TRY(look(job));
+    if (done) *done = job->done;
+    if (total) *total = job->count;
+    return SKG_OK;
+}
+
+skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total) {
+    const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
+    return skg_call_end(handler, progress(job, done, total));
+}
+
+skg_status skg_job_cancel(skg_job *job) {
+    SKG_NEEDS(job);
+    atomic_store(&job->cancelled, 1);
+    return SKG_OK;
 }
 
 static skg_status wait_for(skg_job **job) {

@@ -1,25 +1,50 @@
-/* Work under way: what must stay until the device is done with it, and what is reported then. Private. */
+/* Work under way: what it is made with, what must stay until the device is done with it, and what is reported then.
+ * Private. */
 #ifndef SKG_JOB_H
 #define SKG_JOB_H
 
+#include "frame/outputs.h"
 #include "frame/plan.h"
 #include "plan/report.h"
+
+#include <stdatomic.h>
+
+/* The scene at the time of a submission, for frames that are enqueued later. All NULL: every frame was enqueued at once. */
+typedef struct {
+    skg_mesh *
+        meshes; /* [meshes] of the recipe: copies of the structs. Their arrays may have other contents by now,
+                              * and the device has those of the submission */
+    double *poses;     /* [parts][16] */
+    skg_frame *frames; /* [count - first] copies with arrays of their own; NULL: as plan and scene stood */
+    int64_t first;     /* number of frames[0] */
+} skg_job_scene;
 
 struct skg_job {
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
     skg_recipe *recipe; /* retained: that of the submission */
     skg_machine *machine;
-    skg_outcome *outcome;
+    skg_outcome *outcome; /* takes what is known of a frame when it is enqueued, and remembers warnings */
+    skg_frame_output *outputs; /* [output_count] */
+    int64_t output_count;
+    int64_t count;       /* frames */
+    int64_t enqueued;    /* of them */
+    int64_t done;        /* of them: known to be finished */
+    cl_event *ends;      /* [count] of the last command of each frame that was enqueued */
+    skg_job_scene then;  /* staged */
+    skg_raster_pin main; /* the raster of the closed parts of the last pass */
     skg_staging staging; /* host memory that the device reads or writes; the log of all frames */
     skg_results results; /* staged */
-    cl_event last;       /* of the last command; NULL if the submission failed half way */
+    cl_event last;       /* of the last command; NULL until all that will be enqueued was */
     int32_t finished;    /* 1: everything enqueued is done */
-    int32_t reserved;
+    atomic_int cancelled;
+    skg_status failure; /* of a frame that was to be enqueued after the submission */
+    char *sentence;     /* of the failure */
 };
 
-/* frames: how many it is to make. */
-skg_status skg_job_create(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome,
-                          int64_t frames, skg_job **job);
+/* Checks the outputs and makes a job of no frames yet. call: the name of the public function. */
+skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machine *machine,
+                          skg_outcome *outcome, int64_t count, int64_t output_count,
+                          const skg_output *outputs, skg_job **job);
 
 /* Waits for everything enqueued, then frees; *job becomes NULL. Also for submissions that failed half way. */
 void skg_job_release(skg_job **job);

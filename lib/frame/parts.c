@@ -67,7 +67,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
     pass->parts = memory->parts;
     pass->extents = memory->extents;
     for (int64_t p = 0; p < scene->count; p++) {
-        const skg_mesh *mesh = scene->parts[p].mesh;
+        const skg_mesh *mesh = work->meshes ? &work->meshes[recipe->meshes.of_part[p]] : scene->parts[p].mesh;
         const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
         const int64_t count = pass->first[p + 1] - pass->first[p];
         skg_extent *extent = &pass->extents[p];

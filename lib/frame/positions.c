@@ -1,7 +1,7 @@
 #include "core/plain.h"
 #include "device/self_tests.h"
 #include "frame/caller.h"
-#include "frame/plan.h"
+#include "frame/submission.h"
 
 #include <skiagraph/opencl.h>
 
@@ -64,6 +64,7 @@ static skg_status set_positions(skg_plan *plan, int64_t part, cl_mem buffer, int
     SKG_NEEDS_OF(CALL, plan);
     SKG_TRY(skg_context_enter(plan->context));
     SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_PLACE));
+    skg_submission_flush(plan->context);
     SKG_TRY(skg_caller_events_check(CALL, events));
     SKG_TRY(check_part(plan, part));
     SKG_TRY(check_bounds(lowest, highest, &source));

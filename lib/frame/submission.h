@@ -1,31 +1,21 @@
-/* Frames to be made with a recipe and a machine: checked, enqueued and read back. Private. */
+/* Frames of a job: checked and enqueued, all at once or one after another. Private. */
 #ifndef SKG_SUBMISSION_H
 #define SKG_SUBMISSION_H
 
 #include "frame/job.h"
 
-typedef struct {
-    const skg_recipe *recipe;
-    skg_machine *machine;
-    skg_outcome *outcome;
-    int64_t count;
-    const skg_frame *frames; /* as the caller gave them; NULL: as the scene stands */
-    skg_output output;       /* checked; strides filled in */
-    int64_t channels;
-    int64_t lengths_of; /* a part; -1: images */
-    int32_t kind;       /* of lengths */
-    int32_t reserved;
-    cl_mem buffer; /* NULL: host memory */
-    int64_t first; /* element of the buffer where the first frame begins */
-} skg_submission;
+/* Checks the frames and enqueues them. Of frames that keep the device busy for long, only the first ones are enqueued, so that a
+ * job can be cancelled; the others follow while it is asked or waited for. frames: [job->count] the caller's; NULL: each as
+ * plan and scene stand. at_once: 1: all are enqueued. After a failure nothing is under way, and the job is released. */
+skg_status skg_submission_enqueue(skg_job **job, const skg_frame *frames, int at_once);
 
-/* Checks count and output, and fills in output and channels. */
-skg_status skg_submission_check(skg_submission *submission, const skg_output *output);
+/* Enqueues frames that the device can be given by now, unless the job was cancelled. A failure is reported by skg_job_wait. */
+void skg_submission_continue(skg_job *job);
 
-/* Bytes of an element of the output. */
-int64_t skg_submission_element(const skg_submission *submission);
+/* Enqueues what is left of a context's earlier job, so that its jobs run in order. */
+void skg_submission_flush(const skg_context *context);
 
-/* Enqueues everything. After a failure nothing is under way, and *job is not set. */
-skg_status skg_submission_enqueue(const skg_submission *submission, skg_job **job);
+/* Enqueues the reads of what is reported, and the marker that is waited for, if that was not done. */
+skg_status skg_submission_finish(skg_job *job);
 
 #endif

@@ -7,6 +7,7 @@
 typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
+    const skg_mesh *meshes;     /* [meshes] of the recipe, as the device has them; NULL: the scene's */
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t kind;               /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE */

@@ -80,7 +80,9 @@ static skg_status render(skg_context *context, int32_t strategy, exact_run *run)
     output.type = SKG_TYPE_FLOAT32;
     skg_plan_release(&run->plan);
     SKG_TRY(skg_plan_create(context, run->scene, &run->view, run->beam, &options, &run->plan));
-    SKG_TRY(skg_plan_lengths(run->plan, 0, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.lengths = SKG_LENGTHS_SURFACE;
+    SKG_TRY(skg_plan_submit(run->plan, 1, NULL, &output, &job));
     const skg_status status = skg_job_wait(&job);
     return status < 0 ? status : SKG_OK;
 }

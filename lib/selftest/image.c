@@ -72,7 +72,9 @@ static skg_status render(test_run *run) {
     SKG_TRY(skg_plan_report_get(run->plan, &report));
     run->bad_pixels = report.bad_pixels;
     if (!shows_lengths(run->scene.number)) return SKG_OK;
-    SKG_TRY(skg_plan_lengths(run->plan, 0, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.lengths = SKG_LENGTHS_SURFACE;
+    SKG_TRY(skg_plan_submit(run->plan, 1, NULL, &output, &job));
     status = skg_job_wait(&job);
     read_floats(run, memory, run->lengths);
     return status < 0 ? status : SKG_OK;

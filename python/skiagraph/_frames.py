@@ -83,6 +83,7 @@ def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progres
             meter.update(done)
     finally:
         for job, keep, _, _ in started:
+            lib.skg_job_cancel(job[0])
             device.abandon(functools.partial(lib.skg_job_wait, job), (keep, out))
     if ranged:
         warn(ranged, RangeWarning)

@@ -21,7 +21,7 @@ from ._device import Device, RangeWarning, warn
 from ._digest import digest
 from ._frames import Stale
 from ._interface import ENUMS, RANGE, STALE, ArgumentError, SceneError
-from ._library import call, check, encode, ffi, filled, integer, lib, release, struct, text
+from ._library import call, check, encode, ffi, filled, integer, lib, make, owned, release, struct, text
 from ._progress import Meter, Progress
 from .scan import Scan
 
@@ -187,7 +187,8 @@ class _Work:
 
     def __init__(self, job: _Job, restore: Any) -> None:
         self._job, self._restore = job, restore
-        self._stopped = threading.Event()
+        self._progress = owned("skg_progress", make("skg_progress_create", "skg_progress", ffi.NULL, ffi.NULL))
+        job.run.progress = self._progress
         self._words: queue.SimpleQueue[Word] = queue.SimpleQueue()
         self.total = 0
         self._thread = threading.Thread(target=self._work, name="skiagraph scan")
@@ -217,19 +218,18 @@ class _Work:
 
     def _batches(self, run: Any) -> str:
         batch, done, ranged = struct("skg_scan_batch"), 0, ""
-        while not self._stopped.is_set():
+        while True:
             if check(lib.skg_scan_run_next(run, batch)) == RANGE:
                 ranged = text(lib.skg_last_error())
             if batch.count == 0:
-                break
+                return ranged
             self._job.receive(batch, done)
             done += int(batch.count)
             self._words.put(done)
-        return ranged
 
     def _stop(self) -> None:
-        """Waits for the batches that are under way."""
-        self._stopped.set()
+        """Cancels the run, and waits for what the device was given of it."""
+        call("skg_progress_cancel", self._progress)
         self._thread.join()
 
     def follow(self, device: Device, progress: Progress) -> None:
@@ -240,7 +240,7 @@ class _Work:
                 meter = meter or Meter(progress, self.total)
                 meter.update(word)
         except BaseException:
-            self._stopped.set()
+            call("skg_progress_cancel", self._progress)
             device.abandon(self._stop, self)
             raise
         self._thread.join()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from . import _arrays
 from ._interface import ArgumentError
 from ._library import call, choice, encode, ffi, integer, make, release, struct
+from ._progress import Progress, Watch
 from .matrices import direction
 from .scan import Scan
 from .view import View
@@ -20,13 +21,14 @@ _Three = Union[Sequence[float], NDArray[Any]]
 
 def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *, size: int | Sequence[int] | None = None,
                 voxel: float | None = None, filter: str = "ramp", axis: str | _Three | None = None,
-                centre: _Three | None = None) -> NDArray[np.float32]:
+                centre: _Three | None = None, progress: Progress = False) -> NDArray[np.float32]:
     """The volume of a circular scan in 1/cm, [z, y, x], by the method of Feldkamp, Davis and Kress.
 
     scan: an .h5 that scene.scan() wrote; or a Scan with its projections as -ln(I/I0), [n, row, column], as
     scene.scan(quantity="attenuation") computes them. size: voxels along each side, or (x, y, z); by default as many as columns.
     voxel: their edge in mm; by default the step of the columns as it is seen at the axis. filter: "ramp" or "hann". axis,
     centre: those of the scan's rotation, by default what the file says, or "z" through the origin. The volume is about centre.
+    progress: True, or a function of (done, of); if it returns False, or raises, the reconstruction is cancelled.
     """
     reader = None
     try:
@@ -41,7 +43,9 @@ def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *,
             views, found = scan, (np.array([0.0, 0, 1]), np.zeros(3))
         options = _options(views[0], size, voxel, filter, found[0] if axis is None else direction(axis),
                            found[1] if centre is None else _arrays.vector(centre, "centre"))
-        return _compute(views, reader, _checked(views, projections) if reader is None else None, options)
+        images = _checked(views, projections) if reader is None else None
+        with Watch(progress, "projections") as options.progress:
+            return _compute(views, reader, images, options)
     finally:
         if reader is not None:
             release("skg_scan_reader", reader)

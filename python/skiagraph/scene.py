@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from . import _arrays, _command, _edit, _look, _pickle, _projections, _save, _show, _source
 from ._device import Device, device_of
 from ._frames import Batch, Stale, run
-from ._interface import ArgumentError, SceneError
+from ._interface import ENUMS, ArgumentError, SceneError
 from ._library import call, check, choice, encode, ffi, filled, integer, lib, listed, make, retained, struct
 from ._plans import Plans
 from ._progress import Progress
@@ -269,7 +269,11 @@ class Scene:
         part, what = self._number(label), choice("lengths", kind, "kind")
 
         def submit(plan: Any) -> Any:
-            return lambda count, frames, output, job: lib.skg_plan_lengths(plan, part, what, count, frames, output, job)
+            def start(count: int, frames: Any, output: Any, job: Any) -> int:
+                output.kind, output.part, output.lengths = ENUMS["output_kind"]["lengths"], part, what
+                return int(lib.skg_plan_submit(plan, count, frames, output, job))
+
+            return start
 
         with self._calls():
             return self._run(submit, batch, out, progress, one, False, {"precision": precision, **options})

@@ -404,10 +404,13 @@ START_TEST(lengths) {
         skg_job *job = NULL;
         skg_output_init(&output);
         output.type = SKG_TYPE_FLOAT64, output.data = net;
-        ck_skg(skg_plan_lengths(plan, p, SKG_LENGTHS_NET, 1, NULL, &output, &job));
+        output.kind = SKG_OUTPUT_LENGTHS;
+        output.part = p;
+        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         output.data = surface;
-        ck_skg(skg_plan_lengths(plan, p, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
+        output.lengths = SKG_LENGTHS_SURFACE;
+        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int r = 0; r < SIDE; r++)
             for (int c = 0; c < SIDE; c++) {

@@ -223,7 +223,10 @@ START_TEST(lengths_have_one_ray_a_pixel) {
         output.type = SKG_TYPE_FLOAT64, output.data = n == 1 ? mean : image;
         options.supersampling = n;
         ck_skg(skg_plan_create(context, scene, &view, beam, &options, &plan));
-        ck_skg(skg_plan_lengths(plan, 1, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
+        output.kind = SKG_OUTPUT_LENGTHS;
+        output.part = 1;
+        output.lengths = SKG_LENGTHS_SURFACE;
+        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         skg_plan_release(&plan);
     }

@@ -19,11 +19,14 @@ START_TEST(lengths_in_device_memory) {
     skg_output output = output_of(expected);
     for (int32_t kind = SKG_LENGTHS_NET; kind <= SKG_LENGTHS_SURFACE; kind++) {
         output = output_of(expected);
-        ck_skg(skg_plan_lengths(c.plan, 0, kind, 1, NULL, &output, &job));
+        output.kind = SKG_OUTPUT_LENGTHS;
+        output.lengths = kind;
+        ck_skg(skg_plan_submit(c.plan, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
-        output = output_of(NULL);
-        ck_skg(
-            skg_plan_lengths_cl(c.plan, 0, kind, 1, NULL, &output, c.buffer, OFFSET, 1, &start, &done, &job));
+        output.data = NULL;
+        output.buffer = c.buffer;
+        output.offset = OFFSET;
+        ck_skg(skg_plan_submit_cl(c.plan, 1, NULL, 1, &output, 1, &start, &done, &job));
         if (kind == SKG_LENGTHS_NET) { /* nothing was waited for: the event is still open */
             ck_assert_int_eq(
                 clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, NULL),
@@ -39,17 +42,21 @@ START_TEST(lengths_in_device_memory) {
         clReleaseEvent(done);
     }
     clReleaseEvent(start);
-    ck_skg_fails(skg_plan_lengths_cl(c.plan, 2, 0, 1, NULL, &output, c.buffer, 0, 0, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "skg_plan_lengths_cl: part 2 of 2");
-    ck_skg_fails(skg_plan_lengths_cl(c.plan, 0, 7, 1, NULL, &output, c.buffer, 0, 0, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "kind 7");
-    ck_skg_fails(skg_plan_lengths_cl(c.plan, 0, 0, 1, NULL, &output, NULL, 0, 0, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "no buffer");
-    ck_skg_fails(skg_plan_lengths_cl(c.plan, 0, 0, 1, NULL, &output, c.buffer, 0, 1, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "no list");
-    ck_skg_fails(
-        skg_plan_lengths_cl(c.plan, 0, 0, 1, NULL, &output, c.buffer, OFFSET + 4, 0, NULL, NULL, &job),
-        SKG_ERR_ARGUMENT, "the buffer at");
+    const skg_output good = output;
+    output.part = 2;
+    ck_skg_fails(skg_plan_submit_cl(c.plan, 1, NULL, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "skg_plan_submit_cl: part 2 of 2");
+    output = good, output.lengths = 7;
+    ck_skg_fails(skg_plan_submit_cl(c.plan, 1, NULL, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "kind 7");
+    output = good, output.buffer = NULL;
+    ck_skg_fails(skg_plan_submit_cl(c.plan, 1, NULL, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "no memory");
+    ck_skg_fails(skg_plan_submit_cl(c.plan, 1, NULL, 1, &good, 1, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "no list");
+    output = good, output.offset += 4;
+    ck_skg_fails(skg_plan_submit_cl(c.plan, 1, NULL, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "the buffer at");
     close_caller(&c);
 }
 END_TEST
@@ -67,14 +74,15 @@ static void *work(void *user) {
     skg_view views[FRAMES];
     skg_frame frames[FRAMES];
     skg_job *job = NULL;
-    const skg_output output = output_of(NULL);
+    skg_output output = output_of(NULL);
+    output.buffer = c.buffer;
     for (int n = 0; n < FRAMES; n++) {
         views[n] = c.view;
         views[n].source[0] = w->shift + 10 * n;
         skg_frame_init(&frames[n]);
         frames[n].view = &views[n];
     }
-    ck_skg(skg_plan_submit_cl(c.plan, FRAMES, frames, &output, c.buffer, 0, 0, NULL, NULL, &job));
+    ck_skg(skg_plan_submit_cl(c.plan, FRAMES, frames, 1, &output, 0, NULL, NULL, &job));
     ck_assert_int_eq(
         clEnqueueReadBuffer(c.queue, c.buffer, CL_TRUE, 0, sizeof w->images, w->images, 0, NULL, NULL),
         CL_SUCCESS);

@@ -61,11 +61,19 @@ START_TEST(arguments) {
     ck_skg_fails(skg_plan_submit(plan, 1, &frame, NULL, &job), SKG_ERR_ARGUMENT, "output");
     ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, NULL), SKG_ERR_ARGUMENT, "job");
     ck_skg_fails(skg_plan_image(plan, NULL), SKG_ERR_ARGUMENT, "output");
-    ck_skg_fails(skg_plan_lengths(plan, 1, SKG_LENGTHS_NET, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
-                 "part");
-    ck_skg_fails(skg_plan_lengths(plan, -1, SKG_LENGTHS_NET, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
-                 "part");
-    ck_skg_fails(skg_plan_lengths(plan, 0, 7, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "kind");
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.part = 1;
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "part");
+    output.part = -1;
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "part");
+    output.part = 0;
+    output.lengths = 7;
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "kind 7");
+    output.kind = 99;
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
+                 "kind 99 is no SKG_OUTPUT_");
+    output.kind = SKG_OUTPUT_IMAGE;
+    ck_skg_fails(skg_plan_outputs_submit(plan, 1, &frame, 0, &output, &job), SKG_ERR_ARGUMENT, "no output");
     refused(0, SKG_ERR_ARGUMENT, "frames");
     refused(-3, SKG_ERR_ARGUMENT, "frames");
     const skg_output good = output;
@@ -256,9 +264,13 @@ START_TEST(nested_parts_and_quantities) {
         const int32_t kinds[3] = {SKG_LENGTHS_NET, SKG_LENGTHS_NET, SKG_LENGTHS_SURFACE};
         for (int n = 0; n < 3; n++) {
             output.data = lengths[n];
-            ck_skg(skg_plan_lengths(plan, n % 2, kinds[n], 1, &frame, &output, &job));
+            output.kind = SKG_OUTPUT_LENGTHS;
+            output.part = n % 2;
+            output.lengths = kinds[n];
+            ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
             ck_skg(skg_job_wait(&job));
         }
+        output.kind = SKG_OUTPUT_IMAGE;
         output.data = image;
         ck_skg(skg_plan_image(plan, &output));
         for (int p = 0; p < PIXELS; p++) {

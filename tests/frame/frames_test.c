@@ -310,7 +310,9 @@ START_TEST(device_memory_and_events) {
     skg_output output = output_of(NULL);
     skg_job *job = NULL;
     output.row_stride = ROW;
-    ck_skg(skg_plan_submit_cl(plan, FRAMES, frames, &output, buffer, OFFSET, 1, &start, &done, &job));
+    output.buffer = buffer;
+    output.offset = OFFSET;
+    ck_skg(skg_plan_submit_cl(plan, FRAMES, frames, 1, &output, 1, &start, &done, &job));
     ck_assert_int_eq(clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, NULL),
                      CL_SUCCESS);
     ck_assert_int_gt(state, CL_COMPLETE); /* it cannot be done: it has not begun */
@@ -325,10 +327,12 @@ START_TEST(device_memory_and_events) {
     }
     ck_skg(skg_job_wait(&job));
     /* A buffer that is too small, and an offset between two elements. */
-    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, &output, buffer, OFFSET + 16, 0, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "buffer");
-    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, &output, buffer, 2, 0, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "offset");
+    output.offset = OFFSET + 16;
+    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "buffer");
+    output.offset = 2;
+    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "offset");
     clReleaseEvent(start);
     clReleaseEvent(done);
     clReleaseMemObject(buffer);
@@ -339,8 +343,10 @@ START_TEST(device_memory_and_events) {
     ck_assert_int_eq(code, CL_SUCCESS);
     buffer = clCreateBuffer(other, CL_MEM_READ_WRITE, sizeof got, NULL, &code);
     ck_assert_int_eq(code, CL_SUCCESS);
-    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, &output, buffer, 0, 0, NULL, NULL, &job),
-                 SKG_ERR_ARGUMENT, "another OpenCL context");
+    output.buffer = buffer;
+    output.offset = 0;
+    ck_skg_fails(skg_plan_submit_cl(plan, FRAMES, frames, 1, &output, 0, NULL, NULL, &job), SKG_ERR_ARGUMENT,
+                 "another OpenCL context");
     ck_assert_ptr_null(job);
     clReleaseMemObject(buffer);
     clReleaseContext(other);

@@ -42,7 +42,9 @@ static void take(skg_plan *plan, int64_t part, float *pixels) {
     skg_job *job = NULL;
     skg_output_init(&output);
     output.data = pixels;
-    ck_skg(skg_plan_lengths(plan, part, SKG_LENGTHS_NET, 1, NULL, &output, &job));
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.part = part;
+    ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

@@ -126,7 +126,8 @@ static void take(const soup *a, const soup *b, const wish *w, picture *result) {
     if (b) {
         ck_skg(skg_plan_image(plan, &output));
     } else {
-        ck_skg(skg_plan_lengths(plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));
+        output.kind = SKG_OUTPUT_LENGTHS;
+        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
     }
     skg_plan_report_init(&result->report);

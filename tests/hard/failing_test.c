@@ -279,7 +279,8 @@ static skg_status place_and_draw(const run *r) {
         if (done) clReleaseEvent(done);
         TRY(placed);
     }
-    TRY(skg_plan_submit_cl(r->plan, 1, &frame, &output, r->shared.buffer, 0, 0, NULL, NULL, &job));
+    output.buffer = r->shared.buffer;
+    TRY(skg_plan_submit_cl(r->plan, 1, &frame, 1, &output, 0, NULL, NULL, &job));
     const skg_status status = skg_job_wait(&job);
     return status == SKG_RANGE ? SKG_OK : status;
 }
@@ -313,17 +314,19 @@ static skg_status draw(run *r) {
     skg_output_init(&output);
     output.data = r->image;
     if (r->with->strided) output.row_stride = STRIDE;
+    if (r->with->shared) output.buffer = r->shared.buffer;
     if (r->with->shared)
-        TRY(skg_plan_submit_cl(r->plan, 2, frames, &output, r->shared.buffer, 0, 1, &r->shared.start, NULL,
-                               &job));
+        TRY(skg_plan_submit_cl(r->plan, 2, frames, 1, &output, 1, &r->shared.start, NULL, &job));
     else
         TRY(skg_plan_submit(r->plan, 2, frames, &output, &job));
     if (skg_work_count() != 1) return SKG_ERR_INTERNAL; /* Check would allocate */
     TRY(skg_job_wait(&job));
     if (r->with->shared) shared_read(&r->shared, 2 * PIXELS * sizeof *r->image, r->image);
     output.row_stride = 0;
+    output.buffer = NULL;
     output.data = r->lengths;
-    TRY(skg_plan_lengths(r->plan, 0, SKG_LENGTHS_NET, 1, NULL, &output, &job));
+    output.kind = SKG_OUTPUT_LENGTHS;
+    TRY(skg_plan_submit(r->plan, 1, NULL, &output, &job));
     int32_t done = 0;
     const skg_status asked = skg_job_test(job, &done);
     TRY(skg_job_wait(&job)); /* the job is released, whatever became of the question */

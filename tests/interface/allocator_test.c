@@ -229,19 +229,22 @@ END_TEST
 
 START_TEST(a_handler_hears_of_each_failure_once) {
     static program p, other;
-    skg_output output;
+    skg_output output, lengths;
     skg_mesh *mesh = NULL;
     skg_setup *none = NULL;
     skg_view view;
     int32_t done = 0;
     skg_output_init(&output);
+    skg_output_init(&lengths);
+    lengths.kind = SKG_OUTPUT_LENGTHS;
+    lengths.part = 9;
     skg_view_init(&view);
     ck_skg(run(&p));
     ck_skg(run(&other));
     ck_assert_int_eq(p.errors, 0);
     const skg_status failed[] = {skg_plan_image(p.plan, &output),
                                  skg_plan_submit(p.plan, 0, NULL, &output, &p.job),
-                                 skg_plan_lengths(p.plan, 9, SKG_LENGTHS_NET, 1, NULL, &output, &p.job),
+                                 skg_plan_submit(p.plan, 1, NULL, &lengths, &p.job),
                                  skg_plan_move(p.plan, NULL),
                                  skg_plan_move(p.plan, &view),
                                  skg_mesh_load(p.context, "nowhere.stl", 1, &mesh),

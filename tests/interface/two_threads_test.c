@@ -79,7 +79,9 @@ static skg_status take_images(skg_plan *plan, worker *w) {
     TRY(skg_plan_submit(plan, FRAMES, frames, &output, &job));
     TRY(skg_job_wait(&job));
     output.data = w->lengths;
-    TRY(skg_plan_lengths(plan, 1, SKG_LENGTHS_NET, 1, frames, &output, &job));
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.part = 1;
+    TRY(skg_plan_submit(plan, 1, frames, &output, &job));
     return skg_job_wait(&job);
 }
 

@@ -90,7 +90,10 @@ START_TEST(no_length_is_below_0) {
         float least = 0, most = 0;
         skg_output_init(&output);
         output.data = lengths;
-        ck_skg(skg_plan_lengths(plan, i, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job));
+        output.kind = SKG_OUTPUT_LENGTHS;
+        output.part = i;
+        output.lengths = SKG_LENGTHS_SURFACE;
+        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int64_t p = 0; p < view.rows * view.columns; p++) {
             least = lengths[p] < least ? lengths[p] : least;

@@ -102,7 +102,9 @@ static double *image_of(skg_plan *plan, const skg_view *view, int lengths) {
     output.type = report.precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     output.data = image;
     if (lengths) {
-        ck_skg(skg_plan_lengths(plan, 0, SKG_LENGTHS_SURFACE, 1, &frame, &output, &job));
+        output.kind = SKG_OUTPUT_LENGTHS;
+        output.lengths = SKG_LENGTHS_SURFACE;
+        ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
         ck_skg(skg_job_wait(&job));
     } else {
         ck_skg(skg_plan_image(plan, &output));

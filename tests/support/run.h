@@ -33,7 +33,7 @@ typedef struct {
 /* A plan of 100 keV and one photon per pixel, without a search for overlaps. */
 skg_plan *run_plan(skg_scene *scene, const skg_view *view, run_choice choice);
 
-/* The lengths of part 0 by skg_plan_lengths, SKG_LENGTHS_SURFACE, one frame as it stands: float32 for single, float64
+/* The lengths of part 0 by SKG_OUTPUT_LENGTHS, SKG_LENGTHS_SURFACE, one frame as it stands: float32 for single, float64
  * for double, handed out as doubles [rows][columns]; to be freed. */
 double *run_lengths(skg_plan *plan, const skg_view *view);
 

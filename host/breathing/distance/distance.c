@@ -2,6 +2,7 @@
 #include "core/core.h"
 #include "core/openmp.h"
 #include "core/plain.h"
+#include "core/progress.h"
 #include "core/vector.h"
 #include "distance/nearest.h"
 #include "distance/sample.h"
@@ -84,10 +85,24 @@ static skg_status tree_of(const skg_mesh *mesh, skg_tree *tree) {
     return status;
 }
 
+/* Samples between two looks at the progress. */
+enum { BLOCK = 1 << 14 };
+
 static void find_distances(const skg_tree *tree, int64_t count, const double *points, double *distances) {
 #pragma omp parallel for schedule(dynamic, 1024)
     for (int64_t i = 0; i < count; i++)
         distances[i] = sqrt(skg_tree_nearest(tree, points + 3 * i, HUGE_VAL, NULL));
+}
+
+static skg_status find_all(const skg_tree *tree, const skg_samples *samples, skg_progress *progress,
+                           double *distances) {
+    for (int64_t i = 0; i < samples->count; i += BLOCK) {
+        const int64_t left = samples->count - i;
+        SKG_TRY(skg_progress_step(progress, i, samples->count));
+        find_distances(tree, left < BLOCK ? left : BLOCK, samples->points + 3 * i, distances + i);
+    }
+    (void)skg_progress_step(progress, samples->count, samples->count);
+    return SKG_OK;
 }
 
 static skg_status measure(const skg_surface *from, const skg_tree *to, const skg_distance_options *options,
@@ -96,10 +111,8 @@ static skg_status measure(const skg_surface *from, const skg_tree *to, const skg
     double *distances = NULL;
     SKG_TRY(skg_samples_create(from, options, &samples));
     skg_status status = skg_alloc(samples.count, sizeof *distances, "distances", &distances);
-    if (status == SKG_OK) {
-        find_distances(to, samples.count, samples.points, distances);
-        status = summarize(&samples, distances, result);
-    }
+    if (status == SKG_OK) status = find_all(to, &samples, options->progress, distances);
+    if (status == SKG_OK) status = summarize(&samples, distances, result);
     skg_free(&distances);
     skg_samples_free(&samples);
     return status;

@@ -1,5 +1,6 @@
 /* A fit as a handle. */
 #include "core/plain.h"
+#include "core/progress.h"
 #include "evolution/eigen.h"
 #include "fit/types.h"
 #include "scene/scene.h"
@@ -105,6 +106,7 @@ static skg_status create(skg_context *context, const skg_setup *setup, const skg
     SKG_TRY(skg_alloc(1, sizeof *fit, "fit", &fit));
     fit->setup = setup;
     fit->options = ours;
+    skg_progress_keep(ours.progress);
     skg_status status = context ? skg_context_retain(context) : SKG_OK;
     if (status == SKG_OK) {
         fit->context = context;
@@ -135,6 +137,7 @@ void skg_fit_release(skg_fit **fit) {
     skg_free(&(*fit)->goals);
     skg_free(&(*fit)->targets);
     skg_free(&(*fit)->models);
+    skg_progress_release(&(*fit)->options.progress);
     skg_context_release(&(*fit)->context);
     skg_free(fit);
 }

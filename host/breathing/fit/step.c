@@ -1,6 +1,7 @@
 /* Evaluating generations. */
 #include "core/openmp.h"
 #include "core/plain.h"
+#include "core/progress.h"
 #include "fit/types.h"
 
 #include <math.h>
@@ -98,8 +99,14 @@ static int is_done(const skg_fit *fit) {
     return next > fit->options.evaluations || skg_fit_error(fit) <= fit->options.enough_mm;
 }
 
+static skg_status say_progress(const skg_fit *fit) {
+    return skg_progress_step(fit->options.progress, fit->search.counters[SEARCH_EVALUATIONS],
+                             fit->options.evaluations);
+}
+
 static skg_status step(skg_fit *fit) {
     double *values;
+    SKG_TRY(say_progress(fit));
     SKG_TRY(skg_alloc(fit->search.most_points, sizeof *values, "fit", &values));
     skg_status status = skg_search_ask(&fit->search);
     if (status == SKG_OK) status = evaluate_all(fit, values);
@@ -113,6 +120,7 @@ skg_status skg_fit_step(skg_fit *fit, skg_fit_state *state) {
     SKG_NEEDS(fit);
     SKG_TRY(skg_fit_begin(fit));
     if (!is_done(fit)) SKG_TRY(step(fit));
+    if (is_done(fit)) (void)say_progress(fit);
     const int64_t *counters = fit->search.counters;
     const skg_fit_state ours = {.is_done = is_done(fit),
                                 .evaluations = counters[SEARCH_EVALUATIONS],

@@ -58,7 +58,10 @@ int outline_find(fluoroscopy *f, const char *wanted) {
         skg_part_init(&part);
         status = skg_scene_part_get(f->session.scene, p, &part);
         if (status != SKG_OK || !is_wanted(part.label, wanted, length)) continue;
-        status = skg_plan_lengths(f->plan, p, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job);
+        output.kind = SKG_OUTPUT_LENGTHS;
+        output.part = p;
+        output.lengths = SKG_LENGTHS_SURFACE;
+        status = skg_plan_submit(f->plan, 1, NULL, &output, &job);
         if (status == SKG_OK) status = skg_job_wait(&job);
         if (status >= SKG_OK) add_border(f, f->image[0]);
         if (status > SKG_OK) status = SKG_OK;

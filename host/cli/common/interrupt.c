@@ -3,6 +3,7 @@
 #define _GNU_SOURCE /* getdents64 */
 #include "common/interrupt.h"
 
+#include "common/progress.h"
 #include "core/part_name.h"
 
 #include <dirent.h>
@@ -28,6 +29,7 @@ static volatile sig_atomic_t guarded_child;
 static char kept[2][LONGEST_PATH] = {"no output was written", ""};
 static volatile sig_atomic_t kept_now;
 static volatile sig_atomic_t is_gentle, is_asked; /* is_asked: the signal; 0: none */
+static skg_progress *cancelled;                   /* by the first signal; NULL: none */
 
 void cli_keep(const char *format, ...) {
     va_list arguments;
@@ -49,6 +51,7 @@ static void say(const char *text) {
 }
 
 void cli_stop_gently(void) {
+    cancelled = cli_progress();
     is_gentle = 1;
 }
 
@@ -89,6 +92,7 @@ static void end(int number) {
     }
     if (is_gentle && !is_asked) {
         is_asked = number;
+        if (cancelled) (void)skg_progress_cancel(cancelled);
         say("\nskiagraph: stopping; what is done is kept (a second signal ends at once)\n");
         return;
     }

@@ -14,8 +14,8 @@ void cli_guard_output(const char *path);
 /* The handler kills this child process before it removes files, so that the child makes none. 0: there is no child. */
 void cli_guard_child(pid_t child);
 
-/* From now on the first signal only asks the computation to stop, which cli_stop_asked then reports; the second one ends the
- * process as described above. */
+/* From now on the first signal only asks the computation to stop: it cancels cli_progress(), and cli_stop_asked reports it. The
+ * second one ends the process as described above. */
 void cli_stop_gently(void);
 
 /* Whether a signal asked the computation to stop. */

@@ -22,7 +22,10 @@ static struct {
     double start_ms;
     double end_ms; /* when it is expected to end; 0: no forecast */
     int is_running;
+    int is_followed; /* 1: done and total are those of `shared` */
 } task;
+
+static skg_progress *shared; /* stays until the process ends */
 
 static pthread_t shower;
 static int has_shower; /* 1: the thread was started */
@@ -47,6 +50,7 @@ static void show(void) {
         return;
     }
     if (ms < SILENT_MS) return;
+    if (task.is_followed) (void)skg_progress_get(shared, &task.done, &task.total);
     if (task.total > 0 && task.done > 0) {
         const double rate = (double)task.done / seconds;
         snprintf(line, sizeof line, "%s: %" PRId64 " of %" PRId64 ", %.3g per second, %.0f s left", task.what,
@@ -75,12 +79,24 @@ void cli_progress_begin(const char *what, int64_t total) {
     sigset_t all, before; /* signals belong to the thread that writes */
     cli_progress_end();
     if (cli_is_quiet() || !isatty(STDERR_FILENO)) return;
-    task.what = what, task.total = total, task.done = 0, task.end_ms = 0;
+    task.what = what, task.total = total, task.done = 0, task.end_ms = 0, task.is_followed = 0;
     task.start_ms = cli_now_ms(), task.is_running = 1;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     has_shower = pthread_create(&shower, NULL, run, NULL) == 0; /* without it there is no line */
     pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+skg_progress *cli_progress(void) {
+    if (!shared) (void)skg_progress_create(NULL, NULL, &shared);
+    return shared;
+}
+
+void cli_progress_follow(const char *what) {
+    cli_progress_begin(what, 0);
+    pthread_mutex_lock(&lock);
+    task.is_followed = cli_progress() != NULL;
+    pthread_mutex_unlock(&lock);
 }
 
 void cli_progress_step(int64_t done) {

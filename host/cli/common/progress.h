@@ -2,6 +2,7 @@
 #ifndef SKG_CLI_PROGRESS_H
 #define SKG_CLI_PROGRESS_H
 
+#include <skiagraph/progress.h>
 #include <stdint.h>
 
 /* Milliseconds of a clock that never goes back. */
@@ -14,6 +15,13 @@ double cli_now_ms(void);
  * what    what is done or counted; a text that lives as long as the computation
  * total   how many things there are; 0: not known */
 void cli_progress_begin(const char *what, int64_t total);
+
+/* The progress of the process, for the options of long work: one work at a time. A signal cancels it where cli_stop_gently says
+ * so. NULL without memory. */
+skg_progress *cli_progress(void);
+
+/* Begins a computation that is given cli_progress(), whose numbers the line shows. */
+void cli_progress_follow(const char *what);
 
 /* `done` things are done by now. */
 void cli_progress_step(int64_t done);

@@ -88,7 +88,10 @@ static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t
     skg_output_init(&output);
     output.type = type;
     output.data = data;
-    skg_status status = skg_plan_lengths(plan, part, SKG_LENGTHS_SURFACE, 1, NULL, &output, &job);
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.part = part;
+    output.lengths = SKG_LENGTHS_SURFACE;
+    skg_status status = skg_plan_submit(plan, 1, NULL, &output, &job);
     if (status >= SKG_OK) status = skg_job_wait(&job);
     if (status >= SKG_OK) cost_widen(type, pixels, data);
     return status;

@@ -23,19 +23,16 @@ static int resume(fit_work *work, const char *checkpoint) {
 
 static int search(fit_work *work) {
     const char *checkpoint = cli_value(work->arguments, &cli_flag_fit_checkpoint);
-    int64_t most = 4000;
-    int exit_status = cli_integer(work->arguments, &cli_flag_fit_evaluations, 1, 1000000000, &most);
-    if (exit_status == CLI_DONE) exit_status = resume(work, checkpoint);
+    const int exit_status = resume(work, checkpoint);
     if (exit_status != CLI_DONE) return exit_status;
     if (checkpoint) cli_keep("%s is kept; the same command continues from it", checkpoint);
     const double begin = cli_now_ms();
     skg_status status = SKG_OK;
     skg_fit_state_init(&work->state);
-    cli_progress_begin("evaluations", most);
+    cli_progress_follow("evaluations");
     while (status == SKG_OK && !work->state.is_done) {
         status = skg_fit_step(work->fit, &work->state);
         if (status == SKG_OK && checkpoint) status = skg_fit_checkpoint_save(work->fit, checkpoint);
-        cli_progress_step(work->state.evaluations);
     }
     cli_progress_begin("measuring what is left", 0);
     if (status == SKG_OK) status = skg_fit_finish(work->fit);

@@ -1,6 +1,7 @@
 #include "fit/work.h"
 
 #include "common/file.h"
+#include "common/progress.h"
 #include "common/say.h"
 #include "common/values.h"
 #include "core/names.h"
@@ -124,6 +125,7 @@ int fit_prepare(fit_work *work) {
     const char *names = cli_value(arguments, &cli_flag_fit_parameters);
     skg_fit_options options;
     skg_fit_options_init(&options);
+    options.progress = cli_progress();
     int exit_status = check_outputs(work);
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_fit_method, &options.method);
     if (exit_status == CLI_DONE)

@@ -2,6 +2,7 @@
 
 #include "common/file.h"
 #include "common/interrupt.h"
+#include "common/progress.h"
 #include "common/say.h"
 #include "session/explain.h"
 
@@ -230,7 +231,10 @@ int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
         cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
     a->options.file = a->file;
     if (a->ranks.rank == 0) verify_note(a);
-    if (a->ranks.count == 1) cli_stop_gently();
+    if (a->ranks.count == 1) {
+        cli_stop_gently();
+        a->options.progress = cli_progress();
+    }
     const int exit_status = a->ranks.count > 1 ? shared_run(arguments, a) : run_alone(a);
     if (exit_status != CLI_DONE || a->ranks.rank > 0 || a->is_stopped) return exit_status;
     const skg_status status = skg_scan_file_finish(a->file);

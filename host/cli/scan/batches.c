@@ -1,6 +1,5 @@
 #include "scan/steps.h"
 
-#include "common/interrupt.h"
 #include "common/progress.h"
 #include "session/frames.h"
 
@@ -24,15 +23,13 @@ skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count) {
 
 skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
     const double start = cli_now_ms();
-    int64_t all = 0, count = 1;
-    skg_status status = skg_scan_run_projection_count(run, &all);
-    cli_progress_begin("projections", all);
-    while (status == SKG_OK && count > 0 && !cli_stop_asked()) {
-        status = write_batch(a, run, &count);
-        cli_progress_step(a->computed);
-    }
-    a->is_stopped = a->computed < all && cli_stop_asked();
+    int64_t count = 1;
+    skg_status status = SKG_OK;
+    cli_progress_follow("projections");
+    while (status == SKG_OK && count > 0) status = write_batch(a, run, &count);
     cli_progress_end();
+    a->is_stopped = status == SKG_ERR_CANCELLED;
+    if (a->is_stopped) status = SKG_OK;
     a->seconds = 1e-3 * (cli_now_ms() - start);
     return status;
 }

@@ -87,11 +87,10 @@ static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int
 static skg_status add_projections(reconstruction *r) {
     const double start = cli_now_ms();
     skg_status status = SKG_OK;
-    cli_progress_begin("projections", r->projections);
+    cli_progress_follow("projections");
     for (int64_t k = 0; k < r->projections && status == SKG_OK; k++) {
         status = skg_scan_reader_attenuation_get(r->reader, k, r->image);
         if (status == SKG_OK) status = skg_fdk_add(r->fdk, k, r->image);
-        cli_progress_step(k + 1);
     }
     cli_progress_end();
     r->seconds = 1e-3 * (cli_now_ms() - start);
@@ -129,6 +128,7 @@ int cli_reconstruct(const cli_arguments *arguments) {
     reconstruction r = {0};
     int64_t size = 0;
     skg_fdk_options_init(&r.options);
+    r.options.progress = cli_progress();
     int exit_status = read_flags(arguments, &r, &size);
     if (exit_status == CLI_DONE) {
         skg_status status = prepare(arguments, &r, size);

@@ -25,6 +25,7 @@ static int read_options(work *w) {
     const char *picture = cli_value(arguments, &cli_flag_distance_output);
     const char *map = cli_value(arguments, &cli_flag_distance_map);
     skg_distance_options_init(&w->options);
+    w->options.progress = cli_progress();
     int exit_status = cli_choice(arguments, &cli_flag_distance_sampling, &w->options.sampling);
     if (exit_status == CLI_DONE)
         exit_status = cli_number(arguments, &cli_flag_distance_spacing, 1e-6, 1e6, &w->options.spacing_mm);
@@ -143,7 +144,7 @@ static int print(const work *w) {
 int cli_distance(const cli_arguments *arguments) {
     work w = {.arguments = arguments};
     int exit_status = read_options(&w);
-    cli_progress_begin("measuring distances", 0);
+    cli_progress_follow("measuring distances");
     if (exit_status == CLI_DONE) exit_status = load(&w);
     if (exit_status == CLI_DONE) exit_status = measure(&w);
     if (exit_status == CLI_DONE) exit_status = write_maps(&w);

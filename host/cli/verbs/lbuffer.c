@@ -14,7 +14,11 @@ static skg_status one_buffer(skg_plan *plan, const skg_output *output, const voi
     skg_job *job = NULL;
     skg_frame frame;
     skg_frame_init(&frame);
-    skg_status status = skg_plan_lengths(plan, wanted->part, wanted->kind, 1, &frame, output, &job);
+    skg_output lengths = *output;
+    lengths.kind = SKG_OUTPUT_LENGTHS;
+    lengths.part = wanted->part;
+    lengths.lengths = wanted->kind;
+    skg_status status = skg_plan_submit(plan, 1, &frame, &lengths, &job);
     return status == SKG_OK ? skg_job_wait(&job) : status;
 }
 

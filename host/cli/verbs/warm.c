@@ -28,7 +28,9 @@ static skg_status draw(skg_plan *plan, skg_output *output) {
     skg_frame_init(&frame);
     skg_status status = skg_plan_image(plan, output);
     if (status != SKG_OK && status != SKG_RANGE) return status;
-    status = skg_plan_lengths(plan, 0, SKG_LENGTHS_NET, 1, &frame, output, &job);
+    skg_output lengths = *output;
+    lengths.kind = SKG_OUTPUT_LENGTHS;
+    status = skg_plan_submit(plan, 1, &frame, &lengths, &job);
     if (status == SKG_OK) status = skg_job_wait(&job);
     return status == SKG_RANGE ? SKG_OK : status;
 }

@@ -10,6 +10,7 @@
 #define SKIAGRAPH_DISTANCE_H
 
 #include <skiagraph/mesh.h>
+#include <skiagraph/progress.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,6 +35,8 @@ typedef struct {
     /** Largest side of the triangles of SKG_DISTANCE_SURFACE, mm, above 0. 0: such that there are about 200,000. The
      * error of the mean is about spacing_mm^2 times the curvature. */
     double spacing_mm;
+    /** Steps are samples. NULL: nobody wants to know. */
+    skg_progress *progress;
 } skg_distance_options;
 
 /** Prepares options of `size` bytes (export.h). */
@@ -81,7 +84,7 @@ static inline void skg_distance_init(skg_distance *distance) {
  *     options    NULL: the defaults
  *     distance   result
  *     errors     SKG_ERR_ARGUMENT (an option, or more than 1e9 samples), SKG_ERR_MESH if a vertex is not finite,
- *                SKG_ERR_MEMORY */
+ *                SKG_ERR_MEMORY, SKG_ERR_CANCELLED */
 SKG_API skg_status skg_distance_measure(const skg_mesh *from, const skg_mesh *to,
                                         const skg_distance_options *options, skg_distance *distance);
 

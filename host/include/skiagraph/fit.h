@@ -15,6 +15,7 @@
 #ifndef SKIAGRAPH_FIT_H
 #define SKIAGRAPH_FIT_H
 
+#include <skiagraph/progress.h>
 #include <skiagraph/setup.h>
 
 #ifdef __cplusplus
@@ -45,6 +46,8 @@ typedef struct {
     int64_t seed;
     /** The search ends when the root mean square error is this small, mm; 0.001 by default. */
     double enough_mm;
+    /** Steps are evaluations. Retained by the fit; NULL: nobody wants to know. */
+    skg_progress *progress;
 } skg_fit_options;
 
 /** Prepares options of `size` bytes (export.h). */
@@ -165,7 +168,8 @@ static inline void skg_fit_state_init(skg_fit_state *state) {
 /** Evaluates one generation. Does nothing if the fit is done.
  *
  *     state    result: in and out, prepared with skg_fit_state_init; may be NULL
- *     errors   SKG_ERR_ARGUMENT if there is no target */
+ *     errors   SKG_ERR_ARGUMENT if there is no target; SKG_ERR_CANCELLED: the generation was not evaluated, and the
+ *              best parameters so far stay */
 SKG_API skg_status skg_fit_step(skg_fit *fit, skg_fit_state *state);
 
 /** Writes where the search is, to a file that appears whole or not at all. Called after each step, it loses at most one

@@ -4,6 +4,7 @@
 #ifndef SKIAGRAPH_RECONSTRUCT_H
 #define SKIAGRAPH_RECONSTRUCT_H
 
+#include <skiagraph/progress.h>
 #include <skiagraph/scan.h>
 
 #ifdef __cplusplus
@@ -38,6 +39,8 @@ typedef struct {
     double voxel_mm;
     /** Centre of the volume, mm. */
     double middle[3];
+    /** Steps are projections. Retained by the reconstruction; NULL: nobody wants to know. */
+    skg_progress *progress;
 } skg_fdk_options;
 
 /** Prepares the options of a reconstruction, of `size` bytes (export.h). */
@@ -65,7 +68,8 @@ SKG_API void skg_fdk_release(skg_fdk **fdk);
  * not depend on their number.
  *
  *     index   of the projection; each one once, in any order
- *     image   [row][column] of -ln(I / I0) */
+ *     image   [row][column] of -ln(I / I0)
+ *     errors  SKG_ERR_CANCELLED: the projection was not added; SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image);
 
 /** Gets the volume, 1/cm: [z][y][x]. It is valid as long as the reconstruction. */

@@ -4,6 +4,7 @@
 #define SKIAGRAPH_SCAN_RUN_H
 
 #include <skiagraph/motion.h>
+#include <skiagraph/progress.h>
 #include <skiagraph/scan_file.h>
 
 #ifdef __cplusplus
@@ -50,6 +51,8 @@ typedef struct {
     const int64_t *moving_parts;
     /** [projections of the scan][moving_count][16] their poses; used until the run is released */
     const double *moving_poses;
+    /** Steps are projections. Retained by the run; NULL: nobody wants to know. */
+    skg_progress *progress;
 } skg_scan_run_options;
 
 /** Prepares the options of a run, of `size` bytes (export.h). */
@@ -71,7 +74,7 @@ static inline void skg_scan_run_options_init(skg_scan_run_options *options) {
 SKG_API skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_run_options *options,
                                        skg_scan_run **run);
 
-/** Waits for the batches that are being computed and frees a run. */
+/** Frees a run. Batches that are being computed are cancelled. */
 SKG_API void skg_scan_run_release(skg_scan_run **run);
 
 /** Number of projections that a run computes, with those that were added. */
@@ -117,7 +120,8 @@ static inline void skg_scan_batch_init(skg_scan_batch *batch) {
  *
  *     batch    in and out: prepared with skg_scan_batch_init
  *     range    SKG_RANGE: the batch is in place, and skg_last_error says what is outside the verified range
- *     errors   what skg_plan_submit and skg_job_wait give. The run cannot be continued */
+ *     errors   SKG_ERR_CANCELLED; what skg_plan_submit and skg_job_wait give. The run cannot be continued, and the
+ *              batches before stay valid */
 SKG_API skg_status skg_scan_run_next(skg_scan_run *run, skg_scan_batch *batch);
 
 /** Receives a batch. A status other than SKG_OK ends the run and is what skg_scan_run_each returns. */

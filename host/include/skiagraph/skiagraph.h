@@ -27,6 +27,7 @@
 #include <skiagraph/mesh.h>
 #include <skiagraph/motion.h>
 #include <skiagraph/plan.h>
+#include <skiagraph/progress.h>
 #include <skiagraph/readout.h>
 #include <skiagraph/reconstruct.h>
 #include <skiagraph/scan.h>

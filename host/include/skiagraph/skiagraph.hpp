@@ -155,7 +155,17 @@ class job {
     }
     /** Whether wait() would return at once. */
     bool done() const {
-        return number<std::int32_t>(skg_job_test, static_cast<const skg_job *>(it_)) != 0;
+        return number<std::int32_t>(skg_job_test, it_) != 0;
+    }
+    /** The number of frames that are in place. */
+    std::int64_t progress() const {
+        std::int64_t in_place = 0;
+        check(skg_job_progress(it_, &in_place, nullptr));
+        return in_place;
+    }
+    /** Frames that the device was not given yet are not made: wait() then throws SKG_ERR_CANCELLED. */
+    void cancel() const {
+        check(skg_job_cancel(it_));
     }
 
   private:
@@ -199,6 +209,15 @@ job submit(const plan &by, std::span<const skg_frame> frames, std::span<Pixel> i
     return detail::started(status, submitted);
 }
 
+/** Starts frames with several outputs, such as an image and the lengths through parts. */
+inline job submit(const plan &by, std::span<const skg_frame> frames, std::span<const skg_output> outputs) {
+    skg_job *submitted = nullptr;
+    const skg_status status =
+        skg_plan_outputs_submit(by, static_cast<std::int64_t>(frames.size()), frames.data(),
+                                static_cast<std::int64_t>(outputs.size()), outputs.data(), &submitted);
+    return detail::started(status, submitted);
+}
+
 /** Makes one image, [channel][row][column]. Returns SKG_OK or SKG_RANGE. */
 template <class Pixel> skg_status image(const plan &by, std::span<Pixel> to) {
     const skg_output output = detail::dense(to.data(), detail::type_of(to.data()));
@@ -212,8 +231,11 @@ template <class Pixel>
 skg_status lengths(const plan &by, std::int64_t part, std::span<Pixel> to,
                    std::int32_t kind = SKG_LENGTHS_NET) {
     skg_job *submitted = nullptr;
-    const skg_output output = detail::dense(to.data(), detail::type_of(to.data()));
-    const skg_status status = skg_plan_lengths(by, part, kind, 1, nullptr, &output, &submitted);
+    skg_output output = detail::dense(to.data(), detail::type_of(to.data()));
+    output.kind = SKG_OUTPUT_LENGTHS;
+    output.part = part;
+    output.lengths = kind;
+    const skg_status status = skg_plan_submit(by, 1, nullptr, &output, &submitted);
     return detail::started(status, submitted).wait();
 }
 

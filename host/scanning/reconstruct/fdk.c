@@ -4,6 +4,7 @@
 #include "core/openmp.h"
 #include "core/output.h"
 #include "core/plain.h"
+#include "core/progress.h"
 #include "core/vector.h"
 #include "image/image.h"
 #include "reconstruct/fourier.h"
@@ -21,6 +22,7 @@ struct skg_fdk {
     skg_orbit orbit;
     skg_row_filter filter;
     int64_t columns, rows, projections, fine;
+    int64_t added; /* projections */
     float *image;  /* [rows][fine], weighted and filtered */
     float *volume; /* [z][y][x], 1/cm */
 };
@@ -77,6 +79,7 @@ skg_status skg_fdk_create(skg_scan *scan, const skg_fdk_options *options, skg_fd
     skg_scan_retain(scan);
     fdk->scan = scan;
     fdk->options = ours;
+    skg_progress_keep(ours.progress);
     const skg_status status = prepare(fdk);
     if (status != SKG_OK)
         skg_fdk_release(&fdk);
@@ -91,6 +94,7 @@ void skg_fdk_release(skg_fdk **fdk) {
     skg_row_filter_free(&(*fdk)->filter);
     skg_free(&(*fdk)->image);
     skg_free(&(*fdk)->volume);
+    skg_progress_release(&(*fdk)->options.progress);
     skg_free(fdk);
 }
 
@@ -210,6 +214,7 @@ skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
     SKG_NEEDS(fdk);
     SKG_NEEDS(image);
     SKG_TRY(skg_openmp_enter());
+    SKG_TRY(skg_progress_step(fdk->options.progress, fdk->added, fdk->projections));
     SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, &fdk->orbit, index, &pose));
     SKG_TRY(filter_image(fdk, &pose, image));
     find_map(&pose, &map);
@@ -218,6 +223,8 @@ skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
 #pragma omp parallel for schedule(static)
     for (int64_t line = 0; line < lines; line++)
         back_project_line(fdk, &map, scale, line % fdk->options.voxels[1], line / fdk->options.voxels[1]);
+    if (++fdk->added == fdk->projections)
+        (void)skg_progress_step(fdk->options.progress, fdk->added, fdk->projections);
     return SKG_OK;
 }
 

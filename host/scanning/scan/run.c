@@ -2,6 +2,7 @@
 #include "core/core.h"
 #include "core/maths.h"
 #include "core/plain.h"
+#include "core/progress.h"
 #include "scan/slot.h"
 
 #include <inttypes.h>
@@ -13,6 +14,7 @@ struct skg_scan_run {
     skg_scan_work work;
     int64_t *indices; /* [count] what is computed */
     int64_t count, submitted, batch;
+    int64_t finished; /* projections of the batches that the caller has finished with */
     skg_scan_slot slots[SLOTS];
     int next; /* the slot whose batch comes next */
 };
@@ -130,6 +132,7 @@ skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_ru
     skg_plan_retain(plan);
     skg_scan_retain(scan);
     run->work = (skg_scan_work){.plan = plan, .scan = scan, .options = ours};
+    skg_progress_keep(ours.progress);
     const skg_status status = prepare(run, &ours);
     if (status != SKG_OK)
         skg_scan_run_release(&run);
@@ -143,6 +146,7 @@ void skg_scan_run_release(skg_scan_run **run) {
     for (int s = 0; s < SLOTS; s++) skg_scan_slot_free(&(*run)->slots[s]);
     skg_plan_release(&(*run)->work.plan);
     skg_scan_release(&(*run)->work.scan);
+    skg_progress_release(&(*run)->work.options.progress);
     skg_free(&(*run)->indices);
     skg_free(run);
 }
@@ -160,7 +164,10 @@ skg_status skg_scan_run_next(skg_scan_run *run, skg_scan_batch *batch) {
     SKG_NEEDS(batch);
     /* The caller has finished with the slot before the next one: it becomes the last of the queue. */
     skg_scan_slot *slot = &run->slots[run->next], *returned = &run->slots[(run->next + SLOTS - 1) % SLOTS];
+    run->finished += returned->count;
     returned->count = 0;
+    const skg_status cancelled = skg_progress_step(run->work.options.progress, run->finished, run->count);
+    if (run->finished < run->count) SKG_TRY(cancelled);
     for (int s = 0; s < SLOTS; s++) { /* those that found nothing to do before skg_scan_run_add, too */
         skg_scan_slot *idle = &run->slots[(run->next + s) % SLOTS];
         if (idle->count == 0) SKG_TRY(submit(run, idle));

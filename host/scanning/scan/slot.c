@@ -54,6 +54,7 @@ static skg_status wait_for_jobs(skg_scan_slot *slot) {
 }
 
 void skg_scan_slot_free(skg_scan_slot *slot) {
+    for (int64_t j = 0; slot->jobs && j < slot->job_count; j++) skg_job_cancel(slot->jobs[j]);
     if (slot->jobs) wait_for_jobs(slot);
     skg_free(&slot->indices);
     skg_free(&slot->phases);

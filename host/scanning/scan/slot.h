@@ -32,7 +32,7 @@ skg_status skg_scan_work_init(skg_scan_work *work);
 
 /* Memory for batches of this size. Free also after a failure. */
 skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, int64_t batch);
-void skg_scan_slot_free(skg_scan_slot *slot); /* waits for its jobs */
+void skg_scan_slot_free(skg_scan_slot *slot); /* cancels its jobs */
 
 /* Starts the frames of projections. */
 skg_status skg_scan_slot_submit(const skg_scan_work *work, skg_scan_slot *slot, const int64_t *indices,

@@ -46,6 +46,7 @@ typedef int32_t skg_status;
     X(SKG_ERR_UNSUPPORTED, -14, "this device or version cannot do what was asked")                           \
     X(SKG_ERR_FORK, -15, "OpenCL was started before a fork; start the child process by exec or spawn")       \
     X(SKG_ERR_BREATHING, -16, "a body, link or breath is not usable")                                        \
+    X(SKG_ERR_CANCELLED, -17, "the work was cancelled before it was finished")                               \
     X(SKG_ERR_INTERNAL, -99, "a fault of the library itself")
 
 /** The status codes of SKG_STATUS_LIST. */

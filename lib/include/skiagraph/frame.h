@@ -8,8 +8,13 @@
  * Any number of jobs may be in flight. The jobs of a context run in the order in which they were submitted,
  * whichever plans they belong to; they may be waited for in any order. The output's memory belongs to the
  * caller and must stay until the job was waited for. Plan, scene, meshes and context may be released before:
- * a job keeps what it needs. Every job must be waited for, because that is what releases it; a job cannot be
- * cancelled. */
+ * a job keeps what it needs. Every job must be waited for, because that is what releases it, also one that
+ * was cancelled.
+ *
+ * The device is given frames for about half a second at once. If a job has more, the others follow during
+ * skg_job_test, skg_job_progress and skg_job_wait, and when another job is submitted to the context. Until then
+ * a job can be cancelled (skg_job_cancel), and no part may be added to its scene or put elsewhere. Frames of leaky
+ * meshes, and those of opencl.h, are all given at once. */
 #ifndef SKIAGRAPH_FRAME_H
 #define SKIAGRAPH_FRAME_H
 
@@ -59,7 +64,24 @@ static inline void skg_frame_init(skg_frame *frame) {
     skg_frame_init_sized(frame, (int32_t)sizeof *frame);
 }
 
-/** Where images go: [frame][channel][row][column]. Prepare with skg_output_init: float, dense. */
+/** What an output receives. */
+enum skg_output_kind {
+    /** Images: as many channels as the plan has, in its quantity. */
+    SKG_OUTPUT_IMAGE = 0,
+    /** Path lengths through one part in mm (the L-buffer): one channel. */
+    SKG_OUTPUT_LENGTHS = 1
+};
+
+/** Which lengths an output of SKG_OUTPUT_LENGTHS receives. */
+enum skg_lengths {
+    /** The length through the part itself, without what lies inside it (the paper's Eq. 9). */
+    SKG_LENGTHS_NET = 0,
+    /** The length between the surfaces of the part's mesh, whatever lies inside it. */
+    SKG_LENGTHS_SURFACE = 1
+};
+
+/** What is computed, and where it goes: [frame][channel][row][column]. Prepare with skg_output_init: images, float,
+ * dense. */
 typedef struct {
     /** Set by skg_output_init. */
     int32_t size;
@@ -73,6 +95,17 @@ typedef struct {
     int64_t channel_stride;
     /** Elements from one frame to the next; 0: dense. */
     int64_t frame_stride;
+    /** enum skg_output_kind */
+    int32_t kind;
+    /** enum skg_lengths, of SKG_OUTPUT_LENGTHS. */
+    int32_t lengths;
+    /** Number of the part in the scene, of SKG_OUTPUT_LENGTHS. */
+    int64_t part;
+    /** A cl_mem of the plan's context that receives the output on the device (opencl.h), instead of data; NULL: data.
+     * It must stay until the job was waited for. */
+    void *buffer;
+    /** Byte of the buffer at which the output begins, a multiple of an element's size. */
+    int64_t offset;
 } skg_output;
 
 /** Prepares an output of `size` bytes (export.h). */
@@ -83,10 +116,11 @@ static inline void skg_output_init(skg_output *output) {
     skg_output_init_sized(output, (int32_t)sizeof *output);
 }
 
-/** Starts frames.
+/** Starts frames with one output.
  *
  *     count    number of frames, at least 1; the plan splits them into batches that fit the device's memory
  *     frames   [count]; NULL: each as plan and scene stand
+ *     output   what is computed, and where it goes
  *     job      result; skg_job_wait waits for it and releases it
  *     errors   SKG_ERR_MESH with part and vertex if a vertex is not finite; SKG_ERR_SCENE, SKG_ERR_ARGUMENT
  *     stale    SKG_STALE, and nothing is started, if the scene changed in a way that the plan cannot absorb:
@@ -95,37 +129,44 @@ static inline void skg_output_init(skg_output *output) {
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
+/** Starts frames with several outputs, such as an image and the lengths through some of the parts; otherwise as
+ * skg_plan_submit. Each output is rendered by itself, and is bit for bit that of a job of its own.
+ *
+ *     output_count   number of outputs, at least 1
+ *     outputs        [output_count]; their memory must not overlap */
+SKG_API skg_status skg_plan_outputs_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                           int64_t output_count, const skg_output *outputs, skg_job **job);
+
 /** Asks whether a job is finished, without waiting.
  *
  *     done   result: 1 if skg_job_wait would not wait, otherwise 0 */
-SKG_API skg_status skg_job_test(const skg_job *job, int32_t *done);
+SKG_API skg_status skg_job_test(skg_job *job, int32_t *done);
 
-/** Waits until a job's images are in place, releases the job and sets the handle to NULL.
+/** Gets how far a job is, without waiting.
+ *
+ *     done    result: number of frames that are in place; may be NULL
+ *     total   result: number of frames of the job; may be NULL */
+SKG_API skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total);
+
+/** Cancels a job: frames that the device was not given yet are not made. Those that it was given cannot be taken back;
+ * skg_job_wait waits for them. Does nothing if the device has them all. Other jobs are not touched. Any thread may call it
+ * while the job was not waited for. */
+SKG_API skg_status skg_job_cancel(skg_job *job);
+
+/** Waits until a job's outputs are in place, releases the job and sets the handle to NULL.
  *
  *     range    SKG_RANGE: the images are in place, but some pixels meet path lengths outside the range for
  *              which the plan's error bound was verified, or some are not finite (skg_last_error says which)
  *     errors   SKG_ERR_MESH with frame, part and vertex if a vertex is not finite in its pose: the images of the
- *              other frames are in place, and later jobs are not touched; SKG_ERR_DEVICE and others. The job is
- *              released all the same, except with SKG_ERR_FORK */
+ *              other frames are in place, and later jobs are not touched; SKG_ERR_CANCELLED with the number of
+ *              frames, the first ones of the job, that are in place; SKG_ERR_DEVICE and others. The job is
+ *              released all the same, except with SKG_ERR_FORK
+ *     stale    SKG_STALE: parts were added to the scene or put elsewhere while frames were not given to the
+ *              device yet; these are not made */
 SKG_API skg_status skg_job_wait(skg_job **job);
 
-/** Makes one image of the scene as it stands: submits one frame and waits for it. */
+/** Makes one output, such as an image, of the scene as it stands: submits one frame and waits for it. */
 SKG_API skg_status skg_plan_image(skg_plan *plan, const skg_output *output);
-
-/** What skg_plan_lengths gives. */
-enum skg_lengths {
-    /** The length through the part itself, without what lies inside it (the paper's Eq. 9). */
-    SKG_LENGTHS_NET = 0,
-    /** The length between the surfaces of the part's mesh, whatever lies inside it. */
-    SKG_LENGTHS_SURFACE = 1
-};
-
-/** Starts frames of path lengths through one part (the L-buffer), in mm; otherwise as skg_plan_submit.
- *
- *     part   number in the scene
- *     kind   enum skg_lengths */
-SKG_API skg_status skg_plan_lengths(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                    const skg_frame *frames, const skg_output *output, skg_job **job);
 
 #ifdef __cplusplus
 }

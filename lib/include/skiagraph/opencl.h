@@ -24,26 +24,17 @@ extern "C" {
 SKG_API skg_status skg_context_create_cl(cl_context cl, cl_device_id device, cl_command_queue queue,
                                          skg_context **context);
 
-/** Starts frames whose images stay on the device; otherwise as skg_plan_submit. Nothing is waited for.
+/** Starts frames behind the caller's events; otherwise as skg_plan_outputs_submit. Nothing is waited for. An output whose
+ * buffer is a cl_mem stays on the device.
  *
- *     output      type and strides; its data is ignored
- *     buffer      receives the images
- *     offset      byte of the buffer at which they begin, a multiple of an element's size
  *     waits       number of events in wait_list
  *     wait_list   [waits] the work starts after these; NULL if waits is 0. None of them may fail: PoCL aborts the
  *                 process if the status of a user event in a wait list is set to an error. End it with CL_COMPLETE
- *                 instead, and discard the images
- *     done        result: an event of the last image, which the caller releases; may be NULL */
+ *                 instead, and discard the outputs
+ *     done        result: an event of the last output, which the caller releases; may be NULL */
 SKG_API skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames,
-                                      const skg_output *output, cl_mem buffer, int64_t offset, int32_t waits,
+                                      int64_t output_count, const skg_output *outputs, int32_t waits,
                                       const cl_event *wait_list, cl_event *done, skg_job **job);
-
-/** Starts frames of path lengths through one part that stay on the device: part and kind as of
- * skg_plan_lengths, everything else as of skg_plan_submit_cl. */
-SKG_API skg_status skg_plan_lengths_cl(skg_plan *plan, int64_t part, int32_t kind, int64_t count,
-                                       const skg_frame *frames, const skg_output *output, cl_mem buffer,
-                                       int64_t offset, int32_t waits, const cl_event *wait_list,
-                                       cl_event *done, skg_job **job);
 
 /** Takes the positions of a part's mesh from device memory, for the frames that are submitted to this plan afterwards.
  * A device copy is enqueued; nothing is waited for, and nothing passes through host memory. Poses stay on the host. The

@@ -426,7 +426,7 @@ typedef struct {
  *                Both are constant
  *     errors     SKG_ERR_ARGUMENT if there is no such quantity
  *
- * Path lengths (skg_plan_lengths) are in mm. */
+ * Path lengths (SKG_OUTPUT_LENGTHS) are in mm. */
 SKG_API skg_status skg_quantity_get(int32_t quantity, const char **name, const char **unit);
 
 /** Prepares the options of a plan, of `size` bytes (export.h). */

@@ -1,0 +1,295 @@
+/* Jobs that are cancelled, frames that are given to the device after their submission, and lists of outputs. */
+#include "suite.h"
+#include "support/run.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+/* Of 24 x 24 pixels with 16 x 16 rays each a core is given some 170 frames at once (lib/frame/submission.c). */
+enum { SIDE = 24, PIXELS = SIDE * SIDE, FINE = 16, FRAMES_PER_CORE = 300, UNTOUCHED = -77 };
+
+static skg_view view;
+static skg_scene *scene;
+static skg_mesh *ball;
+static skg_plan *plan;
+static int64_t frames;
+static float *pixels, reference[PIXELS];
+
+static skg_output output_of(float *to) {
+    skg_output output;
+    skg_output_init(&output);
+    output.data = to;
+    return output;
+}
+
+static skg_plan *fine_plan(void) {
+    skg_plan *made = NULL;
+    skg_plan_options options;
+    skg_spectrum *beam = NULL;
+    skg_plan_options_init(&options);
+    options.supersampling = FINE;
+    options.overlaps = 0;
+    ck_skg(skg_spectrum_create_mono(60, 1000, &beam));
+    ck_skg(skg_plan_create(run_context, scene, &view, beam, &options, &made));
+    skg_spectrum_release(&beam);
+    return made;
+}
+
+static void open_plan(void) {
+    skg_device_info device;
+    run_open();
+    view = run_view(SIDE, 2);
+    solid s = solid_sphere(15, 24, 12);
+    ball = run_mesh(&s);
+    solid_free(&s);
+    ck_skg(skg_scene_create(run_context, &scene));
+    run_part(scene, "ball", ball, 0.5, NULL, -1);
+    plan = fine_plan();
+    const skg_output output = output_of(reference);
+    ck_skg(skg_plan_image(plan, &output));
+    skg_device_info_init(&device);
+    ck_skg(skg_context_device_get(run_context, &device));
+    frames = FRAMES_PER_CORE * (device.is_cpu ? device.compute_units : 1);
+    pixels = malloc((size_t)(frames * PIXELS) * sizeof *pixels);
+    for (int64_t i = 0; i < frames * PIXELS; i++) pixels[i] = UNTOUCHED;
+}
+
+static void close_plan(void) {
+    free(pixels);
+    skg_plan_release(&plan);
+    skg_mesh_release(&ball);
+    skg_scene_release(&scene);
+    run_close();
+}
+
+static skg_job *submit(void) {
+    const skg_output output = output_of(pixels);
+    skg_job *job = NULL;
+    ck_skg(skg_plan_submit(plan, frames, NULL, &output, &job));
+    return job;
+}
+
+/* The first `count` frames hold the reference, and the others nothing. */
+static void check_images(int64_t count) {
+    for (int64_t f = 0; f < frames; f++) {
+        const float *image = pixels + f * PIXELS;
+        if (f < count) ck_assert_msg(memcmp(image, reference, sizeof reference) == 0, "frame %d", (int)f);
+        for (int p = 0; f >= count && p < PIXELS; p++) ck_assert(image[p] == UNTOUCHED);
+    }
+}
+
+/* Waits for a job that was cancelled, and returns how many frames are in place. */
+static int64_t wait_cancelled(skg_job **job) {
+    int made = -1, all = -1;
+    ck_skg_fails(skg_job_wait(job), SKG_ERR_CANCELLED, "the job was cancelled");
+    ck_assert_ptr_null(*job);
+    ck_assert_int_eq(sscanf(skg_last_error(), "the job was cancelled: %d of %d frames", &made, &all), 2);
+    ck_assert_int_eq(all, frames);
+    ck_assert(made >= 2 && made < frames);
+    return made;
+}
+
+static int holds_frames(void) {
+    skg_device_info device;
+    skg_device_info_init(&device);
+    ck_skg(skg_context_device_get(run_context, &device));
+    return device.is_cpu; /* a GPU is given more frames at once than a test can wait for */
+}
+
+START_TEST(cancelled_at_once) {
+    if (!holds_frames()) return;
+    skg_job *job = submit();
+    int32_t done = -1;
+    ck_skg(skg_job_cancel(job));
+    ck_skg(skg_job_cancel(job));
+    ck_skg(skg_job_test(job, &done));
+    check_images(wait_cancelled(&job));
+    /* later jobs are not touched */
+    static float again[PIXELS];
+    const skg_output output = output_of(again);
+    ck_skg(skg_plan_image(plan, &output));
+    ck_assert_mem_eq(again, reference, sizeof again);
+}
+END_TEST
+
+static void *cancel(void *job) {
+    ck_skg(skg_job_cancel(job));
+    return NULL;
+}
+
+START_TEST(cancelled_in_the_middle_by_another_thread) {
+    if (!holds_frames()) return;
+    skg_job *job = submit(), *later = NULL;
+    int64_t done = 0, total = 0, before = 0;
+    int32_t is_done = 1;
+    pthread_t thread;
+    while (done < 3) {
+        ck_skg(skg_job_progress(job, &done, &total));
+        ck_assert(done >= before && total == frames);
+        before = done;
+    }
+    ck_skg(skg_job_test(job, &is_done));
+    ck_assert_int_eq(is_done, 0);
+    ck_assert_int_eq(pthread_create(&thread, NULL, cancel, job), 0);
+    pthread_join(thread, NULL);
+    static float again[PIXELS];
+    const skg_output output = output_of(again);
+    ck_skg(skg_plan_submit(plan, 1, NULL, &output, &later));
+    ck_skg(skg_job_wait(&later));
+    ck_assert_mem_eq(again, reference, sizeof again);
+    ck_skg(skg_job_progress(job, &done, NULL));
+    const int64_t made = wait_cancelled(&job);
+    ck_assert_int_eq(made, done);
+    check_images(made);
+}
+END_TEST
+
+START_TEST(cancelled_after_the_end) {
+    skg_job *job = submit();
+    int32_t done = 0;
+    int64_t count = 0;
+    while (!done) ck_skg(skg_job_test(job, &done));
+    ck_skg(skg_job_cancel(job));
+    ck_skg(skg_job_progress(job, &count, NULL));
+    ck_assert_int_eq(count, frames);
+    ck_skg(skg_job_wait(&job));
+    check_images(frames);
+    ck_skg_fails(skg_job_cancel(NULL), SKG_ERR_ARGUMENT, "job");
+    ck_skg_fails(skg_job_progress(NULL, &count, NULL), SKG_ERR_ARGUMENT, "job");
+}
+END_TEST
+
+/* Frames that are given to the device while the job is waited for show the scene as it was submitted. */
+START_TEST(the_scene_of_the_submission) {
+    static const double away[16] = {1, 0, 0, 5, 0, 1, 0, 3, 0, 0, 1, 0, 0, 0, 0, 1};
+    int64_t vertices = 0, triangles = 0;
+    skg_job *job = submit();
+    ck_skg(skg_scene_pose_set(scene, 0, away));
+    ck_skg(skg_mesh_count(ball, &vertices, &triangles));
+    double *positions = malloc((size_t)(3 * vertices) * sizeof *positions);
+    ck_skg(skg_mesh_positions_get(ball, positions, 0));
+    for (int64_t i = 0; i < 3 * vertices; i++) positions[i] = 1.5 * positions[i] + 100;
+    ck_skg(skg_mesh_positions_set(ball, positions, 0));
+    free(positions);
+    skg_plan_release(&plan);
+    ck_skg(skg_job_wait(&job));
+    check_images(frames);
+}
+END_TEST
+
+/* The caller's frames, with their views and poses, may be written as soon as they are submitted. */
+START_TEST(the_frames_of_the_submission) {
+    skg_frame *given = calloc((size_t)frames, sizeof *given);
+    skg_view *views = calloc((size_t)frames, sizeof *views);
+    double *poses = calloc((size_t)frames, 16 * sizeof *poses);
+    const int64_t part = 0;
+    float *expected = malloc((size_t)(frames * PIXELS) * sizeof *expected);
+    skg_output output = output_of(expected);
+    skg_job *job = NULL, *later = NULL;
+    for (int64_t f = 0; f < frames; f++) {
+        views[f] = view;
+        views[f].source[0] = (double)(f % 7);
+        for (int k = 0; k < 4; k++) poses[16 * f + 5 * k] = 1;
+        poses[16 * f + 3] = 0.1 * (double)(f % 5);
+        skg_frame_init(&given[f]);
+        given[f].view = &views[f];
+        given[f].pose_count = 1, given[f].pose_parts = &part, given[f].poses = poses + 16 * f;
+        given[f].index = f;
+    }
+    for (int64_t f = 0; f < frames && f < 35; f++) { /* then they repeat */
+        output.data = expected + f * PIXELS;
+        ck_skg(skg_plan_submit(plan, 1, given + f, &output, &job));
+        ck_skg(skg_job_wait(&job));
+    }
+    output = output_of(pixels);
+    ck_skg(skg_plan_submit(plan, frames, given, &output, &job));
+    memset(given, 0, (size_t)frames * sizeof *given);
+    memset(views, 0, (size_t)frames * sizeof *views);
+    memset(poses, 0, (size_t)frames * 16 * sizeof *poses);
+    static float again[PIXELS];
+    output = output_of(again); /* the frames that were held back come before this one */
+    ck_skg(skg_plan_submit(plan, 1, NULL, &output, &later));
+    ck_skg(skg_job_wait(&later));
+    ck_assert_mem_eq(again, reference, sizeof again);
+    ck_skg(skg_job_wait(&job));
+    for (int64_t f = 0; f < frames; f++)
+        ck_assert_mem_eq(pixels + f * PIXELS, expected + f % 35 * PIXELS, sizeof again);
+    free(expected);
+    free(poses);
+    free(views);
+    free(given);
+}
+END_TEST
+
+START_TEST(a_part_is_added_too_early) {
+    if (!holds_frames()) return;
+    skg_job *job = submit();
+    solid s = solid_sphere(5, 8, 4);
+    skg_mesh *more = run_mesh(&s);
+    solid_free(&s);
+    run_part(scene, "more", more, 0.1, NULL, -1);
+    skg_mesh_release(&more);
+    ck_assert_int_eq(skg_job_wait(&job), SKG_STALE);
+    ck_assert_ptr_nonnull(strstr(skg_last_error(), "wait for the job first"));
+    skg_plan_release(&plan);
+    plan = fine_plan();
+}
+END_TEST
+
+/* Each output of a list has the bits that it has alone, in any order. */
+START_TEST(several_outputs) {
+    enum { FRAMES = 3, OUTPUTS = 4 };
+    static float alone[OUTPUTS][FRAMES * PIXELS], together[OUTPUTS][FRAMES * PIXELS];
+    skg_output outputs[OUTPUTS];
+    skg_frame some[FRAMES];
+    skg_view views[FRAMES];
+    skg_job *job = NULL;
+    solid s = solid_sphere(5, 8, 4);
+    skg_mesh *inner = run_mesh(&s);
+    solid_free(&s);
+    run_part(scene, "inner", inner, 0.9, NULL, 0);
+    skg_mesh_release(&inner);
+    skg_plan_release(&plan);
+    plan = fine_plan();
+    for (int f = 0; f < FRAMES; f++) {
+        views[f] = view;
+        views[f].source[1] = 10 * f;
+        skg_frame_init(&some[f]);
+        some[f].view = &views[f];
+    }
+    for (int o = 0; o < OUTPUTS; o++) {
+        outputs[o] = output_of(alone[o]);
+        if (o == 1) continue; /* the image stands between lengths */
+        outputs[o].kind = SKG_OUTPUT_LENGTHS;
+        outputs[o].part = o == 2;
+        outputs[o].lengths = o == 3 ? SKG_LENGTHS_SURFACE : SKG_LENGTHS_NET;
+    }
+    for (int o = 0; o < OUTPUTS; o++) {
+        ck_skg(skg_plan_submit(plan, FRAMES, some, &outputs[o], &job));
+        ck_skg(skg_job_wait(&job));
+        outputs[o].data = together[o];
+    }
+    ck_skg(skg_plan_outputs_submit(plan, FRAMES, some, OUTPUTS, outputs, &job));
+    ck_skg(skg_job_wait(&job));
+    ck_assert_mem_eq(together, alone, sizeof alone);
+    const int middle = SIDE / 2 * SIDE +
+                       SIDE / 2; /* the outer part's net length is that of its surface less the inner part */
+    const double net = (double)alone[0][middle] + (double)alone[2][middle];
+    ck_assert_double_eq_tol(net, (double)alone[3][middle], 1e-5 * net); /* a few roundings of float */
+    ck_assert(alone[2][middle] > 9);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, open_plan, close_plan);
+    tcase_add_test(tests, cancelled_at_once);
+    tcase_add_test(tests, cancelled_in_the_middle_by_another_thread);
+    tcase_add_test(tests, cancelled_after_the_end);
+    tcase_add_test(tests, the_scene_of_the_submission);
+    tcase_add_test(tests, the_frames_of_the_submission);
+    tcase_add_test(tests, a_part_is_added_too_early);
+    tcase_add_test(tests, several_outputs);
+}
+
+SKG_SUITE_MAIN("cancel", add_tests)
