@@ -1,9 +1,9 @@
 /* The arguments of every kernel, named once in the order of the kernel's signature. The host sets arguments by these
  * names alone (lib/stage); a test compares each list with the names that the OpenCL compiler reports for the kernel.
  *
- * SKG_ARGUMENTS_<KERNEL>(X) is X(KERNEL, name) for each argument. Scalars stand in one struct of skg_shared.h, the first
- * argument; every buffer is an argument of its own, because OpenCL 1.2 has no pointers in such structs. The lists do not
- * depend on -D names: a buffer that a program does not use is NULL. Host only. */
+ * SKG_ARGUMENTS_<KERNEL>(X) is X(KERNEL, name) for each argument. Scalars stand in a struct of skg_shared.h, the first
+ * argument; a kernel with few arguments may have one scalar more. Every buffer is an argument of its own, because OpenCL 1.2 has
+ * no pointers in such structs. The lists do not depend on -D names: a buffer that a program does not use is NULL. Host only. */
 #ifndef SKG_ARGUMENTS_H
 #define SKG_ARGUMENTS_H
 
