@@ -7,6 +7,7 @@ import numpy as np
 import skiagraph as sk
 from page import Page
 from skiagraph import _library
+from skiagraph.scene import state_of
 
 DISTANCE, SIZE, PIXELS = 1400.0, 256.0, 128  # of the detector from the source, its side, mm
 SHIFT = 6e-5 * SIZE / PIXELS + 4 * 2.0**-24 * 354  # mm: two last places of a column, four of a coordinate of the largest part
@@ -127,8 +128,9 @@ def bounds(page: Page) -> None:
                 name = str(draw.choice(["water", "HU:1329", "Al", "Pb"] if high < 1 else ["water", "HU:1329", "Al"]))
                 parts.append((f"part {i}", sk.Mesh.cuboid(*size), sk.translate(0, 0, 150.0 * (i - 1)) @ pose, name))
             scene = scene_of(parts)
-            with scene._calls():  # not part of the package's own interface yet
-                bound = _library.number("skg_plan_precision_bound_get", scene._plan({"quantity": "transmission"}))
+            state = state_of(scene)  # not part of the package's own interface yet
+            with state.calls():
+                bound = _library.number("skg_plan_precision_bound_get", state.plan({"quantity": "transmission"}))
             found = scene.image("transmission").astype(float)
             exact = []
             for shift in SHIFTS:

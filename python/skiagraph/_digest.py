@@ -17,7 +17,7 @@ from .mesh import Mesh
 
 if TYPE_CHECKING:
     from .scan import Scan
-    from .scene import Scene
+    from ._state import State
 
 #: Options that skg_scan_hash_get knows, and options on which no image depends.
 _KNOWN = frozenset(("precision", "quantity", "tolerance", "falloff", "supersampling", "noise", "repair", "clip", "bands",
@@ -25,10 +25,10 @@ _KNOWN = frozenset(("precision", "quantity", "tolerance", "falloff", "supersampl
 _IDLE = frozenset(("strategy", "tile", "overlaps", "profile"))
 
 
-def digest(given: str, scene: Scene, trajectory: Scan | None, options: Mapping[str, Any]) -> str:
+def digest(given: str, state: State, trajectory: Scan | None, options: Mapping[str, Any]) -> str:
     """The hash of a scan: that of the library if nothing was changed, so that the command knows the scan as well."""
-    kev = scene.beam.energies
-    changes = _changes(scene)
+    kev = state.require_beam().energies
+    changes = _changes(state)
     others = {name: value for name, value in options.items() if value is not None and name not in _KNOWN | _IDLE}
     if trajectory is not None:
         changes["views"] = [np.concatenate((v.source, v.detector, v.column_step, v.row_step)) for v in trajectory]
@@ -41,22 +41,22 @@ def digest(given: str, scene: Scene, trajectory: Scan | None, options: Mapping[s
     return made.hexdigest()
 
 
-def _changes(scene: Scene) -> dict[str, Any]:
+def _changes(state: State) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    for number, part in enumerate(scene):
-        added, mesh = number >= scene._file_parts, part.mesh
-        if added or (part.pose != scene._read_poses[number]).any():
+    for number, part in enumerate(state.parts()):
+        added, mesh = number >= state.file_parts, part.mesh
+        if added or (part.pose != state.read_poses[number]).any():
             found[f"pose {number}"] = part.pose
         if added:
             found[f"part {number}"] = [part.inside or "", part.priority, mesh.faces]
-        if added or number in scene._materials:
+        if added or number in state.materials:
             found[f"material {number}"] = part.material
         if added or mesh._changed:
             found[f"vertices {number}"] = mesh
-    if scene._removed:
-        found["removed"] = scene._removed
-    if "beam" in scene._changed:
-        found["beam"] = scene.beam
+    if state.removed:
+        found["removed"] = state.removed
+    if "beam" in state.changed:
+        found["beam"] = state.require_beam()
     return found
 
 

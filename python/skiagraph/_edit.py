@@ -9,7 +9,7 @@ from ._library import call, ffi, integer, make, struct
 from .part import LabelError
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._state import State
 
 #: Labels that an error names.
 _MOST = 12
@@ -26,21 +26,21 @@ def unknown_label(label: str, labels: list[str]) -> LabelError:
     return LabelError(f"there is no part {label!r}; " + (f"did you mean {near[0]!r}? " if near else "") + there)
 
 
-def remove(scene: Scene, number: int) -> None:
+def remove(state: State, number: int) -> None:
     """The scene with all parts but this one. The library's scenes only grow, so that it is made anew."""
     record = struct("skg_scan_record")
-    call("skg_setup_record_get", scene._setup, record)
+    call("skg_setup_record_get", state.setup, record)
     if record.moving_count:
         raise SceneError("parts of the scene move from one projection of its scan to the next (Poses), which are found by "
                          "their numbers; take the part out of the file instead")
-    if scene._breath:
+    if state.breath:
         raise SceneError("the scene was posed by breathe(), which needs all of its parts; take the part out of the file instead")
-    removed = list(scene)[number].label
-    made = make("skg_scene_create", "skg_scene", scene._device.handle)
+    removed = state.parts()[number].label
+    made = make("skg_scene_create", "skg_scene", state.device.handle)
     parts = []
-    for old in range(integer("skg_scene_part_count", scene._parts_handle)):
+    for old in range(integer("skg_scene_part_count", state.handle)):
         parts.append(struct("skg_part"))
-        call("skg_scene_part_get", scene._parts_handle, old, parts[-1])
+        call("skg_scene_part_get", state.handle, old, parts[-1])
     above = parts[number].inside
     # Those inside come after what they lie in, which the library wants to find.
     order = _outward(parts, number)
@@ -50,8 +50,8 @@ def remove(scene: Scene, number: int) -> None:
         parts[old].inside = numbers[inside] if inside >= 0 else -1
         call("skg_scene_add", made, parts[old], ffi.NULL)
         numbers[old] = new
-    _replace(scene, made, order, number)
-    scene._removed.append(removed)
+    _replace(state, made, order, number)
+    state.removed.append(removed)
 
 
 def _outward(parts: list[object], number: int) -> list[int]:
@@ -67,14 +67,14 @@ def _outward(parts: list[object], number: int) -> list[int]:
     return order
 
 
-def _replace(scene: Scene, made: object, order: list[int], number: int) -> None:
-    from_file = number < scene._file_parts
-    scene._materials = {order.index(old): matter for old, matter in scene._materials.items() if old != number}
-    scene._names = [scene._names[old] for old in order]
-    scene._read_poses = [scene._read_poses[old] for old in order if old < scene._file_parts]
-    scene._file_parts -= from_file
-    scene._plans.clear()
-    scene._forget_motion()
-    before, scene._own_parts, scene._parts_handle = scene._own_parts, made, made
+def _replace(state: State, made: object, order: list[int], number: int) -> None:
+    from_file = number < state.file_parts
+    state.materials = {order.index(old): matter for old, matter in state.materials.items() if old != number}
+    state.names = [state.names[old] for old in order]
+    state.read_poses = [state.read_poses[old] for old in order if old < state.file_parts]
+    state.file_parts -= from_file
+    state.plans.clear()
+    state.forget_motion()
+    before, state.own_handle, state.handle = state.own_handle, made, made
     if before != ffi.NULL:
-        scene._device.drop("skg_scene", before)
+        state.device.drop("skg_scene", before)

@@ -5,14 +5,12 @@ import json
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import _command
 from ._interface import ArgumentError, SceneError
 from .mesh import as_mesh
-
-if TYPE_CHECKING:
-    from .scene import Scene
+from .scene import Scene, state_of
 
 
 def fit(scene: Scene, targets: Mapping[str, Any] | Mapping[float, Mapping[str, Any]], out: str | os.PathLike[str], *,
@@ -31,15 +29,16 @@ def fit(scene: Scene, targets: Mapping[str, Any] | Mapping[float, Mapping[str, A
     if nested == (phase is not None):
         raise ArgumentError("give targets {label: mesh} with phase=, or {phase: {label: mesh}} without it")
     at: Mapping[Any, Any] = targets if nested else {phase: targets}
-    if scene._source.path is None or scene._source.settings or scene._is_changed():
+    state = state_of(scene)
+    if state.source.path is None or state.source.settings or state.is_changed():
         raise SceneError("the fit is written as a scene file that refers to the meshes of the scene's own file; save() the scene, "
                          "and fit what sk.Scene reads of that file")
     with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
-        words = ["fit", scene._source.path, "-o", os.fspath(out), "--json"]
+        words = ["fit", state.source.path, "-o", os.fspath(out), "--json"]
         for when, surfaces in at.items():
             words += ["--phase", repr(float(when))]
             for label, mesh in surfaces.items():
-                scene._number(label)  # says which labels there are
+                state.number(label)  # says which labels there are
                 path = os.path.join(folder, f"target-{len(words)}.ply")
                 as_mesh(mesh).save(path)
                 words += ["--target", f"{label}={path}"]
@@ -49,7 +48,7 @@ def fit(scene: Scene, targets: Mapping[str, Any] | Mapping[float, Mapping[str, A
             words += ["--parameters", ",".join(parameters)]
         for flag, value in (("--evaluations", evaluations), ("--seed", seed), ("--method", method), ("--checkpoint", checkpoint)):
             words += [] if value is None else [flag, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
-        if scene._source.lenient:
+        if state.source.lenient:
             words.append("--lenient")
         found: dict[str, Any] = json.loads(_command.run(*words))
     return found

@@ -16,7 +16,7 @@ import numpy as np
 from . import _interface
 from ._interface import ENUMS, ERRORS, ArgumentError, Error
 
-ffi = cffi.FFI()
+ffi: Any = cffi.FFI()
 ffi.cdef(_interface.CDEF)
 
 

@@ -12,10 +12,10 @@ from ._interface import ArgumentError
 from ._library import call, ffi, struct
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._state import State
 
 
-def picture(scene: Scene, pixels: Sequence[int], direction: Any, up: Any, orthographic: bool, image: Any,
+def picture(state: State, pixels: Sequence[int], direction: Any, up: Any, orthographic: bool, image: Any,
             colours: Mapping[str, Any]) -> NDArray[np.uint8]:
     """What Scene.picture gives."""
     keep: list[Any] = []
@@ -25,11 +25,11 @@ def picture(scene: Scene, pixels: Sequence[int], direction: Any, up: Any, orthog
         for k, value in enumerate((0, 0, 0) if given is None else _arrays.vector(given, name)):
             getattr(look, name)[k] = value
     if image is not None:
-        look.image = _grey(image, scene.view.shape, keep)
+        look.image = _grey(image, state.require_view().shape, keep)
     if colours:
-        look.colours = _colours(scene, colours, keep)
+        look.colours = _colours(state, colours, keep)
     made = np.empty((int(pixels[1]), int(pixels[0]), 4), np.uint8)
-    call("skg_view_picture", scene._device.handle, scene._parts_handle, scene.view._write(struct("skg_view")), look,
+    call("skg_view_picture", state.device.handle, state.handle, state.require_view()._write(struct("skg_view")), look,
          ffi.cast("uint8_t *", ffi.from_buffer(made)))
     return np.ascontiguousarray(made[..., :3])
 
@@ -45,15 +45,15 @@ def _grey(image: Any, shape: tuple[int, int], keep: list[Any]) -> Any:
     return ffi.cast("uint8_t *", ffi.from_buffer(grey))
 
 
-def _colours(scene: Scene, colours: Mapping[str, Any], keep: list[Any]) -> Any:
+def _colours(state: State, colours: Mapping[str, Any], keep: list[Any]) -> Any:
     """Those of the library, and those that are given by label: red, green, blue and opacity, 0 to 1."""
-    made = np.empty((len(scene), 4), np.uint8)
+    made = np.empty((state.count(), 4), np.uint8)
     pointer = ffi.cast("uint8_t *", ffi.from_buffer(made))
-    call("skg_look_colours_get", scene._parts_handle, pointer)
+    call("skg_look_colours_get", state.handle, pointer)
     for label, colour in colours.items():
         given = np.asarray(colour, dtype=float)
         if given.shape not in ((3,), (4,)) or not ((given >= 0) & (given <= 1)).all():
             raise ArgumentError(f"colours[{label!r}] is {colour!r}; give red, green, blue and opacity, 0 to 1")
-        made[scene._number(label), :len(given)] = np.round(255 * given)
+        made[state.number(label), :len(given)] = np.round(255 * given)
     keep.append(made)
     return pointer

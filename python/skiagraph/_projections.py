@@ -26,7 +26,7 @@ from ._progress import Meter, Progress
 from .scan import Scan
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._state import State
 
 # Bytes and projections of a batch. An interrupted run ends with the batches that are under way.
 _BATCH, _MOST = 1 << 20, 32
@@ -46,19 +46,19 @@ class Wanted:
 class _Job:
     """A run with its plan. What its thread does with batches is up to a subclass."""
 
-    def __init__(self, scene: Scene, scan: Scan, wanted: Wanted, samples: int, anew: bool) -> None:
-        self.scene, self.scan, self.wanted = scene, scan, wanted
+    def __init__(self, state: State, scan: Scan, wanted: Wanted, samples: int, anew: bool) -> None:
+        self.state, self.scan, self.wanted = state, scan, wanted
         self.keep: list[Any] = []
-        self.options = scene._plans.options(scene._setup, wanted.options, self.keep)
+        self.options = state.plans.options(state.setup, wanted.options, self.keep)
         given = dict(wanted.options)
-        if scene._trajectory is not None and given.get("tolerance"):
+        if state.trajectory is not None and given.get("tolerance"):
             given.setdefault("views", list(scan))
         if samples and self.options.spot != ffi.NULL:
             self._continue_samples(given, samples)
         self.view = scan[0]
         self.dtype = np.dtype(np.float64 if self.options.precision == ENUMS["precision"]["double"] else np.float32)
-        self.motion = scene._linked() if wanted.breathing else ffi.NULL
-        self.plan = scene._plans.get(scene._setup, scene._parts_handle, self.view, scene.beam, given, anew)
+        self.motion = state.linked() if wanted.breathing else ffi.NULL
+        self.plan = state.plans.get(state.setup, state.handle, self.view, state.require_beam(), given, anew)
         self.channels = integer("skg_plan_channel_count", self.plan)
         self.run = self._run_options()
 
@@ -101,8 +101,8 @@ class _Job:
 
 
 class _ToArray(_Job):
-    def __init__(self, scene: Scene, scan: Scan, wanted: Wanted, out: Any, anew: bool) -> None:
-        super().__init__(scene, scan, wanted, 0, anew)
+    def __init__(self, state: State, scan: Scan, wanted: Wanted, out: Any, anew: bool) -> None:
+        super().__init__(state, scan, wanted, 0, anew)
         count = len(scan) if wanted.only is None else int(self.run.only_count)
         banded = wanted.options.get("bands") is not None
         shape = (count, *((self.channels,) if banded else ()), *self.view.shape)
@@ -116,13 +116,13 @@ class _ToArray(_Job):
 
 
 class _ToFile(_Job):
-    def __init__(self, scene: Scene, scan: Scan, wanted: Wanted, path: bytes, fields: tuple[int, int], overwrite: bool,
+    def __init__(self, state: State, scan: Scan, wanted: Wanted, path: bytes, fields: tuple[int, int], overwrite: bool,
                  anew: bool) -> None:
         self.file, self.fields = ffi.NULL, fields
-        self.hash = _hash(scene, scan, wanted)
+        self.hash = _hash(state, scan, wanted)
         samples = ffi.new("int64_t *")
         call("skg_scan_file_samples_get", path, self.hash.encode(), samples)
-        super().__init__(scene, scan, wanted, int(samples[0]), anew)
+        super().__init__(state, scan, wanted, int(samples[0]), anew)
         self._open(path, overwrite)
         self.run.file = self.file
         self.found = integer("skg_scan_file_done_count", self.file)
@@ -152,7 +152,7 @@ class _ToFile(_Job):
         white, dark = (np.zeros((count, *self.view.shape), self.dtype) for count in self.fields)
         pointers = [ffi.cast("void *", array.__array_interface__["data"][0]) for array in (white, dark)]
         if flats:
-            check(lib.skg_scan_flat_fields_render(self.plan, self.scene._parts_handle, self.scan._handle, self.run, flats,
+            check(lib.skg_scan_flat_fields_render(self.plan, self.state.handle, self.scan._handle, self.run, flats,
                                                   pointers[0]))
         call("skg_scan_file_fields_write", self.file, flats, pointers[0], darks, pointers[1])
 
@@ -166,16 +166,16 @@ class _ToFile(_Job):
         release("skg_scan_file", self.file)
 
 
-def _hash(scene: Scene, scan: Scan, wanted: Wanted) -> str:
+def _hash(state: State, scan: Scan, wanted: Wanted) -> str:
     """What identifies the scan; the command's if nothing was changed since the scene was read."""
     keep: list[Any] = []
-    options = scene._plans.options(scene._setup, wanted.options, keep)
+    options = state.plans.options(state.setup, wanted.options, keep)
     run, found = struct("skg_scan_run_options"), ffi.new("char[65]")
     run.subframes = int(wanted.subframes)
     run.type = int(options.precision == ENUMS["precision"]["double"])
-    run.motion = scene._linked() if wanted.breathing else ffi.NULL
-    call("skg_scan_hash_get", scene._setup, options, run, found, 65)
-    return digest(text(found), scene, scan if scene._trajectory is not None else None, wanted.options)
+    run.motion = state.linked() if wanted.breathing else ffi.NULL
+    call("skg_scan_hash_get", state.setup, options, run, found, 65)
+    return digest(text(found), state, scan if state.trajectory is not None else None, wanted.options)
 
 
 #: What the thread says: the number of projections that are done, how it failed, or the sentence it ends with.
@@ -250,12 +250,12 @@ class _Work:
             warn(word, RangeWarning)
 
 
-def compute(scene: Scene, scan: Scan, wanted: Wanted, out: Any) -> NDArray[Any]:
+def compute(state: State, scan: Scan, wanted: Wanted, out: Any) -> NDArray[Any]:
     """Projections as an array, [n, row, column]."""
     for again in (False, True):
-        job = _ToArray(scene, scan, wanted, out, again)
+        job = _ToArray(state, scan, wanted, out, again)
         try:
-            _Work(job, _restorer(scene, wanted)).follow(scene._device, wanted.progress)
+            _Work(job, _restorer(state, wanted)).follow(state.device, wanted.progress)
             break
         except Stale as stale:
             if again:
@@ -263,7 +263,7 @@ def compute(scene: Scene, scan: Scan, wanted: Wanted, out: Any) -> NDArray[Any]:
     return job.target
 
 
-def write(scene: Scene, scan: Scan, wanted: Wanted, path: str | os.PathLike[str], fields: tuple[int, int],
+def write(state: State, scan: Scan, wanted: Wanted, path: str | os.PathLike[str], fields: tuple[int, int],
           overwrite: bool) -> dict[str, Any]:
     """Projections to a file, which is continued if it has some of this scan already."""
     name = encode(path, "out")
@@ -271,10 +271,10 @@ def write(scene: Scene, scan: Scan, wanted: Wanted, path: str | os.PathLike[str]
     if wanted.options.get("bands") is not None:
         raise ArgumentError("bands: a file of projections has one channel; compute an array, or band by band")
     for again in (False, True):
-        job = _ToFile(scene, scan, wanted, name, fields, overwrite, again)
-        work = _Work(job, _restorer(scene, wanted))
+        job = _ToFile(state, scan, wanted, name, fields, overwrite, again)
+        work = _Work(job, _restorer(state, wanted))
         try:
-            work.follow(scene._device, wanted.progress)
+            work.follow(state.device, wanted.progress)
             break
         except Stale as stale:
             if again:
@@ -283,15 +283,15 @@ def write(scene: Scene, scan: Scan, wanted: Wanted, path: str | os.PathLike[str]
             "finished": job.found + work.total == len(scan), "hash": job.hash}
 
 
-def _restorer(scene: Scene, wanted: Wanted) -> Any:
+def _restorer(state: State, wanted: Wanted) -> Any:
     """A function that poses the scene as it is now."""
     if not wanted.breathing:
         return lambda: None
-    if scene._breath:
-        return functools.partial(scene._pose, scene._breath)
+    if state.breath:
+        return functools.partial(state.pose, state.breath)
     moves, meshes = ffi.new("int32_t *"), []
-    for number, part in enumerate(scene):
-        call("skg_motion_part_moves", scene._motion, number, moves)
+    for number, part in enumerate(state.parts()):
+        call("skg_motion_part_moves", state.motion, number, moves)
         if moves[0]:
             meshes.append((part.mesh, part.mesh.vertices))
 

@@ -24,7 +24,7 @@ from .scan import Scan
 from .view import View
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._state import State
 
 _SHAPES = ("Path", "Unit", "Cube", "Cuboid", "Parallelepiped", "Cylinder", "Sphere", "StepWedge", "FlipNormals", "FlipNormal",
            "FlipNormalVectors", "InvertNormal", "InvertNormals", "InvertNormalVectors")
@@ -32,19 +32,19 @@ _Z_FROM_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]]
 _PLACES = ("Transform", "MoveToCentre", "MoveToCenter")
 
 
-def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+def save(state: State, path: str | os.PathLike[str]) -> None:
     target = pathlib.Path(path)
     if target.suffix.lower() != ".json":
         raise ArgumentError(f"{target}: a scene is written as .json; give save({str(path)!r}, image) for an image")
-    text = json.loads(string("skg_setup_text_get", scene._setup))
-    _rename_files(text, scene._source.files, target.parent)
-    _write_view(scene, text)
-    if "beam" in scene._changed:
-        _put(_object(text, "Source"), "Beam", beam_text(scene.beam))
-    _write_samples(scene, text, target)
-    if scene._trajectory is not None:
-        _put(text, "Scan", _scan_text(scene._trajectory))
-    if scene._breath:
+    text = json.loads(string("skg_setup_text_get", state.setup))
+    _rename_files(text, state.source.files, target.parent)
+    _write_view(state, text)
+    if "beam" in state.changed:
+        _put(_object(text, "Source"), "Beam", beam_text(state.require_beam()))
+    _write_samples(state, text, target)
+    if state.trajectory is not None:
+        _put(text, "Scan", _scan_text(state.trajectory))
+    if state.breath:
         _drop(text, "Breathing")
     target.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
 
@@ -96,9 +96,9 @@ def _mm(vector: NDArray[np.float64]) -> list[Any]:
     return [*vector.tolist(), "mm"]
 
 
-def _write_view(scene: Scene, text: dict[str, Any]) -> None:
-    view = scene._view
-    if view is None or view == scene._read_view:
+def _write_view(state: State, text: dict[str, Any]) -> None:
+    view = state.view
+    if view is None or view == state.read_view:
         return
     source, detector = _object(text, "Source"), _object(text, "Detector")
     _drop(source, "Position", "Direction", "From")
@@ -133,24 +133,24 @@ def _scan_text(scan: Scan) -> dict[str, Any]:
 # Samples
 
 
-def _write_samples(scene: Scene, text: dict[str, Any], target: pathlib.Path) -> None:
+def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> None:
     samples = _file_samples(text)
-    parts, old = list(scene), scene._names[:scene._file_parts]
-    changed = _changed(scene)
+    parts, old = state.parts(), state.names[:state.file_parts]
+    changed = _changed(state)
     if not any(changed.values()) and len(old) == len(parts) and len(old) == len(samples):
         return
     if len(samples) <= max(old, default=-1):
         raise SceneError(f"{target}: the samples of the scene are not found in its text; this scene cannot be written")
     together = any(isinstance(sample, str) for sample in _get(text, "Samples") or [])  # the command MoveToCentre
     made: list[dict[str, Any]] = []
-    for part, name in zip(parts, scene._names):
-        sample = dict(samples[name]) if name < len(samples) and len(made) < scene._file_parts else {}
+    for part, name in zip(parts, state.names):
+        sample = dict(samples[name]) if name < len(samples) and len(made) < state.file_parts else {}
         _say_all(sample, part)
         if not sample.get(_named(sample, "Transform")) or together or part.label in changed["poses"] + changed["meshes"]:
             _place(sample, part, part.label in changed["meshes"])
-        if not sample.get(_named(sample, "Material")) or part._number in scene._materials:
+        if not sample.get(_named(sample, "Material")) or part.number in state.materials:
             _drop(sample, "Density")
-            sample[_named(sample, "Material")], density = material_text(_material(scene, part), _writer(target, part))
+            sample[_named(sample, "Material")], density = material_text(_material(state, part), _writer(target, part))
             if density:
                 sample["Density"] = density
         if not any(_named(sample, shape) in sample for shape in _SHAPES) or part.label in changed["meshes"]:
@@ -168,12 +168,12 @@ def _file_samples(text: dict[str, Any]) -> list[dict[str, Any]]:
     return found + ([graph] if isinstance(graph, dict) else [])
 
 
-def _changed(scene: Scene) -> dict[str, list[str]]:
+def _changed(state: State) -> dict[str, list[str]]:
     """Labels of the parts from the file whose place, material or mesh is another."""
-    old = list(scene)[:scene._file_parts]
-    poses = [part.label for part, pose in zip(old, scene._read_poses) if (part.pose != pose).any()]
-    return {"poses": poses, "materials": [part.label for part in old if part._number in scene._materials],
-            "meshes": [part.label for part in old if scene._breath or part.mesh._changed], "removed": scene._removed}
+    old = state.parts()[:state.file_parts]
+    poses = [part.label for part, pose in zip(old, state.read_poses) if (part.pose != pose).any()]
+    return {"poses": poses, "materials": [part.label for part in old if part.number in state.materials],
+            "meshes": [part.label for part in old if state.breath or part.mesh._changed], "removed": state.removed}
 
 
 def _say_all(sample: dict[str, Any], part: Part) -> None:
@@ -199,8 +199,8 @@ def _place(sample: dict[str, Any], part: Part, has_mesh: bool) -> None:
         sample["Transform"] = [["Matrix", pose.T.ravel().tolist()]]
 
 
-def _material(scene: Scene, part: Part) -> Material:
-    return scene._materials.get(part._number) or part.material
+def _material(state: State, part: Part) -> Material:
+    return state.materials.get(part.number) or part.material
 
 
 def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any, float | None]:
@@ -232,7 +232,7 @@ def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any,
 def _beside(target: pathlib.Path, part: Part, suffix: str) -> tuple[pathlib.Path, str]:
     folder = target.with_name(target.stem + "-parts")
     folder.mkdir(exist_ok=True)
-    name = f"{part._number}-{re.sub('[^A-Za-z0-9]+', '-', part.label).strip('-')}{suffix}"
+    name = f"{part.number}-{re.sub('[^A-Za-z0-9]+', '-', part.label).strip('-')}{suffix}"
     return folder / name, f"{folder.name}/{name}"
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from . import _command, _save
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._state import State
 
 
 class Page:
@@ -46,10 +46,10 @@ class Page:
         return f"<Page of a scene, {len(self.html)} characters of HTML; save(path) writes it>"
 
 
-def page(scene: Scene, height: int) -> Page:
+def page(state: State, height: int) -> Page:
     with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
         written, shown, drawn = (pathlib.Path(folder, name) for name in ("scene.json", "scene.html", "scene.png"))
-        _save.save(scene, written)
+        _save.save(state, written)
         for target in (shown, drawn):
-            _command.run("view", str(written), "-o", str(target), "--quiet", *(["--lenient"] if scene._source.lenient else []))
+            _command.run("view", str(written), "-o", str(target), "--quiet", *(["--lenient"] if state.source.lenient else []))
         return Page(shown.read_text(encoding="utf-8"), drawn.read_bytes(), height)

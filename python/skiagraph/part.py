@@ -13,7 +13,7 @@ from .material import Material, as_material
 from .mesh import Mesh
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._state import State
 
 
 class LabelError(SceneError, KeyError):
@@ -26,32 +26,32 @@ class LabelError(SceneError, KeyError):
 class Part:
     """A part of a scene: a mesh with its material, where it stands, and what it lies inside."""
 
-    def __init__(self, scene: Scene, number: int) -> None:
-        self._scene = scene
-        self._name = scene._names[number]
+    def __init__(self, state: State, number: int) -> None:
+        self._state = state
+        self._name = state.names[number]
 
     @property
-    def _number(self) -> int:
+    def number(self) -> int:
         """Its number, which grows smaller when a part before it is removed."""
         try:
-            return self._scene._names.index(self._name)
+            return self._state.names.index(self._name)
         except ValueError:
             raise SceneError("the part was removed from its scene") from None
 
     def _get(self) -> Any:
         part = struct("skg_part")
-        call("skg_scene_part_get", self._scene._parts_handle, self._number, part)
+        call("skg_scene_part_get", self._state.handle, self.number, part)
         return part
 
     @property
     def label(self) -> str:
-        with self._scene._calls():
+        with self._state.calls():
             return text(self._get().label)
 
     @property
     def pose(self) -> NDArray[np.float64]:
         """The 4 x 4 matrix from the mesh to the world, mm; read-only. Assign another one to move the part."""
-        with self._scene._calls():
+        with self._state.calls():
             part = self._get()  # its arrays live as long as this name
             made = np.array(list(part.pose)).reshape(4, 4)
         made.flags.writeable = False
@@ -60,28 +60,28 @@ class Part:
     @pose.setter
     def pose(self, value: Any) -> None:
         pose = _arrays.matrix(value, "pose")
-        with self._scene._calls():
-            call("skg_scene_pose_set", self._scene._parts_handle, self._number,
+        with self._state.calls():
+            call("skg_scene_pose_set", self._state.handle, self.number,
                  ffi.cast("double *", ffi.from_buffer(pose)))
 
     @property
     def mesh(self) -> Mesh:
         """Its mesh, which other parts may share."""
-        with self._scene._calls():
-            return self._scene._mesh(self._get().mesh)
+        with self._state.calls():
+            return self._state.mesh(self._get().mesh)
 
     @property
     def material(self) -> Material:
         """What it is made of. Assign a Material or a name."""
-        with self._scene._calls():
-            return self._scene._material(self._number, self._get().material)
+        with self._state.calls():
+            return self._state.material(self.number, self._get().material)
 
     @material.setter
     def material(self, value: Any) -> None:
         material = as_material(value)
-        with self._scene._calls():
-            call("skg_scene_material_set", self._scene._parts_handle, self._number, material._handle)
-            self._scene._materials[self._number] = material
+        with self._state.calls():
+            call("skg_scene_material_set", self._state.handle, self.number, material._handle)
+            self._state.materials[self.number] = material
 
     @property
     def density(self) -> float:
@@ -95,14 +95,14 @@ class Part:
     @property
     def inside(self) -> str | None:
         """The label of the part that it lies inside and displaces; None: none."""
-        with self._scene._calls():
+        with self._state.calls():
             parent = int(self._get().inside)
-        return None if parent < 0 else Part(self._scene, parent).label
+        return None if parent < 0 else Part(self._state, parent).label
 
     @property
     def priority(self) -> int:
         """Where parts overlap, the one with the highest priority displaces the others."""
-        with self._scene._calls():
+        with self._state.calls():
             return int(self._get().priority)
 
     def __repr__(self) -> str:

@@ -1,34 +1,30 @@
 """Scenes: parts, source and detector, and their images."""
 from __future__ import annotations
 
-import copy
 import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from types import TracebackType
-from typing import Any, ContextManager, overload
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _edit, _look, _pickle, _projections, _save, _show, _source
-from ._device import Device, device_of
-from ._frames import Batch, Stale, run
+from . import _arrays, _command, _edit, _images, _look, _pickle, _projections, _save, _show, _source
+from ._device import Device
+from ._frames import Batch
 from ._interface import ENUMS, ArgumentError, SceneError
-from ._library import call, check, choice, encode, ffi, filled, integer, lib, listed, make, retained, struct
-from ._plans import Plans
+from ._library import call, choice, encode, ffi, filled, lib, listed, struct
+from ._picture import write_picture
 from ._progress import Progress
+from ._state import State
 from .beam import Beam
 from .material import Material, as_material
-from .mesh import Mesh, as_mesh
-from ._picture import write_picture
+from .mesh import as_mesh
 from .part import Part
 from .report import Report
 from .scan import Scan
-from .view import View, as_views
-
-#: The keV of a unit in which energies may be given.
-_KEV = {"eV": 1e-3, "keV": 1.0, "MeV": 1e3}
+from .view import View
 
 
 class Scene:
@@ -58,52 +54,18 @@ class Scene:
     def __init__(self, scene: str | os.PathLike[str] | Mapping[str, Any] | None = None, *,
                  settings: Mapping[str, Any] | Sequence[str] = (), device: Device | str | None = None,
                  lenient: bool = False, lengths_only: bool = False) -> None:
-        self._kept: _source.Kept | None = None
-        self._open(_source.source_of(scene, settings, lenient, lengths_only), device, None)
-
-    def _open(self, source: _source.Source, device: Device | str | None, elsewhere: Mapping[str, str] | None) -> None:
-        self._device = device_of(device)
-        self._source = source
-        self._setup = self._motion = self._own_parts = ffi.NULL
-        self._removed: list[str] = []
-        self._said: set[str] = set()
-        self._meshes: dict[Any, Mesh] = {}
-        self._materials: dict[int, Material] = {}
-        self._breath: dict[str, float] | None = None
-        self._changed: set[str] = set()
-        self._trajectory: Scan | None = None
-        self._frames = 0
-        with self._calls():
-            self._setup = source.load(self._device.handle, elsewhere)
-            handle = ffi.new("skg_scene **")
-            call("skg_setup_scene_get", self._setup, handle)
-            self._parts_handle = handle[0]
-            spectrum, view = ffi.new("skg_spectrum **"), struct("skg_view")
-            call("skg_setup_spectrum_get", self._setup, spectrum)
-            call("skg_setup_view_get", self._setup, view)
-            self._beam = Beam._borrowed(spectrum[0]) if spectrum[0] != ffi.NULL else None
-            self._view = View._read(view) if view.columns else None
-            self._plans = Plans(self._device)
-            self._file_parts = len(self)
-            self._names = list(range(len(self)))
-            self._read_view = copy.deepcopy(self._view)
-            self._read_poses = [part.pose for part in self]
-
-    def _calls(self) -> ContextManager[None]:
-        if self._setup == ffi.NULL and hasattr(self, "_plans"):
-            raise ArgumentError("the scene was closed")
-        return self._device.calls(self._said)
+        self._state = State.read(_source.source_of(scene, settings, lenient, lengths_only), device)
 
     # Parts
 
     def __len__(self) -> int:
-        return integer("skg_scene_part_count", self._parts_handle)
+        return self._state.count()
 
     def __iter__(self) -> Iterator[Part]:
-        return iter([Part(self, number) for number in range(len(self))])
+        return iter(self._state.parts())
 
     def __getitem__(self, label: str) -> Part:
-        return Part(self, self._number(label))
+        return Part(self._state, self._state.number(label))
 
     @property
     def parts(self) -> list[Part]:
@@ -113,15 +75,6 @@ class Scene:
     def __contains__(self, label: object) -> bool:
         return isinstance(label, str) and any(part.label == label for part in self)
 
-    def _number(self, label: str) -> int:
-        if not isinstance(label, str):
-            raise ArgumentError(f"the label of a part is a {type(label).__name__}; give its text")
-        with self._calls():
-            try:
-                return integer("skg_scene_find", self._parts_handle, encode(label, "label"))
-            except SceneError:
-                raise _edit.unknown_label(label, [part.label for part in self]) from None
-
     def add(self, label: str, mesh: Any, *, material: Material | str, inside: str | Part | None = None,
             pose: Any = None, priority: int = 0, unit_mm: float = 1) -> Part:
         """Adds a part.
@@ -130,21 +83,16 @@ class Scene:
         unit_mm. material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
         """
         parent = inside.label if isinstance(inside, Part) else inside
-        with self._calls():
-            made = as_mesh(mesh, unit_mm=unit_mm, name=label, _context=self._device.handle)
+        state = self._state
+        with state.calls():
+            made = as_mesh(mesh, unit_mm=unit_mm, name=label, _context=state.device.handle)
             matter, part, name = as_material(material), struct("skg_part"), ffi.new("char[]", encode(label, "label"))
-            part.mesh, part.material, part.label, part.priority = made._handle, matter._handle, name, int(priority)
+            part.label, part.priority = name, int(priority)
             if parent is not None:
-                part.inside = self._number(parent)
+                part.inside = state.number(parent)
             if pose is not None:
                 part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
-            number = integer("skg_scene_add", self._parts_handle, part)
-            self._names.append(max(self._names, default=-1) + 1)
-            self._materials[number] = matter
-            self._meshes[_address(made._handle)] = made
-            self._plans.clear()
-            self._forget_motion()
-        return Part(self, number)
+            return Part(state, state.add(part, made, matter))
 
     def remove(self, label: str) -> None:
         """Removes a part. What lies inside it lies inside what it lay in from then on. A scene from which parts were
@@ -158,49 +106,35 @@ class Scene:
         >>> scene.parts
         []
         """
-        with self._calls():
-            _edit.remove(self, self._number(label))
-
-    def _mesh(self, handle: Any) -> Mesh:
-        """One object for each mesh, so that it knows whether it was changed."""
-        key = _address(handle)
-        if key not in self._meshes:
-            self._meshes[key] = Mesh._of(retained("skg_mesh", handle))
-        return self._meshes[key]
-
-    def _material(self, number: int, handle: Any) -> Material:
-        return self._materials.get(number) or Material._borrowed(handle)
+        with self._state.calls():
+            _edit.remove(self._state, self._state.number(label))
 
     # Source, detector and beam
 
     @property
     def view(self) -> View:
         """Source and detector. Its arrays may be changed in place; assign another View to replace it."""
-        if self._view is None:
-            raise SceneError("the scene has no source and detector; assign a View to scene.view")
-        return self._view
+        return self._state.require_view()
 
     @view.setter
     def view(self, value: View) -> None:
         if not isinstance(value, View):
             raise ArgumentError(f"view is a {type(value).__name__}; give a View")
-        self._view = value
-        self._changed.add("view")
+        self._state.view = value
+        self._state.changed.add("view")
 
     @property
     def beam(self) -> Beam:
         """The photons by energy. Assign another Beam to replace it."""
-        if self._beam is None:
-            raise SceneError("the scene has no beam; assign a Beam to scene.beam")
-        return self._beam
+        return self._state.require_beam()
 
     @beam.setter
     def beam(self, value: Beam) -> None:
         if not isinstance(value, Beam):
             raise ArgumentError(f"beam is a {type(value).__name__}; give a Beam")
-        self._beam = value
-        self._changed.add("beam")
-        self._plans.clear()
+        self._state.beam = value
+        self._state.changed.add("beam")
+        self._state.plans.clear()
 
     # Images
 
@@ -216,10 +150,9 @@ class Scene:
         options: others of the library's skg_plan_options, such as noise=True, supersampling=2, bands=[20, 40, 60]
         (edges in keV), spot={"shape": "disc", "extent": 0.6}, response=, world=, repair="exact".
         """
-        batch = Batch(1, index=self._number_frames(1, index, options))
-        found = self._render(batch, out, False, True, unit, quantity=quantity, precision=precision,
-                             tolerance=tolerance, **options)
-        return found
+        batch = Batch(1, index=_images.number_frames(self._state, 1, index, options))
+        return _images.render(self._state, batch, out, False, True, unit, quantity=quantity, precision=precision,
+                              tolerance=tolerance, **options)
 
     def images(self, quantity: str | None = None, *, poses: Mapping[str, Any] | None = None,
                views: Sequence[View] | None = None, unit: str | None = None, precision: str | None = None,
@@ -231,12 +164,12 @@ class Scene:
         for the noise, as of image(). progress: True for a line on standard error, or a function of (done, n). The rest is as in
         image(). An interrupt (Ctrl-C) ends the batch at once.
         """
-        batch = self._batch(poses, views, 0)
-        batch.index = self._number_frames(batch.count, index, options)
+        batch = _images.batch_of(self._state, poses, views)
+        batch.index = _images.number_frames(self._state, batch.count, index, options)
         if batch.views and tolerance and "views" not in options:
             options["views"] = batch.views
-        return self._render(batch, out, progress, False, unit, quantity=quantity, precision=precision,
-                            tolerance=tolerance, **options)
+        return _images.render(self._state, batch, out, progress, False, unit, quantity=quantity, precision=precision,
+                              tolerance=tolerance, **options)
 
     @overload
     def lengths(self, label: str, kind: str = "net", *, poses: Mapping[str, Any] | None = None,
@@ -262,11 +195,11 @@ class Scene:
             wanted = [part.label for part in self] if label is None else list(label)
             given = {"poses": poses, "views": views, "progress": progress, "precision": precision, **options}
             for name in wanted:  # all of them, before the first is computed
-                self._number(name)
+                self._state.number(name)
             return {name: self.lengths(name, kind, **given) for name in wanted}
         one = poses is None and views is None
-        batch = Batch(1) if one else self._batch(poses, views, 0)
-        part, what = self._number(label), choice("lengths", kind, "kind")
+        batch = Batch(1) if one else _images.batch_of(self._state, poses, views)
+        part, what = self._state.number(label), choice("lengths", kind, "kind")
 
         def submit(plan: Any) -> Any:
             def start(count: int, frames: Any, output: Any, job: Any) -> int:
@@ -275,29 +208,29 @@ class Scene:
 
             return start
 
-        with self._calls():
-            return self._run(submit, batch, out, progress, one, False, {"precision": precision, **options})
+        with self._state.calls():
+            return _images.compute(self._state, submit, batch, out, progress, one, False, {"precision": precision, **options})
 
     # Scans
 
     @property
     def trajectory(self) -> Scan:
         """Source and detector in each projection of scan(): the key Scan of the file. Assign a Scan to replace it."""
-        if self._trajectory is not None:
-            return self._trajectory
-        with self._calls():
-            if self._view != self._read_view:
+        if self._state.trajectory is not None:
+            return self._state.trajectory
+        with self._state.calls():
+            if self._state.view != self._state.read_view:
                 raise SceneError("the view was changed since the scene was read, and the key Scan turns the one of the "
                                  "file; assign a Scan of the new view to scene.trajectory")
             handle = ffi.new("skg_scan **")
-            call("skg_setup_scan_get", self._setup, handle)
+            call("skg_setup_scan_get", self._state.setup, handle)
             return Scan._borrowed(handle[0])
 
     @trajectory.setter
     def trajectory(self, value: Scan) -> None:
         if not isinstance(value, Scan):
             raise ArgumentError(f"trajectory is a {type(value).__name__}; give a Scan")
-        self._trajectory = value
+        self._state.trajectory = value
 
     @overload
     def scan(self, out: str | os.PathLike[str], quantity: str | None = None, *, only: Sequence[int] | None = None,
@@ -337,99 +270,18 @@ class Scene:
         """
         given = {"quantity": quantity, "precision": precision, "tolerance": tolerance, **options}
         wanted = _projections.Wanted(only, breathing, subframes, given, progress)
-        if self._breath and not breathing:
+        if self._state.breath and not breathing:
             raise SceneError("the scene was posed by breathe(); give breathing=True to pose it at the time of each "
                              "projection, or images(views=scene.trajectory) for this pose")
-        with self._calls():
+        with self._state.calls():
             if isinstance(out, (str, os.PathLike)):
-                return _projections.write(self, self.trajectory, wanted, out, (int(flats), int(darks)), overwrite)
-            return _projections.compute(self, self.trajectory, wanted, out)
-
-    def _number_frames(self, count: int, index: int | None, options: Mapping[str, Any]) -> int:
-        """The number of the first of these frames: that of the caller, or the next one of a scene with noise."""
-        if index is not None:
-            return int(index)
-        if options.get("noise_seed") is not None:
-            return 0
-        with self._calls():
-            file = self._plans.options(self._setup, {}, [])
-        given = [options.get("noise"), options.get("electronic_kev")]
-        noise, electronic = (own if value is None else value for own, value in zip((file.noise, file.electronic_kev), given))
-        first = self._frames
-        if noise or electronic:
-            self._frames += count
-            return first
-        return 0
-
-    def _batch(self, poses: Mapping[str, Any] | None, views: Sequence[View] | None, index: int) -> Batch:
-        count: int | None = None
-        source = ""
-        stacks, parts = [], []
-        for label, value in (poses or {}).items():
-            what = f"poses[{label!r}]"
-            stack = _arrays.matrices(value, what)
-            if stack.ndim == 3:
-                count, source = _agree(count, source, len(stack), what)
-            parts.append(self._number(label))
-            stacks.append(stack)
-        seen = [] if views is None else as_views(views)
-        if views is not None:
-            count, source = _agree(count, source, len(seen), "views")
-        if not count:
-            raise ArgumentError("there is nothing to compute: give views, or poses as {label: [n, 4, 4]}")
-        together = None
-        if parts:
-            together = np.empty((count, len(parts), 4, 4))
-            for i, stack in enumerate(stacks):
-                together[:, i] = stack
-        return Batch(count, index, parts, together, seen)
-
-    def _render(self, batch: Batch, out: Any, progress: Progress, one: bool, unit: str | None,
-                **options: Any) -> NDArray[Any]:
-        if unit is not None and (unit not in _KEV or options.get("quantity") not in (None, "energy")):
-            raise ArgumentError(f"unit {unit!r} with quantity {options.get('quantity') or 'energy'!r}: a unit is one of "
-                                f"{', '.join(map(repr, _KEV))}, and for energy alone")
-
-        def submit(plan: Any) -> Any:
-            return lambda count, frames, output, job: lib.skg_plan_submit(plan, count, frames, output, job)
-
-        with self._calls():
-            image = self._run(submit, batch, out, progress, one, options.get("bands") is not None, options)
-        if unit is not None and unit != "keV":
-            image /= image.dtype.type(_KEV[unit])
-        return image
-
-    def _run(self, submit: Any, batch: Batch, out: Any, progress: Progress, one: bool, banded: bool,
-             options: dict[str, Any]) -> NDArray[Any]:
-        """Computes a batch with the plan of these options; a stale plan is made anew once."""
-        batch.complete = self._complete()
-        for again in (False, True):
-            plan = self._plan(options, batch.views, again)
-            channels = 1 if not banded else integer("skg_plan_channel_count", plan)
-            rows, columns = batch.views[0].shape if batch.views else self.view.shape
-            shape = (batch.count, channels, rows, columns)
-            given = _shape(shape, one, banded)
-            if out is None:
-                target = np.empty(given, np.float64 if options.get("precision") == "double" else np.float32)
-            else:
-                target = _arrays.output(out, given)
-            frames = target.reshape(shape) if out is None else _four(target, one, banded)
-            try:
-                run(self._device, submit(plan), batch, frames, progress)
-                break
-            except Stale as stale:
-                if again:
-                    raise SceneError(str(stale)) from None
-        return target
-
-    def _plan(self, options: Mapping[str, Any], views: list[View] | None = None, anew: bool = False) -> Any:
-        view = views[0] if views else self.view
-        return self._plans.get(self._setup, self._parts_handle, view, self.beam, options, anew)
+                return _projections.write(self._state, self.trajectory, wanted, out, (int(flats), int(darks)), overwrite)
+            return _projections.compute(self._state, self.trajectory, wanted, out)
 
     def plan(self, **options: Any) -> Report:
         """What is simulated, what is not, and why; options as of image()."""
-        with self._calls():
-            return Report(self._plan(options), [part.label for part in self])
+        with self._state.calls():
+            return Report(self._state.plan(options), [part.label for part in self])
 
     def save(self, path: str | os.PathLike[str], image: Any = None, quantity: str = "energy", *, display: str = "radiograph",
              range: tuple[float, float] | None = None, **options: Any) -> None:
@@ -442,15 +294,15 @@ class Scene:
         values of black and white, of a .png. options: those that the image was computed with.
         """
         if image is None:
-            with self._calls():
-                _save.save(self, path)
+            with self._state.calls():
+                _save.save(self._state, path)
             return
-        with self._calls():
+        with self._state.calls():
             view = self.view
             if quantity == "lengths":
                 write_picture(path, image, names=["path length"], unit="mm", view=view, display=display, range=range)
                 return
-            channels = listed("skg_channel", "skg_plan_channel", self._plan({"quantity": quantity, **options}))
+            channels = listed("skg_channel", "skg_plan_channel", self._state.plan({"quantity": quantity, **options}))
             write_picture(path, image, names=[c["name"] for c in channels], unit=channels[0]["unit"],
                           flat_field=channels[0]["flat_field"], quantity=quantity, view=view, display=display, range=range)
 
@@ -462,16 +314,16 @@ class Scene:
         up: what is up in the picture. image: an image to show on the detector. colours: of parts by label, (red, green,
         blue) or with opacity, 0 to 1.
         """
-        with self._calls():
-            return _look.picture(self, pixels, direction, up, orthographic, image, colours or {})
+        with self._state.calls():
+            return _look.picture(self._state, pixels, direction, up, orthographic, image, colours or {})
 
     def show(self, *, height: int = 600) -> _show.Page:
         """The scene as a page that turns with the mouse, for a cell of a notebook; the command `skiagraph view` makes it.
 
         height: of the cell, in pixels. The page has save("scene.html"), and the command has to be installed.
         """
-        with self._calls():
-            return _show.page(self, height)
+        with self._state.calls():
+            return _show.page(self._state, height)
 
     # Breath
 
@@ -482,37 +334,12 @@ class Scene:
         """
         if (phase is None) == (time is None):
             raise ArgumentError("give breathe(phase=...) or breathe(time=...), one of them")
-        with self._calls():
-            motion = self._linked()
+        with self._state.calls():
+            motion = self._state.linked()
             breath = {"phase": float(phase)} if phase is not None else {"time": float(time or 0)}
-            self._pose(breath)
-            self._breath = breath
+            self._state.pose(breath)
+            self._state.breath = breath
             return filled("skg_motion_state", "skg_motion_state_get", motion)
-
-    def _linked(self) -> Any:
-        """The motion of the scene."""
-        if self._removed:
-            raise SceneError(f"{', '.join(map(repr, self._removed))} was removed, and the breath links the parts of the file; "
-                             "take it out of the file instead")
-        if self._motion == ffi.NULL:
-            self._motion = make("skg_motion_create", "skg_motion", self._device.handle, self._setup)
-        return self._motion
-
-    def _pose(self, breath: dict[str, float]) -> None:
-        for name, value in breath.items():
-            call(f"skg_motion_pose_at_{name}", self._motion, value)
-
-    def _complete(self) -> Any:
-        if self._motion == ffi.NULL or self._breath is None:
-            return None
-        motion = self._motion
-        return lambda frame: check(lib.skg_motion_fill(motion, frame))
-
-    def _forget_motion(self) -> None:
-        """The parts are others: the next breath links them anew."""
-        motion, self._motion = self._motion, ffi.NULL
-        if motion != ffi.NULL:
-            self._device.drop("skg_motion", motion)
 
     # Costs
 
@@ -524,34 +351,17 @@ class Scene:
 
         The command has to be installed. It reads the scene as it was loaded: a scene that was changed since is refused.
         """
-        with self._calls():
-            if self._is_changed():
+        with self._state.calls():
+            if self._state.is_changed():
                 raise SceneError("the scene was changed since it was read, and cost() compares it as it was read; put "
                                  "the changes into the file, the dictionary or settings")
-        return _command.cost(self._source, quick, within, frames)
-
-    def _is_changed(self) -> bool:
-        moved = any(mesh._changed for mesh in self._meshes.values()) or any(
-            (part.pose != pose).any() for part, pose in zip(self, self._read_poses))
-        return bool(self._changed or self._removed or self._materials or len(self) > self._file_parts or moved or self._breath
-                    or self._view != self._read_view)
+        return _command.cost(self._state.source, quick, within, frames)
 
     # Life
 
     def close(self) -> None:
         """Frees the scene now instead of with its last reference."""
-        if getattr(self, "_setup", ffi.NULL) == ffi.NULL:
-            return
-        if hasattr(self, "_plans"):
-            self._plans.clear()
-        self._forget_motion()
-        setup, self._setup = self._setup, ffi.NULL
-        own, self._own_parts = self._own_parts, ffi.NULL
-        self._meshes.clear()
-        self._materials.clear()
-        if own != ffi.NULL:
-            self._device.drop("skg_scene", own)
-        self._device.drop("skg_setup", setup)
+        self._state.close()
 
     def __enter__(self) -> Scene:
         return self
@@ -559,24 +369,22 @@ class Scene:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
         self.close()
-        with self._device.calls():
+        with self._state.device.calls():
             pass
 
-    def __del__(self) -> None:
-        self.close()
-
     def __getstate__(self) -> dict[str, Any]:
-        with self._calls():
-            return _pickle.content(self)
+        with self._state.calls():
+            return _pickle.content(self._state)
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        _pickle.restore(self, state)
+    def __setstate__(self, content: dict[str, Any]) -> None:
+        self._state = _pickle.opened(content)
+        _pickle.restore(self, self._state, content)
 
     def __repr__(self) -> str:
-        if self._setup == ffi.NULL:
+        if self._state.setup == ffi.NULL:
             return "<Scene, closed>"
-        name = self._source.path or "scene"
-        return f"<Scene {name}: {len(self)} parts, {'no view' if self._view is None else repr(self._view)}>"
+        name, view = self._state.source.path or "scene", self._state.view
+        return f"<Scene {name}: {len(self)} parts, {'no view' if view is None else repr(view)}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><td>{html.escape(p.label)}</td><td>{html.escape(p.material.name)}</td>"
@@ -586,23 +394,6 @@ class Scene:
                 f"<th>inside</th><th>triangles</th></tr>{rows}</table>")
 
 
-def _address(handle: Any) -> int:
-    return int(ffi.cast("intptr_t", handle))
-
-
-def _agree(count: int | None, source: str, given: int, what: str) -> tuple[int, str]:
-    if count is not None and count != given:
-        raise ArgumentError(f"{what} has {given} frames and {source} {count}; give as many")
-    return given, what
-
-
-def _shape(shape: tuple[int, ...], one: bool, banded: bool) -> tuple[int, ...]:
-    """The shape as the caller sees it."""
-    return (() if one else shape[:1]) + (shape[1:2] if banded else ()) + shape[2:]
-
-
-def _four(array: NDArray[Any], one: bool, banded: bool) -> NDArray[Any]:
-    """The caller's array with the axes that it lacks, on the same memory."""
-    if not banded:
-        array = array[..., None, :, :]
-    return array[None] if one else array
+def state_of(scene: Scene) -> State:
+    """What functions beside the class work on."""
+    return scene._state

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import skiagraph as sk
+from skiagraph.scene import state_of
 
 
 def image_of(scene):
@@ -130,7 +131,7 @@ def test_an_interrupt_ends_a_batch(scene):
     with pytest.raises(KeyboardInterrupt):
         scene.images(poses={"ball": np.eye(4)[None].repeat(100000, 0)}, progress=interrupt)
     assert not seen
-    assert scene._device._unfinished  # nobody waited for what is under way
+    assert state_of(scene).device._unfinished  # nobody waited for what is under way
     assert (scene.image() == expected).all()
 
 

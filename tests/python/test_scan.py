@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import skiagraph as sk
+from skiagraph.scene import state_of
 
 N = 6
 
@@ -218,10 +219,10 @@ def test_an_interrupt_ends_a_scan_and_the_file_is_continued(path, tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         scene.scan(tmp_path / "scan.raw", progress=interrupt)
-    assert not seen and scene._device._unfinished
+    assert not seen and state_of(scene).device._unfinished
     # The next call waits for what is under way; then the lock is given up.
     assert scene.image().shape == (24, 32)
-    assert not scene._device._unfinished and not (tmp_path / "scan.raw.lock").exists()
+    assert not state_of(scene).device._unfinished and not (tmp_path / "scan.raw.lock").exists()
     said = scene.scan(tmp_path / "scan.raw", only=range(100))
     assert 0 < said["found"] < 20000
     with pytest.raises(KeyboardInterrupt):
@@ -256,7 +257,7 @@ def test_a_breathing_scan(tmp_path):
     found = scene.scan(quantity="attenuation", breathing=True)
     assert not (found[0] == found[1]).all()
     # The meshes are where they were.
-    assert (scene["liver"].mesh.vertices == vertices).all() and not scene._is_changed()
+    assert (scene["liver"].mesh.vertices == vertices).all() and not state_of(scene).is_changed()
     assert (scene.image("attenuation") == still).all()
     for image, time in zip(found, scene.trajectory.times):
         scene.breathe(time=time)
@@ -270,9 +271,9 @@ def test_a_breathing_scan(tmp_path):
 
 def test_cost_sees_every_change(path):
     scene = sk.Scene(path)
-    assert not scene._is_changed()
+    assert not state_of(scene).is_changed()
     scene["block"].pose = sk.translate(1, 0, 0)
-    assert scene._is_changed()
+    assert state_of(scene).is_changed()
     moved = sk.Scene(path)
     moved.view.source[1] -= 10
     assert moved._is_changed()

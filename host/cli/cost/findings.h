@@ -41,7 +41,8 @@ const char *cost_ms(double ms, double spread_ms, char *text, size_t size);
 /* What a change adds to a time: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
 const char *cost_more(double ms, double spread_ms, char *text, size_t size);
 
-/* Which setting to use: marks the frontier and fills study->advice; measures the combinations that were not measured yet. */
+/* Which setting to use: marks the frontier and fills study->advice; measures the combinations that were not measured
+ * yet. */
 int cost_advise(cost_study *study);
 
 #endif

@@ -73,8 +73,9 @@ int cost_make_reference(cost_study *study, int number);
  * computed is noted and left out. image: [pixels], to work with. */
 int cost_measure(cost_study *study, cost_point *point, double *image);
 
-/* Measures every source of error coarsely and without times, before anything is measured finely: compares the scene with a setting in which one dial is better, for every source that can be measured, as long as time is left.
- * A source that was not measured has the reason. own: the scene's image. */
+/* Measures every source of error coarsely and without times, before anything is measured finely: compares the scene with a
+ * setting in which one dial is better, for every source that can be measured, as long as time is left. A source that was not
+ * measured has the reason. own: the scene's image. */
 int cost_measure_coarsely(cost_study *study, double *own);
 
 /* Measures the most informative settings, as many as the time allows. */

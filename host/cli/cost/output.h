@@ -6,7 +6,8 @@
 
 #include <jansson.h>
 
-/* The command line of `image` that a setting stands for, quoted for a shell, which the caller frees; NULL if memory is exhausted. */
+/* The command line of `image` that a setting stands for, quoted for a shell. The caller frees it; NULL if memory is
+ * exhausted. */
 char *cost_command(const cost_study *study, const cost_setting *setting);
 
 json_t *cost_json(const cost_study *study);

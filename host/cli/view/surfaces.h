@@ -18,7 +18,8 @@ typedef struct {
 extern const int view_can_thin;
 
 /* Joins vertices at the same place and removes edges until there are about `wanted` triangles; it may stop before, where the
- * surface would change its kind. A part with fewer triangles keeps them all. The caller calls view_surface_free, also after a failure. */
+ * surface would change its kind. A part with fewer triangles keeps them all. The caller calls view_surface_free, also after a
+ * failure. */
 int view_thin(const skg_part *part, int64_t wanted, view_surface *surface);
 void view_surface_free(view_surface *surface);
 

@@ -1,0 +1,121 @@
+"""Images and path lengths of a scene, one or a batch. Private."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays
+from ._frames import Batch, Stale, Submit, run
+from ._interface import ArgumentError, SceneError
+from ._library import integer, lib
+from ._progress import Progress
+from ._state import State
+from .view import View, as_views
+
+#: The keV of a unit in which energies may be given.
+_KEV = {"eV": 1e-3, "keV": 1.0, "MeV": 1e3}
+
+
+def number_frames(state: State, count: int, index: int | None, options: Mapping[str, Any]) -> int:
+    """The number of the first of these frames: that of the caller, or the next one of a scene with noise."""
+    if index is not None:
+        return int(index)
+    if options.get("noise_seed") is not None:
+        return 0
+    with state.calls():
+        file = state.plans.options(state.setup, {}, [])
+    given = [options.get("noise"), options.get("electronic_kev")]
+    noise, electronic = (own if value is None else value for own, value in zip((file.noise, file.electronic_kev), given))
+    first = state.frames
+    if noise or electronic:
+        state.frames += count
+        return first
+    return 0
+
+
+def batch_of(state: State, poses: Mapping[str, Any] | None, views: Sequence[View] | None) -> Batch:
+    """The frames of these poses and views."""
+    count: int | None = None
+    source = ""
+    stacks, parts = [], []
+    for label, value in (poses or {}).items():
+        what = f"poses[{label!r}]"
+        stack = _arrays.matrices(value, what)
+        if stack.ndim == 3:
+            count, source = _agree(count, source, len(stack), what)
+        parts.append(state.number(label))
+        stacks.append(stack)
+    seen = [] if views is None else as_views(views)
+    if views is not None:
+        count, source = _agree(count, source, len(seen), "views")
+    if not count:
+        raise ArgumentError("there is nothing to compute: give views, or poses as {label: [n, 4, 4]}")
+    together = None
+    if parts:
+        together = np.empty((count, len(parts), 4, 4))
+        for i, stack in enumerate(stacks):
+            together[:, i] = stack
+    return Batch(count, 0, parts, together, seen)
+
+
+def render(state: State, batch: Batch, out: Any, progress: Progress, one: bool, unit: str | None,
+           **options: Any) -> NDArray[Any]:
+    """Images. one: of a single frame, without the axis of frames."""
+    if unit is not None and (unit not in _KEV or options.get("quantity") not in (None, "energy")):
+        raise ArgumentError(f"unit {unit!r} with quantity {options.get('quantity') or 'energy'!r}: a unit is one of "
+                            f"{', '.join(map(repr, _KEV))}, and for energy alone")
+
+    def submit(plan: Any) -> Any:
+        return lambda count, frames, output, job: lib.skg_plan_submit(plan, count, frames, output, job)
+
+    with state.calls():
+        image = compute(state, submit, batch, out, progress, one, options.get("bands") is not None, options)
+    if unit is not None and unit != "keV":
+        image /= image.dtype.type(_KEV[unit])
+    return image
+
+
+def compute(state: State, submit: Callable[[Any], Submit], batch: Batch, out: Any, progress: Progress, one: bool, banded: bool,
+            options: dict[str, Any]) -> NDArray[Any]:
+    """Computes a batch with the plan of these options; a stale plan is made anew once."""
+    batch.complete = state.completer()
+    view = batch.views[0] if batch.views else None
+    for again in (False, True):
+        plan = state.plan(options, view, again)
+        channels = 1 if not banded else integer("skg_plan_channel_count", plan)
+        rows, columns = (view or state.require_view()).shape
+        shape = (batch.count, channels, rows, columns)
+        given = _shape(shape, one, banded)
+        if out is None:
+            target = np.empty(given, np.float64 if options.get("precision") == "double" else np.float32)
+        else:
+            target = _arrays.output(out, given)
+        frames = target.reshape(shape) if out is None else _four(target, one, banded)
+        try:
+            run(state.device, submit(plan), batch, frames, progress)
+            break
+        except Stale as stale:
+            if again:
+                raise SceneError(str(stale)) from None
+    return target
+
+
+def _agree(count: int | None, source: str, given: int, what: str) -> tuple[int, str]:
+    if count is not None and count != given:
+        raise ArgumentError(f"{what} has {given} frames and {source} {count}; give as many")
+    return given, what
+
+
+def _shape(shape: tuple[int, ...], one: bool, banded: bool) -> tuple[int, ...]:
+    """The shape as the caller sees it."""
+    return (() if one else shape[:1]) + (shape[1:2] if banded else ()) + shape[2:]
+
+
+def _four(array: NDArray[Any], one: bool, banded: bool) -> NDArray[Any]:
+    """The caller's array with the axes that it lacks, on the same memory."""
+    if not banded:
+        array = array[..., None, :, :]
+    return array[None] if one else array

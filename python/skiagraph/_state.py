@@ -1,0 +1,193 @@
+"""What a scene is made of, and what changes it. Private."""
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ContextManager
+
+from . import _edit
+from ._device import Device, device_of
+from ._interface import ArgumentError, SceneError
+from ._library import call, check, encode, ffi, integer, lib, make, retained, struct
+from ._plans import Plans
+from ._source import Kept, Source
+from .beam import Beam
+from .material import Material
+from .mesh import Mesh
+from .part import Part
+from .scan import Scan
+from .view import View
+
+
+@dataclass(eq=False)
+class State:
+    """A scene as it is now. It is closed with its last reference, which a scene and its parts have."""
+
+    device: Device
+    source: Source
+    plans: Plans
+    #: The library's skg_setup, skg_scene, and skg_motion once the scene breathes; NULL: there is none.
+    setup: Any = ffi.NULL
+    handle: Any = ffi.NULL
+    motion: Any = ffi.NULL
+    #: The skg_scene if it is not that of the set-up, because parts were removed.
+    own_handle: Any = ffi.NULL
+    view: View | None = None
+    beam: Beam | None = None
+    trajectory: Scan | None = None
+    #: The present phase or time of the breath; None: the scene was not posed.
+    breath: dict[str, float] | None = None
+    #: Number of the next frame with noise.
+    frames: int = 0
+    #: As it was read: the number of parts, their poses, and the view.
+    file_parts: int = 0
+    read_poses: list[Any] = field(default_factory=list)
+    read_view: View | None = None
+    #: What was assigned since: "view", "beam"; materials by number of the part; labels of removed parts.
+    changed: set[str] = field(default_factory=set)
+    materials: dict[int, Material] = field(default_factory=dict)
+    removed: list[str] = field(default_factory=list)
+    #: For each part a number that it keeps when parts before it are removed.
+    names: list[int] = field(default_factory=list)
+    #: One object for each mesh of the library, by its address, so that it knows whether it was changed.
+    meshes: dict[int, Mesh] = field(default_factory=dict)
+    #: Warnings that were given already.
+    said: set[str] = field(default_factory=set)
+    #: Of a scene that was pickled: its files.
+    kept: Kept | None = None
+
+    @classmethod
+    def read(cls, source: Source, device: Device | str | None, elsewhere: Mapping[str, str] | None = None) -> State:
+        """The state of a scene that is read from its source."""
+        opened = device_of(device)
+        state = cls(opened, source, Plans(opened))
+        with opened.calls(state.said):
+            state.setup = source.load(opened.handle, elsewhere)
+            handle, spectrum, view = ffi.new("skg_scene **"), ffi.new("skg_spectrum **"), struct("skg_view")
+            call("skg_setup_scene_get", state.setup, handle)
+            call("skg_setup_spectrum_get", state.setup, spectrum)
+            call("skg_setup_view_get", state.setup, view)
+            state.handle = handle[0]
+            state.beam = Beam._borrowed(spectrum[0]) if spectrum[0] != ffi.NULL else None
+            state.view = View._read(view) if view.columns else None
+            state.file_parts = state.count()
+            state.names = list(range(state.file_parts))
+            state.read_view = copy.deepcopy(state.view)
+            state.read_poses = [part.pose for part in state.parts()]
+        return state
+
+    def calls(self) -> ContextManager[None]:
+        """What calls of the library stand in."""
+        if self.setup == ffi.NULL:
+            raise ArgumentError("the scene was closed")
+        return self.device.calls(self.said)
+
+    # Parts, view and beam
+
+    def count(self) -> int:
+        return integer("skg_scene_part_count", self.handle)
+
+    def parts(self) -> list[Part]:
+        return [Part(self, number) for number in range(self.count())]
+
+    def number(self, label: str) -> int:
+        """The number of the part with this label."""
+        if not isinstance(label, str):
+            raise ArgumentError(f"the label of a part is a {type(label).__name__}; give its text")
+        with self.calls():
+            try:
+                return integer("skg_scene_find", self.handle, encode(label, "label"))
+            except SceneError:
+                raise _edit.unknown_label(label, [part.label for part in self.parts()]) from None
+
+    def add(self, part: Any, mesh: Mesh, material: Material) -> int:
+        """Adds a skg_part of this mesh and material. Its number."""
+        part.mesh, part.material = mesh._handle, material._handle
+        number = integer("skg_scene_add", self.handle, part)
+        self.names.append(max(self.names, default=-1) + 1)
+        self.materials[number] = material
+        self.meshes[_address(mesh._handle)] = mesh
+        self.plans.clear()
+        self.forget_motion()
+        return number
+
+    def mesh(self, handle: Any) -> Mesh:
+        key = _address(handle)
+        if key not in self.meshes:
+            self.meshes[key] = Mesh._of(retained("skg_mesh", handle))
+        return self.meshes[key]
+
+    def material(self, number: int, handle: Any) -> Material:
+        return self.materials.get(number) or Material._borrowed(handle)
+
+    def require_view(self) -> View:
+        if self.view is None:
+            raise SceneError("the scene has no source and detector; assign a View to scene.view")
+        return self.view
+
+    def require_beam(self) -> Beam:
+        if self.beam is None:
+            raise SceneError("the scene has no beam; assign a Beam to scene.beam")
+        return self.beam
+
+    def plan(self, options: Mapping[str, Any], view: View | None = None, anew: bool = False) -> Any:
+        """The plan of these options, with another view than the scene's if one is given."""
+        return self.plans.get(self.setup, self.handle, view or self.require_view(), self.require_beam(), options, anew)
+
+    def is_changed(self) -> bool:
+        """Whether it differs from what its source says."""
+        moved = any(mesh._changed for mesh in self.meshes.values()) or any(
+            (part.pose != pose).any() for part, pose in zip(self.parts(), self.read_poses))
+        return bool(self.changed or self.removed or self.materials or self.count() > self.file_parts or moved or self.breath
+                    or self.view != self.read_view)
+
+    # Breath
+
+    def linked(self) -> Any:
+        """The motion of the scene."""
+        if self.removed:
+            raise SceneError(f"{', '.join(map(repr, self.removed))} was removed, and the breath links the parts of the file; "
+                             "take it out of the file instead")
+        if self.motion == ffi.NULL:
+            self.motion = make("skg_motion_create", "skg_motion", self.device.handle, self.setup)
+        return self.motion
+
+    def pose(self, breath: Mapping[str, float]) -> None:
+        for name, value in breath.items():
+            call(f"skg_motion_pose_at_{name}", self.motion, value)
+
+    def completer(self) -> Any:
+        """Writes what the breath changes into a skg_frame; None: nothing."""
+        if self.motion == ffi.NULL or self.breath is None:
+            return None
+        motion = self.motion
+        return lambda frame: check(lib.skg_motion_fill(motion, frame))
+
+    def forget_motion(self) -> None:
+        """The parts are others: the next breath links them anew."""
+        motion, self.motion = self.motion, ffi.NULL
+        if motion != ffi.NULL:
+            self.device.drop("skg_motion", motion)
+
+    # Life
+
+    def close(self) -> None:
+        if self.setup == ffi.NULL:
+            return
+        self.plans.clear()
+        self.forget_motion()
+        setup, self.setup = self.setup, ffi.NULL
+        own, self.own_handle = self.own_handle, ffi.NULL
+        self.meshes.clear()
+        self.materials.clear()
+        if own != ffi.NULL:
+            self.device.drop("skg_scene", own)
+        self.device.drop("skg_setup", setup)
+
+    def __del__(self) -> None:
+        self.close()
+
+
+def _address(handle: Any) -> int:
+    return int(ffi.cast("intptr_t", handle))
