@@ -59,16 +59,22 @@ static int is_blurred(skg_trial_number number) {
     return number == SKG_TRIAL_BLUR || number == SKG_TRIAL_DEPTHS;
 }
 
+/* As skg_plan_submit of one frame and skg_job_wait, but tests nothing. */
+static skg_status draw(skg_plan *plan, const skg_output *output) {
+    skg_job *job = NULL;
+    SKG_TRY(skg_plan_enqueue("skg_plan_submit", plan, 1, NULL, 1, output, NULL, &job));
+    return skg_job_wait(&job);
+}
+
 /* Renders the image, and the lengths of part 0. */
 static skg_status render(trial_run *run) {
     double memory[PIXELS] = {0}; /* floats or doubles */
     skg_output output;
-    skg_job *job = NULL;
     skg_plan_report report;
     skg_output_init(&output);
     output.data = memory;
     output.type = run->scene.number == SKG_TRIAL_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
-    skg_status status = skg_plan_image(run->plan, &output);
+    skg_status status = draw(run->plan, &output);
     if (status < 0) return status;
     read_floats(run, memory, run->image);
     skg_plan_report_init(&report);
@@ -77,8 +83,7 @@ static skg_status render(trial_run *run) {
     if (!shows_lengths(run->scene.number)) return SKG_OK;
     output.kind = SKG_OUTPUT_LENGTHS;
     output.lengths = SKG_LENGTHS_SURFACE;
-    SKG_TRY(skg_plan_enqueue("skg_plan_submit", run->plan, 1, NULL, 1, &output, NULL, &job));
-    status = skg_job_wait(&job);
+    status = draw(run->plan, &output);
     read_floats(run, memory, run->lengths);
     return status < 0 ? status : SKG_OK;
 }
@@ -167,7 +172,7 @@ static skg_status score(skg_context *context, int32_t strategy, double *result) 
     output.data = image;
     for (int k = 0; k < SCORED_FRAMES; k++) {
         const double start = now();
-        SKG_TRY_CLEANUP(skg_plan_image(run->plan, &output));
+        SKG_TRY_CLEANUP(draw(run->plan, &output));
         fastest = fmin(fastest, now() - start);
     }
     *result = fastest > 0 ? 1 / fastest : 0;
