@@ -1,5 +1,6 @@
 #include "frame/adapt.h"
 #include "frame/submission.h"
+#include "frame/wait.h"
 #include "spectral/quantity.h"
 
 #include <math.h>

@@ -49,7 +49,4 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
 /* Waits for everything enqueued, then frees; *job becomes NULL. Also for submissions that failed half way. */
 void skg_job_release(skg_job **job);
 
-/* Waits, reports and releases. */
-skg_status skg_job_complete(skg_job **job);
-
 #endif

@@ -60,7 +60,6 @@ static int is_blurred(skg_self_test number) {
 static skg_status render(test_run *run) {
     double memory[PIXELS] = {0}; /* floats or doubles */
     skg_output output;
-    skg_job *job = NULL;
     skg_plan_report report;
     skg_output_init(&output);
     output.data = memory;
@@ -74,8 +73,7 @@ static skg_status render(test_run *run) {
     if (!shows_lengths(run->scene.number)) return SKG_OK;
     output.kind = SKG_OUTPUT_LENGTHS;
     output.lengths = SKG_LENGTHS_SURFACE;
-    SKG_TRY(skg_plan_submit(run->plan, 1, NULL, &output, &job));
-    status = skg_job_wait(&job);
+    status = skg_plan_image(run->plan, &output);
     read_floats(run, memory, run->lengths);
     return status < 0 ? status : SKG_OK;
 }
@@ -164,7 +162,7 @@ static skg_status score(skg_context *context, int32_t strategy, double *result) 
     output.data = image;
     for (int k = 0; k < SCORED_FRAMES; k++) {
         const double start = now();
-        SKG_TRY_CLEANUP(skg_plan_image(run->plan, &output));
+        SKG_TRY_CLEANUP(draw(run->plan, &output));
         fastest = fmin(fastest, now() - start);
     }
     *result = fastest > 0 ? 1 / fastest : 0;

@@ -10,8 +10,8 @@ from typing import Any, Union
 from ._interface import CancelledError
 from ._library import call, ffi, release
 
-#: False: none. True: a line on standard error. A function: it is called with (done, of); if it returns False, or raises, the
-#: work is cancelled.
+#: False: none. True: a line on standard error. A function: it is called with (done, of); if it returns False before the
+#: end, or raises, the work is cancelled.
 Progress = Union[bool, Callable[[int, int], object]]
 
 _WIDTH = 30
@@ -25,7 +25,7 @@ class Meter:
 
     def update(self, done: int) -> None:
         if callable(self._progress):
-            if self._progress(done, self._total) is False:
+            if self._progress(done, self._total) is False and done < self._total:
                 raise CancelledError(f"cancelled after {done} of {self._total} {self._unit}")
         elif self._progress:
             now = time.monotonic()

@@ -52,6 +52,41 @@ static double random_search(const skg_setup *setup, int64_t evaluations, const c
 
 static const char nine[] = "tendon,diaphragm,liver";
 
+static int32_t stop_after(int64_t done, int64_t total, void *user) {
+    ck_assert(done <= total && total == 200);
+    return done >= *(int64_t *)user;
+}
+
+/* A cancelled fit keeps the best point of the generations before, and can be finished. */
+START_TEST(a_fit_is_cancelled) {
+    static const int64_t after[] = {0, 60, 1000};
+    skg_setup *setup = load(1, hidden);
+    for (int k = 0; k < 3; k++) {
+        int64_t limit = after[k];
+        skg_fit_options options;
+        skg_fit *fit;
+        skg_fit_state state;
+        skg_status status = SKG_OK;
+        skg_fit_options_init(&options);
+        skg_fit_state_init(&state);
+        options.evaluations = 200;
+        ck_skg(skg_progress_create(stop_after, &limit, &options.progress));
+        ck_skg(skg_fit_create(NULL, setup, &options, &fit));
+        skg_progress_release(&options.progress);
+        skg_mesh *mesh = hidden_surface("diaphragm", 0);
+        ck_skg(skg_fit_parameters_choose(fit, "tendon"));
+        ck_skg(skg_fit_target_add(fit, part_of(setup, "diaphragm"), 0, mesh));
+        skg_mesh_release(&mesh);
+        while (status == SKG_OK && !state.is_done) status = skg_fit_step(fit, &state);
+        ck_assert_int_eq(status, limit < 1000 ? SKG_ERR_CANCELLED : SKG_OK);
+        ck_assert_int_ge(state.evaluations, limit < 1000 ? limit : 100);
+        if (state.evaluations > 0) ck_skg(skg_fit_finish(fit));
+        skg_fit_release(&fit);
+    }
+    skg_setup_release(&setup);
+}
+END_TEST
+
 /* The bars of recovery_test.c hold for 14 parameters and 8000 evaluations; these are 9 and 700. */
 START_TEST(hidden_parameters_are_found) {
     skg_setup *setup = load(1, hidden);
@@ -295,6 +330,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_test(tests, a_fit_is_cancelled);
     tcase_add_test(tests, hidden_parameters_are_found);
     tcase_add_test(tests, threads_and_checkpoints_do_not_change_bits);
     tcase_add_test(tests, the_scene_is_what_was_fitted);

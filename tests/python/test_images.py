@@ -154,6 +154,17 @@ def test_progress_counts_to_the_end(scene, poses, capsys):
     assert "7/7" in capsys.readouterr().err
 
 
+def test_progress_that_returns_false_cancels(scene, poses):
+    expected = scene.image()
+    for at in (1, 3):
+        seen = []
+        with pytest.raises(sk.CancelledError, match="of 7 images"):
+            scene.images(poses={"ball": poses}, progress=lambda done, of: seen.append(done) or done < at)
+        assert seen[-1] >= at
+        assert (scene.image() == expected).all()
+    assert len(scene.images(poses={"ball": poses}, progress=lambda done, of: done < 7)) == 7  # too late
+
+
 def test_noise_belongs_to_frames(scene, poses):
     still = {"ball": np.eye(4)[None].repeat(3, 0)}
     noisy = scene.images(poses=still, noise=True, noise_seed=5)

@@ -135,6 +135,30 @@ def test_an_interrupt_ends_a_batch(scene):
     assert (scene.image() == expected).all()
 
 
+def test_distances_and_volumes_are_cancelled(scene):
+    """A function that returns False, one that raises, and Ctrl-C; the first call and one in the middle."""
+    def at(first, what):
+        return lambda done, of: what() if done >= first * of else None
+
+    def fail():
+        raise RuntimeError("enough")
+
+    meshes = sk.Mesh.sphere(10, 48), sk.Mesh.sphere(11, 48)
+    scan = sk.Scan(scene.view, 24, axis="y")
+    images = scene.images(quantity="attenuation", views=scan)
+    for work in (lambda progress: sk.distance(*meshes, progress=progress),
+                 lambda progress: sk.reconstruct(scan, images, size=4, axis="y", progress=progress)):
+        seen = []
+        work(lambda done, of: seen.append((done, of)))
+        assert len(seen) > 3 and seen == sorted(seen) and seen[-1][0] == seen[-1][1]
+        for first in (0, 0.5):
+            for what, error in ((lambda: False, sk.CancelledError), (fail, RuntimeError),
+                                (lambda: signal.raise_signal(signal.SIGINT), KeyboardInterrupt)):
+                with pytest.raises(error):
+                    work(at(first, what))
+        work(False)
+
+
 def test_warnings_may_be_errors(scene):
     program = """if True:
         import skiagraph as sk, warnings

@@ -1,0 +1,119 @@
+#include "frame/wait.h"
+
+#include "core/plain.h"
+#include "driver/driver.h"
+#include "frame/submission.h"
+
+#include <inttypes.h>
+
+/* Waits until every frame that will be made is, and gives the device those that were held back. */
+static cl_int wait_for_frames(skg_job *job) {
+    cl_int code = CL_SUCCESS;
+    while (code == CL_SUCCESS && !job->last) {
+        skg_submission_continue(job);
+        if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) break;
+        code = clWaitForEvents(1, &job->ends[job->done]);
+        job->done++;
+    }
+    return code;
+}
+
+/* What became of a job whose commands are done. */
+static skg_status outcome_of(skg_job *job) {
+    const skg_status reported = skg_report_work(job->recipe, job->machine->context, &job->machine->geometry,
+                                                &job->results, &job->staging.log, job->outcome);
+    if (job->failure != SKG_OK)
+        return skg_fail(job->failure, "%s", job->sentence ? job->sentence : "out of host memory");
+    if (job->enqueued == job->count) return reported;
+    return skg_fail(SKG_ERR_CANCELLED,
+                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place", job->enqueued,
+                    job->count);
+}
+
+skg_status skg_job_complete(skg_job **job) {
+    skg_job *done = *job;
+    skg_context *context = done->machine->context;
+    const int64_t programs = context->device->builds + context->device->loads;
+    const int first = context->device->launched < programs;
+    skg_status status = SKG_OK;
+    if (first) skg_signals_keep();
+    cl_int code = wait_for_frames(done);
+    if (code == CL_SUCCESS) status = skg_submission_finish(done);
+    if (code == CL_SUCCESS && status == SKG_OK) code = clWaitForEvents(1, &done->last);
+    if (first) skg_signals_restore();
+    context->device->launched = programs;
+    done->finished = code == CL_SUCCESS && status == SKG_OK;
+    if (done->finished) {
+        skg_work_end();
+        skg_programs_launched(context);
+        status = outcome_of(done);
+    } else if (status == SKG_OK) {
+        status = skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
+    }
+    skg_job_release(job);
+    return status;
+}
+
+/* Whether a command is over. A failed one has a negative status: skg_job_wait reports it. */
+static skg_status is_over(cl_event event, int *over) {
+    cl_int stage = CL_COMPLETE;
+    SKG_CL_TRY(clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage, NULL));
+    *over = stage <= CL_COMPLETE;
+    return SKG_OK;
+}
+
+/* Counts the frames that are done, and gives the device others. */
+static skg_status look(skg_job *job) {
+    SKG_TRY(skg_context_enter(job->machine->context));
+    for (int over = 1; over && job->done < job->enqueued; job->done += over)
+        SKG_TRY(is_over(job->ends[job->done], &over));
+    skg_submission_continue(job);
+    return SKG_OK;
+}
+
+static skg_status test(skg_job *job, int32_t *done) {
+    int over = 1;
+    SKG_NEEDS_OF("skg_job_test", job);
+    SKG_NEEDS_OF("skg_job_test", done);
+    SKG_TRY(look(job));
+    const int ends_early = job->failure != SKG_OK || atomic_load(&job->cancelled);
+    if (job->last) SKG_TRY(is_over(job->last, &over));
+    *done = job->last ? over : ends_early && job->done == job->enqueued;
+    return SKG_OK;
+}
+
+skg_status skg_job_test(skg_job *job, int32_t *done) {
+    const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
+    return skg_call_end(handler, test(job, done));
+}
+
+static skg_status progress(skg_job *job, int64_t *done, int64_t *total) {
+    SKG_NEEDS_OF("skg_job_progress", job);
+    SKG_TRY(look(job));
+    if (done) *done = job->done;
+    if (total) *total = job->count;
+    return SKG_OK;
+}
+
+skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total) {
+    const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
+    return skg_call_end(handler, progress(job, done, total));
+}
+
+skg_status skg_job_cancel(skg_job *job) {
+    SKG_NEEDS(job);
+    atomic_store(&job->cancelled, 1);
+    return SKG_OK;
+}
+
+static skg_status wait_for(skg_job **job) {
+    SKG_PLAIN;
+    if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
+    SKG_TRY(skg_context_enter((*job)->machine->context));
+    return skg_job_complete(job);
+}
+
+skg_status skg_job_wait(skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(job && *job ? (*job)->machine->context : NULL);
+    return skg_call_end(handler, wait_for(job));
+}
