@@ -113,7 +113,7 @@ static skg_scene *nested_boxes(skg_context *context) {
         bench_try(skg_material_create_named(matter[i], &material), "material");
         skg_part_init(&part);
         part.mesh = box, part.material = material, part.label = matter[i], part.inside = i - 1;
-        bench_try(skg_scene_add(scene, &part, NULL), "part");
+        bench_try(skg_scene_part_add(scene, &part, NULL), "part");
         skg_mesh_release(&box);
         skg_material_release(&material);
     }

@@ -23,7 +23,7 @@ typedef struct {
 
 static void draw(void *contender) {
     picture *p = contender;
-    bench_try(skg_view_picture(p->context, p->scene, &p->view, &p->look, p->rgba), "picture");
+    bench_try(skg_scene_picture(p->context, p->scene, &p->view, &p->look, p->rgba), "picture");
 }
 
 int main(int count, char **words) {
@@ -39,7 +39,7 @@ int main(int count, char **words) {
         else if (bench_option(&arguments, "--triangles", &value))
             bench_numbers(value, 1000, 2000000, 1, &triangles);
         else if (bench_option(&arguments, "--size", &value))
-            bench_numbers(value, 64, SKG_LOOK_MOST_PIXELS, 1, &size);
+            bench_numbers(value, 64, SKG_LOOK_PIXELS_MAX, 1, &size);
         else if (bench_option(&arguments, "--repeats", &value))
             bench_numbers(value, 1, BENCH_SAMPLES / 4, 1, &repeats);
         else if (!bench_option(&arguments, "--device", &device) && !bench_option(&arguments, "--csv", &csv))

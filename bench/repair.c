@@ -35,7 +35,7 @@ static skg_scene *leaky_scene(skg_context *context, const skg_scene *closed) {
         bench_try(skg_scene_part_get(closed, i, &part), "part");
         const int leaky = is_leaky(part.label);
         if (leaky) part.mesh = bench_mesh_with_holes(context, part.mesh, EVERY, part.label);
-        bench_try(skg_scene_add(scene, &part, NULL), part.label);
+        bench_try(skg_scene_part_add(scene, &part, NULL), part.label);
         if (leaky) skg_mesh_release(&part.mesh);
     }
     return scene;
@@ -105,7 +105,7 @@ static void write_drawing(const float *drawing, const char *png) {
     picture.quantity = SKG_QUANTITY_ATTENUATION;
     picture.low = 0;
     picture.high = 1;
-    bench_try(skg_picture_write(&picture, png), png);
+    bench_try(skg_picture_save(&picture, png), png);
 }
 
 int main(int count, char **words) {

@@ -11,7 +11,7 @@ static const char usage[] =
     "[--quick] [--scene FILE.json | FOLDER | sphere:N] [--sizes N,N] [--views N] [--repeats N]\n"
     "    [--device CONFIG] [--affinity] [--csv FILE]";
 
-enum { SIZES = 8, MOST_VIEWS = 4096 };
+enum { SIZES = 8, VIEWS_MAX = 4096 };
 
 typedef struct {
     long sizes[SIZES], views, repeats;
@@ -40,7 +40,7 @@ static void read_settings(int count, char **words, settings *out) {
         } else if (bench_option(&arguments, "--sizes", &value)) {
             out->size_count = bench_numbers(value, 16, 8192, SIZES, out->sizes);
         } else if (bench_option(&arguments, "--views", &value)) {
-            bench_numbers(value, 1, MOST_VIEWS, 1, &out->views);
+            bench_numbers(value, 1, VIEWS_MAX, 1, &out->views);
         } else if (bench_option(&arguments, "--repeats", &value)) {
             bench_numbers(value, 1, BENCH_SAMPLES, 1, &out->repeats);
         } else if (!bench_option(&arguments, "--scene", &out->scene) &&

@@ -28,10 +28,10 @@ static int make_scene(skg_context *context, double radius_mm, skg_scene **scene)
     if (!bad) {
         skg_part_init(&part);
         part.mesh = box, part.material = adipose, part.label = "envelope";
-        bad = failed(skg_scene_add(*scene, &part, &envelope));
+        bad = failed(skg_scene_part_add(*scene, &part, &envelope));
         skg_part_init(&part);
         part.mesh = ball, part.material = water, part.label = "ball", part.inside = envelope;
-        bad = bad || failed(skg_scene_add(*scene, &part, NULL));
+        bad = bad || failed(skg_scene_part_add(*scene, &part, NULL));
     }
     /* The scene has owners of its own now. */
     skg_mesh_release(&box);

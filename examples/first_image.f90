@@ -22,7 +22,7 @@ program first_image
     call skg_init(part)
     part%mesh = mesh
     part%material = water
-    call skg_check(skg_scene_add(scene, part, id))
+    call skg_check(skg_scene_part_add(scene, part, id))
     call skg_init(view)
     view%projection = SKG_PROJECTION_PARALLEL
     view%columns = side

@@ -56,7 +56,7 @@ scene = make("skg_scene_create", context)
 part = prepared(Part, "skg_part")
 part.mesh, part.material, part.label = mesh, tissue, b"ball"
 number = c.c_int64()
-check(skg.skg_scene_add(scene, c.byref(part), c.byref(number)))
+check(skg.skg_scene_part_add(scene, c.byref(part), c.byref(number)))
 
 view = prepared(View, "skg_view")
 view.columns = view.rows = SIDE

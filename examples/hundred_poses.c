@@ -70,7 +70,7 @@ int main(void) {
               failed(skg_material_create_mu("bone at 80 keV", 0.428, &bone)) ||
               failed(skg_scene_create(context, &scene));
     one.mesh = bar, one.material = bone, one.label = "bar";
-    bad = bad || failed(skg_scene_add(scene, &one, &part)) ||
+    bad = bad || failed(skg_scene_part_add(scene, &one, &part)) ||
           failed(skg_spectrum_create_mono(80, 1, &beam)) ||
           failed(skg_plan_create(context, scene, &view, beam, &options, &plan)) || run(plan, part, images);
     if (!bad) {

@@ -40,7 +40,7 @@ static int scan(skg_plan *plan, const skg_view *first, int rank, int size, doubl
         turn(angle, view.centre);
         turn(angle, view.column_step);
         turn(angle, view.row_step);
-        bad = failed(skg_plan_move(plan, &view)) || failed(skg_plan_image(plan, &output));
+        bad = failed(skg_plan_view_set(plan, &view)) || failed(skg_plan_image(plan, &output));
         for (int64_t i = 0; i < pixels && !bad; i++) sums[n] += (double)image[i];
     }
     free(image);

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEVELS = 40, DIRECTIONS = 96, MOST_ORGANS = 256 };
+enum { LEVELS = 40, DIRECTIONS = 96, ORGANS_MAX = 256 };
 static const double MARGIN = 14; /* mm of fat over the outermost organ */
 static const double TURN = 6.283185307179586;
 
@@ -50,7 +50,7 @@ static int by_name(const void *a, const void *b) {
 static int read_organs(const char *folder, organ *organs) {
     DIR *directory = opendir(folder);
     int count = 0;
-    for (struct dirent *entry; directory && (entry = readdir(directory)) && count < MOST_ORGANS;) {
+    for (struct dirent *entry; directory && (entry = readdir(directory)) && count < ORGANS_MAX;) {
         const size_t length = strlen(entry->d_name);
         char path[4096];
         skg_mesh *mesh = NULL;
@@ -193,7 +193,7 @@ static int write_scene(const organ *organs, int count, const char *folder, const
 }
 
 int main(int argc, char **argv) {
-    static organ organs[MOST_ORGANS];
+    static organ organs[ORGANS_MAX];
     char envelope[4096], scene[4096];
     if (argc != 3) {
         fprintf(stderr, "usage: real_thorax FOLDER OUT\n");

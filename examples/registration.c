@@ -122,7 +122,7 @@ int main(int count, char **words) {
               failed(skg_setup_spectrum_get(setup, &spectrum)) || failed(skg_setup_view_get(setup, &view)) ||
               failed(skg_setup_options_get(setup, &options));
     options.quantity = SKG_QUANTITY_ATTENUATION;
-    bad = bad || failed(skg_scene_find(scene, words[2], &p.part)) ||
+    bad = bad || failed(skg_scene_part_find(scene, words[2], &p.part)) ||
           failed(skg_scene_part_get(scene, p.part, &part)) ||
           failed(skg_plan_create(context, scene, &view, spectrum, &options, &p.plan));
     if (!bad) {

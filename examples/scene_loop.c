@@ -43,7 +43,7 @@ static int run(skg_plan *plan, skg_scene *scene, int64_t id, const skg_view *vie
     output.lengths = SKG_LENGTHS_SURFACE;
     for (int step = 0; step < STEPS; step++, pose[3] += STEP) {
         skg_job *job = NULL;
-        if (failed(skg_scene_pose_set(scene, id, pose)) ||
+        if (failed(skg_scene_part_pose_set(scene, id, pose)) ||
             failed(skg_plan_submit(plan, 1, NULL, &output, &job)) || failed(skg_job_wait(&job)))
             return 1;
         look(lengths, view, &longest, &column);
@@ -77,7 +77,7 @@ int main(int count, char **words) {
               failed(skg_setup_scene_get(setup, &scene)) ||
               failed(skg_setup_spectrum_get(setup, &spectrum)) || failed(skg_setup_view_get(setup, &view)) ||
               failed(skg_setup_options_get(setup, &options)) ||
-              failed(skg_scene_find(scene, words[2], &id)) ||
+              failed(skg_scene_part_find(scene, words[2], &id)) ||
               failed(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
     if (!bad) lengths = calloc((size_t)(view.columns * view.rows), sizeof *lengths);
     if (!bad) bad = !lengths || run(plan, scene, id, &view, lengths);

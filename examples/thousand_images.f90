@@ -32,7 +32,7 @@ program thousand_images
     call skg_check(skg_setup_view_get(setup, view))
     call skg_init(options)
     call skg_check(skg_setup_options_get(setup, options))
-    call skg_check(skg_scene_find(scene, trim(label) // c_null_char, id))
+    call skg_check(skg_scene_part_find(scene, trim(label) // c_null_char, id))
     call skg_init(part)
     call skg_check(skg_scene_part_get(scene, id, part))
     call skg_check(skg_plan_create(context, scene, view, beam, options, plan))

@@ -1,13 +1,13 @@
 /* Strategy `tiles` on a CPU, first half: lists the triangles that meet each band of rows, in one pass. Each work-group (one
  * work-item) claims chunks of triangles, sorts a chunk by band in its own memory, and appends it to the pool in one piece;
  * pieces[chunk * bands + band] is where the band's triangles of that chunk are, and how many. Triangles that meet more than
- * SKG_MOST_TILES bands are in one list for all. */
+ * SKG_TILES_MAX bands are in one list for all. */
 
 SKG_APART void skg_sort_bands(const skg_raster_layout *layout, __global const int *corners,
                               __global const skg_real4 *projected, __global const skg_part_entry *parts,
                               __global const int *blocks, __global int *counters, __global int2 *pieces,
                               __global int *pool, __global int *for_all) {
-    int count[SKG_MOST_BANDS];
+    int count[SKG_BANDS_MAX];
     ushort first_band[SKG_CHUNK];
     uchar met[SKG_CHUNK];
     const int bands = layout->tiles_down;
@@ -31,7 +31,7 @@ SKG_APART void skg_sort_bands(const skg_raster_layout *layout, __global const in
                 if (!skg_bounds(a, b, c, window, range.shift, &box)) continue;
                 const int from = (box.j0 + range.pixel_j) / layout->tile_rows;
                 const int to = (box.j1 - 1 + range.pixel_j) / layout->tile_rows;
-                if (to - from >= SKG_MOST_TILES) {
+                if (to - from >= SKG_TILES_MAX) {
                     for_all[atomic_inc(&counters[2])] = triangle;
                     continue;
                 }

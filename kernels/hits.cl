@@ -33,9 +33,9 @@ static int skg_slot_of(const skg_lists *lists, int part) {
 /* Whether a hit at a pixel is listed. Winners are the parts that displace another one; their hits always are. Hits of the other
  * competitors are listed only in pixels where a winner was hit, too: elsewhere nothing displaces them. `starts` says where that
  * is. While hits are counted it holds the number of winners' hits of each pixel, which is 0 if there are none. Afterwards it
- * holds the place of each pixel's list, which is SKG_MOST_HITS if there are none. */
+ * holds the place of each pixel's list, which is SKG_HITS_MAX if there are none. */
 static int skg_is_listed(const skg_lists *lists, int pixel) {
-    const uint none = (lists->task & SKG_HITS_LIST) == 0 ? 0 : SKG_MOST_HITS;
+    const uint none = (lists->task & SKG_HITS_LIST) == 0 ? 0 : SKG_HITS_MAX;
     return !(lists->task & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
 }
 
@@ -125,14 +125,14 @@ static uint skg_add_hits(__global skg_hit_count *total, uint count) {
 }
 
 /* Gives each pixel of the window a stretch of the list for its hits, in any order, and counts all hits in *total. Counts become
- * 0 and then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_MOST_HITS. */
+ * 0 and then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_HITS_MAX. */
 __kernel void skg_hits_place(skg_hits_args args, __global int *counts, __global uint *starts,
                              __global skg_hit_count *total) {
     const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
     if (column >= args.window[2] || row >= args.window[3]) return;
     const int pixel = row * args.layout.columns + column;
     const int count = counts[pixel];
-    starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_MOST_HITS;
+    starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_HITS_MAX;
     counts[pixel] = 0;
 }
 

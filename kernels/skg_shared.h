@@ -27,10 +27,10 @@
 #define SKG_SPARE_ROWS 4
 
 /* The most tiles that a triangle may meet and be listed in each. Triangles that meet more are in one list for all tiles. */
-#define SKG_MOST_TILES 8
+#define SKG_TILES_MAX 8
 
 /* Bands of a CPU: the most of them, and how many triangles are sorted at once. */
-#define SKG_MOST_BANDS 512
+#define SKG_BANDS_MAX 512
 #define SKG_CHUNK 1024
 
 /* Rows that the kernel of the source plane draws or skips together. */
@@ -114,7 +114,7 @@ typedef struct {
 typedef struct {
     SKG_UINT low, high;
 } skg_hit_count;
-#define SKG_MOST_HITS 0xffffffffu
+#define SKG_HITS_MAX 0xffffffffu
 
 /* Of the kernels of hits.cl. window: columns from, rows from, columns to, rows to; nothing is listed outside. chosen: of
  * skg_hits_list, the first of the runs of triangles that are listed, and the end of these. task: SKG_HITS_... below. */

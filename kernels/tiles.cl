@@ -1,5 +1,5 @@
 /* Strategy `tiles` on a GPU, first half: lists the triangles that meet each square, by counting, adding up and filling. The
- * order within a list is arbitrary, since sums do not depend on it. Triangles that meet more than SKG_MOST_TILES squares are in
+ * order within a list is arbitrary, since sums do not depend on it. Triangles that meet more than SKG_TILES_MAX squares are in
  * one list for all. */
 
 /* How many tiles the box of a triangle meets, and which: columns x to z - 1 and rows y to w - 1 of tiles. */
@@ -29,7 +29,7 @@ __kernel void skg_tiles_count(skg_raster_layout layout, __global const int *corn
     int4 tiles;
     const int count = skg_tiles_of(&layout, corners, projected, parts, blocks, triangle, &tiles);
     if (count == 0) return;
-    if (count > SKG_MOST_TILES) {
+    if (count > SKG_TILES_MAX) {
         atomic_inc(&counts[layout.tiles_across * layout.tiles_down]);
         return;
     }
@@ -72,7 +72,7 @@ __kernel void skg_tiles_fill(skg_raster_layout layout, __global const int *corne
     int4 tiles;
     const int count = skg_tiles_of(&layout, corners, projected, parts, blocks, triangle, &tiles);
     if (count == 0) return;
-    if (count > SKG_MOST_TILES) {
+    if (count > SKG_TILES_MAX) {
         for_all[atomic_inc(&counts[layout.tiles_across * layout.tiles_down])] = triangle;
         return;
     }

@@ -10,12 +10,12 @@ int first_knot[SKG_LAST_ELEMENT + 2];
 
 typedef struct {
     int count;
-    double energy[MOST_KNOTS], section[SKG_PROCESSES][MOST_KNOTS];
+    double energy[KNOTS_MAX], section[SKG_PROCESSES][KNOTS_MAX];
 } element_table;
 
 /* The spline of one process through the rows that rows[0..count) names. */
 static void fit(const skg_knot *knots, int process, int count, const int *rows, skg_knot *out) {
-    double x[MOST_KNOTS] = {0}, y[MOST_KNOTS] = {0}, second[MOST_KNOTS], scratch[MOST_KNOTS];
+    double x[KNOTS_MAX] = {0}, y[KNOTS_MAX] = {0}, second[KNOTS_MAX], scratch[KNOTS_MAX];
     for (int i = 0; i < count; i++) {
         x[i] = knots[rows[i]].log_energy;
         y[i] = knots[rows[i]].value[process];
@@ -26,7 +26,7 @@ static void fit(const skg_knot *knots, int process, int count, const int *rows, 
 
 /* Rayleigh and Compton scattering have no edges: the two rows of an edge are one point. */
 static void fit_scattering(int process, int count, skg_knot *knots) {
-    int rows[MOST_KNOTS] = {0}, points = 0;
+    int rows[KNOTS_MAX] = {0}, points = 0;
     for (int i = 0; i < count; i++)
         if (i == 0 || knots[i].energy_kev > knots[i - 1].energy_kev) rows[points++] = i;
     fit(knots, process, points, rows, knots);
@@ -36,7 +36,7 @@ static void fit_scattering(int process, int count, skg_knot *knots) {
 }
 
 static void fit_photo(int count, skg_knot *knots) {
-    int rows[MOST_KNOTS] = {0}, points = 0;
+    int rows[KNOTS_MAX] = {0}, points = 0;
     for (int i = 0; i < count; i++) {
         rows[points++] = i;
         int edge = i + 1 < count && !(knots[i + 1].energy_kev > knots[i].energy_kev);
@@ -49,7 +49,7 @@ static void fit_photo(int count, skg_knot *knots) {
 
 /* Pair production begins at the threshold. The row below the first positive one continues the line of that one. */
 static void fit_pairs(const element_table *e, skg_knot *knots) {
-    int rows[MOST_KNOTS] = {0}, points = 0;
+    int rows[KNOTS_MAX] = {0}, points = 0;
     for (int i = 0; i < e->count; i++) {
         double left = 1 - SKG_PAIR_THRESHOLD_KEV / e->energy[i];
         if (e->section[SKG_PAIR][i] <= 0) continue;
@@ -66,7 +66,7 @@ static void fit_pairs(const element_table *e, skg_knot *knots) {
 }
 
 static void write_element(const table *t, const element_table *e, FILE *out) {
-    static skg_knot knots[MOST_KNOTS];
+    static skg_knot knots[KNOTS_MAX];
     memset(knots, 0, sizeof knots);
     if (e->count < 2 || e->energy[0] > 1 || e->energy[e->count - 1] < 2e4)
         table_stop(t, "an element does not reach from 1 keV to 20 MeV");
@@ -93,7 +93,7 @@ static void read_row(const table *t, element_table *e) {
     if (sscanf(t->text, "%lf %lf %lf %lf %lf %c", &row[0], &row[1], &row[2], &row[3], &row[4], &rest) != 5)
         table_stop(t, "not an energy and four cross sections");
     int i = e->count;
-    if (i == MOST_KNOTS) table_stop(t, "too many rows in one element");
+    if (i == KNOTS_MAX) table_stop(t, "too many rows in one element");
     if (i > 0 && row[0] < e->energy[i - 1]) table_stop(t, "energies fall");
     if (i > 1 && !(row[0] > e->energy[i - 2])) table_stop(t, "one energy three times");
     if (!(row[0] > 0 && row[1] > 0 && row[2] > 0 && row[3] > 0 && row[4] >= 0))

@@ -8,7 +8,7 @@
 static char symbols[SKG_LAST_ELEMENT + 1][4];
 
 /* The most rows of one file; compounds.txt has 170. */
-enum { MOST_ROWS = 400 };
+enum { ROWS_MAX = 400 };
 
 typedef struct {
     char names[256], source[256];
@@ -73,7 +73,7 @@ static int read_mixtures(const char *folder, const char *name, int *fractions, F
     int count = 0;
     table_open(&t, folder, name);
     while (table_next(&t)) {
-        if (count == MOST_ROWS) table_stop(&t, "too many rows");
+        if (count == ROWS_MAX) table_stop(&t, "too many rows");
         mixture *row = &rows[count++];
         table_fields(&t, 4, fields);
         copy(&t, fields[0], sizeof row->names, row->names);
@@ -105,7 +105,7 @@ static int read_hounsfield(const char *folder, int *fractions, FILE *out, mixtur
 }
 
 void write_mixtures(const char *folder, FILE *out) {
-    static mixture rows[2 * MOST_ROWS], tissues[MOST_ROWS];
+    static mixture rows[2 * ROWS_MAX], tissues[ROWS_MAX];
     int fractions = 0;
     fprintf(out, "const skg_mass_fraction skg_mass_fractions[] = {\n");
     int count = read_mixtures(folder, "tissues.txt", &fractions, out, rows);

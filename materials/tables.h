@@ -8,14 +8,14 @@
 #include <stdio.h>
 
 /* The most rows of one element (XCOM has up to 100), and the longest line with its end. */
-enum { MOST_KNOTS = 200, MOST_TEXT = 1024 };
+enum { KNOTS_MAX = 200, TEXT_MAX = 1024 };
 
 typedef struct {
     const char *folder;
     const char *name; /* of the file being read */
     FILE *file;
     int line;
-    char text[MOST_TEXT]; /* the line last read, without its end */
+    char text[TEXT_MAX]; /* the line last read, without its end */
 } table;
 
 void table_open(table *t, const char *folder, const char *name);

@@ -8,7 +8,7 @@
 
 static const char usage[] = "[--quick] [--triangles N,N,...] [--csv FILE]";
 
-enum { PHASES = 10, PATTERNS = 6, COUPLINGS = 2, MOST_SIZES = 8 };
+enum { PHASES = 10, PATTERNS = 6, COUPLINGS = 2, SIZES_MAX = 8 };
 
 static const char *const patterns[PATTERNS] = {"quiet",   "diaphragmatic", "thoracic",
                                                "shallow", "deep",          "hyperventilation"};
@@ -100,14 +100,14 @@ static void run(long triangles, int simple, int turns, FILE *csv) {
 
 int main(int count, char **words) {
     bench_arguments arguments = {count, words, 1};
-    long sizes[MOST_SIZES] = {10000, 42000, 336000, 935000};
+    long sizes[SIZES_MAX] = {10000, 42000, 336000, 935000};
     int quick = 0, number = 4;
     const char *value = NULL, *path = NULL;
     while (arguments.next < count) {
         if (bench_flag(&arguments, "--quick"))
             quick = 1, number = 2;
         else if (bench_option(&arguments, "--triangles", &value))
-            number = (int)bench_numbers(value, 10000, 20000000, MOST_SIZES, sizes);
+            number = (int)bench_numbers(value, 10000, 20000000, SIZES_MAX, sizes);
         else if (!bench_option(&arguments, "--csv", &path))
             bench_usage(&arguments, usage);
     }

@@ -29,7 +29,7 @@ static int64_t add_part(bench_scene *out, skg_mesh *mesh, double per_cm, int64_t
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside, part.label = label;
     for (int k = 0; k < 3; k++) part.pose[5 * k] = scale[k], part.pose[4 * k + 3] = place[k];
-    bench_try(skg_scene_add(out->scene, &part, &id), "part");
+    bench_try(skg_scene_part_add(out->scene, &part, &id), "part");
     skg_material_release(&material);
     return id;
 }

@@ -78,7 +78,7 @@ skg_scene *thorax_scene(skg_context *context, const bench_thorax *thorax) {
         skg_part_init(&part);
         part.mesh = thorax->meshes[i], part.label = from.label, part.inside = from.inside;
         part.material = materials[material_of(&from)];
-        bench_try(skg_scene_add(scene, &part, NULL), from.label);
+        bench_try(skg_scene_part_add(scene, &part, NULL), from.label);
     }
     for (int m = 0; m < MATERIALS; m++) skg_material_release(&materials[m]);
     return scene;

@@ -72,7 +72,7 @@ static skg_plan *plan_of(const tools *t, const solid *s, const skg_view *view, i
     part.mesh = mesh;
     part.material = t->material;
     part.label = "body";
-    bench_try(skg_scene_add(scene, &part, NULL), "part");
+    bench_try(skg_scene_part_add(scene, &part, NULL), "part");
     bench_try(skg_plan_create(t->context, scene, view, t->beam, &options, &plan), "plan");
     skg_mesh_release(&mesh);
     skg_scene_release(&scene);

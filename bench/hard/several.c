@@ -23,7 +23,7 @@ static skg_scene *scene_of(skg_context *context, int count, const solid *solids,
                                   1, &part.mesh),
                   "mesh");
         bench_try(skg_material_create_mu(label, mu[p], &part.material), "material");
-        bench_try(skg_scene_add(scene, &part, NULL), "part");
+        bench_try(skg_scene_part_add(scene, &part, NULL), "part");
         skg_mesh_release(&part.mesh);
         skg_material_release(&part.material);
     }

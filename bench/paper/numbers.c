@@ -26,7 +26,7 @@ static void add(skg_scene *scene, skg_mesh *mesh, skg_material *material, int64_
     skg_part part;
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside;
-    bench_try(skg_scene_add(scene, &part, NULL), "scene");
+    bench_try(skg_scene_part_add(scene, &part, NULL), "scene");
     skg_mesh_release(&mesh);
 }
 

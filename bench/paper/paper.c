@@ -15,7 +15,7 @@ static void read_settings(int count, char **words, paper_study *out, const char 
     int pinned = 0;
     *out = (paper_study){
         .series = 15, .iterations = 500, .seconds = 60, .size = 512, .body = 41710, .pieces = 17};
-    out->sizes = bench_numbers(standard, 10000, 20000000, PAPER_MOST_SIZES, out->triangles);
+    out->sizes = bench_numbers(standard, 10000, 20000000, PAPER_SIZES_MAX, out->triangles);
     while (arguments.next < count) {
         if (bench_flag(&arguments, "--quick"))
             out->series = 5, out->iterations = 10, out->seconds = 1, out->sizes = 3, out->pieces = 4;
@@ -28,7 +28,7 @@ static void read_settings(int count, char **words, paper_study *out, const char 
         else if (bench_option(&arguments, "--size", &value))
             bench_numbers(value, 16, 8192, 1, &out->size);
         else if (bench_option(&arguments, "--triangles", &value))
-            out->sizes = bench_numbers(value, 10000, 20000000, PAPER_MOST_SIZES, out->triangles);
+            out->sizes = bench_numbers(value, 10000, 20000000, PAPER_SIZES_MAX, out->triangles);
         else if (bench_option(&arguments, "--body", &value))
             bench_numbers(value, 10000, 20000000, 1, &out->body);
         else if (bench_flag(&arguments, "--affinity"))

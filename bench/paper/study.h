@@ -4,7 +4,7 @@
 
 #include "common/bench.h"
 
-enum { PAPER_MOST_SIZES = 16 };
+enum { PAPER_SIZES_MAX = 16 };
 
 typedef struct {
     skg_context *context;
@@ -12,7 +12,7 @@ typedef struct {
     long series, iterations; /* a point has `series` values, each over `iterations` images */
     long seconds;            /* the time that a point may take: a slow point has fewer images in each value */
     long size;               /* pixels along a side of the detector */
-    long triangles[PAPER_MOST_SIZES];
+    long triangles[PAPER_SIZES_MAX];
     int sizes;
     long body;   /* triangles of the breathing thorax */
     long pieces; /* points along an edge of the cubic source */

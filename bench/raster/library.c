@@ -23,7 +23,7 @@ library *library_create(skg_context *context, const bench_shape *shape, const sk
     skg_part part;
     skg_part_init(&part);
     part.mesh = mesh, part.material = water;
-    bench_try(skg_scene_add(scene, &part, NULL), "part");
+    bench_try(skg_scene_part_add(scene, &part, NULL), "part");
     bench_try(skg_spectrum_create_mono(80, 1, &beam), "beam");
     skg_plan_options options;
     skg_plan_options_init(&options);

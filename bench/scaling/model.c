@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BANDS_OF_A_LIST = 8, MOST_WORKERS = 1024 };
+enum { BANDS_OF_A_LIST = 8, WORKERS_MAX = 1024 };
 
 /* Operations of a lane, counted in kernels/project.cl, triangle.clh, pixel.clh and attenuate.cl; a division counts as 8. */
 static const double VERTEX_OPERATIONS = 45, SET_UP_OPERATIONS = 150, PIXEL_OPERATIONS = 16,
@@ -35,7 +35,7 @@ static double last_of(const double *busy, int workers) {
 
 /* Each worker clears an image of its own and then claims runs of triangles. */
 static double raster_copies(const scaling_counts *c, const scaling_prices *p, int workers) {
-    double busy[MOST_WORKERS];
+    double busy[WORKERS_MAX];
     const int64_t count = (int64_t)c->triangles, claim = skg_raster_claim(count, workers);
     for (int w = 0; w < workers; w++) busy[w] = c->sums * 4 / p->clear;
     for (int64_t from = 0; from < count; from += claim) {
@@ -49,7 +49,7 @@ static double raster_copies(const scaling_counts *c, const scaling_prices *p, in
 
 /* Each worker claims bands: clears one, draws what meets it, and copies it out. */
 static double raster_bands(const scaling_counts *c, const scaling_prices *p, int workers, double *set_ups) {
-    double busy[MOST_WORKERS] = {0}, for_all = 0;
+    double busy[WORKERS_MAX] = {0}, for_all = 0;
     const int64_t high = skg_raster_band_rows(c->rows, c->row_bytes, workers + 1),
                   bands = (c->rows + high - 1) / high;
     double *band = bench_alloc((size_t)bands, sizeof *band);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PARTS = 5 };
+enum { PARTS_MAX = 5 };
 
 /* Which effects a variant has. */
 typedef struct {
@@ -52,13 +52,13 @@ uint64_t soak_hash(const void *bytes, size_t count) {
 }
 
 uint64_t soak_hash_file(const char *path) {
-    enum { MOST = 1 << 25 };
+    enum { LIMIT = 1 << 25 };
     FILE *file = fopen(path, "rb");
     if (!file) bench_die("%s cannot be read", path);
-    char *bytes = bench_alloc(MOST, 1);
-    const size_t count = fread(bytes, 1, MOST, file);
+    char *bytes = bench_alloc(LIMIT, 1);
+    const size_t count = fread(bytes, 1, LIMIT, file);
     fclose(file);
-    if (count == MOST) bench_die("%s is larger than expected", path);
+    if (count == LIMIT) bench_die("%s is larger than expected", path);
     const uint64_t hash = soak_hash(bytes, count);
     free(bytes);
     return hash;
@@ -86,7 +86,7 @@ static skg_mesh *make_mesh(skg_context *context, uint64_t *state, int is_leaky) 
 
 /* Parts beside each other, and inside the first of them. */
 static void add_parts(const variant *v, skg_context *context, uint64_t *state, skg_scene *scene) {
-    const int64_t parts = 1 + draw_below(state, MOST_PARTS);
+    const int64_t parts = 1 + draw_below(state, PARTS_MAX);
     for (int64_t k = 0; k < parts; k++) {
         skg_material *material = NULL;
         skg_part part;
@@ -101,7 +101,7 @@ static void add_parts(const variant *v, skg_context *context, uint64_t *state, s
         if (v->is_nested && k == 0) /* around all others */
             for (int i = 0; i < 3; i++) part.pose[5 * i] = 5, part.pose[4 * i + 3] = 0;
         part.inside = v->is_nested && k > 0 ? 0 : -1;
-        bench_try(skg_scene_add(scene, &part, NULL), "part");
+        bench_try(skg_scene_part_add(scene, &part, NULL), "part");
         skg_material_release(&material);
         skg_mesh_release(&part.mesh);
     }
@@ -179,7 +179,7 @@ skg_plan *soak_case_plan(const soak_case *c, skg_context *context) {
 void soak_scene_write(const soak *s, int64_t number, int projections, const char *path) {
     uint64_t state = state_of(s, number);
     FILE *file = bench_open(path);
-    const int64_t parts = 1 + draw_below(&state, MOST_PARTS);
+    const int64_t parts = 1 + draw_below(&state, PARTS_MAX);
     fprintf(
         file,
         "{\"Source\":{\"Position\":[0,-600,0,\"mm\"],\"Shape\":\"Point\",\"Beam\":[{\"Energy\":60,\"Unit\":\"keV\","

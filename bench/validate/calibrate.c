@@ -12,7 +12,7 @@
 
 static const char usage[] = "--spectra FILE.csv [--rounds N]";
 
-enum { CONTINUUM, K_LINES, L_LINES, KINDS, MOST_FACTORS = 16, LINE_FACTORS = 5 };
+enum { CONTINUUM, K_LINES, L_LINES, KINDS, FACTORS_MAX = 16, LINE_FACTORS = 5 };
 
 typedef struct {
     skg_anode anode;
@@ -129,7 +129,7 @@ static double square(int64_t n, const double *v) {
 
 /* Levenberg and Marquardt's method. Returns the root mean square of the differences, each by its weight. */
 static double fit(const target *t, int rounds, skg_tube_calibration *c) {
-    double *place[MOST_FACTORS], step[MOST_FACTORS], damping = 1e-3;
+    double *place[FACTORS_MAX], step[FACTORS_MAX], damping = 1e-3;
     double *now = bench_alloc((size_t)t->from->count, sizeof *now),
            *then = bench_alloc((size_t)t->from->count, sizeof *then);
     const int factors = places(t, c, place);
@@ -138,7 +138,7 @@ static double fit(const target *t, int rounds, skg_tube_calibration *c) {
     skg_least_squares system;
     bench_try(skg_least_squares_create(n + factors, factors, &system), "fit");
     for (int round = 0; round < rounds; round++) {
-        int32_t in[MOST_FACTORS];
+        int32_t in[FACTORS_MAX];
         for (int f = 0; f < factors; f++) {
             double *column = system.a + f * (n + factors), norm;
             const double h = 1e-5;

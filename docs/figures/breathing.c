@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MODES = 3, PANEL = 300, MARGIN = 26, MOST_PARTS = 100 };
+enum { MODES = 3, PANEL = 300, MARGIN = 26, PARTS_MAX = 100 };
 
 static const char *const mode_name[MODES] = {"diaphragmatic", "thoracic", "combined"};
 static const double thoracic[MODES] = {0, 1, 1}, diaphragmatic[MODES] = {1, 0, 1};
@@ -27,7 +27,7 @@ static void *get(size_t count, size_t size) {
 
 static skg_thorax *thorax;
 static skg_body *body;
-static skg_thorax_part part[MOST_PARTS];
+static skg_thorax_part part[PARTS_MAX];
 static int64_t parts;
 
 static void make_body(void) {

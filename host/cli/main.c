@@ -12,18 +12,18 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_VERBS = 32 };
+enum { VERBS_MAX = 32 };
 
 static int find_verb(const char *name, const cli_verb **verb) {
-    const char *names[MOST_VERBS];
+    const char *names[VERBS_MAX];
     int count = 0;
-    for (const cli_verb *known = cli_verbs; known->manual && count < MOST_VERBS; known++) {
+    for (const cli_verb *known = cli_verbs; known->manual && count < VERBS_MAX; known++) {
         names[count++] = known->manual->name;
         if (strcmp(name, known->manual->name) != 0) continue;
         *verb = known;
         return CLI_DONE;
     }
-    for (const cli_item *other = cli_other_verbs; other->name && count < MOST_VERBS; other++)
+    for (const cli_item *other = cli_other_verbs; other->name && count < VERBS_MAX; other++)
         names[count++] = other->name;
     return cli_unknown(name[0] == '-' ? "flag" : "verb", name, names, count, "help");
 }

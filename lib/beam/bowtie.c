@@ -8,15 +8,15 @@ void skg_bowtie_init_sized(void *bowtie, int32_t size) {
     skg_struct_init(bowtie, size, &defaults, sizeof defaults);
 }
 
-enum { MOST_ROWS = 4096 };
+enum { ROWS_MAX = 4096 };
 
 skg_status skg_bowtie_check(const skg_bowtie *bowtie) {
     if (!bowtie->material)
         return skg_fail(SKG_ERR_SCENE, "the bow-tie has no material; give one of known density");
-    if (bowtie->count < 2 || bowtie->count > MOST_ROWS || !bowtie->angle_deg || !bowtie->path_mm)
+    if (bowtie->count < 2 || bowtie->count > ROWS_MAX || !bowtie->angle_deg || !bowtie->path_mm)
         return skg_fail(SKG_ERR_SCENE,
                         "the bow-tie's profile has %" PRId64 " rows; give 2 to %d angles with their paths",
-                        bowtie->count, MOST_ROWS);
+                        bowtie->count, ROWS_MAX);
     for (int64_t k = 0; k < bowtie->count; k++) {
         const double angle = bowtie->angle_deg[k], path = bowtie->path_mm[k];
         if (!(fabs(angle) <= 89) || (k > 0 && !(angle > bowtie->angle_deg[k - 1])))

@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-enum { TUNGSTEN = 74, MOST_BINS = 5000 };
+enum { TUNGSTEN = 74, BINS_MAX = 5000 };
 
 void skg_tube_init_sized(void *tube, int32_t size) {
     const skg_tube defaults = {.angle_deg = 12, .anode = TUNGSTEN, .bin_kev = 1, .output_at_mm = 1000};
@@ -57,8 +57,8 @@ static skg_status continuum(const skg_tube *tube, skg_spectrum **spectrum) {
     const skg_tube_calibration *calibration = skg_tube_calibration_of(tube->anode);
     double w = tube->bin_kev, first = SKG_LOWEST_KEV;
     int64_t count = (int64_t)ceil((tube->kvp - first) / w - 1e-9);
-    if (count < 2 || count > MOST_BINS)
-        return skg_fail(SKG_ERR_BEAM, "bins of %g keV: 2 to %d of them can be made at %g kV", w, MOST_BINS,
+    if (count < 2 || count > BINS_MAX)
+        return skg_fail(SKG_ERR_BEAM, "bins of %g keV: 2 to %d of them can be made at %g kV", w, BINS_MAX,
                         tube->kvp);
     SKG_TRY(skg_spectrum_make(count, spectrum));
     skg_spectrum *s = *spectrum;

@@ -53,14 +53,14 @@ double skg_read_number(const char *text, const char **end) {
     return negative ? -value : value;
 }
 
-enum { MOST_COLUMNS = 8 };
+enum { COLUMNS_MAX = 8 };
 
 typedef struct {
     const char *path, *word;
     int64_t least, most; /* numbers of a row */
     int64_t width;       /* of the first row; 0: there is none yet */
     int64_t count, capacity, line;
-    double *columns[MOST_COLUMNS];
+    double *columns[COLUMNS_MAX];
 } reading;
 
 static skg_status add_row(reading *r, int64_t width, const double *numbers) {
@@ -108,7 +108,7 @@ static skg_status check_width(const reading *r, int64_t width, const char *rest)
 }
 
 static skg_status read_line(reading *r, const char *text) {
-    double numbers[MOST_COLUMNS];
+    double numbers[COLUMNS_MAX];
     const char *rest;
     while (isspace((unsigned char)*text)) text++;
     if (!*text || *text == '#' || *text == '%') return SKG_OK;
@@ -143,7 +143,7 @@ static skg_status read_file(reading *r) {
     if (status == SKG_OK && r->count == 0)
         status = skg_fail(SKG_ERR_FORMAT, "%s: no line with two numbers%s%s", r->path,
                           r->word ? " after " : "", r->word ? r->word : "");
-    for (int k = 0; k < MOST_COLUMNS && status != SKG_OK; k++) skg_free(&r->columns[k]);
+    for (int k = 0; k < COLUMNS_MAX && status != SKG_OK; k++) skg_free(&r->columns[k]);
     return status;
 }
 

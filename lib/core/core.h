@@ -23,7 +23,7 @@ void skg_one_line(char *sentence);
     } while (0)
 
 /* At the start of a public call: returns SKG_ERR_ARGUMENT when the argument is NULL. The sentence names the call
- * and the argument as the header has them: "skg_plan_move: the argument view is NULL". */
+ * and the argument as the header has them: "skg_plan_view_set: the argument view is NULL". */
 #define SKG_NEEDS(argument) SKG_NEEDS_OF(__func__, argument)
 
 /* The same in a function that a public one calls, whose name is given. */

@@ -7,7 +7,7 @@
 #include <signal.h>
 #include <stdio.h>
 
-enum { MOST_THREADS = 16 };
+enum { THREADS_MAX = 16 };
 
 typedef struct {
     int64_t count;
@@ -64,7 +64,7 @@ int skg_thread_start(pthread_t *thread, void *(*work)(void *given), void *given)
 
 /* Starts helpers, at most as many as there are further items and CPUs. */
 static int start(crew *c, pthread_t *threads) {
-    const int64_t most = c->count < MOST_THREADS ? c->count : MOST_THREADS, cpus = skg_thread_limit();
+    const int64_t most = c->count < THREADS_MAX ? c->count : THREADS_MAX, cpus = skg_thread_limit();
     int started = 0;
     while (started + 1 < most && started + 1 < cpus && skg_thread_start(&threads[started], do_thread, c) == 0)
         started++;
@@ -73,7 +73,7 @@ static int start(crew *c, pthread_t *threads) {
 
 skg_status skg_parallel(int64_t count, skg_item_work work, void *user) {
     SKG_PLAIN;
-    pthread_t threads[MOST_THREADS];
+    pthread_t threads[THREADS_MAX];
     crew c = {.count = count, .work = work, .user = user, .lock = PTHREAD_MUTEX_INITIALIZER, .failed = count};
     const int started = start(&c, threads);
     do_items(&c);

@@ -25,12 +25,12 @@ static const unit energies[] = {
 enum {
     LENGTHS = sizeof lengths / sizeof *lengths,
     ENERGIES = sizeof energies / sizeof *energies,
-    MOST = LENGTHS
+    LIMIT = LENGTHS
 };
 
 static skg_status find(const char *name, const char *of_what, const char *known, const unit *units,
                        int64_t count, double *value) {
-    const char *names[MOST];
+    const char *names[LIMIT];
     for (int64_t i = 0; i < count; i++) {
         names[i] = units[i].name;
         if (skg_same_name(units[i].name, name)) {

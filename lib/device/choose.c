@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Devices beyond these are not seen. */
-enum { MOST_DEVICES = 64 };
+enum { DEVICES_MAX = 64 };
 
 typedef struct {
     cl_platform_id platform;
@@ -25,14 +25,14 @@ enum { ASK_TRUSTED = -1, ASK_ALL = -2 }; /* otherwise the number of one */
 
 typedef struct {
     cl_platform_id platform;
-    cl_device_id devices[MOST_DEVICES];
+    cl_device_id devices[DEVICES_MAX];
     cl_uint count;
     cl_int code;
 } asking;
 
 static void ask(void *argument) {
     asking *a = argument;
-    a->code = clGetDeviceIDs(a->platform, CL_DEVICE_TYPE_ALL, MOST_DEVICES, a->devices, &a->count);
+    a->code = clGetDeviceIDs(a->platform, CL_DEVICE_TYPE_ALL, DEVICES_MAX, a->devices, &a->count);
 }
 
 /* A platform without devices returns an error. One that is not known was not started yet (start.c). */
@@ -43,7 +43,7 @@ static skg_status add_devices(cl_platform_id platform, int32_t number, found_dev
     else
         SKG_TRY(skg_opencl_call(ask, &a));
     if (a.code != CL_SUCCESS) return SKG_OK;
-    for (cl_uint d = 0; d < a.count && d < MOST_DEVICES && *count < MOST_DEVICES; d++)
+    for (cl_uint d = 0; d < a.count && d < DEVICES_MAX && *count < DEVICES_MAX; d++)
         found[(*count)++] = (found_device){platform, a.devices[d], number, (int32_t)d};
     return SKG_OK;
 }
@@ -114,7 +114,7 @@ void skg_device_info_init_sized(void *info, int32_t size) {
 skg_status skg_device_count(int64_t *count) {
     SKG_NEEDS(count);
     SKG_TRY(skg_opencl_start());
-    found_device found[MOST_DEVICES];
+    found_device found[DEVICES_MAX];
     char store[SKG_STORE_PATH];
     int32_t all = 0;
     skg_store_find(store);
@@ -125,7 +125,7 @@ skg_status skg_device_count(int64_t *count) {
 
 skg_status skg_device_get(int64_t index, skg_device_info *info) {
     SKG_TRY(skg_opencl_start());
-    found_device found[MOST_DEVICES];
+    found_device found[DEVICES_MAX];
     char store[SKG_STORE_PATH];
     int32_t all = 0;
     skg_store_find(store);
@@ -198,7 +198,7 @@ typedef struct {
     const char *driver; /* value of driver=, or NULL */
     skg_platform_list of_driver;
     char store[SKG_STORE_PATH];
-    found_device found[MOST_DEVICES];
+    found_device found[DEVICES_MAX];
     int32_t all;
 } survey;
 

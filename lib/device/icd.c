@@ -14,17 +14,17 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static skg_platform_list opened; /* guarded by the lock; only grows */
 
 static void add(skg_platform_list *list, cl_platform_id platform) {
-    if (list->count < SKG_PLATFORMS_MOST && !skg_platform_listed(list, platform))
+    if (list->count < SKG_PLATFORMS_MAX && !skg_platform_listed(list, platform))
         list->items[list->count++] = platform;
 }
 
 static skg_status find_loaders(skg_platform_list *list) {
     cl_uint count = 0;
     list->count = 0;
-    const cl_int code = clGetPlatformIDs(SKG_PLATFORMS_MOST, list->items, &count);
+    const cl_int code = clGetPlatformIDs(SKG_PLATFORMS_MAX, list->items, &count);
     if (code == CL_PLATFORM_NOT_FOUND_KHR) return SKG_OK;
     SKG_CL_TRY(code);
-    list->count = count < SKG_PLATFORMS_MOST ? (int32_t)count : SKG_PLATFORMS_MOST;
+    list->count = count < SKG_PLATFORMS_MAX ? (int32_t)count : SKG_PLATFORMS_MAX;
     return SKG_OK;
 }
 
@@ -86,12 +86,12 @@ static void open_library(void *argument) {
         snprintf(o->trouble, sizeof o->trouble, "is a library, but lacks clIcdGetPlatformIDsKHR");
         return;
     }
-    const cl_int code = entry(SKG_PLATFORMS_MOST, o->list->items, &count);
+    const cl_int code = entry(SKG_PLATFORMS_MAX, o->list->items, &count);
     if (code != CL_SUCCESS || count == 0) {
         snprintf(o->trouble, sizeof o->trouble, "has no platform on this machine (%s)", skg_cl_name(code));
         return;
     }
-    o->list->count = count < SKG_PLATFORMS_MOST ? (int32_t)count : SKG_PLATFORMS_MOST;
+    o->list->count = count < SKG_PLATFORMS_MAX ? (int32_t)count : SKG_PLATFORMS_MAX;
     for (int32_t n = 0; n < o->list->count; n++) {
         if (is_for_loader(o->list->items[n])) {
             snprintf(o->trouble, sizeof o->trouble,

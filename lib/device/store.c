@@ -25,7 +25,7 @@ typedef struct {
 
 _Static_assert(sizeof(header) == 64, "the header of a file has no padding");
 
-enum { FORMAT = 2, MOST_BYTES = 64 << 20, MOST_NAME = SKG_DIGEST_TEXT + 16 };
+enum { FORMAT = 2, BYTES_MAX = 64 << 20, NAME_LENGTH_MAX = SKG_DIGEST_TEXT + 16 };
 
 static const char magic[8] = "skgkept";
 static const char *const endings[] = {"program", "uses", "verdict"};
@@ -72,10 +72,10 @@ static int open_folder(const char *path, int make) {
     return -1;
 }
 
-static void name_of(const skg_digest *key, skg_kept kind, char name[MOST_NAME]) {
+static void name_of(const skg_digest *key, skg_kept kind, char name[NAME_LENGTH_MAX]) {
     char text[SKG_DIGEST_TEXT];
     skg_digest_text(key, text);
-    snprintf(name, MOST_NAME, "%s.%s", text, endings[kind]);
+    snprintf(name, NAME_LENGTH_MAX, "%s.%s", text, endings[kind]);
 }
 
 static int read_whole(int file, void *data, size_t bytes) {
@@ -116,7 +116,7 @@ static int read_content(int file, const skg_digest *key, skg_kept kind, void **d
     if (memcmp(head.magic, magic, sizeof magic) != 0 || head.format != FORMAT ||
         head.kind != (uint32_t)kind || !skg_digest_same(&head.key, key))
         return 0;
-    if (head.bytes > MOST_BYTES || (uint64_t)status.st_size != sizeof head + head.bytes) return 0;
+    if (head.bytes > BYTES_MAX || (uint64_t)status.st_size != sizeof head + head.bytes) return 0;
     if (skg_alloc((int64_t)head.bytes + 1, 1, "kept kernels", data) != SKG_OK) return 0;
     *bytes = (int64_t)head.bytes;
     if (read_whole(file, *data, (size_t)head.bytes) && head.checksum == checksum_of(&head, *data)) return 1;
@@ -125,7 +125,7 @@ static int read_content(int file, const skg_digest *key, skg_kept kind, void **d
 }
 
 int skg_store_read(const char *path, const skg_digest *key, skg_kept kind, void **data, int64_t *bytes) {
-    char name[MOST_NAME];
+    char name[NAME_LENGTH_MAX];
     int good = 0;
     *data = NULL;
     const int folder = open_folder(path, 0);
@@ -145,8 +145,8 @@ int skg_store_read(const char *path, const skg_digest *key, skg_kept kind, void 
 int skg_store_write(const char *path, const skg_digest *key, skg_kept kind, const void *data, int64_t bytes) {
     static atomic_int number; /* makes the temporary names of a process differ; it has no other effect */
     header head = {.format = FORMAT, .kind = (uint32_t)kind, .key = *key, .bytes = (uint64_t)bytes};
-    char name[MOST_NAME], ending[SKG_PART_ENDING], temporary[MOST_NAME + SKG_PART_ENDING + 32];
-    if (bytes < 0 || bytes > MOST_BYTES) return 0;
+    char name[NAME_LENGTH_MAX], ending[SKG_PART_ENDING], temporary[NAME_LENGTH_MAX + SKG_PART_ENDING + 32];
+    if (bytes < 0 || bytes > BYTES_MAX) return 0;
     const int folder = open_folder(path, 1);
     if (folder < 0) return 0;
     memcpy(head.magic, magic, sizeof magic);
@@ -169,7 +169,7 @@ int skg_store_write(const char *path, const skg_digest *key, skg_kept kind, cons
 }
 
 void skg_store_remove(const char *path, const skg_digest *key, skg_kept kind) {
-    char name[MOST_NAME];
+    char name[NAME_LENGTH_MAX];
     const int folder = open_folder(path, 0);
     if (folder < 0) return;
     name_of(key, kind, name);

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_MIB = 256, HOUR = 3600, LONGEST_NAME = 128, DIGITS = 64 };
+enum { MIB_MAX = 256, HOUR = 3600, LONGEST_NAME = 128, DIGITS = 64 };
 
 typedef struct {
     char name[LONGEST_NAME];
@@ -74,7 +74,7 @@ void skg_store_bound(int folder) {
     }
     const int64_t count = list_files(folder, entries, &files);
     for (int64_t i = 0; i < count; i++) total += files[i].bytes;
-    const int64_t most = (int64_t)MOST_MIB << 20;
+    const int64_t most = (int64_t)MIB_MAX << 20;
     if (total > most) qsort(files, (size_t)count, sizeof *files, by_use);
     for (int64_t i = 0; i < count && total > most; i++)
         if (unlinkat(folder, files[i].name, 0) == 0) total -= files[i].bytes;

@@ -24,9 +24,9 @@ static void find_places(skg_cpus *all) {
     memset(all, 0, sizeof *all);
     if (omp_get_proc_bind() == omp_proc_bind_false) return;
     for (int place = 0; place < omp_get_num_places(); place++) {
-        int cpus[SKG_CPUS_MOST];
+        int cpus[SKG_CPUS_MAX];
         const int count = omp_get_place_num_procs(place);
-        if (count > SKG_CPUS_MOST) continue;
+        if (count > SKG_CPUS_MAX) continue;
         omp_get_place_proc_ids(place, cpus);
         for (int n = 0; n < count; n++)
             if (cpus[n] >= 0) CPU_SET_S((size_t)cpus[n], sizeof *all, (cpu_set_t *)(void *)all->words);

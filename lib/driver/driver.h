@@ -13,10 +13,10 @@
  * its devices only if the caller names one, or if one of them has passed its self-test on this machine. */
 
 /* Maximum number of platforms; further ones are ignored. */
-enum { SKG_PLATFORMS_MOST = 32 };
+enum { SKG_PLATFORMS_MAX = 32 };
 
 typedef struct {
-    cl_platform_id items[SKG_PLATFORMS_MOST];
+    cl_platform_id items[SKG_PLATFORMS_MAX];
     int32_t count;
 } skg_platform_list;
 
@@ -62,11 +62,11 @@ skg_status skg_faults_check(const skg_device_info *info);
 
 /* --- CPUs of a driver's threads (cpus.c) */
 
-enum { SKG_CPUS_MOST = 8192 };
+enum { SKG_CPUS_MAX = 8192 };
 
 /* One bit for each CPU, in the layout of cpu_set_t. */
 typedef struct {
-    unsigned long words[SKG_CPUS_MOST / (8 * sizeof(unsigned long))];
+    unsigned long words[SKG_CPUS_MAX / (8 * sizeof(unsigned long))];
 } skg_cpus;
 
 /* The CPUs of the calling thread. Empty if the system does not report them. */

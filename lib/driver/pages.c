@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 /* Less is a page; much more takes longer than all else in a plan. */
-static const int64_t LEAST_BYTES = 4 << 10, MOST_BYTES = 64 << 20;
+static const int64_t LEAST_BYTES = 4 << 10, BYTES_MAX = 64 << 20;
 
 struct skg_pages {
     int64_t bytes, count;
@@ -32,7 +32,7 @@ void skg_pages_expect(int64_t bytes, int64_t count, const skg_byte_range *ranges
         if (ranges[i].from < 0 || ranges[i].to > bytes) return;
         if (ranges[i].to > ranges[i].from) written += ranges[i].to - ranges[i].from;
     }
-    if (written < LEAST_BYTES || written > MOST_BYTES) return;
+    if (written < LEAST_BYTES || written > BYTES_MAX) return;
     if (skg_alloc(1, sizeof *made, "pages", &made) != SKG_OK) return;
     *made = (skg_pages){.bytes = bytes, .count = count};
     if (skg_alloc(count, sizeof *ranges, "pages", &made->ranges) != SKG_OK) {

@@ -55,8 +55,8 @@ static void touch(void *list) {
     skg_platform_list loaders = {.count = 0};
     cl_uint count = 0, devices = 0;
     if (!given) {
-        if (clGetPlatformIDs(SKG_PLATFORMS_MOST, loaders.items, &count) != CL_SUCCESS) return;
-        loaders.count = count < SKG_PLATFORMS_MOST ? (int32_t)count : SKG_PLATFORMS_MOST;
+        if (clGetPlatformIDs(SKG_PLATFORMS_MAX, loaders.items, &count) != CL_SUCCESS) return;
+        loaders.count = count < SKG_PLATFORMS_MAX ? (int32_t)count : SKG_PLATFORMS_MAX;
     }
     const skg_platform_list *all = given ? given : &loaders;
     for (int32_t n = 0; n < all->count; n++)

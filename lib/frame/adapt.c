@@ -7,14 +7,14 @@
 #include <stdlib.h>
 
 /* The fraction of the pixels that a doubling must not change much. */
-static const double MOST_PIXELS = 0.999;
+static const double PIXELS_MAX = 0.999;
 
 static int by_size(const void *a, const void *b) {
     const float *left = a, *right = b;
     return (*left > *right) - (*left < *right);
 }
 
-/* The change, as a share of the flat field, that MOST_PIXELS of the pixels of all channels do not exceed. change:
+/* The change, as a share of the flat field, that PIXELS_MAX of the pixels of all channels do not exceed. change:
  * workspace. */
 static double most_change(const skg_recipe *recipe, const float *before, const float *after, float *change) {
     const skg_model *model = &recipe->model;
@@ -26,7 +26,7 @@ static double most_change(const skg_recipe *recipe, const float *before, const f
         change[i] = flat > 0 ? (float)(fabs((double)after[i] - (double)before[i]) / flat) : 0;
     }
     qsort(change, (size_t)count, sizeof *change, by_size);
-    return (double)change[(int64_t)(MOST_PIXELS * (double)(count - 1))];
+    return (double)change[(int64_t)(PIXELS_MAX * (double)(count - 1))];
 }
 
 /* Renders the mean intensities (a ratio before its logarithm, without noise) with `samples` samples of the source and one

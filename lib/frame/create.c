@@ -63,7 +63,7 @@ static skg_status create(skg_context *context, skg_scene *scene, const skg_view 
     SKG_NEEDS_OF("skg_plan_create", scene);
     SKG_NEEDS_OF("skg_plan_create", spectrum);
     if (scene->count == 0)
-        return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_add");
+        return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_part_add");
     SKG_TRY(skg_view_check(view));
     skg_plan *made = NULL;
     SKG_TRY(skg_alloc(1, sizeof *made, "plan", &made));

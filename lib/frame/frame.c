@@ -8,7 +8,7 @@
 /* The tile that is asked for, in pixels of a pass. Of a finer detector, bands may have to be higher. */
 static int32_t tile_of(const skg_recipe *recipe, const skg_pass *pass) {
     const int32_t tile = recipe->strategy == SKG_STRATEGY_TILES ? recipe->options.tile : 0;
-    const int64_t least = (pass->camera.rows + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
+    const int64_t least = (pass->camera.rows + SKG_BANDS_MAX - 1) / SKG_BANDS_MAX;
     return tile && pass->fine > 1 && tile < least ? (int32_t)least : tile;
 }
 

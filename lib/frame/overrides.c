@@ -11,7 +11,7 @@ typedef struct {
 } overrides;
 
 /* Greatest ratio to the planned density. */
-static const double MOST_DENSITY = 1000;
+static const double DENSITY_MAX = 1000;
 
 static skg_status read_one(const skg_frame *given, int64_t k, overrides *o) {
     const skg_scene *scene = o->recipe->scene;
@@ -22,8 +22,8 @@ static skg_status read_one(const skg_frame *given, int64_t k, overrides *o) {
         return skg_fail(SKG_ERR_ARGUMENT, "a frame overrides part %" PRId64 " of %" PRId64, part,
                         scene->count);
     const char *label = scene->parts[part].label;
-    if (!(density >= 0 && density <= MOST_DENSITY))
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: a density ratio of %g; 0 to %g", label, density, MOST_DENSITY);
+    if (!(density >= 0 && density <= DENSITY_MAX))
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: a density ratio of %g; 0 to %g", label, density, DENSITY_MAX);
     if (!(fill >= 0 && fill <= 1))
         return skg_fail(SKG_ERR_ARGUMENT, "%s: a fill fraction of %g; 0 to 1", label, fill);
     for (int64_t p = 0; p < scene->count && fill < 1; p++)

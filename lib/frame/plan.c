@@ -30,7 +30,7 @@ static void replace(skg_plan *plan, skg_recipe *recipe) {
 
 static skg_status move(skg_plan *plan, const skg_view *view) {
     SKG_PLAIN;
-    SKG_NEEDS_OF("skg_plan_move", plan);
+    SKG_NEEDS_OF("skg_plan_view_set", plan);
     SKG_TRY(skg_context_enter(plan->context));
     SKG_TRY(skg_view_check(view));
     skg_view moved;
@@ -44,7 +44,7 @@ static skg_status move(skg_plan *plan, const skg_view *view) {
     return SKG_OK;
 }
 
-skg_status skg_plan_move(skg_plan *plan, const skg_view *view) {
+skg_status skg_plan_view_set(skg_plan *plan, const skg_view *view) {
     const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
     return skg_call_end(handler, move(plan, view));
 }

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 64, MOST_COMPONENTS = 1000 };
+enum { SIDE = 64, COMPONENTS_MAX = 1000 };
 
 /* An outward component is inside another if all of its columns are, up to rounding where surfaces touch. An inward one
  * lies in the open if most of its columns do: turned, it then adds where it subtracted. */
@@ -189,7 +189,7 @@ skg_status skg_nesting_find(const skg_mesh *mesh, skg_mesh_nesting *nesting, uns
     SKG_TRY_CLEANUP(skg_mesh_components(mesh, number, &count));
     SKG_TRY_CLEANUP(list_components(mesh, number, count, positions, corners, &components));
     qsort(components, (size_t)count, sizeof *components, by_volume);
-    const int64_t examined = count < MOST_COMPONENTS ? count : MOST_COMPONENTS;
+    const int64_t examined = count < COMPONENTS_MAX ? count : COMPONENTS_MAX;
     SKG_TRY_CLEANUP(skg_alloc(examined, sizeof *solids, mesh->name, &solids));
     SKG_TRY_CLEANUP(skg_alloc(examined, sizeof *sign, mesh->name, &sign));
     for (int64_t c = 0; c < examined; c++) {

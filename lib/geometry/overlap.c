@@ -10,7 +10,7 @@
  * of a band stay in a cache, and its memory is used again for the next. A scene of very many layers has fewer columns, so that
  * their hits take a second or two. */
 enum { SIDE = SKG_OVERLAP_SIDE, BANDS = 16 };
-static const double MOST_HITS = 1e7;
+static const double HITS_MAX = 1e7;
 
 typedef struct {
     int64_t slots, used;
@@ -223,11 +223,11 @@ static int worst_first(const void *a, const void *b) {
     return left->other < right->other ? -1 : left->other > right->other;
 }
 
-/* Columns along each side: as many as have MOST_HITS, but whole bands. */
+/* Columns along each side: as many as have HITS_MAX, but whole bands. */
 static int64_t choose_side(const skg_columns *grid, int64_t count, const skg_solid *solids) {
     int64_t side = SIDE;
     const double hits = skg_columns_expect(grid, count, solids); /* of SIDE x SIDE columns */
-    while (side > BANDS && hits * (double)(side * side) > MOST_HITS * SIDE * SIDE) side -= BANDS;
+    while (side > BANDS && hits * (double)(side * side) > HITS_MAX * SIDE * SIDE) side -= BANDS;
     return side;
 }
 

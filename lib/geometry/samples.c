@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-enum { MOST_SAMPLES = 65536, MOST_SHIFTS = 16 };
+enum { SAMPLES_MAX = 65536, SHIFTS_MAX = 16 };
 
 void skg_spot_init_sized(void *spot, int32_t size) {
     const skg_spot defaults = {.tolerance = 5e-3, .samples_max = 1024};
@@ -35,10 +35,10 @@ static skg_status check_spot(const skg_spot *spot) {
                             spot->extent[k], k);
     if (!skg_all_finite(spot->axis, 3))
         return skg_fail(SKG_ERR_SCENE, "the axis of the focal spot is not finite");
-    if (spot->samples < 0 || spot->samples > MOST_SAMPLES || spot->samples_max < 1 ||
-        spot->samples_max > MOST_SAMPLES)
+    if (spot->samples < 0 || spot->samples > SAMPLES_MAX || spot->samples_max < 1 ||
+        spot->samples_max > SAMPLES_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " samples of the source, at most %" PRId64 "; 0 to %d",
-                        spot->samples, spot->samples_max, MOST_SAMPLES);
+                        spot->samples, spot->samples_max, SAMPLES_MAX);
     if (!(spot->tolerance > 0 && spot->tolerance < 1))
         return skg_fail(
             SKG_ERR_ARGUMENT,
@@ -48,9 +48,9 @@ static skg_status check_spot(const skg_spot *spot) {
         return skg_fail(SKG_ERR_ARGUMENT,
                         "a grid of %" PRId64 " pieces a side; 0 to 256, of a line, a rectangle or a cube",
                         spot->grid);
-    if (spot->grid > 0 && grid_size(spot) > MOST_SAMPLES)
+    if (spot->grid > 0 && grid_size(spot) > SAMPLES_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "a grid of %" PRId64 " samples; at most %d", grid_size(spot),
-                        MOST_SAMPLES);
+                        SAMPLES_MAX);
     return SKG_OK;
 }
 
@@ -59,9 +59,9 @@ skg_status skg_samples_make(const skg_spot *spot, int32_t supersampling, skg_sam
     skg_spot_init(&samples->spot);
     if (spot) SKG_TRY(skg_struct_read(spot, "skg_spot", &samples->spot, sizeof samples->spot));
     SKG_TRY(check_spot(&samples->spot));
-    if (supersampling < 1 || supersampling > MOST_SHIFTS)
+    if (supersampling < 1 || supersampling > SHIFTS_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId32 " rays a side of a pixel; 1 to %d", supersampling,
-                        MOST_SHIFTS);
+                        SHIFTS_MAX);
     if (samples->spot.shape == SKG_SPOT_POINT) return SKG_OK;
     samples->spot_count = samples->spot.grid > 0      ? grid_size(&samples->spot)
                           : samples->spot.samples > 0 ? samples->spot.samples
@@ -81,7 +81,7 @@ int64_t skg_samples_passes(const skg_samples *samples) {
 
 /* I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86, with the polynomials 1, x + 1, x^2 + x + 1 and the
  * initial numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635. DIGITS: 2^17 points exceed
- * MOST_SAMPLES. */
+ * SAMPLES_MAX. */
 enum { DIGITS = 17 };
 
 static void sobol(int64_t index, double x[3]) {

@@ -108,7 +108,7 @@ static skg_status write_to_standard_output(const format *writer, const skg_pictu
     return status;
 }
 
-skg_status skg_picture_write(const skg_picture *theirs, const char *path) {
+skg_status skg_picture_save(const skg_picture *theirs, const char *path) {
     SKG_PLAIN;
     skg_picture picture;
     const format *writer = NULL;

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* The tables have about 370 names of mixtures and elements. */
-enum { MOST_NAMES = 1024 };
+enum { NAMES_MAX = 1024 };
 
 /* Fractions by mass that differ by less are one composition: they are given in tenths of a percent at best. */
 static const double SAME_FRACTION = 5e-4;
@@ -137,12 +137,12 @@ skg_status skg_nearest_material(const char *text, char near[SKG_LONGEST_NAME]) {
     skg_status status = SKG_OK;
     int64_t count = 0;
     near[0] = '\0';
-    SKG_TRY_CLEANUP(skg_alloc(MOST_NAMES, sizeof *names, "names", &names));
-    SKG_TRY_CLEANUP(skg_alloc(MOST_NAMES, sizeof *list, "names", &list));
+    SKG_TRY_CLEANUP(skg_alloc(NAMES_MAX, sizeof *names, "names", &names));
+    SKG_TRY_CLEANUP(skg_alloc(NAMES_MAX, sizeof *list, "names", &list));
     for (int32_t i = 0; i < skg_mixture_count; i++)
-        for (int k = 0; count < MOST_NAMES && name_at(skg_mixtures[i].names, k, names[count]); k++) count++;
+        for (int k = 0; count < NAMES_MAX && name_at(skg_mixtures[i].names, k, names[count]); k++) count++;
     for (int32_t z = 1; z <= SKG_LAST_ELEMENT; z++)
-        for (int k = 0; count < MOST_NAMES && name_at(skg_elements[z].names, k, names[count]); k++) count++;
+        for (int k = 0; count < NAMES_MAX && name_at(skg_elements[z].names, k, names[count]); k++) count++;
     for (int64_t i = 0; i < count; i++) list[i] = names[i];
     const char *found = skg_nearest_name(text, list, count);
     if (found) snprintf(near, SKG_LONGEST_NAME, "%s", found);

@@ -119,7 +119,7 @@ static void go_on(archive *a, const unsigned char *entry) {
 }
 
 static int has_name(const archive *a, const unsigned char *entry, const char *name) {
-    char its[SKG_RELATION_MOST];
+    char its[SKG_RELATION_MAX];
     const size_t length = strlen(name);
     return number(entry + 28, 2) == length && length < sizeof its &&
            read_at(a->stream, a->at + ENTRY, its, length) && memcmp(its, name, length) == 0;
@@ -131,11 +131,11 @@ static skg_status check_lengths(archive a) {
     for (; a.at < a.end; go_on(&a, entry)) {
         SKG_TRY(read_entry(&a, entry));
         const skg_packed_part part = read_part(&a, entry);
-        total = part.length > (uint64_t)SKG_ARCHIVE_MOST ? UINT64_MAX : total + part.length;
-        if (total > (uint64_t)SKG_ARCHIVE_MOST)
+        total = part.length > (uint64_t)SKG_ARCHIVE_MAX ? UINT64_MAX : total + part.length;
+        if (total > (uint64_t)SKG_ARCHIVE_MAX)
             return skg_fail(SKG_ERR_FORMAT,
                             "%s: is longer than %" PRId64 " MiB when it is unpacked, the limit of an archive",
-                            a.path, SKG_ARCHIVE_MOST >> 20);
+                            a.path, SKG_ARCHIVE_MAX >> 20);
     }
     return SKG_OK;
 }
@@ -169,7 +169,7 @@ static int has_part(archive a, const char *name) {
 /* Assimp aborts the process if the part of the model is not there. */
 static skg_status check_relations(const archive *a, const char *text) {
     skg_relations relations = {.at = text};
-    char target[SKG_RELATION_MOST];
+    char target[SKG_RELATION_MAX];
     int found;
     while ((found = skg_relations_next_model(&relations, target)) > 0) {
         const char *name = target;

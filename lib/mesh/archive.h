@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* The longest contents of an archive together, unpacked: 1 GiB. */
-#define SKG_ARCHIVE_MOST ((int64_t)1 << 30)
+#define SKG_ARCHIVE_MAX ((int64_t)1 << 30)
 
 /* Fails with SKG_ERR_FORMAT if a file is an archive that is damaged, or that is longer when it is unpacked. A kilobyte can
  * hold a gigabyte of zeros, and Assimp unpacks all that the directory of an archive announces. It aborts the process if the

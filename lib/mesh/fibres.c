@@ -12,7 +12,7 @@
 
 static const char *const shape = "fibres";
 
-enum { TRIES = 5000, MOST_FIBRES = 100000 };
+enum { TRIES = 5000, FIBRES_MAX = 100000 };
 
 void skg_fibres_init_sized(void *fibres, int32_t size) {
     const skg_fibres defaults = {.box = {20, 20, 20}, .radius_mm = 0.5, .count = 50, .segments = 16};
@@ -109,7 +109,7 @@ skg_status skg_mesh_create_fibres(const skg_fibres *fibres, skg_mesh **mesh) {
     SKG_TRY(skg_struct_read(fibres, "skg_fibres", &ours, sizeof ours));
     for (int k = 0; k < 3; k++) SKG_TRY(skg_check_length(shape, "edge of the box", ours.box[k]));
     SKG_TRY(skg_check_length(shape, "radius", ours.radius_mm));
-    SKG_TRY(skg_check_count(shape, "fibres", ours.count, 1, MOST_FIBRES));
+    SKG_TRY(skg_check_count(shape, "fibres", ours.count, 1, FIBRES_MAX));
     SKG_TRY(skg_check_count(shape, "segments", ours.segments, 3, 1000));
     if (!(ours.gap_mm >= 0 && isfinite(ours.gap_mm)))
         return skg_fail(SKG_ERR_ARGUMENT, "fibres: gap %g mm: 0 or more", ours.gap_mm);

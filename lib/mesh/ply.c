@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ELEMENTS = 32, MOST_PROPERTIES = 256 };
+enum { ELEMENTS_MAX = 32, PROPERTIES_MAX = 256 };
 
 typedef enum { NO_TYPE, INT8, UINT8, INT16, UINT16, INT32, UINT32, FLOAT32, FLOAT64 } scalar;
 
@@ -37,8 +37,8 @@ typedef struct {
     const skg_mesh_file *file;
     const char *at, *end;
     int ascii, swapped;
-    element elements[MOST_ELEMENTS];
-    property properties[MOST_PROPERTIES];
+    element elements[ELEMENTS_MAX];
+    property properties[PROPERTIES_MAX];
     int element_count, property_count;
 } ply;
 
@@ -90,16 +90,16 @@ static skg_status read_property(ply *in, const char *line) {
     } else
         return bad_line(in, line);
     if (found.type == NO_TYPE) return bad_line(in, line);
-    if (in->property_count == MOST_PROPERTIES)
-        return skg_fail(SKG_ERR_FORMAT, "%s: more than %d properties", in->file->name, MOST_PROPERTIES);
+    if (in->property_count == PROPERTIES_MAX)
+        return skg_fail(SKG_ERR_FORMAT, "%s: more than %d properties", in->file->name, PROPERTIES_MAX);
     in->properties[in->property_count++] = found;
     owner->last = in->property_count;
     return SKG_OK;
 }
 
 static skg_status read_element(ply *in, const char *line) {
-    if (in->element_count == MOST_ELEMENTS)
-        return skg_fail(SKG_ERR_FORMAT, "%s: more than %d elements", in->file->name, MOST_ELEMENTS);
+    if (in->element_count == ELEMENTS_MAX)
+        return skg_fail(SKG_ERR_FORMAT, "%s: more than %d elements", in->file->name, ELEMENTS_MAX);
     element *found = &in->elements[in->element_count];
     if (sscanf(line, "element %63s %" SCNd64, found->name, &found->count) != 2 || found->count < 0)
         return bad_line(in, line);

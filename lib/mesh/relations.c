@@ -26,7 +26,7 @@ static int skip_to(const char **at, const char *end) {
 }
 
 /* An attribute; its value if its name is the given one. 0: there is none, -1: it is damaged. */
-static int take_attribute(const char **at, const char *name, char value[SKG_RELATION_MOST]) {
+static int take_attribute(const char **at, const char *name, char value[SKG_RELATION_MAX]) {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz:";
     const size_t space = skip_space(at);
     const char *start = *at;
@@ -44,13 +44,13 @@ static int take_attribute(const char **at, const char *name, char value[SKG_RELA
     const size_t count = (size_t)(*at - text);
     ++*at;
     if (length != strlen(name) || memcmp(start, name, length) != 0) return 1;
-    if (count >= SKG_RELATION_MOST) return -1;
+    if (count >= SKG_RELATION_MAX) return -1;
     memcpy(value, text, count), value[count] = '\0';
     return 1;
 }
 
 /* Attributes up to the end of an element's name tag. */
-static int take_attributes(const char **at, char type[SKG_RELATION_MOST], char target[SKG_RELATION_MOST]) {
+static int take_attributes(const char **at, char type[SKG_RELATION_MAX], char target[SKG_RELATION_MAX]) {
     int taken;
     do {
         const char *again = *at;
@@ -60,7 +60,7 @@ static int take_attributes(const char **at, char type[SKG_RELATION_MOST], char t
     return taken == 0;
 }
 
-static int take_relationship(const char **at, char type[SKG_RELATION_MOST], char target[SKG_RELATION_MOST]) {
+static int take_relationship(const char **at, char type[SKG_RELATION_MAX], char target[SKG_RELATION_MAX]) {
     *type = *target = '\0';
     if (!take_attributes(at, type, target)) return 0;
     return take(at, "/>") || take(at, "></Relationship>");
@@ -68,7 +68,7 @@ static int take_relationship(const char **at, char type[SKG_RELATION_MOST], char
 
 /* The declaration of XML, and the beginning of the element. */
 static int begin(skg_relations *r) {
-    char type[SKG_RELATION_MOST], target[SKG_RELATION_MOST];
+    char type[SKG_RELATION_MAX], target[SKG_RELATION_MAX];
     take(&r->at, "\xEF\xBB\xBF");
     skip_space(&r->at);
     if (take(&r->at, "<?xml ") && !skip_to(&r->at, "?>")) return 0;
@@ -78,8 +78,8 @@ static int begin(skg_relations *r) {
     return r->is_begun;
 }
 
-int skg_relations_next_model(skg_relations *r, char target[SKG_RELATION_MOST]) {
-    char type[SKG_RELATION_MOST] = "";
+int skg_relations_next_model(skg_relations *r, char target[SKG_RELATION_MAX]) {
+    char type[SKG_RELATION_MAX] = "";
     if (!r->is_begun && !begin(r)) return -1;
     while (strcmp(type, model) != 0) {
         skip_space(&r->at);

@@ -5,7 +5,7 @@
 /* The part in which they stand. */
 #define SKG_RELATIONS_PART "_rels/.rels"
 
-enum { SKG_RELATION_MOST = 256 };
+enum { SKG_RELATION_MAX = 256 };
 
 /* Prepare with {text}, which ends in a zero. */
 typedef struct {
@@ -15,6 +15,6 @@ typedef struct {
 
 /* Gets the name of the next part that holds a 3MF model. Returns 1; 0 at the end of the document; -1 where the text is none. Less
  * is understood than XML allows: no entities and no other elements. */
-int skg_relations_next_model(skg_relations *relations, char target[SKG_RELATION_MOST]);
+int skg_relations_next_model(skg_relations *relations, char target[SKG_RELATION_MAX]);
 
 #endif

@@ -120,7 +120,7 @@ skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *str
  *     1024^2     1.06     0.94
  *     2048^2     1.10 */
 /* clang-format on */
-static const double SMALL_BYTES = 32 << 20, MOST_BYTES = 256 << 20; /* of the sums */
+static const double SMALL_BYTES = 32 << 20, BYTES_MAX = 256 << 20; /* of the sums */
 static const double PIXELS_SAVED =
     6; /* a set-up that is saved makes up for the misses of these pixels of the image */
 
@@ -141,7 +141,7 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why) {
     *why = "each in a pass of its own: leaky meshes are judged and repaired in pixels of the image";
     if (request->leaky) return 1;
     *why = "each in a pass of its own: the sums of all at once would take more than 256 MiB";
-    if (bytes > MOST_BYTES) return 1;
+    if (bytes > BYTES_MAX) return 1;
     *why = "each in a pass of its own: the image is large and its triangles are not small";
     if (bytes > SMALL_BYTES && pixels > PIXELS_SAVED * saved) return 1;
     *why = "all in one pass on finer pixels";
@@ -157,11 +157,11 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why) {
  *     1024^2    0.57 0.90    0.75 0.93
  *     2048^2    0.59 0.93    0.89 1.06 */
 /* clang-format on */
-enum { MOST_MIXED = 32, MIXED_BYTES = 128 << 20 }; /* accumulators; bytes of all of them */
+enum { MIXED_MAX = 32, MIXED_BYTES = 128 << 20 }; /* accumulators; bytes of all of them */
 
 int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes) {
     const double fit = MIXED_BYTES / accumulator_bytes(request);
-    const int32_t most = fit < MOST_MIXED ? (int32_t)fit : MOST_MIXED;
+    const int32_t most = fit < MIXED_MAX ? (int32_t)fit : MIXED_MAX;
     const int32_t few = planes + planes / 2;
     return most > few ? most : few;
 }
@@ -177,11 +177,11 @@ int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes) {
  *        42,000     512^2       5  44.4   44.7   45.8 */
 /* clang-format on */
 enum {
-    SIDE = 4,                /* SKG_SIDE of the kernels */
-    SIDE_IMAGE = 1 << 20,    /* bytes of an image of which four stay in the caches, */
-    OWN_IMAGE = 4 << 20,     /* and of one that a worker may have for itself */
-    SIDE_TRIANGLE = 4,       /* bytes of an image whose misses a shared triangle makes up for */
-    MOST_TRIANGLES = 2 << 20 /* whose vertices are projected side by side, for each worker */
+    SIDE = 4,               /* SKG_SIDE of the kernels */
+    SIDE_IMAGE = 1 << 20,   /* bytes of an image of which four stay in the caches, */
+    OWN_IMAGE = 4 << 20,    /* and of one that a worker may have for itself */
+    SIDE_TRIANGLE = 4,      /* bytes of an image whose misses a shared triangle makes up for */
+    TRIANGLES_MAX = 2 << 20 /* whose vertices are projected side by side, for each worker */
 };
 
 /* Whether workers that take `each` passes at a time have something to do nearly always. */
@@ -196,7 +196,7 @@ int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side) {
     if (request->strategy != SKG_STRATEGY_COPIES || request->passes < 2) return 1;
     const int64_t left = request->image_bytes - SIDE_TRIANGLE * request->triangles;
     if (left > OWN_IMAGE) return 1;
-    const int pays = left <= SIDE_IMAGE && request->triangles <= MOST_TRIANGLES;
+    const int pays = left <= SIDE_IMAGE && request->triangles <= TRIANGLES_MAX;
     if (pays && even(request->passes, workers, SIDE)) *side = SIDE;
     return *side > 1 || even(request->passes, workers, 1) ? (int32_t)(*side * workers) : 1;
 }

@@ -10,7 +10,7 @@ typedef struct {
     const char *name; /* static storage */
     double ns;
 } skg_stage_time;
-enum { SKG_MOST_STAGES = 32 };
+enum { SKG_STAGES_MAX = 32 };
 
 typedef struct {
     skg_plan_report report;
@@ -19,7 +19,7 @@ typedef struct {
     int64_t overlap_count;
     skg_overlap_pair *overlaps;
     int64_t stage_count;
-    skg_stage_time stages[SKG_MOST_STAGES];
+    skg_stage_time stages[SKG_STAGES_MAX];
     int32_t warned_unseen;   /* 1: that nothing falls on the detector */
     int32_t warned_infinite; /* 1: that pixels were not finite */
     int32_t side; /* passes of a frame that a worker draws side by side; 0: all workers are at each pass */

@@ -9,15 +9,15 @@
 
 #include <inttypes.h>
 
-enum { MOST_VIEWS = 1024 };
+enum { VIEWS_MAX = 1024 };
 
 static skg_status copy_views(skg_recipe *recipe) {
     skg_plan_options *options = &recipe->options;
     const skg_view *given = options->views;
     skg_view *ours = NULL;
-    if (options->view_count < 0 || options->view_count > MOST_VIEWS || (options->view_count > 0 && !given))
+    if (options->view_count < 0 || options->view_count > VIEWS_MAX || (options->view_count > 0 && !given))
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " further views; 0 to %d, with the views",
-                        options->view_count, MOST_VIEWS);
+                        options->view_count, VIEWS_MAX);
     SKG_TRY(skg_copies_alloc(&recipe->copies, options->view_count, sizeof *ours, "views", &ours));
     for (int64_t v = 0; v < options->view_count; v++) {
         skg_view_init(&ours[v]);

@@ -9,7 +9,7 @@
 static void add_stage(skg_outcome *outcome, const char *name, double ns) {
     int64_t i = 0;
     while (i < outcome->stage_count && strcmp(outcome->stages[i].name, name) != 0) i++;
-    if (i == SKG_MOST_STAGES) return;
+    if (i == SKG_STAGES_MAX) return;
     if (i == outcome->stage_count) outcome->stages[outcome->stage_count++] = (skg_stage_time){.name = name};
     outcome->stages[i].ns += ns;
 }

@@ -126,7 +126,7 @@ static skg_status check_part(const skg_scene *scene, const skg_part *part, const
     return skg_scene_check_pose(label, part->pose);
 }
 
-skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id) {
+skg_status skg_scene_part_add(skg_scene *scene, const skg_part *part, int64_t *id) {
     SKG_PLAIN;
     SKG_NEEDS(scene);
     skg_part ours;
@@ -207,7 +207,7 @@ skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part
     return skg_struct_write(&ours, sizeof ours, "skg_part", part);
 }
 
-skg_status skg_scene_label_get(const skg_scene *scene, int64_t id, const char **label) {
+skg_status skg_scene_part_label_get(const skg_scene *scene, int64_t id, const char **label) {
     SKG_NEEDS(scene);
     SKG_NEEDS(label);
     *label = NULL;
@@ -216,7 +216,7 @@ skg_status skg_scene_label_get(const skg_scene *scene, int64_t id, const char **
     return SKG_OK;
 }
 
-skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id) {
+skg_status skg_scene_part_find(const skg_scene *scene, const char *label, int64_t *id) {
     SKG_NEEDS(scene);
     SKG_NEEDS(label);
     SKG_NEEDS(id);
@@ -239,7 +239,7 @@ skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id
     return SKG_ERR_SCENE;
 }
 
-skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) {
+skg_status skg_scene_part_pose_set(skg_scene *scene, int64_t id, const double *pose) {
     SKG_PLAIN;
     SKG_NEEDS(scene);
     SKG_NEEDS(pose);
@@ -250,7 +250,7 @@ skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose) 
     return SKG_OK;
 }
 
-skg_status skg_scene_material_set(skg_scene *scene, int64_t id, skg_material *material) {
+skg_status skg_scene_part_material_set(skg_scene *scene, int64_t id, skg_material *material) {
     SKG_NEEDS(scene);
     SKG_TRY(check_id(scene, id, __func__));
     if (!material)

@@ -62,7 +62,7 @@ static skg_status make_scene(skg_context *context, exact_run *run) {
     skg_status status = skg_boxes_mesh(context, run->boxes, BOXES, 0, &part.mesh);
     if (status == SKG_OK) status = skg_material_create_mu("boxes", 0.1, &part.material);
     part.label = "boxes";
-    if (status == SKG_OK) status = skg_scene_add(run->scene, &part, NULL);
+    if (status == SKG_OK) status = skg_scene_part_add(run->scene, &part, NULL);
     skg_material_release(&part.material);
     skg_mesh_release(&part.mesh);
     return status;

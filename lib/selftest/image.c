@@ -162,7 +162,7 @@ static skg_status score(skg_context *context, int32_t strategy, double *result) 
     output.data = image;
     for (int k = 0; k < SCORED_FRAMES; k++) {
         const double start = now();
-        SKG_TRY_CLEANUP(draw(run->plan, &output));
+        SKG_TRY_CLEANUP(skg_plan_image(run->plan, &output));
         fastest = fmin(fastest, now() - start);
     }
     *result = fastest > 0 ? 1 / fastest : 0;

@@ -1,6 +1,6 @@
 #include "selftest/selftest.h"
 
-#include <skiagraph/view_picture.h>
+#include <skiagraph/scene_picture.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static skg_status add_box(skg_context *context, picture_run *run, int number) {
     part.label = number == 0 ? "behind" : "in front";
     skg_status status = skg_boxes_mesh(context, &run->boxes[number], 1, 0, &part.mesh);
     if (status == SKG_OK) status = skg_material_create_mu(part.label, 0.1, &part.material);
-    if (status == SKG_OK) status = skg_scene_add(run->scene, &part, NULL);
+    if (status == SKG_OK) status = skg_scene_part_add(run->scene, &part, NULL);
     skg_material_release(&part.material);
     skg_mesh_release(&part.mesh);
     return status;
@@ -117,9 +117,9 @@ skg_status skg_self_test_picture(skg_context *context, skg_verdict *verdict) {
     SKG_TRY_CLEANUP(make_scene(context, run));
     SKG_TRY_CLEANUP(skg_view_places_get(run->scene, &run->view, &run->look, BOXES * CORNERS, run->corners[0],
                                         run->places[0]));
-    SKG_TRY_CLEANUP(skg_view_picture(context, run->scene, &run->view, &run->look, run->opaque));
+    SKG_TRY_CLEANUP(skg_scene_picture(context, run->scene, &run->view, &run->look, run->opaque));
     run->look.colours = half_green;
-    SKG_TRY_CLEANUP(skg_view_picture(context, run->scene, &run->view, &run->look, run->translucent));
+    SKG_TRY_CLEANUP(skg_scene_picture(context, run->scene, &run->view, &run->look, run->translucent));
     compare(run, verdict);
 cleanup:
     skg_scene_release(&run->scene);

@@ -84,7 +84,7 @@ static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int
     if (status == SKG_OK)
         status =
             skg_material_create_table(given.label, ENERGIES, energies, attenuation[part], &given.material);
-    if (status == SKG_OK) status = skg_scene_add(scene->scene, &given, NULL);
+    if (status == SKG_OK) status = skg_scene_part_add(scene->scene, &given, NULL);
     skg_material_release(&given.material);
     skg_mesh_release(&given.mesh);
     return status;

@@ -76,7 +76,7 @@ static void across(const double wanted[3], const double direction[3], double res
 static skg_status find_axes(const skg_view *view, const skg_look *look, double axes[3][3]) {
     double *toward = axes[2], beam[3], start[3], up[3];
     if (!skg_all_finite(look->from, 3) || !skg_all_finite(look->up, 3))
-        return skg_fail(SKG_ERR_ARGUMENT, "skg_view_picture: a direction of the look is not finite");
+        return skg_fail(SKG_ERR_ARGUMENT, "skg_scene_picture: a direction of the look is not finite");
     memcpy(up, look->up, sizeof up);
     if (skg_length(up) == 0) skg_scale_vector(-1, view->row_step, up);
     memcpy(toward, look->from, sizeof axes[2]);

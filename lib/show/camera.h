@@ -5,7 +5,7 @@
 #include "core/core.h"
 
 #include <skiagraph/types.h>
-#include <skiagraph/view_picture.h>
+#include <skiagraph/scene_picture.h>
 
 typedef struct {
     double centre[3];  /* mm: where the axis of the eye passes the scene; positions are relative to it */

@@ -1,7 +1,7 @@
 /* The colours of parts. */
 #include "scene/scene.h"
 
-#include <skiagraph/view_picture.h>
+#include <skiagraph/scene_picture.h>
 
 #include <math.h>
 

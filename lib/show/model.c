@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* Kernels index three numbers per vertex and triangle with int. */
-static const int64_t MOST = INT32_MAX / 3;
+static const int64_t LIMIT = INT32_MAX / 3;
 
 void skg_show_model_free(skg_show_model *model) {
     skg_free(&model->positions);
@@ -14,11 +14,11 @@ void skg_show_model_free(skg_show_model *model) {
 }
 
 skg_status skg_show_model_reserve(skg_show_model *model, int64_t vertices, int64_t triangles) {
-    if (vertices > MOST - model->vertices || triangles > MOST - model->triangles)
+    if (vertices > LIMIT - model->vertices || triangles > LIMIT - model->triangles)
         return skg_fail(SKG_ERR_SCENE,
                         "the parts have more than %" PRId64
                         " vertices or triangles, which the 3D view cannot draw",
-                        MOST);
+                        LIMIT);
     if (model->vertices + vertices > model->vertex_capacity) {
         const int64_t capacity = 2 * model->vertex_capacity + vertices;
         SKG_TRY(skg_realloc(capacity, 3 * sizeof *model->positions, "vertices of the 3D view",

@@ -59,7 +59,7 @@ static skg_status find_floor(compressing *c, const skg_model *model) {
     skg_transmit_exact(&c->beam, lengths, exact, exponents);
     for (int32_t s = 0; s < c->beam.sets; s++)
         if (c->sums[s] > 0)
-            c->beam.floor = fmin(c->beam.floor, SKG_RELATIVE_FROM * fmax(exact[s], exp(-SKG_MOST_EXPONENT)));
+            c->beam.floor = fmin(c->beam.floor, SKG_RELATIVE_FROM * fmax(exact[s], exp(-SKG_EXPONENT_MAX)));
 cleanup:
     skg_free(&lengths);
     skg_free(&exact);

@@ -27,8 +27,8 @@ skg_status skg_directions_create(const skg_spectrum *spectrum, int64_t states, s
     SKG_TRY_CLEANUP(skg_alloc(d->bins, sizeof(double), "shades", &d->weight));
     SKG_TRY_CLEANUP(skg_alloc(states * d->bins, sizeof(double), "shades", &d->losses));
     SKG_TRY_CLEANUP(skg_alloc(states, sizeof(double), "shades", &d->scale));
-    SKG_TRY_CLEANUP(skg_alloc(SKG_DIRECTIONS_MOST * states, sizeof(double), "shades", &d->amounts));
-    SKG_TRY_CLEANUP(skg_alloc(SKG_DIRECTIONS_MOST * d->bins, sizeof(double), "shades", &d->unit));
+    SKG_TRY_CLEANUP(skg_alloc(SKG_DIRECTIONS_MAX * states, sizeof(double), "shades", &d->amounts));
+    SKG_TRY_CLEANUP(skg_alloc(SKG_DIRECTIONS_MAX * d->bins, sizeof(double), "shades", &d->unit));
     for (int64_t s = 0; s < states; s++) d->scale[s] = 1;
     weigh(spectrum, d->weight);
     return SKG_OK;
@@ -57,7 +57,7 @@ void skg_directions_find(skg_directions *d) {
             if (left > most) most = left, worst = s;
         }
         d->error = most;
-        if (most < LEFT || d->count == SKG_DIRECTIONS_MOST) break;
+        if (most < LEFT || d->count == SKG_DIRECTIONS_MAX) break;
         double *unit = d->unit + d->count * d->bins;
         memcpy(unit, d->losses + worst * d->bins, (size_t)d->bins * sizeof *unit);
         const double length = sqrt(skg_dot_long(d->bins, unit, unit));

@@ -4,7 +4,7 @@
 
 #include "beam/spectrum.h"
 
-enum { SKG_DIRECTIONS_MOST = 4 };
+enum { SKG_DIRECTIONS_MAX = 4 };
 
 typedef struct {
     int64_t states, bins;
@@ -12,8 +12,8 @@ typedef struct {
     double *weight;          /* [bins] roots of shares of the beam's energy */
     double *losses;          /* [states][bins] by the caller: -ln of what a state leaves of the photons */
     double *scale;           /* [states] by the caller: errors of a state count by this much; 1 at first */
-    double *amounts;         /* [SKG_DIRECTIONS_MOST][states] */
-    double *unit;            /* [SKG_DIRECTIONS_MOST][bins] losses for an amount of 1 */
+    double *amounts;         /* [SKG_DIRECTIONS_MAX][states] */
+    double *unit;            /* [SKG_DIRECTIONS_MAX][bins] losses for an amount of 1 */
     double error; /* that is left of the logarithm, by the least squares of the beam's energies, scaled */
 } skg_directions;
 

@@ -9,7 +9,7 @@
 #include <skiagraph/plan.h>
 
 enum {
-    SKG_SHADES_MOST = 3 * SKG_DIRECTIONS_MOST + 2,
+    SKG_SHADES_MAX = 3 * SKG_DIRECTIONS_MAX + 2,
     SKG_SHADE_TERMS = SKG_FIT_TERMS,
     /* Of the table of a grid: rows by tilt, and terms of polynomials of the obliquity. */
     SKG_GRID_TILTS = 257,
@@ -24,9 +24,9 @@ typedef struct {
 typedef struct {
     int32_t count; /* all */
     int32_t heel, oblique, bowtie, grid, reserved;
-    double *losses;                                     /* [count][bins] */
-    double low[SKG_SHADES_MOST], high[SKG_SHADES_MOST]; /* of the amounts */
-    double polynomials[2 * SKG_DIRECTIONS_MOST]
+    double *losses;                                   /* [count][bins] */
+    double low[SKG_SHADES_MAX], high[SKG_SHADES_MAX]; /* of the amounts */
+    double polynomials[2 * SKG_DIRECTIONS_MAX]
                       [SKG_SHADE_TERMS]; /* heel, oblique: coefficients of 1, z, z^2, ... */
     skg_shade_extent heel_extent, oblique_extent;
     double heel_error, oblique_error,

@@ -55,8 +55,8 @@ void skg_transmit_exact(const skg_polychromatic *beam, double *lengths, double *
     double least = HUGE_VAL;
     find_exponents(beam, beam->mu, lengths, exponents);
     for (int32_t b = 0; b < beam->bins; b++) least = exponents[b] < least ? exponents[b] : least;
-    if (least > SKG_MOST_EXPONENT) {
-        for (int32_t m = 0; m < beam->materials; m++) lengths[m] *= SKG_MOST_EXPONENT / least;
+    if (least > SKG_EXPONENT_MAX) {
+        for (int32_t m = 0; m < beam->materials; m++) lengths[m] *= SKG_EXPONENT_MAX / least;
         find_exponents(beam, beam->mu, lengths, exponents);
     }
     memset(exact, 0, (size_t)beam->sets * sizeof *exact);

@@ -11,7 +11,7 @@
 #define SKG_RELATIVE_FROM 1e-6
 
 /* The largest exponent of the energy that passes best. Single precision ends at exp(-87). */
-#define SKG_MOST_EXPONENT 80
+#define SKG_EXPONENT_MAX 80
 
 /* The exact beam, with every bin. A set is the weight of each bin in one channel, as a share of the flat field. */
 typedef struct {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* How many kernels an attenuator keeps. */
-enum { MOST_KERNELS = 16 };
+enum { KERNELS_MAX = 16 };
 
 /* A work-item attenuates `runs` vectors of pixels together, `strip` times. A GPU hides latency by the former; a CPU has less
  * to compile by the latter. The rays of a pixel of the image belong to the same runs. */
@@ -64,8 +64,8 @@ typedef struct {
 struct skg_attenuator {
     skg_context *context;
     int32_t count, next;
-    kernel_key keys[MOST_KERNELS];
-    cl_kernel kernels[MOST_KERNELS];
+    kernel_key keys[KERNELS_MAX];
+    cl_kernel kernels[KERNELS_MAX];
 };
 
 static skg_status upload(skg_context *context, int32_t is_double, int64_t count, const double *numbers,
@@ -180,9 +180,9 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     SKG_TRY(get_program(attenuator, key, &program));
     SKG_TRY(skg_kernel_create(program, "skg_attenuate", kernel));
     /* When all places are taken the oldest kernel goes; its program stays with the context. */
-    const int32_t slot = attenuator->count < MOST_KERNELS ? attenuator->count++ : attenuator->next;
+    const int32_t slot = attenuator->count < KERNELS_MAX ? attenuator->count++ : attenuator->next;
     if (attenuator->kernels[slot]) clReleaseKernel(attenuator->kernels[slot]);
-    attenuator->next = (slot + 1) % MOST_KERNELS;
+    attenuator->next = (slot + 1) % KERNELS_MAX;
     attenuator->keys[slot] = *key;
     attenuator->kernels[slot] = *kernel;
     return SKG_OK;

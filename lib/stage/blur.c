@@ -9,7 +9,7 @@
 enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
 
 /* The most samples that a function may have along either direction. */
-enum { MOST_SAMPLES = 4095 };
+enum { SAMPLES_MAX = 4095 };
 
 /* Kernels and weights for images of one type, float or double. */
 typedef struct {
@@ -46,9 +46,9 @@ static skg_status check_count(const char *what, int64_t count) {
                         " samples; an even number has no middle and would shift the image by half a pixel, "
                         "give an odd one",
                         what, count);
-    if (count > MOST_SAMPLES)
+    if (count > SAMPLES_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "the %s has %" PRId64 " samples; at most %d", what, count,
-                        MOST_SAMPLES);
+                        SAMPLES_MAX);
     return SKG_OK;
 }
 

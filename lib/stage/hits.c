@@ -25,13 +25,13 @@ int64_t skg_hits_memory_bytes(const skg_hits_memory *memory) {
 skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t *bytes) {
     const int64_t hits = (int64_t)count->high << 32 | (int64_t)count->low;
     const int64_t hit = is_double ? 16 : 8; /* a depth and an int, as skg_listed */
-    if (hits > (int64_t)SKG_MOST_HITS)
+    if (hits > (int64_t)SKG_HITS_MAX)
         return skg_fail(
             SKG_ERR_DEVICE_MEMORY,
             "priorities: the rays of this frame hit the surfaces of the parts that compete %" PRId64
             " times, and at most %" PRId64
             " hits are listed; take fewer pixels, coarser meshes or fewer parts with priorities",
-            hits, (int64_t)SKG_MOST_HITS);
+            hits, (int64_t)SKG_HITS_MAX);
     *bytes = (hits > 0 ? hits : 1) * hit;
     return SKG_OK;
 }

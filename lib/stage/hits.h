@@ -16,7 +16,7 @@ void skg_hits_memory_release(skg_hits_memory *memory);
 /* Bytes on the device. */
 int64_t skg_hits_memory_bytes(const skg_hits_memory *memory);
 
-/* Bytes of the list of all hits, from the count that the device returns. More hits than SKG_MOST_HITS are
+/* Bytes of the list of all hits, from the count that the device returns. More hits than SKG_HITS_MAX are
  * SKG_ERR_DEVICE_MEMORY. */
 skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t *bytes);
 

@@ -34,7 +34,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
                                           "scalar.clh",   "triangle.clh", "wide.clh",
                                           "triangle.clh", "parts.clh",    "sums.clh"};
     static const skg_program_options none = {.flags = ""};
-    enum { HEADERS = sizeof headers / sizeof *headers, MOST = 8, TEXT = 1024 };
+    enum { HEADERS = sizeof headers / sizeof *headers, LIMIT = 8, TEXT = 1024 };
     const skg_define common[] = {
         {"SKG_DOUBLE", options->precision == SKG_PRECISION_DOUBLE},
         {"SKG_BITS", options->bits},
@@ -46,9 +46,9 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
         {"SKG_HALF", options->half != 0},
         {"SKG_CPU", !context->device->info.is_gpu},
     };
-    const char *all[HEADERS + MOST];
+    const char *all[HEADERS + LIMIT];
     char of_options[TEXT], of_program[TEXT], text[2 * TEXT + 64];
-    if (files > MOST) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", names[0]);
+    if (files > LIMIT) return skg_fail(SKG_ERR_INTERNAL, "%s: too many kernel files", names[0]);
     if (!more) more = &none;
     for (int32_t i = 0; i < HEADERS; i++) all[i] = headers[i];
     for (int32_t i = 0; i < files; i++) all[HEADERS + i] = names[i];

@@ -11,15 +11,15 @@ enum { SORT, DRAW };
 enum {
     CACHE_BYTES = 256 * 1024, /* of a band: half of the level 2 cache of common CPUs */
     HIGH_BAND = 32,           /* rows that a band may have even so */
-    MOST_BAND_ROWS = 256
+    BAND_ROWS_MAX = 256
 };
 
 int64_t skg_raster_band_rows(int64_t rows_of_detector, int64_t row_bytes, int64_t groups) {
     const int64_t fit = CACHE_BYTES / row_bytes, even = rows_of_detector / (4 * groups);
     int64_t rows = fit > HIGH_BAND ? fit : HIGH_BAND;
     rows = rows < even ? rows : even; /* some bands for each worker */
-    rows = rows < MOST_BAND_ROWS ? rows : MOST_BAND_ROWS;
-    const int64_t least = (rows_of_detector + SKG_MOST_BANDS - 1) / SKG_MOST_BANDS;
+    rows = rows < BAND_ROWS_MAX ? rows : BAND_ROWS_MAX;
+    const int64_t least = (rows_of_detector + SKG_BANDS_MAX - 1) / SKG_BANDS_MAX;
     rows = rows > 8 ? rows : 8;
     return rows > least ? rows : least;
 }
@@ -38,9 +38,9 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 static skg_status lay_out(skg_raster *raster) {
     skg_raster_layout *layout = &raster->layout;
     layout->tile_rows = raster->options.tile ? raster->options.tile : band_rows(raster);
-    if ((layout->rows + layout->tile_rows - 1) / layout->tile_rows > SKG_MOST_BANDS)
+    if ((layout->rows + layout->tile_rows - 1) / layout->tile_rows > SKG_BANDS_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "bands of %d rows are more than %d; make them higher",
-                        (int)layout->tile_rows, SKG_MOST_BANDS);
+                        (int)layout->tile_rows, SKG_BANDS_MAX);
     return SKG_OK;
 }
 

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from ._state import State
 
 #: Labels that an error names.
-_MOST = 12
+_MAX = 12
 
 
 def unknown_label(label: str, labels: list[str]) -> LabelError:
     near = difflib.get_close_matches(label, labels, 1)
     if not labels:
         there = "the scene has no parts"
-    elif len(labels) > _MOST:
+    elif len(labels) > _MAX:
         there = f"there are {len(labels)}, such as " + ", ".join(map(repr, near or labels[:3]))
     else:
         there = "there " + ("is " if len(labels) == 1 else "are ") + ", ".join(map(repr, labels))
@@ -48,7 +48,7 @@ def remove(state: State, number: int) -> None:
     for new, old in enumerate(order):
         inside = above if parts[old].inside == number else parts[old].inside
         parts[old].inside = numbers[inside] if inside >= 0 else -1
-        call("skg_scene_add", made, parts[old], ffi.NULL)
+        call("skg_scene_part_add", made, parts[old], ffi.NULL)
         numbers[old] = new
     _replace(state, made, order, number)
     state.removed.append(removed)

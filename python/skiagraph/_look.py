@@ -29,7 +29,7 @@ def picture(state: State, pixels: Sequence[int], direction: Any, up: Any, orthog
     if colours:
         look.colours = _colours(state, colours, keep)
     made = np.empty((int(pixels[1]), int(pixels[0]), 4), np.uint8)
-    call("skg_view_picture", state.device.handle, state.handle, state.require_view()._write(struct("skg_view")), look,
+    call("skg_scene_picture", state.device.handle, state.handle, state.require_view()._write(struct("skg_view")), look,
          ffi.cast("uint8_t *", ffi.from_buffer(made)))
     return np.ascontiguousarray(made[..., :3])
 

@@ -37,4 +37,4 @@ def write_picture(path: str | os.PathLike[str], image: Any, *, names: Sequence[s
     if view is not None and view.shape == array.shape[-2:]:
         keep.append(view._write(struct("skg_view")))
         picture.view = keep[-1]
-    call("skg_picture_write", picture, encode(path, "path"))
+    call("skg_picture_save", picture, encode(path, "path"))

@@ -14,7 +14,7 @@ from .beam import Beam
 from .view import View
 
 # Plans that are kept: each has memory on the device.
-_MOST = 4
+_MAX = 4
 # Views of a batch for which the bound of a tolerance is verified.
 _VIEWS = 16
 
@@ -33,14 +33,14 @@ class Plans:
         given = {name: value for name, value in options.items() if value is not None}
         key = (view.shape, _key(given))
         plan = self._kept.pop(key, None)
-        if plan is not None and not anew and check(lib.skg_plan_move(plan, view._write(struct("skg_view")))) == OK:
+        if plan is not None and not anew and check(lib.skg_plan_view_set(plan, view._write(struct("skg_view")))) == OK:
             self._kept[key] = plan
             return plan
         if plan is not None:
             self._device.drop("skg_plan", plan)
         plan = self._make(setup, scene, view, beam, given)
         self._kept[key] = plan
-        while len(self._kept) > _MOST:
+        while len(self._kept) > _MAX:
             self._device.drop("skg_plan", self._kept.popitem(last=False)[1])
         return plan
 

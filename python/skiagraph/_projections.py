@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ._state import State
 
 # Bytes and projections of a batch. An interrupted run ends with the batches that are under way.
-_BATCH, _MOST = 1 << 20, 32
+_BATCH, _MAX = 1 << 20, 32
 
 
 @dataclass
@@ -73,7 +73,7 @@ class _Job:
         run, wanted = struct("skg_scan_run_options"), self.wanted
         image = self.channels * self.view.pixels[0] * self.view.pixels[1] * self.dtype.itemsize
         run.subframes, run.motion, run.type = int(wanted.subframes), self.motion, ENUMS["type"][self.dtype.name]
-        run.batch = 1 if wanted.breathing else max(1, min(_MOST, _BATCH // (image * max(1, int(wanted.subframes)))))
+        run.batch = 1 if wanted.breathing else max(1, min(_MAX, _BATCH // (image * max(1, int(wanted.subframes)))))
         if wanted.only is not None:
             numbers = _arrays.numbers(wanted.only, "only")
             if numbers.ndim != 1 or not numbers.size or numbers.dtype.kind not in "iu":

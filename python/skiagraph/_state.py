@@ -97,14 +97,14 @@ class State:
             raise ArgumentError(f"the label of a part is a {type(label).__name__}; give its text")
         with self.calls():
             try:
-                return integer("skg_scene_find", self.handle, encode(label, "label"))
+                return integer("skg_scene_part_find", self.handle, encode(label, "label"))
             except SceneError:
                 raise _edit.unknown_label(label, [part.label for part in self.parts()]) from None
 
     def add(self, part: Any, mesh: Mesh, material: Material) -> int:
         """Adds a skg_part of this mesh and material. Its number."""
         part.mesh, part.material = mesh._handle, material._handle
-        number = integer("skg_scene_add", self.handle, part)
+        number = integer("skg_scene_part_add", self.handle, part)
         self.names.append(max(self.names, default=-1) + 1)
         self.materials[number] = material
         self.meshes[_address(mesh._handle)] = mesh

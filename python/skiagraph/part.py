@@ -61,7 +61,7 @@ class Part:
     def pose(self, value: Any) -> None:
         pose = _arrays.matrix(value, "pose")
         with self._state.calls():
-            call("skg_scene_pose_set", self._state.handle, self.number,
+            call("skg_scene_part_pose_set", self._state.handle, self.number,
                  ffi.cast("double *", ffi.from_buffer(pose)))
 
     @property
@@ -80,7 +80,7 @@ class Part:
     def material(self, value: Any) -> None:
         material = as_material(value)
         with self._state.calls():
-            call("skg_scene_material_set", self._state.handle, self.number, material._handle)
+            call("skg_scene_part_material_set", self._state.handle, self.number, material._handle)
             self._state.materials[self.number] = material
 
     @property

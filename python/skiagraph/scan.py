@@ -121,7 +121,7 @@ class Scan(Sequence[View]):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the geometry: .csv (what load() reads, and ASTRA's cone_vec), .xml (RTK), .tigre.py or .cil.py."""
-        call("skg_scan_geometry_write", self._handle, encode(path, "path"))
+        call("skg_scan_geometry_save", self._handle, encode(path, "path"))
 
     def __repr__(self) -> str:
         rows, columns = self[0].shape

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 24, PIXELS = SIDE * SIDE, PARTS = 5, ENERGIES = 40, MOST_CHANNELS = 3, PSF = 3 };
+enum { SIDE = 24, PIXELS = SIDE * SIDE, PARTS = 5, ENERGIES = 40, CHANNELS_MAX = 3, PSF = 3 };
 
 enum {
     TOLERANCE,
@@ -25,7 +25,7 @@ enum {
     EFFECTS
 };
 
-static const double edges[MOST_CHANNELS + 1] = {10, 38, 55, 120};
+static const double edges[CHANNELS_MAX + 1] = {10, 38, 55, 120};
 static const double point_spread[PSF * PSF] = {0.05, 0.1, 0.02, 0.1, 0.4, 0.08, 0.05, 0.15, 0.05};
 static const double spot_width = 3; /* mm */
 
@@ -47,7 +47,7 @@ static void add(int part, skg_mesh *mesh, const char *material, double x, double
     one.mesh = mesh, one.material = materials[part], one.inside = inside, one.priority = priority;
     one.label = labels[part];
     one.pose[3] = x, one.pose[7] = y, one.pose[11] = z;
-    ck_skg(skg_scene_add(scene, &one, NULL));
+    ck_skg(skg_scene_part_add(scene, &one, NULL));
     skg_mesh_release(&mesh);
 }
 
@@ -148,7 +148,7 @@ static void find_rays(skg_plan *plan, int32_t precision, const skg_view *from, r
     skg_output output;
     skg_output_init(&output);
     output.type = precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
-    ck_skg(skg_plan_move(plan, from));
+    ck_skg(skg_plan_view_set(plan, from));
     for (int p = 0; p < PARTS; p++) {
         static float single[PIXELS];
         skg_job *job = NULL;
@@ -181,7 +181,7 @@ static double mu_of(const skg_material *material, double energy) {
 
 /* Adds what these rays bring to the channels. */
 static void add_rays(const int *on, const rays *r, double share, int channels, double *image) {
-    static double behind[MOST_CHANNELS][PIXELS], before[MOST_CHANNELS][PIXELS];
+    static double behind[CHANNELS_MAX][PIXELS], before[CHANNELS_MAX][PIXELS];
     memset(behind, 0, sizeof behind);
     memset(before, 0, sizeof before);
     for (int e = 0; e < ENERGIES; e++) {
@@ -234,7 +234,7 @@ static void make_plainly(const int *on, int channels, double *image) {
     const int side = on[SPOT] ? 2 : 1, pieces = on[SUPERSAMPLING] ? 2 : 1;
     const skg_plan_options options = plain_options(on);
     skg_plan *lengths = plan_lengths(&options);
-    memset(image, 0, MOST_CHANNELS * PIXELS * sizeof *image);
+    memset(image, 0, CHANNELS_MAX * PIXELS * sizeof *image);
     for (int s = 0; s < side * side * pieces * pieces; s++) {
         const int spot = s / (pieces * pieces), piece = s % (pieces * pieces);
         skg_view one = view;
@@ -255,11 +255,11 @@ static void make_plainly(const int *on, int channels, double *image) {
 /* --- all at once ----------------------------------------------------------------------------------------- */
 
 static void check_together(const int *on) {
-    static double plain[MOST_CHANNELS * PIXELS], together[MOST_CHANNELS * PIXELS];
-    static float single[MOST_CHANNELS * PIXELS];
+    static double plain[CHANNELS_MAX * PIXELS], together[CHANNELS_MAX * PIXELS];
+    static float single[CHANNELS_MAX * PIXELS];
     const skg_detector_blur spread = {
         .size = sizeof spread, .columns = PSF, .rows = PSF, .point = point_spread};
-    const int channels = on[BANDS] ? MOST_CHANNELS : 1;
+    const int channels = on[BANDS] ? CHANNELS_MAX : 1;
     skg_plan_options options = plain_options(on);
     skg_plan *plan = NULL;
     skg_plan_report report;
@@ -275,7 +275,7 @@ static void check_together(const int *on) {
     options.spot = on[SPOT] ? &spot : NULL;
     options.supersampling = on[SUPERSAMPLING] ? 2 : 1;
     options.blur = on[BLUR] ? &spread : NULL;
-    options.bands = on[BANDS] ? MOST_CHANNELS : 0, options.band_kev = edges;
+    options.bands = on[BANDS] ? CHANNELS_MAX : 0, options.band_kev = edges;
     options.falloff = on[FALLOFF];
     options.band_weight = SKG_BAND_WEIGHT_ENERGY;
     options.quantity = on[RATIO] ? SKG_QUANTITY_TRANSMISSION : SKG_QUANTITY_ENERGY;
@@ -319,7 +319,7 @@ static void take_half(const skg_view *from, const skg_spot *spot, float *image) 
     options.precision = SKG_PRECISION_HALF;
     options.tolerance = 1e-3; /* half precision keeps every energy all the same */
     options.response = response;
-    options.bands = MOST_CHANNELS, options.band_kev = edges;
+    options.bands = CHANNELS_MAX, options.band_kev = edges;
     options.spot = spot;
     ck_skg(skg_plan_create(context, scene, from, spectrum, &options, &plan));
     skg_output_init(&output);
@@ -331,8 +331,8 @@ static void take_half(const skg_view *from, const skg_spot *spot, float *image) 
 /* Half precision rounds each pass by itself: the image of several samples is the mean of theirs. */
 START_TEST(half_with_several_samples) {
     static const int none[EFFECTS];
-    static float together[MOST_CHANNELS * PIXELS], one[MOST_CHANNELS * PIXELS];
-    static double mean[MOST_CHANNELS * PIXELS];
+    static float together[CHANNELS_MAX * PIXELS], one[CHANNELS_MAX * PIXELS];
+    static double mean[CHANNELS_MAX * PIXELS];
     int differ = 0;
     skg_spot spot;
     skg_spot_init(&spot);
@@ -344,15 +344,15 @@ START_TEST(half_with_several_samples) {
         skg_view from = view;
         from.source[0] += s % 2 ? 1 : -1, from.source[1] += s / 2 ? 1 : -1;
         take_half(&from, NULL, one);
-        for (int k = 0; k < MOST_CHANNELS * PIXELS; k++) mean[k] += 0.25 * (double)one[k];
+        for (int k = 0; k < CHANNELS_MAX * PIXELS; k++) mean[k] += 0.25 * (double)one[k];
     }
-    for (int k = 0; k < MOST_CHANNELS * PIXELS; k++) {
+    for (int k = 0; k < CHANNELS_MAX * PIXELS; k++) {
         const double off = fabs((double)together[k] - mean[k]) / fmax(mean[k], 1); /* keV */
         differ += off > 4 * 0x1p-24;                                               /* four sums in float */
         /* A position that is off by a rounding may round one of four images the other way. */
         ck_assert_double_le(off, 0x1p-9);
     }
-    ck_assert_int_lt(differ, MOST_CHANNELS * PIXELS / 50);
+    ck_assert_int_lt(differ, CHANNELS_MAX * PIXELS / 50);
     for (int p = 0; p < PARTS; p++) skg_material_release(&materials[p]);
     skg_scene_release(&scene);
 }

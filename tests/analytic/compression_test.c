@@ -7,12 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SIDE = 48, MOST_CHANNELS = 3 };
+enum { SIDE = 48, CHANNELS_MAX = 3 };
 
 typedef struct {
-    double pixels[MOST_CHANNELS * SIDE * SIDE];
+    double pixels[CHANNELS_MAX * SIDE * SIDE];
     skg_plan_report report;
-    double open[MOST_CHANNELS];
+    double open[CHANNELS_MAX];
     int64_t channels;
 } picture;
 
@@ -53,7 +53,7 @@ static void add(skg_mesh *mesh, const char *name, double x, double y, int64_t in
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside, part.label = label;
     part.pose[3] = x, part.pose[7] = y;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&mesh);
     skg_material_release(&material);
 }
@@ -102,7 +102,7 @@ static void take(skg_spectrum *spectrum, const skg_plan_options *options, pictur
     skg_output output;
     ck_skg(skg_plan_create(context, scene, &view, spectrum, options, &plan));
     ck_skg(skg_plan_channel_count(plan, &shown->channels));
-    ck_assert_int_le(shown->channels, MOST_CHANNELS);
+    ck_assert_int_le(shown->channels, CHANNELS_MAX);
     for (int64_t c = 0; c < shown->channels; c++) {
         skg_channel channel;
         skg_channel_init(&channel);
@@ -270,7 +270,7 @@ START_TEST(views_of_a_scan_stay_within_the_range) {
         ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
         for (int k = 0; k < 36; k++) {
             const skg_view one = turned(10 * k);
-            ck_skg(skg_plan_move(plan, &one));
+            ck_skg(skg_plan_view_set(plan, &one));
             const skg_status status = skg_plan_image(plan, &output);
             ck_assert(status == SKG_OK || status == SKG_RANGE);
             outside += status == SKG_RANGE;
@@ -390,7 +390,7 @@ START_TEST(a_part_beside_the_view_may_move_in) {
     open_scene(5);
     add_parts(0);
     skg_spectrum *spectrum = tube(100);
-    ck_skg(skg_scene_pose_set(scene, part, aside));
+    ck_skg(skg_scene_part_pose_set(scene, part, aside));
     skg_plan_options_init(&options);
     options.tolerance = 1e-3;
     ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));

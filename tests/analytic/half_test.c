@@ -15,7 +15,7 @@ static void add(skg_scene *scene, skg_mesh *mesh, skg_material *material, int64_
     skg_part part;
     skg_part_init(&part);
     part.mesh = mesh, part.material = material, part.inside = inside;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&mesh);
     skg_material_release(&material);
 }

@@ -27,7 +27,7 @@ static void open_scene(void) {
     ck_skg(skg_scene_create(run_context, &scene));
     skg_part_init(&part);
     part.mesh = slab, part.material = water, part.label = "slab";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&slab);
     skg_heel_init(&heel);
     heel.kvp = 90, heel.angle_deg = 14;
@@ -105,7 +105,7 @@ static double *image(const skg_view *of, const skg_plan_options *options) {
     skg_plan *plan = NULL;
     skg_spectrum *beam = tube(heel.angle_deg);
     ck_skg(skg_plan_create(run_context, scene, &view, beam, options, &plan));
-    if (of != &view) ck_skg(skg_plan_move(plan, of));
+    if (of != &view) ck_skg(skg_plan_view_set(plan, of));
     double *pixels = run_image(plan, of);
     skg_plan_release(&plan);
     skg_spectrum_release(&beam);

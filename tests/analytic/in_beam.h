@@ -41,7 +41,7 @@ static inline void open_scene(void) {
     ck_skg(skg_scene_create(run_context, &scene));
     skg_part_init(&part);
     part.mesh = slab, part.material = water, part.label = "slab";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&slab);
     skg_plan_options_init(&options);
     view = run_view(PIXELS, 30); /* 720 mm at 1200 mm: up to 22 degrees from the normal */

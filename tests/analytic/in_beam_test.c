@@ -75,7 +75,7 @@ START_TEST(bowtie_like_a_plate) {
     part.pose[0] = part.pose[10] = cos(10 * degree);
     part.pose[2] = sin(10 * degree), part.pose[8] = -sin(10 * degree); /* its normal leans towards +x */
     part.pose[11] = -700;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&plate);
     double *traced = image_of(&view, beam);
     for (int p = 0; p < PIXELS * PIXELS; p++)

@@ -32,7 +32,7 @@ static void open_all(void) {
     ck_skg(skg_mesh_create_cuboid(4.01, 3.03, 2, &plate)); /* an edge across the image */
     skg_part_init(&part);
     part.mesh = plate, part.material = lead, part.label = "plate";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&plate);
     skg_view_init(&view);
     view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;

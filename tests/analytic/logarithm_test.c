@@ -54,7 +54,7 @@ START_TEST(the_plan_states_the_error_of_the_logarithm) {
     ck_skg(skg_mesh_create_cuboid(300, 300, _i ? 150 : 10, &mesh));
     skg_part_init(&part);
     part.label = "slab", part.mesh = mesh, part.material = named("Fe");
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&mesh);
     skg_material_release(&part.material);
     skg_spectrum *beam = tube();

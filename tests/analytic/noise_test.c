@@ -30,7 +30,7 @@ static void open_scene(void) {
     ck_skg(skg_mesh_create_cuboid(1000, 1000, THICKNESS, &slab));
     skg_part_init(&part);
     part.mesh = slab, part.material = tissue, part.label = "slab";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&slab);
     skg_view_init(&view);
     view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
@@ -256,9 +256,9 @@ END_TEST
  * and variance. */
 START_TEST(few_photons_are_exact) {
     static double images[4 * PIXELS];
-    enum { MOST = 40 };
+    enum { LIMIT = 40 };
     const double kev = 60, photons = 20;
-    double counts[MOST] = {0}, chi = 0, expected;
+    double counts[LIMIT] = {0}, chi = 0, expected;
     int bins = 0;
     skg_plan_options options = noisy();
     options.quantity = SKG_QUANTITY_PHOTONS;
@@ -270,11 +270,11 @@ START_TEST(few_photons_are_exact) {
         const double count = images[i];
         /* a photon counts as v / w, a ratio of rounded numbers */
         ck_assert_double_eq_tol(count, round(count), 1e-5);
-        ck_assert_msg(round(count) < MOST, "%g photons where %g are expected", count, t.detected);
+        ck_assert_msg(round(count) < LIMIT, "%g photons where %g are expected", count, t.detected);
         counts[(int)round(count)]++;
     }
     expected = exp(-t.detected) * 4 * PIXELS;
-    for (int k = 0; k < MOST; k++) {
+    for (int k = 0; k < LIMIT; k++) {
         if (expected > 10) chi += (counts[k] - expected) * (counts[k] - expected) / expected, bins++;
         expected *= t.detected / (k + 1);
     }
@@ -464,9 +464,9 @@ static void check_over_the_open_field(skg_plan_options options, const skg_spectr
     options.quantity = SKG_QUANTITY_TRANSMISSION;
     take(spectrum, &options, 5, channels > 1 ? 1 : 2, ratio);
     quiet.noise = 0, quiet.electronic_kev = 0;
-    ck_skg(skg_scene_pose_set(scene, 0, pose));
+    ck_skg(skg_scene_part_pose_set(scene, 0, pose));
     take(spectrum, &quiet, 5, 1, field);
-    ck_skg(skg_scene_pose_set(scene, 0, home));
+    ck_skg(skg_scene_part_pose_set(scene, 0, home));
     ck_assert_double_gt(field[PIXELS / 2 + SIDE / 2], 1.001 * field[0]);
     /* a few roundings, of single precision where images are */
     const double bar = options.precision == SKG_PRECISION_DOUBLE ? 1e-12 : 16 * 0x1p-24;

@@ -31,7 +31,7 @@ static void add_part(skg_mesh *mesh, const char *material, double x, double y, d
         for (int k = 0; k < 3; k++) part.pose[4 * r + k] = turned[r][k];
         part.pose[4 * r + 3] = at[r];
     }
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_material_release(&part.material);
 }
 

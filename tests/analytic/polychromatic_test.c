@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-enum { SIDE = 33, PARTS = 3, MOST = 200 };
+enum { SIDE = 33, PARTS = 3, LIMIT = 200 };
 
 /* A box of soft tissue, 80 mm along the ray; in it 10 mm of bone, and in that 3 mm of iodine solution. */
 static const double thickness[PARTS] = {80, 10, 3};
@@ -29,7 +29,7 @@ static void open_scene(void) {
         skg_part_init(&part);
         part.mesh = box, part.material = materials[i], part.inside = i - 1;
         part.label = matter[i];
-        ck_skg(skg_scene_add(scene, &part, NULL));
+        ck_skg(skg_scene_part_add(scene, &part, NULL));
         skg_mesh_release(&box);
     }
     skg_view_init(&view);
@@ -286,7 +286,7 @@ START_TEST(a_band_counts_photons) {
     ck_skg(skg_scene_create(context, &phantom));
     skg_part_init(&part);
     part.mesh = slab, part.material = water;
-    ck_skg(skg_scene_add(phantom, &part, NULL));
+    ck_skg(skg_scene_part_add(phantom, &part, NULL));
     skg_output_init(&output);
     output.data = image;
     for (int32_t k = 0; k < 4; k++) {
@@ -324,7 +324,7 @@ START_TEST(attenuation_beyond_any_float) {
     skg_part_init(&part);
     part.mesh = block, part.material = lead;
     part.pose[11] = -400;
-    ck_skg(skg_scene_add(thick, &part, NULL));
+    ck_skg(skg_scene_part_add(thick, &part, NULL));
     for (int32_t quantity = SKG_QUANTITY_TRANSMISSION; quantity <= SKG_QUANTITY_ATTENUATION; quantity++) {
         skg_plan_options options = options_of(SKG_PRECISION_SINGLE, quantity);
         skg_output output;

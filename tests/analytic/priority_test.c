@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SIDE = 48, MOST = 40, CORNERS = 2000 };
+enum { SIDE = 48, LIMIT = 40, CORNERS = 2000 };
 
 static skg_context *context;
 static const char *const matter[3] = {"Water", "Bone, Cortical (ICRU-44)", "Al"};
@@ -39,7 +39,7 @@ typedef struct {
     int64_t count;
     int32_t clip, energy_count;
     skg_view view;
-    body bodies[MOST];
+    body bodies[LIMIT];
 } setting;
 
 static setting set;
@@ -79,7 +79,7 @@ static void add_body(const char *label, skg_mesh *mesh, int64_t inside, int32_t 
     part.inside = inside, part.priority = priority;
     *b = (body){.inside = inside, .priority = priority, .matter = of};
     for (int k = 0; k < 3; k++) part.pose[4 * k + 3] = b->centre[k] = centre[k];
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     list_planes(b, mesh);
     skg_mesh_release(&mesh);
 }
@@ -148,7 +148,7 @@ static int counts(const int *in, int64_t part) {
 
 /* mm of the ray on which each part counts. */
 static void lengths_of(int row, int column, long double *mm) {
-    long double from[3], to[3], span[MOST][2], ends[2 * MOST + 1], whole = 0;
+    long double from[3], to[3], span[LIMIT][2], ends[2 * LIMIT + 1], whole = 0;
     int64_t end_count = 0;
     ray_of(row, column, from, to);
     for (int k = 0; k < 3; k++) whole += (to[k] - from[k]) * (to[k] - from[k]);
@@ -164,7 +164,7 @@ static void lengths_of(int row, int column, long double *mm) {
     }
     for (int64_t e = 0; e + 1 < end_count; e++) {
         const long double middle = 0.5L * (ends[e] + ends[e + 1]);
-        int in[MOST];
+        int in[LIMIT];
         for (int64_t p = 0; p < set.count; p++) in[p] = span[p][0] < middle && middle < span[p][1];
         for (int64_t p = 0; p < set.count; p++)
             if (counts(in, p)) mm[p] += (ends[e + 1] - ends[e]) * whole;
@@ -239,7 +239,7 @@ static const double DOUBLE_TOLERANCE = 1e-9, SINGLE_TOLERANCE = 5e-3, SINGLE_RMS
 static void expect(picture expected) {
     for (int r = 0; r < SIDE; r++)
         for (int c = 0; c < SIDE; c++) {
-            long double mm[MOST];
+            long double mm[LIMIT];
             lengths_of(r, c, mm);
             expected[r][c] = (double)attenuation_of(mm);
         }
@@ -355,10 +355,10 @@ END_TEST
 
 /* Forty slabs, each over the next: more than one word of a set. */
 START_TEST(many) {
-    static char labels[MOST][8];
+    static char labels[LIMIT][8];
     begin(1, 0);
-    for (int k = 0; k < MOST; k++) {
-        const int32_t priority = (k * 17) % MOST;
+    for (int k = 0; k < LIMIT; k++) {
+        const int32_t priority = (k * 17) % LIMIT;
         snprintf(labels[k], sizeof labels[k], "%d", k);
         add_body(labels[k], cuboid(30 + k, 60 - k, 7), -1, priority, k % 3,
                  (double[]){0.11 * k, 0.2, 3.3 * k - 60});
@@ -378,8 +378,8 @@ START_TEST(parts_that_move) {
     double away[16];
     memcpy(away, pose, sizeof away);
     away[3] = 900;
-    ck_skg(skg_scene_pose_set(scene, 1, away));
-    ck_skg(skg_scene_pose_set(scene, 2, away));
+    ck_skg(skg_scene_part_pose_set(scene, 1, away));
+    ck_skg(skg_scene_part_pose_set(scene, 2, away));
     skg_plan *plan = plan_for(SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
     ck_assert_int_eq(is_on(plan, "priority"), 0);
     skg_frame_init(&frame);
@@ -414,7 +414,7 @@ START_TEST(lengths) {
         ck_skg(skg_job_wait(&job));
         for (int r = 0; r < SIDE; r++)
             for (int c = 0; c < SIDE; c++) {
-                long double mm[MOST], from[3], to[3], span[2], whole = 0;
+                long double mm[LIMIT], from[3], to[3], span[2], whole = 0;
                 lengths_of(r, c, mm);
                 for (int64_t q = 0; q < set.count; q++)
                     if (set.bodies[q].inside == p) mm[p] -= mm[q];

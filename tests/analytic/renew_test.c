@@ -35,7 +35,7 @@ static void open_world(world *w, int energies) {
         part.mesh = w->meshes[i], part.material = material, part.inside = i == 0 ? -1 : 0;
         part.label = (const char *[]){"envelope", "a", "b", "c"}[i];
         part.pose[3] = i == 0 ? 0 : -30 + 15 * i;
-        ck_skg(skg_scene_add(w->scene, &part, NULL));
+        ck_skg(skg_scene_part_add(w->scene, &part, NULL));
         skg_material_release(&material);
     }
     skg_view_init(&w->view);
@@ -62,13 +62,13 @@ static void change(world *w, uint64_t *seed) {
     skg_part_init(&now);
     ck_skg(skg_scene_part_get(w->scene, part, &now));
     for (int k = 0; k < 3; k++) now.pose[4 * k + 3] = 40 * draw(seed, 0, 1) - 20;
-    ck_skg(skg_scene_pose_set(w->scene, part, now.pose));
+    ck_skg(skg_scene_part_pose_set(w->scene, part, now.pose));
     ck_skg(skg_mesh_count(w->meshes[part], &vertices, &triangles));
     const double stretch = 0.5 + draw(seed, 0, 1);
     for (int64_t k = 0; k < 3 * vertices; k++) positions[k] = rest[part][k] * (k % 3 == 0 ? stretch : 1);
     ck_skg(skg_mesh_positions_set(w->meshes[part], positions, 0));
     ck_skg(skg_material_create_hounsfield(-900 + 2000 * draw(seed, 0, 1), &material));
-    ck_skg(skg_scene_material_set(w->scene, part, material));
+    ck_skg(skg_scene_part_material_set(w->scene, part, material));
     skg_material_release(&material);
     w->view.source[0] = 100 * draw(seed, 0, 1) - 50;
 }
@@ -77,7 +77,7 @@ static void take(skg_plan *plan, const world *w, float *image) {
     skg_output output;
     skg_output_init(&output);
     output.data = image;
-    ck_skg(skg_plan_move(plan, &w->view));
+    ck_skg(skg_plan_view_set(plan, &w->view));
     ck_skg(skg_plan_image(plan, &output));
 }
 
@@ -122,7 +122,7 @@ START_TEST(compressed_energies_are_stale) {
     options.tolerance = 1e-3;
     ck_skg(skg_plan_create(w.context, w.scene, &w.view, w.beam, &options, &plan));
     ck_skg(skg_material_create_named("I", &other));
-    ck_skg(skg_scene_material_set(w.scene, 1, other));
+    ck_skg(skg_scene_part_material_set(w.scene, 1, other));
     skg_output_init(&output);
     output.data = image;
     ck_assert_int_eq(skg_plan_image(plan, &output), SKG_STALE);

@@ -30,7 +30,7 @@ static void add(skg_scene *scene, const char *label, solid shape, const char *ma
     part.label = label, part.inside = inside;
     part.mesh = run_mesh(&shape), part.material = named(material);
     if (pose) memcpy(part.pose, pose, sizeof part.pose);
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
     solid_free(&shape);

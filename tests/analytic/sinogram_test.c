@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 801, VIEWS = 12, RAYS = COLUMNS * VIEWS, MOST = 3 };
+enum { COLUMNS = 801, VIEWS = 12, RAYS = COLUMNS * VIEWS, LIMIT = 3 };
 
 #define PI 3.14159265358979323846
 
@@ -34,7 +34,7 @@ static struct {
     solid shape;
     caster *rays;
     double per_mm;
-} polyhedra[MOST];
+} polyhedra[LIMIT];
 static int polyhedron_count;
 static skg_view views[VIEWS];
 
@@ -175,7 +175,7 @@ static void make_sinogram(const body *bodies, int count, int sides, int32_t prec
     skg_plan *plan = run_plan(scene, &views[0],
                               (run_choice){.precision = precision, .quantity = SKG_QUANTITY_ATTENUATION});
     for (int v = 0; v < VIEWS; v++) {
-        ck_skg(skg_plan_move(plan, &views[v]));
+        ck_skg(skg_plan_view_set(plan, &views[v]));
         double *image = run_image(plan, &views[v]);
         memcpy(rays.ours + v * COLUMNS, image, COLUMNS * sizeof *image);
         free(image);
@@ -217,8 +217,8 @@ static double find_rms(void) {
  * n^-1, so that its square sums to n^-4 as well, and between both to n^-4 ln n. The order is therefore 2, less 0.1 for
  * the logarithm from 32 to 128. That edge is narrower than a pixel, which samples it by chance: 0.2 either way. */
 static void check_order(const body *bodies, int count) {
-    double rms[MOST];
-    for (int k = 0; k < MOST; k++) {
+    double rms[LIMIT];
+    for (int k = 0; k < LIMIT; k++) {
         make_sinogram(bodies, count, 32 << k, SKG_PRECISION_SINGLE);
         check_exact(0);
         rms[k] = find_rms();

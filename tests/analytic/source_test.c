@@ -27,7 +27,7 @@ static void open_scene(void) {
     skg_part_init(&part);
     part.mesh = block, part.material = lead;
     part.pose[3] = 100;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&block);
     skg_material_release(&lead);
     ck_skg(skg_spectrum_create_mono(60, 1, &beam));

@@ -7,12 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_COLUMNS = 75, MOST_ROWS = 53, MOST = MOST_COLUMNS * MOST_ROWS };
+enum { COLUMNS_MAX = 75, ROWS_MAX = 53, LIMIT = COLUMNS_MAX * ROWS_MAX };
 
 static skg_context *context;
 static skg_scene *scene;
 static skg_spectrum *beam;
-static double image[MOST], mean[MOST];
+static double image[LIMIT], mean[LIMIT];
 
 static void add_part(const char *label, skg_mesh *mesh, const char *material, const double at[3],
                      int32_t priority) {
@@ -27,7 +27,7 @@ static void add_part(const char *label, skg_mesh *mesh, const char *material, co
         for (int k = 0; k < 3; k++) part.pose[4 * r + k] = turned[r][k];
         part.pose[4 * r + 3] = at[r];
     }
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
 }
@@ -97,7 +97,7 @@ static void explain(const skg_plan_options *options, const skg_view *view, char 
 
 /* The mean over n x n detectors, each moved by the shift of one ray of a pixel. */
 static void take_mean(const skg_plan_options *plain, const skg_view *view, int n) {
-    static double one[MOST];
+    static double one[LIMIT];
     skg_plan_report report;
     memset(mean, 0, sizeof mean);
     for (int k = 0; k < n * n; k++) {

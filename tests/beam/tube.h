@@ -6,7 +6,7 @@
 
 #include <skiagraph/beam.h>
 
-enum { MOST_LAYERS = 8 };
+enum { LAYERS_MAX = 8 };
 
 /* A layer of a filter; a list of layers ends with material NULL. */
 typedef struct {
@@ -17,8 +17,8 @@ typedef struct {
 static inline skg_spectrum *tube_of(int32_t anode, int32_t model, double kvp, double angle,
                                     const layer *layers) {
     skg_tube t;
-    skg_filter filters[MOST_LAYERS];
-    skg_material *materials[MOST_LAYERS];
+    skg_filter filters[LAYERS_MAX];
+    skg_material *materials[LAYERS_MAX];
     skg_spectrum *spectrum = NULL;
     int count = 0;
     for (; layers && layers[count].material; count++) {

@@ -14,10 +14,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_PARTS = 160 };
+enum { PARTS_MAX = 160 };
 
 static skg_thorax *thorax;
-static skg_thorax_part part[MOST_PARTS];
+static skg_thorax_part part[PARTS_MAX];
 static int64_t parts;
 static skg_body *body;
 
@@ -122,7 +122,7 @@ END_TEST
 
 START_TEST(the_reference_is_the_file) { /* bit for bit, also after having been elsewhere */
     make(_i, NULL);
-    double *before[MOST_PARTS];
+    double *before[PARTS_MAX];
     int64_t n;
     for (int64_t i = 0; i < parts; i++) before[i] = positions(part[i].mesh, &n);
     for (int round = 0; round < 2; round++) {
@@ -218,7 +218,7 @@ START_TEST(random_access_and_hysteresis) {
 END_TEST
 
 START_TEST(parts_stay_in_place) { /* over a quiet breath */
-    static solid s[MOST_PARTS];
+    static solid s[PARTS_MAX];
     make(_i, NULL);
     double worst = 0;
     char what[120] = "";
@@ -285,7 +285,7 @@ START_TEST(every_part_has_a_rule) { /* and marrow moves with its bone */
 END_TEST
 
 START_TEST(same_bits_for_any_number_of_threads) {
-    double *first[MOST_PARTS];
+    double *first[PARTS_MAX];
     int64_t n;
     for (int threads = 1; threads <= 4; threads++) {
         omp_set_num_threads(threads);

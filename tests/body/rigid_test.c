@@ -30,9 +30,9 @@ END_TEST
 
 /* Also of matrices larger than a body needs: n = 1 to 8. Beside the vectors stand numbers that must stay. */
 START_TEST(eigenvectors_of_any_size) {
-    enum { MOST = 8 };
+    enum { LIMIT = 8 };
     const int n = _i;
-    double a[MOST * MOST] = {0}, matrix[MOST * MOST], values[MOST], v[MOST * MOST + 1];
+    double a[LIMIT * LIMIT] = {0}, matrix[LIMIT * LIMIT], values[LIMIT], v[LIMIT * LIMIT + 1];
     uint64_t state = 5;
     v[n * n] = 42;
     for (int i = 0; i < n; i++)

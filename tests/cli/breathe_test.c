@@ -10,7 +10,7 @@
     "--set Detector.NumberOfPixels=[40,40] --set Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]'"
 #define PLAIN "--set Breathing=null"
 
-enum { MOST_BYTES = 1 << 20 };
+enum { BYTES_MAX = 1 << 20 };
 
 static void set_up_thorax(void) {
     set_up();
@@ -34,14 +34,14 @@ static size_t read_file(const char *name, char *bytes) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *stream = fopen(path, "rb");
     ck_assert_msg(stream != NULL, "no %s", name);
-    size_t count = fread(bytes, 1, MOST_BYTES, stream);
+    size_t count = fread(bytes, 1, BYTES_MAX, stream);
     fclose(stream);
     ck_assert_uint_gt(count, 0);
     return count;
 }
 
 static void ck_same_files(const char *a, const char *b) {
-    static char left[MOST_BYTES], right[MOST_BYTES];
+    static char left[BYTES_MAX], right[BYTES_MAX];
     size_t count = read_file(a, left);
     ck_assert_msg(count == read_file(b, right) && memcmp(left, right, count) == 0, "%s differs from %s", a,
                   b);
@@ -64,7 +64,7 @@ static char conflict[200];
 
 /* Columns of a line of motion.csv. */
 static void read_line(const char *name, int line, int columns, double *values) {
-    static char bytes[MOST_BYTES + 1];
+    static char bytes[BYTES_MAX + 1];
     char *at = bytes;
     bytes[read_file(name, bytes)] = '\0';
     for (int i = 0; i < line; i++) {
@@ -83,7 +83,7 @@ static void read_line(const char *name, int line, int columns, double *values) {
 /* Head up, the patient's right on the viewer's left: the liver is there, in the lower half. */
 START_TEST(the_liver_is_on_the_left) {
     enum { SIDE = 40 };
-    static char bytes[MOST_BYTES];
+    static char bytes[BYTES_MAX];
     static float lengths[SIDE * SIDE];
     double sum = 0, column = 0, row = 0;
     ck_run(0, "lbuffer thorax.json %s --part liver -o liver.mha --quiet", SMALL);
@@ -169,7 +169,7 @@ START_TEST(what_is_written_is_kept) {
         snprintf(name, sizeof name, "f/frame-%04d.png", frames);
         if (!has_file(name)) break;
     }
-    static char table[MOST_BYTES];
+    static char table[BYTES_MAX];
     const size_t size = read_file("f/motion.csv", table);
     for (size_t i = 0; i < size; i++) lines += table[i] == '\n';
     ck_assert(table[size - 1] == '\n');
@@ -234,7 +234,7 @@ START_TEST(contrast_fills) {
     static const char beam[] = "--phase 0 --range 0:8 --quiet";
     ck_run(0, "breathe thorax.json %s %s -o a.png", SMALL, beam);
     ck_run(0, "breathe thorax.json %s %s -o b.png --outline ribs,diaphragm@0.5", SMALL, beam);
-    static char a[MOST_BYTES], b[MOST_BYTES];
+    static char a[BYTES_MAX], b[BYTES_MAX];
     size_t count = read_file("a.png", a);
     ck_assert(count != read_file("b.png", b) || memcmp(a, b, count) != 0);
     ck_run(0, "breathe thorax.json %s --seconds 11 --fps 0.1 --range 0:8 --quiet -o f", SMALL);
@@ -244,7 +244,7 @@ START_TEST(contrast_fills) {
 END_TEST
 
 START_TEST(meshes_have_displacements) {
-    static char bytes[MOST_BYTES + 1];
+    static char bytes[BYTES_MAX + 1];
     ck_run(0, "breathe thorax.json %s %s --phase 0 -o a.mha --meshes m --quiet", SMALL, PLAIN);
     const size_t size = read_file("m/liver-0000.ply", bytes);
     bytes[size] = '\0';

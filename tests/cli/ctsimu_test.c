@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-enum { COLUMNS = 21, ROWS = 11, PIXELS = COLUMNS * ROWS, MOST = 1 << 20 };
+enum { COLUMNS = 21, ROWS = 11, PIXELS = COLUMNS * ROWS, LIMIT = 1 << 20 };
 
 /* A beam of one energy along x, an axis along z, a cube of 20 mm on it. The letters are replaced. */
 static const char scenario[] =
@@ -76,7 +76,7 @@ static void rewrite(const char *from, const char *to) {
 
 /* The last `count` elements of 16 bits of a file: pixels without compression end a stack. */
 static void read_pixels(const char *name, int64_t count, uint16_t *pixels) {
-    static char bytes[MOST];
+    static char bytes[LIMIT];
     char path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *stream = fopen(path, "rb");

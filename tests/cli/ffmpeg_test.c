@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { COLUMNS = 37, ROWS = 23, PIXELS = COLUMNS * ROWS, FRAMES = 7, MOST_BYTES = 1 << 20 };
+enum { COLUMNS = 37, ROWS = 23, PIXELS = COLUMNS * ROWS, FRAMES = 7, BYTES_MAX = 1 << 20 };
 
 /* A slow gradient, which a codec keeps well. */
 static unsigned char grey_at(int frame, int c, int r) {
@@ -27,7 +27,7 @@ static void write_film(const char *path, int channels) {
 }
 
 START_TEST(ffmpeg_keeps_the_greys) {
-    static unsigned char bytes[MOST_BYTES];
+    static unsigned char bytes[BYTES_MAX];
     char path[128], line[512];
     double squares = 0;
     if (system("command -v ffmpeg >/dev/null 2>&1") != 0) skip_test("no ffmpeg");

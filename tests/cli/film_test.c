@@ -14,7 +14,7 @@
 #include <gif_lib.h>
 #endif
 
-enum { COLUMNS = 37, ROWS = 23, PIXELS = COLUMNS * ROWS, FRAMES = 7, MOST_BYTES = 1 << 20 };
+enum { COLUMNS = 37, ROWS = 23, PIXELS = COLUMNS * ROWS, FRAMES = 7, BYTES_MAX = 1 << 20 };
 
 static char start_path[4096];
 
@@ -235,7 +235,7 @@ END_TEST
 /* The frames of `breathe` are those of its pictures. */
 START_TEST(breathe_writes_a_film) {
     enum { SIDE = 40 };
-    static char bytes[MOST_BYTES];
+    static char bytes[BYTES_MAX];
     static float values[SIDE * SIDE];
     ck_run(0, "thorax -o . --simple --triangles 10000 --quiet");
     ck_run(
@@ -287,7 +287,7 @@ static const char copies[] = "#!/bin/sh\n"
                              "cat >\"${last#file:}\"\n";
 
 static void ck_word(const char *before, const char *word) {
-    static char words[MOST_BYTES];
+    static char words[BYTES_MAX];
     char line[256];
     FILE *stream = fopen(".words", "rb");
     ck_assert_ptr_nonnull(stream);
@@ -299,7 +299,7 @@ static void ck_word(const char *before, const char *word) {
 
 /* The frames as they are, but for a last row and a last column that repeat the ones before: 37 x 23 becomes 38 x 24. */
 START_TEST(ffmpeg_is_given_the_frames) {
-    static unsigned char bytes[MOST_BYTES];
+    static unsigned char bytes[BYTES_MAX];
     const char *path = _i == 0 ? "a.mp4" : "-odd: name.WebM";
     play(copies);
     ck_assert_int_eq(film_check(path, 12.5), 0);

@@ -7,9 +7,9 @@
 #include <signal.h>
 #include <time.h>
 
-enum { MOST_BYTES = 1 << 25 };
+enum { BYTES_MAX = 1 << 25 };
 
-static char bytes[MOST_BYTES], before[MOST_BYTES];
+static char bytes[BYTES_MAX], before[BYTES_MAX];
 
 static const char scan[] = "--set 'Scan={\"NumberOfProjections\":300,\"FinalAngle\":360}' "
                            "--set 'Detector.NumberOfPixels=[130,98]'";
@@ -30,7 +30,7 @@ static size_t read_file(const char *name, char *to) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *stream = fopen(path, "rb");
     ck_assert_msg(stream != NULL, "no %s", name);
-    const size_t count = fread(to, 1, MOST_BYTES, stream);
+    const size_t count = fread(to, 1, BYTES_MAX, stream);
     fclose(stream);
     return count;
 }

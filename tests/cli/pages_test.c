@@ -2,21 +2,21 @@
  * takes these flags. */
 #include "cli/command.h"
 
-enum { MOST = 32 };
+enum { LIMIT = 32 };
 
-static char verbs[MOST][32], flags[MOST][32];
+static char verbs[LIMIT][32], flags[LIMIT][32];
 static int verb_count, flag_count;
 
 /* The first words of the lines of a help text that begin with two spaces, from a heading to the next empty
  * line. */
-static int read_names(const char *heading, char names[MOST][32]) {
+static int read_names(const char *heading, char names[LIMIT][32]) {
     char *at = strstr(said, heading);
     int count = 0;
     ck_assert_ptr_nonnull(at);
     at = strchr(at, '\n') + 1;
     for (char *end; *at != '\n' && (end = strchr(at, '\n')); at = end + 1)
         if (at[0] == ' ' && at[1] == ' ' && at[2] != ' ') {
-            ck_assert_int_lt(count, MOST);
+            ck_assert_int_lt(count, LIMIT);
             ck_assert_int_eq(sscanf(at + 2, "%31s", names[count++]), 1);
         }
     return count;

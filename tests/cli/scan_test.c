@@ -10,9 +10,9 @@
 #include <time.h>
 
 #define SCAN "--set Scan='{\"NumberOfProjections\":12,\"FinalAngle\":360}'"
-enum { COLUMNS = 65, ROWS = 49, COUNT = 12, MOST_BYTES = 1 << 24 };
+enum { COLUMNS = 65, ROWS = 49, COUNT = 12, BYTES_MAX = 1 << 24 };
 
-static char bytes[MOST_BYTES], before[MOST_BYTES];
+static char bytes[BYTES_MAX], before[BYTES_MAX];
 
 static void set_up_scan(void) {
     set_up();
@@ -30,7 +30,7 @@ static size_t read_file(const char *name, char *to) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *stream = fopen(path, "rb");
     ck_assert_msg(stream != NULL, "no %s", name);
-    const size_t count = fread(to, 1, MOST_BYTES, stream);
+    const size_t count = fread(to, 1, BYTES_MAX, stream);
     fclose(stream);
     return count;
 }

@@ -17,7 +17,7 @@ static skg_scene *make_scene(int64_t segments) {
     ck_skg(skg_material_create_mu("ball", 0.2, &part.material));
     part.label = "ball";
     part.pose[3] = 100; /* moved along x */
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
     return scene;
@@ -74,7 +74,7 @@ START_TEST(what_moves_is_known) {
     ck_assert_int_eq(view_shapes_take(scene, 0, &shapes), 0);
     ck_assert_int_eq(view_shapes_take(scene, 1, &shapes), 0);
     ck_assert_int_eq(shapes.shapes->moves, 0);
-    ck_skg(skg_scene_pose_set(scene, 0, pose));
+    ck_skg(skg_scene_part_pose_set(scene, 0, pose));
     ck_assert_int_eq(view_shapes_take(scene, 1, &shapes), 0);
     ck_assert_int_eq(shapes.shapes->moves, 1);
     view_shapes_free(&shapes);

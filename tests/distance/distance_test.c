@@ -256,7 +256,7 @@ START_TEST(points_and_maps) {
     ck_skg(skg_mesh_count(cube, &vertices, &triangles));
     double map[64];
     for (int64_t i = 0; i < vertices; i++) map[i] = (double)i;
-    ck_skg(skg_distance_map_write(cube, map, 5, path));
+    ck_skg(skg_distance_map_save(cube, map, 5, path));
     ck_skg(skg_mesh_load(NULL, path, 1, &read));
     ck_skg(skg_mesh_count(read, &its_vertices, &its_triangles));
     ck_assert_int_eq(its_vertices, vertices);
@@ -318,7 +318,7 @@ START_TEST(bad_arguments) {
     ck_skg_fails(skg_distance_measure(cube, cube, &options, &d), SKG_ERR_ARGUMENT, "sampling");
     ck_skg_fails(skg_distance_of_points(cube, 1, point, &distance), SKG_ERR_ARGUMENT,
                  "point 0 is not finite");
-    ck_skg_fails(skg_distance_map_write(cube, point, 0, "/tmp/x.ply"), SKG_ERR_ARGUMENT, "above 0");
+    ck_skg_fails(skg_distance_map_save(cube, point, 0, "/tmp/x.ply"), SKG_ERR_ARGUMENT, "above 0");
     float *offsets;
     const double *origin;
     ck_skg(skg_mesh_offsets_get(cube, &offsets, &origin));

@@ -29,7 +29,7 @@ static inline void make_rotation(int n, double *q) {
 
 /* The value at a point of the unit box; q: a rotation. */
 static inline double value_of(int function, int n, const double *q, const double *point) {
-    double x[SKG_SEARCH_MOST], sum = 0;
+    double x[SKG_SEARCH_MAX], sum = 0;
     for (int i = 0; i < n; i++) x[i] = -5 + 10 * point[i];
     for (int i = 0; i < n; i++) {
         double y = 0;
@@ -45,8 +45,8 @@ static inline double value_of(int function, int n, const double *q, const double
 /* Searches from the middle until the value is small enough; returns the number of evaluations. */
 static inline int64_t search_for(int method, int function, int n, int64_t seed, double enough, int64_t most,
                                  skg_search *s) {
-    static double q[SKG_SEARCH_MOST * SKG_SEARCH_MOST], values[4096];
-    double start[SKG_SEARCH_MOST];
+    static double q[SKG_SEARCH_MAX * SKG_SEARCH_MAX], values[4096];
+    double start[SKG_SEARCH_MAX];
     make_rotation(n, q);
     for (int i = 0; i < n; i++) start[i] = 0.5;
     ck_skg(skg_search_create(method, n, start, seed, s));

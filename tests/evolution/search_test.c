@@ -22,7 +22,7 @@ START_TEST(known_minima) {
 END_TEST
 
 static void tell_values(skg_search *s, int function) {
-    static double q[SKG_SEARCH_MOST * SKG_SEARCH_MOST], values[4096];
+    static double q[SKG_SEARCH_MAX * SKG_SEARCH_MAX], values[4096];
     const int n = (int)s->dimensions;
     make_rotation(n, q);
     ck_skg(skg_search_ask(s));

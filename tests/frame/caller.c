@@ -29,7 +29,7 @@ void add_part(caller *c, const char *label, skg_mesh *mesh, double mu, int64_t i
     part.mesh = mesh;
     part.material = material;
     part.inside = inside;
-    ck_skg(skg_scene_add(c->scene, &part, NULL));
+    ck_skg(skg_scene_part_add(c->scene, &part, NULL));
     skg_material_release(&material);
     skg_mesh_release(&mesh);
 }

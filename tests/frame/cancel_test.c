@@ -165,7 +165,7 @@ START_TEST(the_scene_of_the_submission) {
     static const double away[16] = {1, 0, 0, 5, 0, 1, 0, 3, 0, 0, 1, 0, 0, 0, 0, 1};
     int64_t vertices = 0, triangles = 0;
     skg_job *job = submit();
-    ck_skg(skg_scene_pose_set(scene, 0, away));
+    ck_skg(skg_scene_part_pose_set(scene, 0, away));
     ck_skg(skg_mesh_count(ball, &vertices, &triangles));
     double *positions = malloc((size_t)(3 * vertices) * sizeof *positions);
     ck_skg(skg_mesh_positions_get(ball, positions, 0));

@@ -124,7 +124,7 @@ START_TEST(poses_and_views) {
     other = view;
     other.columns = SIDE + 1;
     refused(1, SKG_STALE, "41");
-    ck_skg_fails(skg_plan_move(plan, &other), SKG_STALE, "41");
+    ck_skg_fails(skg_plan_view_set(plan, &other), SKG_STALE, "41");
     other.columns = SIDE;
     still_good();
 }

@@ -69,7 +69,7 @@ START_TEST(strides_of_a_batch) {
         views[n].source[0] = 100 * n;
         skg_frame_init(&frames[n]);
         frames[n].view = &views[n];
-        ck_skg(skg_plan_move(plan, &views[n]));
+        ck_skg(skg_plan_view_set(plan, &views[n]));
         image(plan, dense[n]);
     }
     for (int n = 0; n < FRAMES * FRAME; n++) loose[n] = -77;
@@ -117,7 +117,7 @@ START_TEST(two_jobs) {
     skg_frame_init(&frame);
     skg_plan *plan = run_plan(scene, &view, (run_choice){0});
     image(plan, expected[0]);
-    ck_skg(skg_plan_move(plan, &aside));
+    ck_skg(skg_plan_view_set(plan, &aside));
     image(plan, expected[1]);
     for (int swapped = 0; swapped < 2; swapped++) {
         const skg_output to_first = output_of(first), to_second = output_of(second);
@@ -156,8 +156,8 @@ START_TEST(poses_of_a_frame) {
     ck_skg(skg_job_wait(&job));
     image(plan, after); /* the frame's poses were its own */
     ck_assert_mem_eq(after, plain, sizeof plain);
-    ck_skg(skg_scene_pose_set(scene, 1, poses));
-    ck_skg(skg_scene_pose_set(scene, 0, poses + 16));
+    ck_skg(skg_scene_part_pose_set(scene, 1, poses));
+    ck_skg(skg_scene_part_pose_set(scene, 0, poses + 16));
     image(plan, expected);
     ck_assert_mem_eq(posed, expected, sizeof posed);
     ck_assert_mem_ne(posed, plain, sizeof posed);
@@ -185,7 +185,7 @@ START_TEST(snapshots) {
             for (int64_t k = 0; k < 3 * vertices; k++) moved[k] = positions[k] * (1 + 0.2 * n);
             ck_skg(skg_mesh_positions_set(ball, moved, 0));
             shifted(pose, 6 * n, 0, 0);
-            ck_skg(skg_scene_pose_set(scene, 1, pose));
+            ck_skg(skg_scene_part_pose_set(scene, 1, pose));
             aside.source[1] = 30 * n;
             skg_frame_init(&frame);
             frame.view = &aside;
@@ -300,7 +300,7 @@ START_TEST(device_memory_and_events) {
     for (int n = 0; n < FRAMES; n++) {
         skg_frame_init(&frames[n]);
         frames[n].view = &views[n];
-        ck_skg(skg_plan_move(plan, &views[n]));
+        ck_skg(skg_plan_view_set(plan, &views[n]));
         image(plan, expected[n]);
     }
     cl_mem buffer = clCreateBuffer(cl, CL_MEM_READ_WRITE, sizeof got, NULL, &code);

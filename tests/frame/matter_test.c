@@ -45,11 +45,11 @@ static skg_plan *make_plan(skg_material *water, skg_material *bone, skg_material
     ck_skg(skg_scene_create(run_context, &scene));
     skg_part_init(&part);
     part.mesh = outer, part.material = water, part.label = "outer";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     part.mesh = inner, part.material = bone, part.label = "inner", part.inside = 0;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     part.material = other, part.label = "other", part.pose[3] = 25, part.pose[11] = 25;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     ck_skg(skg_spectrum_create_bins(2, kev, photons, &spectrum));
     ck_skg(skg_plan_create(run_context, scene, &view, spectrum, &options, &plan));
     skg_scene_release(&scene);

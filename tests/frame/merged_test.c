@@ -228,7 +228,7 @@ START_TEST(messages_name_the_callers_vertices) {
         if (memcmp(soup.positions + 3 * v, far, 3 * sizeof *far) == 0) s.offsets[3 * v] = 1e30F;
     ck_skg(skg_mesh_offsets_moved(s.mesh));
     pose[0] = 1e30;
-    ck_skg(skg_scene_pose_set(s.c.scene, BALL, pose));
+    ck_skg(skg_scene_part_pose_set(s.c.scene, BALL, pose));
     snprintf(expected, sizeof expected, "part soup: vertex %lld", (long long)first);
     const skg_output output = output_of(pixels);
     ck_skg_fails(skg_plan_image(s.c.plan, &output), SKG_ERR_MESH, expected);

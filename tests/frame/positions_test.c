@@ -9,13 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 4096, CUBE = 0, BALL = 1, FRAMES = 4 };
+enum { LIMIT = 4096, CUBE = 0, BALL = 1, FRAMES = 4 };
 
 /* Positions of a part's mesh, mm from its origin, and their bounds. */
 typedef struct {
     skg_mesh *mesh; /* of the scene */
     int64_t count;
-    float xyz[3 * MOST], lowest[3], highest[3];
+    float xyz[3 * LIMIT], lowest[3], highest[3];
 } shape;
 
 static void find_bounds(shape *s) {
@@ -35,7 +35,7 @@ static void bend(const caller *c, int64_t part, float amount, shape *s) {
     ck_skg(skg_scene_part_get(c->scene, part, &found));
     s->mesh = found.mesh;
     ck_skg(skg_mesh_count(s->mesh, &s->count, NULL));
-    ck_assert_int_le(s->count, MOST);
+    ck_assert_int_le(s->count, LIMIT);
     ck_skg(skg_mesh_offsets_get(s->mesh, &offsets, &origin));
     for (int64_t v = 0; v < s->count; v++) {
         const float *from = offsets + 3 * v;

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SIDE = 200, MOST = 4000 };
+enum { SIDE = 200, LIMIT = 4000 };
 static const double RADIUS = 40;
 
 static skg_context *context;
@@ -36,16 +36,16 @@ static void close_context(void) {
 /* A sphere whose triangles may be changed. */
 typedef struct {
     int64_t vertices, triangles;
-    double positions[3 * MOST];
-    int32_t corners[3 * MOST];
+    double positions[3 * LIMIT];
+    int32_t corners[3 * LIMIT];
 } soup;
 
 static void fill_sphere(soup *s) {
     skg_mesh *sphere = NULL;
     ck_skg(skg_mesh_create_sphere(RADIUS, 24, &sphere));
     ck_skg(skg_mesh_count(sphere, &s->vertices, &s->triangles));
-    ck_assert_int_lt(s->vertices, MOST - 8);
-    ck_assert_int_lt(s->triangles, MOST - 8);
+    ck_assert_int_lt(s->vertices, LIMIT - 8);
+    ck_assert_int_lt(s->triangles, LIMIT - 8);
     ck_skg(skg_mesh_positions_get(sphere, s->positions, 3));
     ck_skg(skg_mesh_triangles_get(sphere, s->corners, 3));
     skg_mesh_release(&sphere);
@@ -113,7 +113,7 @@ static void take(const soup *a, const soup *b, const wish *w, picture *result) {
         part.mesh = mesh_of(soups[i]), part.material = water;
         part.label = i ? "second" : "first";
         part.pose[11] = w->z[i];
-        ck_skg(skg_scene_add(scene, &part, NULL));
+        ck_skg(skg_scene_part_add(scene, &part, NULL));
         skg_mesh_release(&part.mesh);
     }
     skg_plan_options_init(&options);
@@ -454,7 +454,7 @@ START_TEST(what_is_warned_of_once) {
     ck_skg(skg_scene_create(context, &scene));
     skg_part_init(&part);
     part.mesh = mesh_of(&broken), part.material = water;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     ck_skg(skg_plan_create(context, scene, &view, beam, NULL, &plan));
     ck_skg(skg_context_log_set(context, count_warnings, NULL));

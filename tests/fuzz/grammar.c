@@ -5,11 +5,11 @@
 
 #include <string.h>
 
-enum { MOST_ALTERNATIVES = 24, LONGEST = 1 << 16, DEEPEST = 24 };
+enum { ALTERNATIVES_MAX = 24, LONGEST = 1 << 16, DEEPEST = 24 };
 
 /* <name> in an alternative stands for one of the alternatives of that rule. The first one ends every recursion. */
 typedef struct {
-    const char *name, *alternatives[MOST_ALTERNATIVES];
+    const char *name, *alternatives[ALTERNATIVES_MAX];
 } rule;
 
 /* clang-format off */
@@ -100,7 +100,7 @@ static const rule *find_rule(const char *name, size_t length) {
 /* The first alternative when the input is used up, or at the depth where recursion has to end. */
 static const char *choose(writer *w, const rule *from, int depth) {
     int count = 0;
-    while (count < MOST_ALTERNATIVES && from->alternatives[count]) count++;
+    while (count < ALTERNATIVES_MAX && from->alternatives[count]) count++;
     if (w->next == w->end || depth >= DEEPEST) return from->alternatives[0];
     return from->alternatives[*w->next++ % count];
 }

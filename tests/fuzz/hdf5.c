@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PIXELS = 1 << 16 };
+enum { PIXELS_MAX = 1 << 16 };
 
 static void read_scan(const char *path) {
     skg_scan_reader *reader = NULL;
@@ -18,7 +18,7 @@ static void read_scan(const char *path) {
     if (!reader) return;
     if (skg_scan_reader_scan_get(reader, &scan) != SKG_OK || skg_scan_view_get(scan, 0, &view) != SKG_OK)
         abort();
-    if (view.columns * view.rows <= MOST_PIXELS) {
+    if (view.columns * view.rows <= PIXELS_MAX) {
         float *image = calloc((size_t)(view.columns * view.rows) + 1, sizeof *image);
         if (!image) abort();
         fuzz_expect_sentence(skg_scan_reader_attenuation_get(reader, 0, image));

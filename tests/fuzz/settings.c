@@ -15,15 +15,15 @@ static const char scene[] =
     " {\"Label\": \"bone\", \"Cube\": [2, \"cm\"], \"Material\": [\"HU\", 500]}]}";
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    enum { MOST = 32 };
+    enum { LIMIT = 32 };
     static int ready = 0;
-    const char *lines[MOST];
+    const char *lines[LIMIT];
     int64_t count = 0;
     skg_setup *setup = NULL;
     if (!ready) fuzz_write("scene.json", scene, strlen(scene));
     ready = 1;
     char *text = fuzz_text(data, size);
-    for (char *line = strtok(text, "\n"); line && count < MOST; line = strtok(NULL, "\n"))
+    for (char *line = strtok(text, "\n"); line && count < LIMIT; line = strtok(NULL, "\n"))
         lines[count++] = line;
     fuzz_expect_sentence(skg_setup_load(NULL, fuzz_path("scene.json"), count, lines, &setup));
     skg_setup_release(&setup);

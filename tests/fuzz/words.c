@@ -33,11 +33,11 @@ static void use(const cli_verb *verb, const cli_arguments *arguments) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    enum { MOST = 64 };
-    char *words[MOST], *text = fuzz_text(data, size), *at = text;
+    enum { LIMIT = 64 };
+    char *words[LIMIT], *text = fuzz_text(data, size), *at = text;
     const cli_verb *verb = NULL;
     int count = 0;
-    while (count < MOST && at) { /* strtok would take no empty word */
+    while (count < LIMIT && at) { /* strtok would take no empty word */
         char *end = strchr(at, '\n');
         if (end) *end = '\0';
         words[count++] = at;

@@ -6,13 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_BOXES = 8 };
+enum { BOXES_MAX = 8 };
 
 static const int32_t outward[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                     2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
 
-static double positions[24 * MOST_BOXES];
-static int32_t corners[36 * MOST_BOXES];
+static double positions[24 * BOXES_MAX];
+static int32_t corners[36 * BOXES_MAX];
 static int64_t boxes;
 static skg_mesh *mesh;
 

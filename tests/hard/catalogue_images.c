@@ -122,7 +122,7 @@ static void iodine(hard_outcome *o, judgement *j, skg_spectrum *spectrum, const 
     ck_skg(skg_material_create_element(53, &part.material));
     for (int k = 0; k < 2; k++) ck_skg(skg_material_attenuation_get(part.material, kev[k], &mu[k]));
     if (!(mu[1] > 4 * mu[0])) hard_fault(o, "mu goes from %g to %g per cm: there is no edge", mu[0], mu[1]);
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     for (int p = 0; p < PIXELS; p++)
         j->truth[p] = (kev[0] * exp(-0.01 * mu[0]) + kev[1] * exp(-0.01 * mu[1])) / (kev[0] + kev[1]);
     judge_scene(o, j, scene, &view, spectrum);

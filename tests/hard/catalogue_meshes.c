@@ -144,7 +144,7 @@ static void million_parts(hard_outcome *o) {
         snprintf(label, sizeof label, "%d", n);
         part.label = label;
         memcpy(part.pose, pose, sizeof pose);
-        ck_skg(skg_scene_add(scene, &part, NULL));
+        ck_skg(skg_scene_part_add(scene, &part, NULL));
     }
     skg_material_release(&part.material);
     skg_plan *plan = run_plan(scene, &view, (run_choice){.quantity = SKG_QUANTITY_ATTENUATION});

@@ -10,17 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_CALLS = 1 << 16, MOST_BLOCKS = 1 << 16, MOST_SITES = 1 << 10, DEPTH = 8 };
+enum { CALLS_MAX = 1 << 16, BLOCKS_MAX = 1 << 16, SITES_MAX = 1 << 10, DEPTH = 8 };
 
 static atomic_flag locked = ATOMIC_FLAG_INIT;
 static int counting = -1; /* the kind; -1: not counting */
 static int parsing;       /* within Jansson's parser */
 static int64_t calls, target;
 static const char *hit;
-static uint64_t places[MOST_CALLS];   /* of each call, a hash of its callers */
-static const void *sites[MOST_SITES]; /* that made a call which was counted */
+static uint64_t places[CALLS_MAX];   /* of each call, a hash of its callers */
+static const void *sites[SITES_MAX]; /* that made a call which was counted */
 static int site_count;
-static void *blocks[MOST_BLOCKS]; /* open addressing; NULL: free, &gone: was used */
+static void *blocks[BLOCKS_MAX]; /* open addressing; NULL: free, &gone: was used */
 static int gone;
 static int64_t live_blocks;
 static atomic_llong live_objects;
@@ -45,7 +45,7 @@ static void note_site(const void *site) {
     lock();
     int n = 0;
     while (n < site_count && sites[n] != site) n++;
-    if (n == site_count && n < MOST_SITES) sites[site_count++] = site;
+    if (n == site_count && n < SITES_MAX) sites[site_count++] = site;
     unlock();
 }
 
@@ -56,7 +56,7 @@ static int decide(int kind, const char *name, const void *site) {
     lock();
     const int now = calls == target;
     if (now) hit = name;
-    if (target < 0 && calls < MOST_CALLS) places[calls] = hash_callers();
+    if (target < 0 && calls < CALLS_MAX) places[calls] = hash_callers();
     calls++;
     unlock();
     return now;
@@ -81,12 +81,12 @@ const char *failing_hit(void) {
 }
 
 int failing_is_new(int64_t at) {
-    static uint64_t tried[MOST_CALLS];
+    static uint64_t tried[CALLS_MAX];
     static int count;
-    if (at >= MOST_CALLS) return 0;
+    if (at >= CALLS_MAX) return 0;
     for (int n = 0; n < count; n++)
         if (tried[n] == places[at]) return 0;
-    if (count < MOST_CALLS) tried[count++] = places[at];
+    if (count < CALLS_MAX) tried[count++] = places[at];
     return 1;
 }
 
@@ -109,13 +109,13 @@ int64_t failing_live_objects(void) {
 /* --- allocations ---------------------------------------------------------------------------------------- */
 
 static size_t slot_of(const void *block) {
-    return (size_t)(((uintptr_t)block >> 4) * 0x9e3779b97f4a7c15u >> 48) % MOST_BLOCKS;
+    return (size_t)(((uintptr_t)block >> 4) * 0x9e3779b97f4a7c15u >> 48) % BLOCKS_MAX;
 }
 
 static void note_block(void *block) {
     lock();
     size_t slot = slot_of(block);
-    while (blocks[slot] && blocks[slot] != &gone) slot = (slot + 1) % MOST_BLOCKS;
+    while (blocks[slot] && blocks[slot] != &gone) slot = (slot + 1) % BLOCKS_MAX;
     blocks[slot] = block;
     live_blocks++;
     unlock();
@@ -124,7 +124,7 @@ static void note_block(void *block) {
 static void forget_block(const void *block) {
     lock();
     size_t slot = slot_of(block);
-    for (int n = 0; n < MOST_BLOCKS && blocks[slot]; n++, slot = (slot + 1) % MOST_BLOCKS)
+    for (int n = 0; n < BLOCKS_MAX && blocks[slot]; n++, slot = (slot + 1) % BLOCKS_MAX)
         if (blocks[slot] == block) {
             blocks[slot] = &gone;
             live_blocks--;

@@ -91,7 +91,7 @@ static skg_status write_all(const char *folder, skg_plan *plan, const skg_scene 
     static const char *const names[] = {"geometry.csv", "scan.mha", "scan.tif", "scan.h5"};
     char path[128];
     snprintf(path, sizeof path, "%s/%s", folder, names[0]);
-    TRY(skg_scan_geometry_write(scan, path));
+    TRY(skg_scan_geometry_save(scan, path));
     for (int n = 1; n < 4; n++) {
         snprintf(path, sizeof path, "%s/%s", folder, names[n]);
         if (skg_scan_file_path_check(path) == SKG_ERR_UNSUPPORTED) return SKG_OK; /* a build without HDF5 */

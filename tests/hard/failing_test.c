@@ -258,7 +258,7 @@ static skg_status draw_view(const run *r) {
     skg_look look;
     skg_look_init(&look);
     look.columns = 40, look.rows = 30;
-    return skg_view_picture(r->context, r->scene, &r->view, &look, rgba);
+    return skg_scene_picture(r->context, r->scene, &r->view, &look, rgba);
 }
 
 /* The parts that get positions from device memory: a thin one, and an open one with vertices that are merged till then. */
@@ -357,7 +357,7 @@ static skg_status save_map(const skg_mesh *mesh) {
     TRY(skg_mesh_positions_get(mesh, positions, 0));
     TRY(skg_distance_of_points(mesh, vertices, positions, distances));
     snprintf(path, sizeof path, "%s/map.ply", folder);
-    return skg_distance_map_write(mesh, distances, 1, path);
+    return skg_distance_map_save(mesh, distances, 1, path);
 }
 
 static skg_status save(const run *r) {
@@ -374,7 +374,7 @@ static skg_status save(const run *r) {
     picture.flat_field = 1;
     for (int n = 0; n < 3; n++) {
         snprintf(path, sizeof path, "%s/%s", folder, names[n]);
-        TRY(skg_picture_write(&picture, path));
+        TRY(skg_picture_save(&picture, path));
     }
     snprintf(path, sizeof path, "%s/bone.ply", folder);
     skg_part_init(&part);

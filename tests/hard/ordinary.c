@@ -46,8 +46,8 @@ typedef struct {
 } size_of_scene;
 
 static size_of_scene measure(const skg_scene *scene, const skg_view *view) {
-    enum { MOST_PATHS = 1000 };
-    static path paths[MOST_PATHS];
+    enum { PATHS_MAX = 1000 };
+    static path paths[PATHS_MAX];
     int64_t parts = 0, met = 0, count = 0, vertices = 0, triangles = 0;
     uint64_t seed = 3;
     size_of_scene size = {0};
@@ -63,7 +63,7 @@ static size_of_scene measure(const skg_scene *scene, const skg_view *view) {
         size.triangles += triangles;
     }
     count = 30000000 / size.triangles < 8 ? 8 : 30000000 / size.triangles;
-    if (count > MOST_PATHS) count = MOST_PATHS;
+    if (count > PATHS_MAX) count = PATHS_MAX;
     for (int64_t n = 0; n < count; n++)
         paths[n] =
             path_to(view, draw(&seed, 0, (double)view->columns - 1), draw(&seed, 0, (double)view->rows - 1));

@@ -45,11 +45,11 @@ static void check_tiff(const char *file, int32_t type, int channels) {
 
 START_TEST(tiff_keeps_every_bit) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
-    ck_skg(skg_picture_write(&picture, at("a.tif")));
+    ck_skg(skg_picture_save(&picture, at("a.tif")));
     check_tiff(path, SKG_TYPE_FLOAT32, 1);
     picture = picture_of(SKG_TYPE_FLOAT64);
     picture.channels = CHANNELS;
-    ck_skg(skg_picture_write(&picture, at("A.TIFF")));
+    ck_skg(skg_picture_save(&picture, at("A.TIFF")));
     check_tiff(path, SKG_TYPE_FLOAT64, CHANNELS);
 }
 END_TEST
@@ -86,7 +86,7 @@ START_TEST(metaimage_keeps_bits_and_place) {
     char header[2048];
     double data[CHANNELS * PIXELS + 1], numbers[9];
     skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
-    ck_skg(skg_picture_write(&picture, at("a.mha")));
+    ck_skg(skg_picture_save(&picture, at("a.mha")));
     ck_assert_int_eq(read_mha(path, header, sizeof header, data, sizeof data), PIXELS * 8);
     ck_assert_int_eq(memcmp(data, doubles, PIXELS * 8), 0);
     ck_assert_ptr_nonnull(strstr(header, "ElementType = MET_DOUBLE\n"));
@@ -111,10 +111,10 @@ START_TEST(channels_have_names_of_their_own) {
     float data[CHANNELS * PIXELS + 1];
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = CHANNELS, picture.channel_names = names;
-    ck_skg(skg_picture_write(&picture, at("a.mha")));
+    ck_skg(skg_picture_save(&picture, at("a.mha")));
     read_mha(path, header, sizeof header, data, sizeof data);
     ck_assert_ptr_nonnull(strstr(header, "\nChannelNames = low band; high band\n"));
-    ck_skg(skg_picture_write(&picture, at("a.tif")));
+    ck_skg(skg_picture_save(&picture, at("a.tif")));
     TIFF *tiff = TIFFOpen(path, "r");
     ck_assert_ptr_nonnull(tiff);
     for (int c = 0; c < CHANNELS; c++) {
@@ -125,7 +125,7 @@ START_TEST(channels_have_names_of_their_own) {
     }
     TIFFClose(tiff);
     picture.channel_names = none;
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "channel 1 has no name");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_ARGUMENT, "channel 1 has no name");
 }
 END_TEST
 
@@ -135,7 +135,7 @@ START_TEST(metaimage_interleaves_channels) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = CHANNELS;
     picture.view = NULL;
-    ck_skg(skg_picture_write(&picture, at("a.mha")));
+    ck_skg(skg_picture_save(&picture, at("a.mha")));
     ck_assert_int_eq(read_mha(path, header, sizeof header, data, sizeof data), CHANNELS * PIXELS * 4);
     for (int i = 0; i < PIXELS; i++)
         for (int channel = 0; channel < CHANNELS; channel++)
@@ -150,29 +150,29 @@ END_TEST
 START_TEST(skewed_steps_are_no_metaimage) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     view.row_step[0] = 0.25 * 0.6, view.row_step[2] = 0.25 * 0.8; /* 45 degrees off */
-    ck_skg_fails(skg_picture_write(&picture, at("a.mha")), SKG_ERR_UNSUPPORTED, "write .tif instead");
+    ck_skg_fails(skg_picture_save(&picture, at("a.mha")), SKG_ERR_UNSUPPORTED, "write .tif instead");
     ck_assert_ptr_nonnull(strstr(skg_last_error(), "45 degrees"));
     ck_assert_int_eq(files_in_folder(), 0);
-    ck_skg(skg_picture_write(&picture, at("a.tif")));
+    ck_skg(skg_picture_save(&picture, at("a.tif")));
 }
 END_TEST
 
 START_TEST(a_wrong_path_is_refused) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
-    ck_skg_fails(skg_picture_write(&picture, at("a.jpg")), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_picture_save(&picture, at("a.jpg")), SKG_ERR_ARGUMENT,
                  "the extension .jpg is no image format; use .png, .tif or .mha");
-    ck_skg_fails(skg_picture_write(&picture, at("a")), SKG_ERR_ARGUMENT, "the extension is missing");
-    ck_skg_fails(skg_picture_write(&picture, ""), SKG_ERR_ARGUMENT, "no path");
-    ck_skg_fails(skg_picture_write(&picture, at("none/a.tif")), SKG_ERR_OUTPUT,
+    ck_skg_fails(skg_picture_save(&picture, at("a")), SKG_ERR_ARGUMENT, "the extension is missing");
+    ck_skg_fails(skg_picture_save(&picture, ""), SKG_ERR_ARGUMENT, "no path");
+    ck_skg_fails(skg_picture_save(&picture, at("none/a.tif")), SKG_ERR_OUTPUT,
                  "none/a.tif: cannot be written: No such file or directory; make its folder first");
-    ck_skg_fails(skg_picture_write(&picture, "/dev/null/a.mha"), SKG_ERR_OUTPUT, "Not a directory");
+    ck_skg_fails(skg_picture_save(&picture, "/dev/null/a.mha"), SKG_ERR_OUTPUT, "Not a directory");
     ck_skg_fails(skg_picture_path_check(at("none/a.png")), SKG_ERR_OUTPUT, "none/a.png");
     ck_skg_fails(skg_picture_path_check(at("a.bmp")), SKG_ERR_ARGUMENT, ".bmp");
     ck_assert_int_eq(mkdir(at("a.png"), 0777), 0);
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_OUTPUT, "it is a folder; add a file name");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_OUTPUT, "it is a folder; add a file name");
     ck_assert_int_eq(rmdir(path), 0);
     ck_assert_int_eq(mkfifo(path, 0600), 0);
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_OUTPUT, "it is a device");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_OUTPUT, "it is a device");
     ck_assert_int_eq(unlink(path), 0);
     ck_skg(skg_picture_path_check(path));
     ck_assert_int_eq(files_in_folder(), 0);
@@ -196,7 +196,7 @@ START_TEST(a_full_disk_leaves_nothing) {
     skg_status status[3];
     char sentence[3][256];
     for (int i = 0; i < 3; i++) {
-        status[i] = skg_picture_write(&picture, at(names[i]));
+        status[i] = skg_picture_save(&picture, at(names[i]));
         snprintf(sentence[i], sizeof sentence[i], "%s", skg_last_error());
     }
     int left = files_in_folder();
@@ -214,22 +214,22 @@ END_TEST
 START_TEST(an_unusable_picture_is_refused) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     picture.rows = 4;
-    ck_skg_fails(skg_picture_write(&picture, at("a.tif")), SKG_ERR_ARGUMENT, "its view has 7 x 5");
+    ck_skg_fails(skg_picture_save(&picture, at("a.tif")), SKG_ERR_ARGUMENT, "its view has 7 x 5");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.low = 2, picture.high = 1;
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "range 2:1");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_ARGUMENT, "range 2:1");
     picture = picture_of(3);
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "type 3");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_ARGUMENT, "type 3");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.data = NULL;
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "no data");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_ARGUMENT, "no data");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.flat_field = nan("");
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "flat field");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_ARGUMENT, "flat field");
     picture = picture_of(SKG_TYPE_FLOAT32);
     picture.channels = 0;
-    ck_skg_fails(skg_picture_write(&picture, path), SKG_ERR_ARGUMENT, "0 channels");
-    ck_skg_fails(skg_picture_write(NULL, path), SKG_ERR_ARGUMENT, "skg_picture");
+    ck_skg_fails(skg_picture_save(&picture, path), SKG_ERR_ARGUMENT, "0 channels");
+    ck_skg_fails(skg_picture_save(NULL, path), SKG_ERR_ARGUMENT, "skg_picture");
     ck_assert_int_eq(files_in_folder(), 0);
 }
 END_TEST

@@ -40,7 +40,7 @@ START_TEST(png_shows_dense_white_or_dark) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
     picture.flat_field = 6000;
     for (int i = 0; i < PIXELS; i++) doubles[i] = 6000 * exp(-0.1 * i);
-    ck_skg(skg_picture_write(&picture, at("a.png")));
+    ck_skg(skg_picture_save(&picture, at("a.png")));
     read_png(path, levels, texts, sizeof texts);
     for (int i = 0; i < PIXELS; i++) expected[i] = i / 34.0; /* -ln(I/I0) from 0 to 3.4 */
     for (int i = 0; i < PIXELS; i++)
@@ -53,7 +53,7 @@ START_TEST(png_shows_dense_white_or_dark) {
 
     picture.display = SKG_DISPLAY_TRANSMISSION;
     picture.low = 0, picture.high = 0.5;
-    ck_skg(skg_picture_write(&picture, path));
+    ck_skg(skg_picture_save(&picture, path));
     read_png(path, levels, texts, sizeof texts);
     for (int i = 0; i < PIXELS; i++) {
         double grey = exp(-0.1 * i) / 0.5;
@@ -71,17 +71,17 @@ START_TEST(png_knows_what_the_data_are) {
     /* The same picture from transmissions and from attenuations. */
     picture.quantity = SKG_QUANTITY_ATTENUATION;
     for (int i = 0; i < PIXELS; i++) doubles[i] = 0.125 * i;
-    ck_skg(skg_picture_write(&picture, at("a.png")));
+    ck_skg(skg_picture_save(&picture, at("a.png")));
     read_png(path, levels, texts, sizeof texts);
     picture.quantity = SKG_QUANTITY_TRANSMISSION;
     for (int i = 0; i < PIXELS; i++) doubles[i] = exp(-0.125 * i);
-    ck_skg(skg_picture_write(&picture, path));
+    ck_skg(skg_picture_save(&picture, path));
     read_png(path, again, texts, sizeof texts);
     for (int i = 0; i < PIXELS; i++) ck_assert_int_le(abs(levels[i] - again[i]), 1);
     /* Lengths, without an open beam, are shown as they are, and exactly: 0 to 34 of 35 pixels. */
     picture.quantity = SKG_QUANTITY_ENERGY, picture.name = "path length", picture.unit = "mm";
     for (int i = 0; i < PIXELS; i++) doubles[i] = i;
-    ck_skg(skg_picture_write(&picture, path));
+    ck_skg(skg_picture_save(&picture, path));
     read_png(path, levels, texts, sizeof texts);
     for (int i = 0; i < PIXELS; i++) ck_assert_int_eq(levels[i], lround(i * 65535 / 34.0));
     ck_assert_ptr_nonnull(strstr(texts, "Display=path length (mm);Range=black 0, white 34;"));
@@ -100,7 +100,7 @@ START_TEST(ranges_leave_out_what_is_not_finite) {
     floats[0] = 0, floats[1] = -0.25f, floats[2] = nanf(""), floats[3] = 1;
     ck_skg(skg_picture_range_get(&picture, &low, &high));
     ck_assert(low == 0 && fabs(high - log(2)) < 4 * DBL_EPSILON);
-    ck_skg(skg_picture_write(&picture, at("a.png")));
+    ck_skg(skg_picture_save(&picture, at("a.png")));
     read_png(path, levels, texts, sizeof texts);
     ck_assert_int_eq(levels[0], 65535); /* nothing comes through: dense */
     ck_assert_int_eq(levels[1], 65535);
@@ -108,11 +108,11 @@ START_TEST(ranges_leave_out_what_is_not_finite) {
     ck_assert_int_eq(levels[3], 0);
     /* An empty field is black in a radiograph, white in a transmission. */
     for (int i = 0; i < PIXELS; i++) floats[i] = 1;
-    ck_skg(skg_picture_write(&picture, path));
+    ck_skg(skg_picture_save(&picture, path));
     read_png(path, levels, texts, sizeof texts);
     ck_assert_int_eq(levels[17], 0);
     picture.display = SKG_DISPLAY_TRANSMISSION;
-    ck_skg(skg_picture_write(&picture, path));
+    ck_skg(skg_picture_save(&picture, path));
     read_png(path, levels, texts, sizeof texts);
     ck_assert_int_eq(levels[17], 65535);
 }

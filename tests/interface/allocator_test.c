@@ -245,8 +245,8 @@ START_TEST(a_handler_hears_of_each_failure_once) {
     const skg_status failed[] = {skg_plan_image(p.plan, &output),
                                  skg_plan_submit(p.plan, 0, NULL, &output, &p.job),
                                  skg_plan_submit(p.plan, 1, NULL, &lengths, &p.job),
-                                 skg_plan_move(p.plan, NULL),
-                                 skg_plan_move(p.plan, &view),
+                                 skg_plan_view_set(p.plan, NULL),
+                                 skg_plan_view_set(p.plan, &view),
                                  skg_mesh_load(p.context, "nowhere.stl", 1, &mesh),
                                  skg_setup_load(p.context, "nowhere.json", 0, NULL, &none)};
     for (size_t n = 0; n < sizeof failed / sizeof *failed; n++) ck_assert_int_lt(failed[n], SKG_OK);

@@ -72,7 +72,7 @@ static void image_of(const skg_setup *setup, const char *folder, everything *don
     picture.columns = picture.rows = EVERYTHING_SIDE;
     picture.view = &view;
     snprintf(path, sizeof path, "%s/image.mha", folder);
-    ck_skg(skg_picture_write(&picture, path));
+    ck_skg(skg_picture_save(&picture, path));
     skg_plan_release(&plan);
 }
 

@@ -29,7 +29,7 @@ static void open_plan(void) {
     ck_skg(skg_scene_create(context, &scene));
     skg_part_init(&part);
     part.mesh = cube, part.material = water, part.label = "cube";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_view_init(&view);
     view.projection = SKG_PROJECTION_PARALLEL;
     view.columns = view.rows = SIDE;

@@ -65,7 +65,7 @@ static void render(skg_context *context) {
 
 /* Signals that the driver's threads must not take from the program; those of a fault stay open. */
 START_TEST(threads_of_the_driver) {
-    static thread_state before[THREADS_MOST], after[THREADS_MOST];
+    static thread_state before[THREADS_MAX], after[THREADS_MAX];
     skg_context *context = NULL;
     const int had = threads_list(before);
     int made = 0;
@@ -116,7 +116,7 @@ static void hear(int32_t level, const char *sentence, void *user) {
 
 /* A rank that is bound to one core of a node with eight. PoCL makes as many workers as there are cores. */
 START_TEST(a_rank_on_one_core) {
-    static thread_state states[THREADS_MOST];
+    static thread_state states[THREADS_MAX];
     cpu_set_t all, one, now;
     skg_context *context = NULL;
     char warning[256] = "";
@@ -145,7 +145,7 @@ END_TEST
 
 /* Run with OMP_PROC_BIND=true: OpenMP has bound this thread to one of its places, and the driver uses them all. */
 START_TEST(bound_by_openmp) {
-    static thread_state states[THREADS_MOST];
+    static thread_state states[THREADS_MAX];
     cpu_set_t all, one;
     skg_context *context = NULL;
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);

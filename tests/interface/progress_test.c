@@ -161,7 +161,7 @@ static void open_plan(void) {
     ck_skg(skg_scene_create(context, &scene));
     skg_part_init(&part);
     part.mesh = cube, part.material = water, part.label = "cube";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_view_init(&view);
     ck_skg(skg_scan_view_get(scan, 0, &view));
     ck_skg(skg_plan_create(context, scene, &view, beam, NULL, &plan));

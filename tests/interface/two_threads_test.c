@@ -49,7 +49,7 @@ static skg_status add_part(skg_scene *scene, skg_mesh *mesh, skg_material *mater
     part.label = inside < 0 ? "outer" : "inner";
     part.inside = inside;
     if (inside >= 0) part.pose[3] = 5;
-    return skg_scene_add(scene, &part, &id);
+    return skg_scene_part_add(scene, &part, &id);
 }
 
 static skg_status make_scene(skg_material *shared, skg_scene *scene) {

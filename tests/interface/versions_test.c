@@ -31,7 +31,7 @@ static void open_plan(void) {
     ck_skg(skg_scene_create(context, &scene));
     skg_part_init(&part);
     part.mesh = cube, part.material = water, part.label = "cube";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_view_init(&view);
     view.projection = SKG_PROJECTION_PARALLEL;
     view.columns = view.rows = SIDE;
@@ -184,9 +184,9 @@ START_TEST(unknown_fields_are_refused) {
     frame.later = 1;
     ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "does not know");
     part.later = -1, part.label = "another";
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "does not know");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "does not know");
     view.later = 1;
-    ck_skg_fails(skg_plan_move(plan, &view), SKG_ERR_ARGUMENT, "does not know");
+    ck_skg_fails(skg_plan_view_set(plan, &view), SKG_ERR_ARGUMENT, "does not know");
     skg_filter filters[2];
     skg_spectrum *behind = NULL;
     for (int i = 0; i < 2; i++) {

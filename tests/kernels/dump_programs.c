@@ -12,11 +12,11 @@
 #include <unistd.h>
 
 /* Made by clCreateProgramWithSource and not yet built: the text of the program. */
-enum { MOST = 64 };
+enum { LIMIT = 64 };
 static struct {
     cl_program program;
     char *text;
-} made[MOST];
+} made[LIMIT];
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 typedef cl_program create_call(cl_context, cl_uint, const char **, const size_t *, cl_int *);
@@ -49,7 +49,7 @@ cl_program clCreateProgramWithSource(cl_context context, cl_uint count, const ch
     const char *folder = getenv("SKG_DUMP");
     if (!program || !folder || !folder[0]) return program;
     pthread_mutex_lock(&lock);
-    for (int i = 0; i < MOST; i++)
+    for (int i = 0; i < LIMIT; i++)
         if (!made[i].program) {
             made[i].program = program;
             made[i].text = joined(count, texts, lengths);
@@ -78,7 +78,7 @@ cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id *dev
     next_of("clBuildProgram", &call, sizeof call);
     const cl_int code = call(program, count, devices, options, built, user);
     pthread_mutex_lock(&lock);
-    for (int i = 0; i < MOST; i++)
+    for (int i = 0; i < LIMIT; i++)
         if (program && made[i].program == program) {
             if (code == CL_SUCCESS && made[i].text) dump(made[i].text, options ? options : "");
             free(made[i].text);

@@ -84,8 +84,8 @@ END_TEST
 
 /* Chi-square of counts of photons against the distribution itself. */
 static void check_poisson(double mean, uint32_t key) {
-    enum { DRAWS = 400000, MOST = 200 };
-    static int counts[MOST];
+    enum { DRAWS = 400000, LIMIT = 200 };
+    static int counts[LIMIT];
     double chi = 0, expected = exp(-mean) * DRAWS, left = DRAWS;
     int bins = 0, waiting = 0;
     memset(counts, 0, sizeof counts);
@@ -94,12 +94,12 @@ static void check_poisson(double mean, uint32_t key) {
         philox(words, key, 0);
         for (int k = 0; k < 4; k++) {
             const int count = (int)poisson((float)mean, words[k]);
-            ck_assert(count >= 0 && count < MOST);
+            ck_assert(count >= 0 && count < LIMIT);
             counts[count]++;
         }
     }
     double group = 0;
-    for (int k = 0; k < MOST; k++) {
+    for (int k = 0; k < LIMIT; k++) {
         group += expected;
         waiting += counts[k];
         left -= expected;

@@ -94,7 +94,7 @@ static void add(skg_context *context, skg_scene *scene, const char *label, solid
     TRY(skg_material_create_named(material, &part.material));
     part.label = label;
     part.priority = priority;
-    TRY(skg_scene_add(scene, &part, NULL));
+    TRY(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
     solid_free(&s);
@@ -222,7 +222,7 @@ static int draw_picture(skg_context *context, const skg_scene *scene, const skg_
     look.columns = COLUMNS, look.rows = ROWS;
     look.colours = colours;
     look.image = image;
-    TRY(skg_view_picture(context, scene, view, &look, rgba));
+    TRY(skg_scene_picture(context, scene, view, &look, rgba));
     for (int p = 0; p < PIXELS; p++)
         if (rgba[4 * p + 3] != 255) return 0;
     return 1;

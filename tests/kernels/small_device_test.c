@@ -14,17 +14,17 @@ static int launched, asked_double;
 static cl_device_id device;
 
 /* Local memory that arguments ask for, of the kernels that have some. */
-enum { MOST = 64 };
+enum { LIMIT = 64 };
 static struct {
     cl_kernel kernel;
     cl_uint index;
     size_t bytes;
-} arguments[MOST];
+} arguments[LIMIT];
 
 cl_int __real_clSetKernelArg(cl_kernel kernel, cl_uint index, size_t size, const void *value);
 cl_int __wrap_clSetKernelArg(cl_kernel kernel, cl_uint index, size_t size, const void *value);
 cl_int __wrap_clSetKernelArg(cl_kernel kernel, cl_uint index, size_t size, const void *value) {
-    for (int i = 0; !value && i < MOST; i++)
+    for (int i = 0; !value && i < LIMIT; i++)
         if (!arguments[i].kernel || (arguments[i].kernel == kernel && arguments[i].index == index)) {
             arguments[i].kernel = kernel, arguments[i].index = index, arguments[i].bytes = size;
             break;
@@ -48,7 +48,7 @@ cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, c
         CL_SUCCESS)
         sum =
             (size_t)own; /* a driver may count the arguments, too: then the sum is too high, never too low */
-    for (int i = 0; i < MOST; i++)
+    for (int i = 0; i < LIMIT; i++)
         if (arguments[i].kernel == kernel) sum += arguments[i].bytes;
     if (sum > most_local) most_local = sum;
     return __real_clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, count, waits,

@@ -64,8 +64,8 @@ END_TEST
 
 /* Centres and radii of the spheres of a foam, from the poles of each. */
 START_TEST(a_foam_fills_its_fraction_and_repeats) {
-    enum { MOST = 2000 };
-    static double positions[2][3 * MOST * 62];
+    enum { LIMIT = 2000 };
+    static double positions[2][3 * LIMIT * 62];
     skg_foam foam;
     int64_t vertices = 0, triangles = 0;
     skg_foam_init(&foam);
@@ -73,7 +73,7 @@ START_TEST(a_foam_fills_its_fraction_and_repeats) {
     for (int again = 0; again < 2; again++) {
         ck_skg(skg_mesh_create_foam(&foam, &mesh));
         ck_skg(skg_mesh_count(mesh, &vertices, &triangles));
-        ck_assert_int_le(vertices, MOST * 62);
+        ck_assert_int_le(vertices, LIMIT * 62);
         ck_skg(skg_mesh_positions_get(mesh, positions[again], 3));
         const double volume = health_of(mesh).volume / share_of_sphere(12);
         /* The last sphere is that with which the share of the box is reached: at most one of radius 1 too much. */

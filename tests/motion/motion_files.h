@@ -44,7 +44,7 @@ static inline double height_of(const char *label) {
     skg_mesh_health health;
     skg_part_init(&found);
     skg_mesh_health_init(&health);
-    ck_skg(skg_scene_find(setup->scene, label, &part));
+    ck_skg(skg_scene_part_find(setup->scene, label, &part));
     ck_skg(skg_scene_part_get(setup->scene, part, &found));
     ck_skg(skg_mesh_health_get(found.mesh, &health));
     return health.bounds[2];

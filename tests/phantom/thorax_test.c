@@ -13,10 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_PARTS = 160 };
+enum { PARTS_MAX = 160 };
 
 static skg_thorax *thorax;
-static skg_thorax_part part[MOST_PARTS];
+static skg_thorax_part part[PARTS_MAX];
 static int64_t parts;
 
 static void make(int simple, int64_t triangles) {
@@ -26,7 +26,7 @@ static void make(int simple, int64_t triangles) {
     options.triangles = triangles;
     ck_skg(skg_thorax_create(&options, &thorax));
     ck_skg(skg_thorax_part_count(thorax, &parts));
-    ck_assert_int_le(parts, MOST_PARTS);
+    ck_assert_int_le(parts, PARTS_MAX);
     for (int64_t i = 0; i < parts; i++) {
         skg_thorax_part_init(part + i);
         ck_skg(skg_thorax_part_get(thorax, i, part + i));
@@ -206,7 +206,7 @@ static int within(int64_t inner, int64_t outer) {
 }
 
 START_TEST(disjoint_or_nested) {
-    static solid s[MOST_PARTS];
+    static solid s[PARTS_MAX];
     make(_i, 42000);
     int64_t needle = find("needle");
     for (int64_t i = 0; i < parts; i++) solid_make(part[i].mesh, s + i);
@@ -245,7 +245,7 @@ END_TEST
  */
 START_TEST(plans_find_no_overlap) {
     const int64_t sizes[] = {42000, 80000};
-    skg_solid s[MOST_PARTS];
+    skg_solid s[PARTS_MAX];
     skg_overlap_pair *pairs = NULL;
     int64_t side = 0, found = 0;
     make(_i / 2, sizes[_i % 2]);

@@ -114,7 +114,7 @@ START_TEST(what_hdf5_reads) {
         skg_output_init(&output);
         output.data = expected;
         ck_skg(skg_scan_view_get(scan, k, &of));
-        ck_skg(skg_plan_move(plan, &of));
+        ck_skg(skg_plan_view_set(plan, &of));
         ck_skg(skg_plan_image(plan, &output));
         ck_assert_mem_eq(images[k], expected, sizeof expected);
         read_set(root, "geometry/source", H5T_NATIVE_DOUBLE, 3 * COUNT, vectors);

@@ -57,7 +57,7 @@ static void image(const skg_view *of, float *to) {
     skg_output output;
     skg_output_init(&output);
     output.data = to;
-    ck_skg(skg_plan_move(plan, of));
+    ck_skg(skg_plan_view_set(plan, of));
     ck_skg(skg_plan_image(plan, &output));
 }
 
@@ -260,7 +260,7 @@ START_TEST(parts_move_from_one_projection_to_the_next) {
         skg_view of;
         skg_view_init(&of);
         ck_skg(skg_scan_view_get(scan, k, &of));
-        ck_skg(skg_scene_pose_set(scene, 0, poses[k]));
+        ck_skg(skg_scene_part_pose_set(scene, 0, poses[k]));
         image(&of, expected[k]);
     }
     ck_assert_mem_eq(got, expected, sizeof got);

@@ -36,7 +36,7 @@ static int64_t add(const char *label, int64_t inside) {
     int64_t id = -2;
     part.inside = inside;
     part.pose[3] = (double)strlen(label); /* no twins */
-    ck_skg(skg_scene_add(scene, &part, &id));
+    ck_skg(skg_scene_part_add(scene, &part, &id));
     return id;
 }
 
@@ -49,14 +49,14 @@ START_TEST(parts_come_back_as_they_went_in) {
     part.inside = 0;
     part.pose[0] = -2; /* mirrored is fine */
     part.pose[7] = 3.5;
-    ck_skg(skg_scene_add(scene, &part, &id));
+    ck_skg(skg_scene_part_add(scene, &part, &id));
     ck_assert_int_eq(id, 1);
     skg_part_init(&read);
     ck_skg(skg_scene_part_get(scene, 1, &read));
     const char *its = NULL;
-    ck_skg(skg_scene_label_get(scene, 1, &its));
+    ck_skg(skg_scene_part_label_get(scene, 1, &its));
     ck_assert_str_eq(its, read.label);
-    ck_skg_fails(skg_scene_label_get(scene, 99, &its), SKG_ERR_SCENE, "99");
+    ck_skg_fails(skg_scene_part_label_get(scene, 99, &its), SKG_ERR_SCENE, "99");
     ck_assert_ptr_null(its);
     ck_assert_int_eq(read.inside, 0);
     ck_assert_ptr_eq(read.mesh, cube);
@@ -87,7 +87,7 @@ START_TEST(a_part_without_label_has_its_meshs_name) {
     skg_part part = good_part(NULL), read;
     const char *name = NULL;
     ck_skg(skg_mesh_name_get(cube, &name));
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_part_init(&read);
     ck_skg(skg_scene_part_get(scene, 0, &read));
     ck_assert_str_eq(read.label, name);
@@ -97,14 +97,14 @@ END_TEST
 START_TEST(labels_are_found) {
     int64_t id = -1;
     add("liver", -1), add("Lung", -1), add("spine", -1), add("SPINE", -1);
-    ck_skg(skg_scene_find(scene, "liver", &id));
+    ck_skg(skg_scene_part_find(scene, "liver", &id));
     ck_assert_int_eq(id, 0);
-    ck_skg(skg_scene_find(scene, "LUNG", &id)); /* the only one alike */
+    ck_skg(skg_scene_part_find(scene, "LUNG", &id)); /* the only one alike */
     ck_assert_int_eq(id, 1);
-    ck_skg(skg_scene_find(scene, "SPINE", &id)); /* the exact one first */
+    ck_skg(skg_scene_part_find(scene, "SPINE", &id)); /* the exact one first */
     ck_assert_int_eq(id, 3);
-    ck_skg_fails(skg_scene_find(scene, "Spine", &id), SKG_ERR_SCENE, "no part has the label Spine");
-    ck_skg_fails(skg_scene_find(scene, "livre", &id), SKG_ERR_SCENE, "did you mean liver");
+    ck_skg_fails(skg_scene_part_find(scene, "Spine", &id), SKG_ERR_SCENE, "no part has the label Spine");
+    ck_skg_fails(skg_scene_part_find(scene, "livre", &id), SKG_ERR_SCENE, "did you mean liver");
 }
 END_TEST
 
@@ -114,12 +114,12 @@ START_TEST(plans_can_see_what_changed) {
     add("a", -1);
     ck_assert_int_gt(scene->structure, structure);
     structure = scene->structure;
-    ck_skg(skg_scene_pose_set(scene, 0, pose));
+    ck_skg(skg_scene_part_pose_set(scene, 0, pose));
     ck_assert_int_eq(scene->structure, structure);
     ck_assert_int_gt(scene->poses, poses);
     poses = scene->poses;
     pose[0] = (double)NAN;
-    ck_skg_fails(skg_scene_pose_set(scene, 0, pose), SKG_ERR_SCENE, "not finite");
+    ck_skg_fails(skg_scene_part_pose_set(scene, 0, pose), SKG_ERR_SCENE, "not finite");
     ck_assert_int_eq(scene->poses, poses);
     ck_assert_double_eq(scene->parts[0].pose[3], 5);
 }
@@ -129,24 +129,24 @@ START_TEST(bad_parts_are_refused) {
     int64_t count = 0;
     add("taken", -1);
     skg_part part = good_part("taken");
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "two parts have the label taken");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "two parts have the label taken");
     part = good_part("part");
     part.inside = 1;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "inside itself");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "inside itself");
     part.inside = 2;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "part 2, which is not there");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "part 2, which is not there");
     part.inside = -2;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "not there");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "not there");
     part = good_part("part");
     part.mesh = NULL;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "no mesh");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "no mesh");
     part = good_part("part");
     part.material = NULL;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "no material");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "no material");
     part = good_part("");
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "empty label");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "empty label");
     part = (skg_part){0};
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "skg_part_init");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "skg_part_init");
     ck_skg(skg_scene_part_count(scene, &count));
     ck_assert_int_eq(count, 1);
     skg_part_init(&part);
@@ -158,16 +158,16 @@ END_TEST
 START_TEST(singular_poses_are_refused) {
     skg_part part = good_part("flat");
     part.pose[10] = 0;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "singular");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "singular");
     part = good_part("sheared flat"); /* rows 0 and 1 equal */
     part.pose[0] = part.pose[1] = part.pose[4] = part.pose[5] = 1;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "singular");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "singular");
     part = good_part("perspective");
     part.pose[12] = 0.1;
-    ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "last row");
+    ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "last row");
     part = good_part("tiny");
     for (int k = 0; k < 3; k++) part.pose[5 * k] = 1e-9;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
 }
 END_TEST
 
@@ -196,13 +196,13 @@ START_TEST(the_same_mesh_twice_in_a_place_is_reported) {
     ck_skg(skg_scene_create(context, &scene));
     skg_context_release(&context); /* the scene keeps it */
     skg_part part = good_part("a");
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     part.label = "b";
     part.pose[3] = 20;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     ck_assert_int_eq(warnings, 0);
     part.label = "c";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     ck_assert_int_eq(warnings, 1);
 }
 END_TEST
@@ -217,14 +217,14 @@ START_TEST(many_parts) {
         snprintf(label, sizeof label, "%d", n);
         part.label = label;
         part.pose[3] = n;
-        ck_skg(skg_scene_add(scene, &part, NULL));
+        ck_skg(skg_scene_part_add(scene, &part, NULL));
     }
     for (int n = 0; n < PARTS; n += 9973) {
         snprintf(label, sizeof label, "%d", n);
-        ck_skg(skg_scene_find(scene, label, &id));
+        ck_skg(skg_scene_part_find(scene, label, &id));
         ck_assert_int_eq(id, n);
         part.label = label;
-        ck_skg_fails(skg_scene_add(scene, &part, NULL), SKG_ERR_SCENE, "two parts have the label");
+        ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_SCENE, "two parts have the label");
     }
 }
 END_TEST

@@ -12,7 +12,7 @@
 #include <skiagraph/material.h>
 #include <skiagraph/opencl.h>
 #include <skiagraph/plan.h>
-#include <skiagraph/view_picture.h>
+#include <skiagraph/scene_picture.h>
 
 #include <math.h>
 #include <sys/wait.h>
@@ -181,7 +181,7 @@ static const struct {
      "skg_depth_v(&f, &line, i), stored.factor[row],\n                                i < line.b - 1, 0)",
      SKG_SELF_TEST_COPIES},
     {"draw.clh", "skg_between_v(&span, i), i)", "skg_between_v(&span, i + 1), i)", SKG_SELF_TEST_COPIES},
-    {"bands.cl", "if (to - from >= SKG_MOST_TILES) {", "if (to - from >= 1) {\n                    continue;",
+    {"bands.cl", "if (to - from >= SKG_TILES_MAX) {", "if (to - from >= 1) {\n                    continue;",
      SKG_SELF_TEST_TILES},
     {"raster_bands.cl", "skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range)", "",
      SKG_SELF_TEST_TILES},
@@ -385,7 +385,7 @@ START_TEST(calls_are_refused_whose_kernels_are_wrong) {
                  "with the kernels of path lengths");
     ck_skg_fails(skg_plan_positions_set_cl(plan, 0, NULL, 0, bound, bound, 0, NULL, NULL), SKG_ERR_DEVICE,
                  "with the kernels of positions on the device");
-    ck_skg_fails(skg_view_picture(context, scene.scene, &scene.view, NULL, rgba), SKG_ERR_DEVICE,
+    ck_skg_fails(skg_scene_picture(context, scene.scene, &scene.view, NULL, rgba), SKG_ERR_DEVICE,
                  "with the kernels of 3D view");
     keep_verdict(context, "path lengths", 1, 0);
     ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));

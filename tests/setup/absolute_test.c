@@ -150,7 +150,7 @@ static void check_move(int32_t quantity, int32_t noise, int32_t falloff, double 
         take(other, NULL, expected);
         take(plan, &view, image);
         compare(tolerance);
-        ck_skg(skg_plan_move(plan, &view));
+        ck_skg(skg_plan_view_set(plan, &view));
         take(plan, NULL, image);
         compare(tolerance);
         /* a product and a quotient more */
@@ -216,7 +216,7 @@ START_TEST(parallel_beams_have_no_distance) {
     ck_assert_mem_eq(image, expected, sizeof image);
     skg_view point = view;
     point.projection = SKG_PROJECTION_POINT;
-    ck_assert_int_eq(skg_plan_move(plan, &point), SKG_STALE);
+    ck_assert_int_eq(skg_plan_view_set(plan, &point), SKG_STALE);
     ck_assert_ptr_nonnull(strstr(skg_last_error(), "for a parallel beam and an absolute beam"));
     ck_assert_double_eq_tol(flat_field_of(plan), given.energy_kev, 64 * DBL_EPSILON * given.energy_kev);
 }

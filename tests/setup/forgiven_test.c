@@ -8,15 +8,15 @@
 #include <float.h>
 #include <math.h>
 
-enum { MOST_WARNINGS = 8 };
-static char warnings[MOST_WARNINGS][512];
+enum { WARNINGS_MAX = 8 };
+static char warnings[WARNINGS_MAX][512];
 static int warning_count;
 static skg_context *context;
 
 static void keep(int32_t level, const char *sentence, void *user) {
     (void)user;
     if (level != SKG_LOG_WARNING) return;
-    ck_assert_int_lt(warning_count, MOST_WARNINGS);
+    ck_assert_int_lt(warning_count, WARNINGS_MAX);
     snprintf(warnings[warning_count++], sizeof *warnings, "%s", sentence);
 }
 

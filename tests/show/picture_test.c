@@ -45,7 +45,7 @@ static void add_box(const char *label, double length, double x, double y, double
     part.label = label;
     part.inside = inside;
     part.pose[3] = x, part.pose[7] = y, part.pose[11] = z;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
 }
@@ -60,7 +60,7 @@ static const uint8_t *pixel_at(const uint8_t *rgba, double x, double y, double z
 }
 
 static void draw(uint8_t *rgba) {
-    ck_skg(skg_view_picture(context, scene, &view, &look, rgba));
+    ck_skg(skg_scene_picture(context, scene, &view, &look, rgba));
 }
 
 /* Whether a pixel has the hue of a colour: the channels that are lit have its ratios, give or take rounding and gleam. */
@@ -187,7 +187,7 @@ START_TEST(the_bytes_depend_on_the_scene_alone) {
     draw(other);
     ck_assert_mem_eq(picture, other, sizeof picture);
     ck_skg(skg_context_create("threads=1", &one));
-    ck_skg(skg_view_picture(one, scene, &view, &look, other));
+    ck_skg(skg_scene_picture(one, scene, &view, &look, other));
     ck_assert_mem_eq(picture, other, sizeof picture);
     skg_context_release(&one);
     skg_scene_release(&first);
@@ -224,7 +224,7 @@ START_TEST(creases_and_smooth_surfaces) {
     ck_skg(skg_mesh_create_sphere(40, 24, &part.mesh));
     ck_skg(skg_material_create_mu("grey", 0.2, &part.material));
     part.label = "ball";
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
     look.colours = colours[0];
@@ -258,18 +258,19 @@ START_TEST(bounds_hold_the_eye) {
     add_box("box", 30, 0, 0, 0, -1);
     look.from[0] = 0.5, look.orthographic = 0;
     ck_skg(skg_view_places_get(scene, &view, &look, 1, point, before));
-    ck_skg(skg_scene_pose_set(scene, 0, pose));
+    ck_skg(skg_scene_part_pose_set(scene, 0, pose));
     ck_skg(skg_view_places_get(scene, &view, &look, 1, point, after));
     ck_assert_double_ne(before[0], after[0]);
     look.bounds = bounds;
     ck_skg(skg_view_places_get(scene, &view, &look, 1, point, after));
-    ck_skg(skg_scene_pose_set(scene, 0, (const double[16]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
+    ck_skg(skg_scene_part_pose_set(scene, 0,
+                                   (const double[16]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
     ck_skg(skg_view_places_get(scene, &view, &look, 1, point, before));
     ck_assert_mem_eq(before, after, sizeof before);
     draw(picture);
     const double turned[6] = {-30, 30, -30, 30, -30, 30};
     look.bounds = turned;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "along y");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "along y");
 }
 END_TEST
 
@@ -283,7 +284,7 @@ START_TEST(default_colours) {
     ck_skg(skg_mesh_create_cuboid(10, 10, 10, &part.mesh));
     ck_skg(skg_material_create_named("Bone, cortical", &part.material));
     part.label = "bone", part.inside = 2;
-    ck_skg(skg_scene_add(scene, &part, NULL));
+    ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
     ck_skg(skg_look_colours_get(scene, colours[0]));
@@ -301,30 +302,30 @@ START_TEST(errors_name_the_thing) {
     float *offsets = NULL;
     const double *origin;
     skg_part part;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "no parts");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "no parts");
     add_box("box", 10, 0, 0, 0, -1);
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, NULL), SKG_ERR_ARGUMENT, "rgba");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, NULL), SKG_ERR_ARGUMENT, "rgba");
     look.colours = none;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "every part");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "every part");
     look.colours = NULL;
-    look.columns = SKG_LOOK_MOST_PIXELS + 1;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "8193 columns");
+    look.columns = SKG_LOOK_PIXELS_MAX + 1;
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "8193 columns");
     look.columns = SIDE;
     look.from[0] = (double)NAN;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "not finite");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "not finite");
     look.from[0] = 0;
     look.path_count = 1;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "path is NULL");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "path is NULL");
     look.path_count = 0;
     skg_part_init(&part);
     ck_skg(skg_scene_part_get(scene, 0, &part));
     ck_skg(skg_mesh_offsets_get(part.mesh, &offsets, &origin));
     offsets[10] = (float)INFINITY;
     ck_skg(skg_mesh_offsets_moved(part.mesh));
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE,
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE,
                  "part box: vertex 3");
     view.columns = 0;
-    ck_skg_fails(skg_view_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "0 columns");
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "0 columns");
 }
 END_TEST
 

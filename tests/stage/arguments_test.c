@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { MOST_FILES = 7, MOST_ARGUMENTS = 32 };
+enum { FILES_MAX = 7, ARGUMENTS_MAX = 32 };
 
 static skg_context *context;
 
@@ -21,7 +21,7 @@ static void close_context(void) {
 /* Every kernel with the names of its arguments; NULL ends them. */
 typedef struct {
     const char *function;
-    const char *names[MOST_ARGUMENTS];
+    const char *names[ARGUMENTS_MAX];
 } kernel_list;
 
 #define NAME(kernel, name) #name,
@@ -33,7 +33,7 @@ enum { KERNELS = sizeof lists / sizeof *lists };
 
 /* What has to be compiled for them to be there, with all arguments. */
 static const struct {
-    const char *files[MOST_FILES];
+    const char *files[FILES_MAX];
     const char *flags;
     int32_t half;
 } programs[] = {
@@ -92,7 +92,7 @@ START_TEST(arguments_have_the_names_of_their_kernels) {
         cl_uint count = 0;
         cl_program program = NULL;
         cl_kernel kernels[8];
-        while (files < MOST_FILES && programs[p].files[files]) files++;
+        while (files < FILES_MAX && programs[p].files[files]) files++;
         const skg_program_options more = {.flags = programs[p].flags};
         ck_skg(skg_kernels_get(context, &options, files, programs[p].files, &more, &program));
         ck_assert_int_eq(clCreateKernelsInProgram(program, 8, kernels, &count), CL_SUCCESS);

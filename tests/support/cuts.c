@@ -334,7 +334,7 @@ static skg_status add_part(skg_context *context, const cut_scene *s, int64_t n, 
     part.label = label;
     part.inside = s->inside[n];
     memcpy(part.pose, s->pose[n], sizeof part.pose);
-    if (status == SKG_OK) status = skg_scene_add(scene, &part, NULL);
+    if (status == SKG_OK) status = skg_scene_part_add(scene, &part, NULL);
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
     return status;

@@ -113,7 +113,7 @@ static double outside(const drawn_scene *s, caster *const *casters, const double
 }
 
 drawn_error drawn_scene_judge(const drawn_scene *s, const double *single, const double *twice) {
-    enum { MOST = 300 };
+    enum { LIMIT = 300 };
     const int64_t pixels = s->view.rows * s->view.columns;
     drawn_error worst = {0};
     caster *casters[DRAWN_PARTS];
@@ -127,7 +127,7 @@ drawn_error drawn_scene_judge(const drawn_scene *s, const double *single, const 
         order[n] = (ranked){fabs(single[n] - twice[n]) / fmax(twice[n], 1e-6), n};
     qsort(order, (size_t)pixels, sizeof *order, worst_first);
     worst.whole = order[0].error;
-    for (int64_t n = 0; n < MOST && n < pixels && order[n].error > worst.outside; n++) {
+    for (int64_t n = 0; n < LIMIT && n < pixels && order[n].error > worst.outside; n++) {
         const int64_t pixel = order[n].pixel;
         const double off = outside(s, casters, reach, pixel, single[pixel], twice[pixel]);
         if (off > worst.outside) worst.outside = off, worst.pixel = pixel;

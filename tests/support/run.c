@@ -48,7 +48,7 @@ int64_t run_part(skg_scene *scene, const char *label, skg_mesh *mesh, double mu,
     part.inside = inside;
     for (int k = 0; k < 16 && pose; k++) part.pose[k] = pose[k];
     ck_skg(skg_material_create_mu(label, mu, &part.material));
-    ck_skg(skg_scene_add(scene, &part, &id));
+    ck_skg(skg_scene_part_add(scene, &part, &id));
     skg_material_release(&part.material);
     return id;
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THREADS_MOST = 256 };
+enum { THREADS_MAX = 256 };
 
 typedef struct {
     long id;
@@ -18,10 +18,10 @@ typedef struct {
 } thread_state;
 
 /* Returns how many there are, or 0 where there is no /proc. */
-static inline int threads_list(thread_state states[THREADS_MOST]) {
+static inline int threads_list(thread_state states[THREADS_MAX]) {
     DIR *tasks = opendir("/proc/self/task");
     int count = 0;
-    for (struct dirent *one; tasks && count < THREADS_MOST && (one = readdir(tasks));) {
+    for (struct dirent *one; tasks && count < THREADS_MAX && (one = readdir(tasks));) {
         thread_state *t = &states[count];
         char path[300], line[512];
         *t = (thread_state){.id = strtol(one->d_name, NULL, 10)};

@@ -9,7 +9,7 @@
 
 #define PI 3.14159265358979323846
 
-enum { MOST = 40, NUMBERS = 12 };
+enum { LIMIT = 40, NUMBERS = 12 };
 
 static const double close_mm =
     1e-9; /* some ten roundings of 1e-16 of 1e3 mm, and a rotation of 1e-16 over 1e3 mm */
@@ -18,7 +18,7 @@ static skg_view view;
 static skg_scan_options options;
 static skg_scan *scan;
 static char folder[64], path[128], text[40000];
-static double rows[MOST][NUMBERS];
+static double rows[LIMIT][NUMBERS];
 
 static void set_up(void) {
     skg_view_init(&view);
@@ -45,12 +45,12 @@ static int write_for(const char *name, int numbers) {
     int count = 0;
     if (!scan) ck_skg(skg_scan_create(&view, &options, &scan));
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    ck_skg(skg_scan_geometry_write(scan, path));
+    ck_skg(skg_scan_geometry_save(scan, path));
     FILE *stream = fopen(path, "rb");
     ck_assert_ptr_nonnull(stream);
     text[fread(text, 1, sizeof text - 1, stream)] = '\0';
     fclose(stream);
-    for (char *at = text; count < MOST && (at = strstr(at, "\n    [")); count++) {
+    for (char *at = text; count < LIMIT && (at = strstr(at, "\n    [")); count++) {
         at += 6;
         for (int i = 0; i < numbers; i++) {
             rows[count][i] = strtod(at, &at);
@@ -287,19 +287,19 @@ START_TEST(what_is_refused) {
     view.row_step[0] = 1;
     ck_skg(skg_scan_create(&view, &options, &scan));
     snprintf(path, sizeof path, "%s/scan.tigre.py", folder);
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "TIGRE has no skewed detector");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "TIGRE has no skewed detector");
     skg_scan_release(&scan);
     view.row_step[0] = 0;
     view.projection = SKG_PROJECTION_PARALLEL;
     ck_skg(skg_scan_create(&view, &options, &scan));
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "parallel beams");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "parallel beams");
     options.pitch_mm = 3;
     options.step_rad = 1;
     skg_scan_release(&scan);
     ck_skg(skg_scan_create(&view, &options, &scan));
     snprintf(path, sizeof path, "%s/scan.cil.py", folder);
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "on a circle only");
-    ck_skg_fails(skg_scan_geometry_write(scan, "scan.py"), SKG_ERR_ARGUMENT, ".tigre.py");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "on a circle only");
+    ck_skg_fails(skg_scan_geometry_save(scan, "scan.py"), SKG_ERR_ARGUMENT, ".tigre.py");
     ck_assert_int_ne(access(path, F_OK), 0);
 }
 END_TEST
@@ -310,7 +310,7 @@ START_TEST(pixels_that_differ) {
                                  0, -1000, 0, 0, 500, 0, -2.1, 0, 0, 0, 0, -3};
     ck_skg(skg_scan_create_table(&view, NULL, 2, poses, &scan));
     snprintf(path, sizeof path, "%s/scan.cil.py", folder);
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "projection 1: its pixels");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "projection 1: its pixels");
 }
 END_TEST
 

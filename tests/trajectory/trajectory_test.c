@@ -249,7 +249,7 @@ START_TEST(a_table_is_read_as_it_was_written) {
     options.step_rad = 0.1;
     options.centre[0] = 1.0 / 3;
     ck_skg(skg_scan_create(&view, &options, &scan));
-    ck_skg(skg_scan_geometry_write(scan, path));
+    ck_skg(skg_scan_geometry_save(scan, path));
     ck_skg(skg_scan_load_table(&view, NULL, path, &table));
     int64_t count = 0;
     ck_skg(skg_scan_projection_count(table, &count));
@@ -305,7 +305,7 @@ START_TEST(rtk_projects_points_where_we_do) {
     view.source[0] = 5;
     ck_skg(skg_scan_create(&view, &options, &scan));
     snprintf(path, sizeof path, "%s/rtk.xml", folder);
-    ck_skg(skg_scan_geometry_write(scan, path));
+    ck_skg(skg_scan_geometry_save(scan, path));
     FILE *stream = fopen(path, "rb");
     ck_assert_ptr_nonnull(stream);
     text[fread(text, 1, sizeof text - 1, stream)] = '\0';
@@ -341,21 +341,21 @@ END_TEST
 
 START_TEST(what_cannot_be_written) {
     ck_skg(skg_scan_create(&view, &options, &scan));
-    ck_skg_fails(skg_scan_geometry_write(scan, "a.txt"), SKG_ERR_ARGUMENT, ".csv");
+    ck_skg_fails(skg_scan_geometry_save(scan, "a.txt"), SKG_ERR_ARGUMENT, ".csv");
     skg_scan_release(&scan);
     view.row_step[2] = 3; /* seen from behind */
     ck_skg(skg_scan_create(&view, &options, &scan));
     snprintf(path, sizeof path, "%s/rtk.xml", folder);
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "from behind");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "from behind");
     ck_assert_int_ne(access(path, F_OK), 0);
     skg_scan_release(&scan);
     view.row_step[0] = 1;
     ck_skg(skg_scan_create(&view, &options, &scan));
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "skewed");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "skewed");
     skg_scan_release(&scan);
     view.projection = SKG_PROJECTION_PARALLEL;
     ck_skg(skg_scan_create(&view, &options, &scan));
-    ck_skg_fails(skg_scan_geometry_write(scan, path), SKG_ERR_UNSUPPORTED, "parallel");
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "parallel");
 }
 END_TEST
 

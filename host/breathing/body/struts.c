@@ -26,9 +26,9 @@ static int64_t cell_of(const vertex_grid *grid, const double p[3]) {
            cell_at(grid, 0, p[0]);
 }
 
-/* Sets the number of cells, at most a few for each vertex. Beyond MOST of them on an axis, the last holds the rest. */
+/* Sets the number of cells, at most a few for each vertex. Beyond LIMIT of them on an axis, the last holds the rest. */
 static int64_t lay_out(const skg_body_organ *o, vertex_grid *grid) {
-    enum { LEAST_CELLS = 4096, CELLS_OF_VERTEX = 64, MOST = 1 << 20 };
+    enum { LEAST_CELLS = 4096, CELLS_OF_VERTEX = 64, LIMIT = 1 << 20 };
     const double wanted = fmax(LEAST_CELLS, CELLS_OF_VERTEX * (double)o->vertices);
     double cells;
     grid->width = thickest / 2;
@@ -37,7 +37,7 @@ static int64_t lay_out(const skg_body_organ *o, vertex_grid *grid) {
         cells = 1;
         for (int k = 0; k < 3; k++) {
             grid->low[k] = o->bounds[k];
-            grid->size[k] = 1 + (int64_t)fmin((o->bounds[3 + k] - o->bounds[k]) / grid->width, MOST);
+            grid->size[k] = 1 + (int64_t)fmin((o->bounds[3 + k] - o->bounds[k]) / grid->width, LIMIT);
             cells *= (double)grid->size[k];
         }
     } while (cells > wanted && grid->width < 1e300);

@@ -68,8 +68,8 @@ static skg_status write(const skg_surface *s, const double *distances, double hi
     return skg_output_commit(&file);
 }
 
-skg_status skg_distance_map_write(const skg_mesh *mesh, const double *distances, double high_mm,
-                                  const char *path) {
+skg_status skg_distance_map_save(const skg_mesh *mesh, const double *distances, double high_mm,
+                                 const char *path) {
     SKG_PLAIN;
     skg_surface surface;
     SKG_NEEDS(mesh);
@@ -77,8 +77,7 @@ skg_status skg_distance_map_write(const skg_mesh *mesh, const double *distances,
     SKG_NEEDS(path);
     if (!(high_mm > 0 && isfinite(high_mm)))
         return skg_fail(SKG_ERR_ARGUMENT,
-                        "skg_distance_map_write: colours from 0 to %g mm; the end has to be above 0",
-                        high_mm);
+                        "skg_distance_map_save: colours from 0 to %g mm; the end has to be above 0", high_mm);
     SKG_TRY(skg_surface_create(mesh, &surface));
     const skg_status status = write(&surface, distances, high_mm, path);
     skg_surface_free(&surface);

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* WANTED: triangles for which automatic spacing stands; MOST: beyond it the samples would fill the memory. Choices. */
-enum { WANTED = 200000, MOST = 1000000000 };
+/* WANTED: triangles for which automatic spacing stands; LIMIT: beyond it the samples would fill the memory. Choices. */
+enum { WANTED = 200000, LIMIT = 1000000000 };
 
 skg_status skg_surface_create(const skg_mesh *mesh, skg_surface *surface) {
     skg_status status;
@@ -102,11 +102,11 @@ static int64_t divide(const double *const p[3], int64_t k, double *points) {
 static skg_status sample_surface(const skg_surface *s, double spacing, skg_samples *samples) {
     const double wanted = count_at(s, spacing) + (double)s->vertices;
     double total = 0;
-    if (!(wanted <= MOST))
+    if (!(wanted <= LIMIT))
         return skg_fail(
             SKG_ERR_ARGUMENT,
             "%s: a spacing of %g mm asks for %.3g samples, and the limit is %.3g; give a larger spacing",
-            s->name, spacing, wanted, (double)MOST);
+            s->name, spacing, wanted, (double)LIMIT);
     SKG_TRY(skg_alloc(3 * (int64_t)wanted, sizeof(double), s->name, &samples->points));
     SKG_TRY(skg_alloc((int64_t)wanted, sizeof(double), s->name, &samples->weights));
     for (int64_t t = 0; t < s->triangles; t++) {

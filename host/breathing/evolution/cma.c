@@ -69,7 +69,7 @@ void skg_cma_begin(skg_search *s) {
 /* Alternately near the best point, because a function with steps holds a search beside its minimum, and from a random point,
  * with a population that doubles as long as there is room. */
 static void restart(skg_search *s) {
-    double mean[SKG_SEARCH_MOST];
+    double mean[SKG_SEARCH_MAX];
     const skg_draw_key key = {s->seed, s->counters[SEARCH_GENERATION], 0, PURPOSE_RESTART};
     const int64_t doublings = s->counters[SEARCH_RESTARTS]++ / 2 + 1;
     const int is_near = s->counters[SEARCH_RESTARTS] % 2 == 1;
@@ -97,11 +97,11 @@ skg_status skg_cma_ask(skg_search *s) {
     const int64_t n = s->dimensions;
     const state c = state_of(s);
     const skg_model_frame frame = {c.mean, c.axes, c.lengths, *c.sigma};
-    double best[SKG_SEARCH_MOST];
+    double best[SKG_SEARCH_MAX];
     int has_model;
     SKG_TRY(skg_model_minimum(s, c.memory, &frame, greatest_step(n), best, &has_model));
     for (int64_t i = 0; i < s->counters[SEARCH_POPULATION]; i++) {
-        double *point = s->free_points + n * i, *inside = s->points + n * i, z[SKG_SEARCH_MOST];
+        double *point = s->free_points + n * i, *inside = s->points + n * i, z[SKG_SEARCH_MAX];
         const int is_model = has_model && i == 0;
         draw_step(s, i, z);
         for (int64_t row = 0; row < n; row++) {
@@ -182,7 +182,7 @@ static constants constants_of(int64_t n, int64_t points, double *weights) {
 
 /* C^(-1/2) times a vector. */
 static void whiten(const state *c, int64_t n, const double *vector, double *result) {
-    double along[SKG_SEARCH_MOST];
+    double along[SKG_SEARCH_MAX];
     for (int64_t k = 0; k < n; k++) {
         along[k] = 0;
         for (int64_t row = 0; row < n; row++) along[k] += c->axes[n * row + k] * vector[row];
@@ -206,7 +206,7 @@ static int move_mean(skg_search *s, const constants *k, const ranked *order, con
                      double *step) {
     const int64_t n = s->dimensions;
     const state c = state_of(s);
-    double white[SKG_SEARCH_MOST];
+    double white[SKG_SEARCH_MAX];
     for (int64_t d = 0; d < n; d++) {
         step[d] = 0;
         for (int64_t i = 0; i < k->parents; i++)
@@ -227,7 +227,7 @@ static void adapt(skg_search *s, const constants *k, const ranked *order, const 
                   const double *mean, double sigma) {
     const int64_t n = s->dimensions, points = s->counters[SEARCH_POPULATION];
     const state c = state_of(s);
-    double sum = 0, y[SKG_SEARCH_MOST], white[SKG_SEARCH_MOST];
+    double sum = 0, y[SKG_SEARCH_MAX], white[SKG_SEARCH_MAX];
     for (int64_t i = 0; i < points; i++) sum += weights[i];
     const double lost = rank_one ? 0 : k->c_1 * k->c_c * (2 - k->c_c);
     const double keep = 1 + lost - k->c_1 - k->c_mu * sum;
@@ -292,7 +292,7 @@ skg_status skg_cma_tell(skg_search *s, const double *values) {
     const int64_t n = s->dimensions, points = s->counters[SEARCH_POPULATION];
     const state c = state_of(s);
     ranked *order = NULL;
-    double *weights = NULL, mean[SKG_SEARCH_MOST], step[SKG_SEARCH_MOST];
+    double *weights = NULL, mean[SKG_SEARCH_MAX], step[SKG_SEARCH_MAX];
     int is_sound = 0;
     skg_model_add(s, c.memory, values);
     skg_status status = skg_alloc(points, sizeof *order, "search", &order);

@@ -13,7 +13,7 @@ int skg_has_eigen(void) {
 skg_status skg_symmetric_eigen(int64_t n, double *matrix, double *values) {
     /* The matrix is symmetric and finite, so that LAPACK can only fail to converge. The vectors come as rows of its column
      * order. */
-    double work[SKG_SEARCH_MOST * 34];
+    double work[SKG_SEARCH_MAX * 34];
     const lapack_int size = (lapack_int)n;
     const lapack_int status =
         LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'U', size, matrix, size, values, work, 34 * size);

@@ -6,7 +6,7 @@
 
 enum skg_search_method { SKG_SEARCH_CMA = 0, SKG_SEARCH_DE = 1 };
 
-enum { SKG_SEARCH_MOST = 64 }; /* dimensions */
+enum { SKG_SEARCH_MAX = 64 }; /* dimensions */
 
 /* Of `counters`. */
 enum {

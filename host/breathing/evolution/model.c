@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Dimensions up to which a model is made: its cost grows with their sixth power, 10 ms at 20. */
-enum { MODEL_MOST = 20 };
+enum { MODEL_MAX = 20 };
 
 /* Points kept and points fitted, as multiples of the model's terms. With these Rosenbrock's function of search_test.c takes
  * about 5100 evaluations, with 2 and 2.5 times the terms 5300 and 5700. */
@@ -24,7 +24,7 @@ static const double RIDGE = 1e-10;
 
 /* 1, the coordinates, and their products. */
 static int64_t terms_of(int64_t n) {
-    return n > MODEL_MOST ? 0 : 1 + n + n * (n + 1) / 2;
+    return n > MODEL_MAX ? 0 : 1 + n + n * (n + 1) / 2;
 }
 
 static int64_t capacity_of(int64_t n) {
@@ -118,7 +118,7 @@ static int solve(equations *e) {
 
 /* A quadratic function g z + z H z / 2. H becomes its eigenvectors. */
 typedef struct {
-    double g[MODEL_MOST], h[MODEL_MOST * MODEL_MOST], along[MODEL_MOST], curvature[MODEL_MOST];
+    double g[MODEL_MAX], h[MODEL_MAX * MODEL_MAX], along[MODEL_MAX], curvature[MODEL_MAX];
 } quadratic;
 
 /* The square of the length of -(H + mu)^-1 g. */
@@ -171,7 +171,7 @@ static int fit(const skg_search *s, const double *memory, const skg_model_frame 
                int64_t have, equations *e, double *reach) {
     const int64_t n = s->dimensions, wanted = (int64_t)(FITTED * (double)e->terms);
     const int64_t used = wanted < have ? wanted : have;
-    double z[MODEL_MOST];
+    double z[MODEL_MAX];
     for (int64_t i = 0; i < have; i++)
         order[i] = (near_point){transform(n, frame, memory + (n + 1) * i, z), i};
     qsort(order, (size_t)have, sizeof *order, by_distance);

@@ -32,9 +32,9 @@ skg_status skg_search_create(int method, int64_t dimensions, const double *start
             SKG_ERR_UNSUPPORTED,
             "the method cma needs LAPACKE, without which this library was built (Debian: liblapacke-dev); "
             "the method de does not");
-    if (dimensions < 1 || dimensions > SKG_SEARCH_MOST)
+    if (dimensions < 1 || dimensions > SKG_SEARCH_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "a search of %" PRId64 " dimensions; 1 to %d are possible",
-                        dimensions, SKG_SEARCH_MOST);
+                        dimensions, SKG_SEARCH_MAX);
     search->most_points =
         method == SKG_SEARCH_CMA ? skg_cma_population(dimensions, DOUBLINGS) : skg_de_population(dimensions);
     const skg_status status = allocate(search);

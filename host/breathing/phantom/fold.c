@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { MOST_PASSES = 60 }; /* so that smoothing ends also where a fold stays */
+enum { PASSES_MAX = 60 }; /* so that smoothing ends also where a fold stays */
 
 /* A triangle of a surface. */
 typedef struct {
@@ -81,7 +81,7 @@ skg_status skg_shape_unfold(const char *name, const skg_mesh_arrays *a) {
     SKG_TRY_CLEANUP(skg_alloc(a->triangles, sizeof *fold, name, &fold));
     SKG_TRY_CLEANUP(skg_alloc(a->vertices, sizeof *moves, name, &moves));
     SKG_TRY_CLEANUP(skg_alloc(4 * a->vertices, sizeof *sum, name, &sum));
-    for (int pass = 0; pass < MOST_PASSES; pass++) {
+    for (int pass = 0; pass < PASSES_MAX; pass++) {
         SKG_TRY_CLEANUP(skg_shape_folds(a, pass > 0 ? moves : NULL, &folds, fold));
         if (folds == 0) break;
         smooth_folds(a, fold, moves, sum);

@@ -6,7 +6,7 @@
 static const double clearance = 0.2; /* mm that a surface keeps from the others */
 static const double step = 0.25;     /* mm by which a facet that meets another surface draws back at a time */
 static const double slope = 0.5;     /* largest difference in retreat of two vertices, over their distance */
-enum { MOST_STEPS = 60 };            /* 15 mm in all */
+enum { STEPS_MAX = 60 };             /* 15 mm in all */
 
 /* Test of skg_grid_any. */
 static int meets(const void *unused, const double *triangle, const double *other, int64_t number) {
@@ -90,7 +90,7 @@ static skg_status retreat_from(const char *name, const skg_triangle_grid *grid, 
     SKG_TRY_CLEANUP(skg_alloc(arrays->vertices, 1, name, &meets));
     find_normals(arrays, normal);
     const retreat r = {arrays, normal, back, meets};
-    for (int k = 0; k < MOST_STEPS && find_meeting(grid, &r); k++) draw_back(&r);
+    for (int k = 0; k < STEPS_MAX && find_meeting(grid, &r); k++) draw_back(&r);
     for (int64_t v = 0; v < arrays->vertices; v++) place_at(&r, v, 0, arrays->positions + 3 * v);
 cleanup:
     skg_free(&normal);

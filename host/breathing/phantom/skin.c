@@ -19,7 +19,7 @@ static const outline_row full_outline[] = {
     {0, 165, -160, 77},    {60, 174, -143, 81},   {110, 191, -133, 81},  {145, 201, -131, 73},
     {168, 192, -122, 61},  {184, 160, -106, 48},  {197, 112, -101, 38},  {209, 80, -98, 32},
     {222, 68, -95, 29},    {240, 62, -93, 27}};
-enum { MOST_ROWS = 16 };
+enum { ROWS_MAX = 16 };
 
 /* Thickness of the fat under the skin by z: at the sides, in front, behind, mm (assumptions for an adult of normal
  * weight). */
@@ -35,7 +35,7 @@ typedef struct {
 } skin_rings;
 
 static double column_at(const outline_row *row, int rows, int column, double z) {
-    double knots[MOST_ROWS][2];
+    double knots[ROWS_MAX][2];
     for (int i = 0; i < rows; i++) knots[i][0] = row[i][0], knots[i][1] = row[i][column];
     return skg_shape_curve((const double(*)[2])knots, rows, z);
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Points of a branch's middle line, most branches of a lung, orders of branching, and candidates of one direction. */
-enum { POINTS = 6, MOST_BRANCHES = 170, ORDERS = 3 };
+enum { POINTS = 6, BRANCHES_MAX = 170, ORDERS = 3 };
 
 static const double apart = 0.3;  /* mm between the walls of branches */
 static const double shortest = 9; /* mm */
@@ -23,7 +23,7 @@ typedef struct {
     double side;
     uint32_t random;
     int count;
-    branch branch[MOST_BRANCHES];
+    branch branch[BRANCHES_MAX];
 } tree;
 
 /* Arteries and veins from the hilum of the left lung: where they begin, where they lead, their radius, mm. The first
@@ -106,7 +106,7 @@ static void add(tree *t, const branch *given) {
     const double whole = length_of(&b);
     double from, to;
     find_free(t, &b, whole, &from, &to);
-    if ((to - from) * whole < shortest || t->count == MOST_BRANCHES) return;
+    if ((to - from) * whole < shortest || t->count == BRANCHES_MAX) return;
     for (int i = 0; i < POINTS; i++)
         point_of(given, from + (double)i / (POINTS - 1) * (to - from), b.point[i]);
     t->branch[t->count++] = b;

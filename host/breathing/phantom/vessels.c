@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_POINTS = 9 };
+enum { POINTS_MAX = 9 };
 
 /* Points of the middle lines and radii of the ends, mm. The descending aorta is that of BodyParts3D; the others are
  * placed by the usual relations of the mediastinum, with typical radii. The aorta ends above the diaphragm. */
@@ -14,7 +14,7 @@ static const struct {
     const char *label;
     double hounsfield;
     int points;
-    double point[MOST_POINTS][3], radius[2];
+    double point[POINTS_MAX][3], radius[2];
     double rings;
 } table[VESSELS] = {
     {"aorta",

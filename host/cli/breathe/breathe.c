@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_FRAMES = 1000000, RANGE_FRAMES = 16, RANGE_BINS = 4096 };
+enum { FRAMES_MAX = 1000000, RANGE_FRAMES = 16, RANGE_BINS = 4096 };
 static const double RANGE_HIGHEST = 32; /* -ln(I/I0) */
 
 static int read_positive(const cli_arguments *arguments, const cli_flag *flag, double *number) {
@@ -224,8 +224,8 @@ static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) 
     if (status != SKG_OK) return cli_fail(status);
     if (!(s->seconds > 0)) s->seconds = period;
     const double frames = is_one(s) ? 1 : fmax(1, floor(s->seconds * s->fps + 0.5));
-    if (frames > MOST_FRAMES)
-        return cli_error(CLI_USAGE, "%g frames are too many; %d at most", frames, MOST_FRAMES);
+    if (frames > FRAMES_MAX)
+        return cli_error(CLI_USAGE, "%g frames are too many; %d at most", frames, FRAMES_MAX);
     s->frames = (int64_t)frames;
     f->pixels = f->session.view.columns * f->session.view.rows;
     for (int i = 0; i < 2; i++) f->image[i] = calloc((size_t)f->pixels, sizeof(float));

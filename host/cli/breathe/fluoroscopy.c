@@ -54,6 +54,6 @@ int fluoroscopy_write(fluoroscopy *f, int which, const char *path) {
     draw_outline(f, which);
     fluoroscopy_picture(f, f->session.view.columns, f->session.view.rows, f->image[which], &picture);
     picture.view = &f->session.view;
-    skg_status status = skg_picture_write(&picture, path);
+    skg_status status = skg_picture_save(&picture, path);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { MOST_SMALL = 16, ACROSS = 4, SMALL_COLUMNS = 256, GAP = 4 };
+enum { SMALL_MAX = 16, ACROSS = 4, SMALL_COLUMNS = 256, GAP = 4 };
 
 static int64_t sheet_columns(const contact_sheet *sheet) {
     return sheet->across * (sheet->columns + GAP) - GAP;
@@ -16,7 +16,7 @@ static int64_t sheet_rows(const contact_sheet *sheet) {
 
 int sheet_create(const fluoroscopy *f, int64_t frames, contact_sheet *sheet) {
     const skg_view *view = &f->session.view;
-    sheet->frames = frames < MOST_SMALL ? frames : MOST_SMALL;
+    sheet->frames = frames < SMALL_MAX ? frames : SMALL_MAX;
     sheet->across = sheet->frames < ACROSS ? sheet->frames : ACROSS;
     sheet->down = (sheet->frames + sheet->across - 1) / sheet->across;
     sheet->step = (view->columns + SMALL_COLUMNS - 1) / SMALL_COLUMNS;
@@ -54,6 +54,6 @@ void sheet_add(const fluoroscopy *f, int which, int64_t frame, int64_t frames, c
 int sheet_write(const fluoroscopy *f, const contact_sheet *sheet, const char *path) {
     skg_picture picture;
     fluoroscopy_picture(f, sheet_columns(sheet), sheet_rows(sheet), sheet->values, &picture);
-    skg_status status = skg_picture_write(&picture, path);
+    skg_status status = skg_picture_save(&picture, path);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }

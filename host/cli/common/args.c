@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_NAMES = 64 };
+enum { NAMES_MAX = 64 };
 
 int cli_unknown(const char *what, const char *name, const char *const *known, int count, const char *help) {
     const char *near = skg_nearest_name(name, known, count);
@@ -44,10 +44,10 @@ static const char *advice_on(const char *name) {
 static int unknown_flag(const cli_manual *manual, const char *name) {
     const char *advice = advice_on(name);
     if (advice) return cli_error(CLI_USAGE, "%s has no flag %s: %s", manual->name, name, advice);
-    const char *names[MOST_NAMES];
+    const char *names[NAMES_MAX];
     char help[64];
     int count = 0;
-    while (manual->flags[count] && count < MOST_NAMES - 1) {
+    while (manual->flags[count] && count < NAMES_MAX - 1) {
         names[count] = manual->flags[count]->name;
         count++;
     }
@@ -145,11 +145,11 @@ int cli_given(const cli_arguments *arguments, const cli_flag *flag) {
 }
 
 int cli_choice(const cli_arguments *arguments, const cli_flag *flag, int32_t *choice) {
-    const char *value = cli_value(arguments, flag), *names[MOST_NAMES];
+    const char *value = cli_value(arguments, flag), *names[NAMES_MAX];
     char known[256] = "";
     int count = 0;
     if (!value) return CLI_DONE;
-    for (; flag->values[count].name && count < MOST_NAMES; count++) {
+    for (; flag->values[count].name && count < NAMES_MAX; count++) {
         const size_t used = strlen(known);
         names[count] = flag->values[count].name;
         snprintf(known + used, sizeof known - used, "%s%s", count == 0 ? "" : ", ", names[count]);

@@ -17,10 +17,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_FOLDERS = 64, LONGEST_PATH = 4096, ENTRY_BYTES = 16384 };
+enum { FOLDERS_MAX = 64, LONGEST_PATH = 4096, ENTRY_BYTES = 16384 };
 
 static pthread_t writer;
-static char folders[MOST_FOLDERS][LONGEST_PATH];
+static char folders[FOLDERS_MAX][LONGEST_PATH];
 static volatile sig_atomic_t folder_count;
 static char suffix[SKG_PART_ENDING]; /* of unfinished files; a number may follow */
 static volatile sig_atomic_t guarded_child;
@@ -120,7 +120,7 @@ void cli_catch_signals(void) {
 }
 
 static void guard(const char *path, size_t length) {
-    if (folder_count == MOST_FOLDERS || length >= LONGEST_PATH) return;
+    if (folder_count == FOLDERS_MAX || length >= LONGEST_PATH) return;
     memcpy(folders[folder_count], path, length);
     folders[folder_count][length] = '\0';
     folder_count++;

@@ -6,11 +6,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_VALUES = 48, MOST_GUESSES = 40000, MOST_TRIED = 8 };
+enum { VALUES_MAX = 48, GUESSES_MAX = 40000, TRIED_MAX = 8 };
 
 /* The measured values of one dial, or of the rays' three. */
 typedef struct {
-    int count, points[MOST_VALUES];
+    int count, points[VALUES_MAX];
     double own_ms; /* of the value that the scene has; 0: it was not measured */
 } values;
 
@@ -35,7 +35,7 @@ static void list(const cost_study *study, int reference, values *its) {
                                ? point->setting.supersampling == study->own.supersampling
                                : dial == COST_SCENE;
         if (is_own) its->own_ms = ms_of(study, point);
-        if (its->count < MOST_VALUES) its->points[its->count++] = i;
+        if (its->count < VALUES_MAX) its->points[its->count++] = i;
     }
     if (!(its->own_ms > 0)) its->count = 0;
 }
@@ -73,7 +73,7 @@ static guess change(const cost_study *study, const guess *before, const values *
 static guess *guess_all(const cost_study *study, int64_t *count) {
     static const int references[] = {COST_OF_RAYS, COST_OF_TRIANGLES, COST_OF_AREAS, COST_OF_SAMPLES,
                                      COST_OF_REPAIR};
-    guess *all = calloc(MOST_GUESSES, sizeof *all);
+    guess *all = calloc(GUESSES_MAX, sizeof *all);
     *count = 1;
     if (!all) return NULL;
     all[0] = (guess){.setting = study->own, .ms = study->shots[study->here].min_ms};
@@ -81,7 +81,7 @@ static guess *guess_all(const cost_study *study, int64_t *count) {
         values its;
         const int64_t before = *count;
         list(study, references[r], &its);
-        if (its.count == 0 || before * its.count > MOST_GUESSES) continue;
+        if (its.count == 0 || before * its.count > GUESSES_MAX) continue;
         for (int v = its.count - 1; v >= 0;
              v--) /* the first value last: it overwrites what the others start from */
             for (int64_t i = 0; i < before; i++) all[v * before + i] = change(study, &all[i], &its, v);
@@ -126,7 +126,7 @@ int cost_combine(cost_study *study, double share, double *image) {
     guess *all = guess_all(study, &count);
     if (!all) return exit_status; /* the study goes without combinations */
     const int64_t best = keep_best(all, count);
-    const int64_t most = study->quick ? MOST_TRIED / 2 : MOST_TRIED;
+    const int64_t most = study->quick ? TRIED_MAX / 2 : TRIED_MAX;
     cli_progress_forecast("measuring combinations of settings", 0, 0, fmax(cost_left_ms(study, share), 0));
     /* evenly along the frontier */
     for (int64_t i = 0; i < most && exit_status == 0; i++)

@@ -72,7 +72,7 @@ static int ascending(const void *a, const void *b) {
 
 /* Minimum, median and spread of what was timed so far. */
 static void summarise(cost_shot *shot) {
-    double ms[COST_MOST_RUNS], visit[COST_MOST_VISITS];
+    double ms[COST_RUNS_MAX], visit[COST_VISITS_MAX];
     memcpy(ms, shot->run_ms, sizeof ms);
     memcpy(visit, shot->visit_ms, sizeof visit);
     qsort(ms, (size_t)shot->runs, sizeof *ms, ascending);
@@ -89,7 +89,7 @@ skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least,
     const double begun = cli_now_ms(), limit_ms = cost_patience_ms(study);
     double passed = 0, fastest = HUGE_VAL;
     int64_t n = 0;
-    while (shot->runs < COST_MOST_RUNS && n < COST_MOST_RUNS / COST_MOST_VISITS &&
+    while (shot->runs < COST_RUNS_MAX && n < COST_RUNS_MAX / COST_VISITS_MAX &&
            (n < least || passed < wish_ms) && (n < 2 || passed < limit_ms)) {
         const double start = cli_now_ms();
         const skg_status status = run(user);
@@ -100,7 +100,7 @@ skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least,
         passed = cli_now_ms() - begun;
         n++;
     }
-    if (n && shot->visits < COST_MOST_VISITS) shot->visit_ms[shot->visits++] = fastest;
+    if (n && shot->visits < COST_VISITS_MAX) shot->visit_ms[shot->visits++] = fastest;
     if (n) summarise(shot);
     return SKG_OK;
 }
@@ -175,7 +175,7 @@ int cost_find_shot(const cost_study *study, const cost_setting *setting) {
 }
 
 int cost_add_shot(cost_study *study, const cost_setting *setting) {
-    if (study->shot_count == COST_MOST_SHOTS) return -1;
+    if (study->shot_count == COST_SHOTS_MAX) return -1;
     study->shots[study->shot_count] = (cost_shot){
         .setting = *setting, .total_rms = (double)NAN, .total_max = (double)NAN, .spread_ms = (double)NAN};
     return study->shot_count++;
@@ -264,7 +264,7 @@ skg_status cost_visit_again(cost_study *study, double share) {
     for (int round = 0; round < 3; round++)
         for (int i = 0; i < study->shot_count && status >= SKG_OK; i++) {
             const cost_shot *shot = &study->shots[i];
-            if (shot->setting.relaxation >= 0 || shot->visits == COST_MOST_VISITS) continue;
+            if (shot->setting.relaxation >= 0 || shot->visits == COST_VISITS_MAX) continue;
             if (visit_ms(study, shot) > cost_left_ms(study, share)) continue;
             status = visit(study, i);
         }

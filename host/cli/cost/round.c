@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEWEST_SECTORS = 8, MOST_SECTORS = 26000, MOST_TRIANGLES = 1500000 };
+enum { FEWEST_SECTORS = 8, SECTORS_MAX = 26000, TRIANGLES_MAX = 1500000 };
 
 static int has_same_positions(const skg_mesh *a, const skg_mesh *b) {
     int64_t vertices = 0, others = 0, triangles;
@@ -58,7 +58,7 @@ static int is_round(const skg_mesh *mesh, int64_t *sectors) {
 }
 
 static int64_t scaled(int64_t sectors, double factor) {
-    return (int64_t)fmin(fmax(round((double)sectors * factor), FEWEST_SECTORS), MOST_SECTORS);
+    return (int64_t)fmin(fmax(round((double)sectors * factor), FEWEST_SECTORS), SECTORS_MAX);
 }
 
 /* "Samples.bone.Sphere.0=128". A part without a label, which has its mesh's name instead, is named by its
@@ -125,7 +125,7 @@ static skg_status add_round(cost_study *study, double factor) {
     skg_status status = scale_sectors(study, factor, &meshing, &triangles);
     const int64_t before = study->meshing_count ? study->meshings[study->meshing_count - 1].triangles : 0;
     int keep =
-        status == SKG_OK && meshing.setting_count > 0 && triangles > before && triangles <= MOST_TRIANGLES;
+        status == SKG_OK && meshing.setting_count > 0 && triangles > before && triangles <= TRIANGLES_MAX;
     if (keep) status = load_round(study, triangles, &meshing);
     if (keep && status == SKG_OK)
         study->meshings[study->meshing_count++] = meshing;

@@ -15,7 +15,7 @@ void cost_add_point(cost_study *study, int dial, int reference, int priority, co
         if (priority < point->priority) point->priority = priority;
         return;
     }
-    if (study->count == COST_MOST_POINTS) return;
+    if (study->count == COST_POINTS_MAX) return;
     const double ms = cost_estimate_ms(study, &setting);
     if (ms > cost_patience_ms(study) && priority > NOW) {
         char text[160];

@@ -131,7 +131,7 @@ void cost_describe(const cost_study *study, const cost_setting *setting, char *t
 }
 
 void cost_note(cost_study *study, const char *format, ...) {
-    if (study->note_count == COST_MOST_NOTES) return;
+    if (study->note_count == COST_NOTES_MAX) return;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(study->notes[study->note_count++], sizeof study->notes[0], format, arguments);
@@ -176,7 +176,7 @@ skg_status cost_spectrum(cost_study *study, int64_t bins, skg_spectrum **spectru
             *spectrum = study->spectra[i].spectrum;
             return SKG_OK;
         }
-    if (study->spectrum_count == COST_MOST_SPECTRA) return SKG_ERR_INTERNAL;
+    if (study->spectrum_count == COST_SPECTRA_MAX) return SKG_ERR_INTERNAL;
     skg_status status = read_spectrum(study, bins, spectrum);
     if (status != SKG_OK) return status;
     study->spectra[study->spectrum_count].bins = bins;

@@ -33,13 +33,13 @@ enum {
 };
 
 enum {
-    COST_MOST_POINTS = 144,
-    COST_MOST_SHOTS = 144,
-    COST_MOST_VISITS = 6,
-    COST_MOST_RUNS = 240,
-    COST_MOST_NOTES = 24,
-    COST_MOST_SPECTRA = 16,
-    COST_MOST_MESHINGS = 9,
+    COST_POINTS_MAX = 144,
+    COST_SHOTS_MAX = 144,
+    COST_VISITS_MAX = 6,
+    COST_RUNS_MAX = 240,
+    COST_NOTES_MAX = 24,
+    COST_SPECTRA_MAX = 16,
+    COST_MESHINGS_MAX = 9,
     COST_TOLERANCES = 4
 };
 enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: gives bins of 1 keV at every voltage */
@@ -87,7 +87,7 @@ typedef struct {
      * runs in a row; visits to different shots alternate. */
     int64_t frames; /* of a run; times are those of one frame */
     int64_t runs, visits;
-    double run_ms[COST_MOST_RUNS], visit_ms[COST_MOST_VISITS];
+    double run_ms[COST_RUNS_MAX], visit_ms[COST_VISITS_MAX];
     double min_ms, median_ms;
     /* The median of visit_ms minus min_ms; of a single visit, the unrest's share of min_ms, and NaN until that is known. */
     double spread_ms;
@@ -198,12 +198,12 @@ typedef struct {
     struct {
         int64_t bins;
         skg_spectrum *spectrum;
-    } spectra[COST_MOST_SPECTRA]; /* of the tube, each made when it was first needed */
+    } spectra[COST_SPECTRA_MAX]; /* of the tube, each made when it was first needed */
     int spectrum_count;
-    double pass_ms;                            /* of one ray per pixel at the scene's setting */
-    double best_pass_ms;                       /* the same with the best precision and every energy */
-    double plan_ms;                            /* of the scene's setting */
-    cost_meshing meshings[COST_MOST_MESHINGS]; /* rising in triangles; the last one is the reference */
+    double pass_ms;                           /* of one ray per pixel at the scene's setting */
+    double best_pass_ms;                      /* the same with the best precision and every energy */
+    double plan_ms;                           /* of the scene's setting */
+    cost_meshing meshings[COST_MESHINGS_MAX]; /* rising in triangles; the last one is the reference */
     int meshing_count;
     int is_thorax;    /* 1: the scene is the generated thorax; -1: the time did not suffice to find out */
     int has_round;    /* 1: it is, may be, or has a sphere or a cylinder */
@@ -214,9 +214,9 @@ typedef struct {
         [192]; /* why no finer mesh was made; empty: there are finer ones, or no round parts */
     cost_coarse coarse[COST_SOURCES];
     cost_reference references[COST_REFERENCES];
-    cost_point points[COST_MOST_POINTS];
+    cost_point points[COST_POINTS_MAX];
     int count;
-    cost_shot shots[COST_MOST_SHOTS];
+    cost_shot shots[COST_SHOTS_MAX];
     int shot_count;
     int here;           /* the shot of the scene as its file has it */
     int64_t kept_bytes; /* of the plans that are kept */
@@ -231,7 +231,7 @@ typedef struct {
     int largest;     /* the source with the largest error; -1: none is known */
     int buy, saving; /* shots that are worth changing to; -1: none */
     char summary[1024];
-    char notes[COST_MOST_NOTES][512];
+    char notes[COST_NOTES_MAX][512];
     int note_count;
     cost_advice advice[COST_TOLERANCES];
 } cost_study;
@@ -275,7 +275,7 @@ const char *cost_repair_of(const cost_study *study, const cost_setting *setting)
 /* Triangles of a setting. */
 int64_t cost_triangles(const cost_study *study, const cost_setting *setting);
 
-/* Keeps a sentence for the report, up to COST_MOST_NOTES of them. */
+/* Keeps a sentence for the report, up to COST_NOTES_MAX of them. */
 void cost_note(cost_study *study, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Appends to text, as far as it fits. */

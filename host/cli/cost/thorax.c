@@ -61,7 +61,7 @@ static int is_this_thorax(cost_study *study, int64_t triangles) {
     study->thorax_made = triangles;
     for (int64_t i = 0; i < parts; i++)
         same += skg_thorax_part_get(thorax, i, &generated) == SKG_OK &&
-                skg_scene_find(study->session.scene, generated.label, &id) == SKG_OK &&
+                skg_scene_part_find(study->session.scene, generated.label, &id) == SKG_OK &&
                 skg_scene_part_get(study->session.scene, id, &part) == SKG_OK &&
                 has_same_bounds(part.mesh, generated.mesh);
     skg_thorax_release(&thorax);
@@ -79,16 +79,16 @@ static skg_status take_thorax(const cost_study *study, const skg_thorax *thorax,
         if (status != SKG_OK) break;
         skg_mesh *mesh = mesh_of(thorax, part.label);
         if (mesh) part.mesh = mesh;
-        status = skg_scene_add(scene, &part, NULL);
+        status = skg_scene_part_add(scene, &part, NULL);
     }
     return status;
 }
 
 int cost_may_be_thorax(cost_study *study) {
     int64_t id = 0;
-    if (skg_scene_find(study->session.scene, "common bile duct", &id) != SKG_OK)
+    if (skg_scene_part_find(study->session.scene, "common bile duct", &id) != SKG_OK)
         return 0; /* most scenes end here, without generating a thorax */
-    study->thorax_is_simple = skg_scene_find(study->session.scene, "muscle", &id) != SKG_OK;
+    study->thorax_is_simple = skg_scene_part_find(study->session.scene, "muscle", &id) != SKG_OK;
     return 1;
 }
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_WORDS = 64, LONGEST_COMPLAINT = 1024 };
+enum { WORDS_MAX = 64, LONGEST_COMPLAINT = 1024 };
 
 typedef struct {
     cli_child child;
@@ -49,7 +49,7 @@ static int start(film_reel *reel, encoder *e) {
         "bt709",    "-color_trc", "bt709",       "-color_range", "tv",
         NULL};
     const film_format *format = &reel->format;
-    const char *words[MOST_WORDS];
+    const char *words[WORDS_MAX];
     char size[64], rate[32];
     const size_t comment_size = strlen(format->comment) + 16, output_size = strlen(reel->file.temporary) + 8;
     char *comment = malloc(comment_size), *output = malloc(output_size);

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LARGEST_SIDE = 65535, LONGEST_DELAY = 65535, MOST_FPS = 50, COMMENT_BYTES = 255 };
+enum { LARGEST_SIDE = 65535, LONGEST_DELAY = 65535, FPS_MAX = 50, COMMENT_BYTES = 255 };
 
 typedef struct {
     GifFileType *gif;
@@ -25,11 +25,11 @@ static const char *const extensions[] = {".gif", NULL};
 
 /* Viewers show frames of less than 2/100 s slower. */
 static int check(const char *path, double fps) {
-    if (fps <= MOST_FPS && 100 / fps <= LONGEST_DELAY) return CLI_DONE;
+    if (fps <= FPS_MAX && 100 / fps <= LONGEST_DELAY) return CLI_DONE;
     return cli_error(
         CLI_USAGE,
         "%s: a GIF has 0.002 to %d frames per second, not %g; choose another --fps, or write a .mp4", path,
-        MOST_FPS, fps);
+        FPS_MAX, fps);
 }
 
 static int fail(const film_reel *reel, int error) {

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PROJECTIONS = 10000000, MOST_SUBFRAMES = 1000, MOST_FIELDS = 1000 };
+enum { PROJECTIONS_MAX = 10000000, SUBFRAMES_MAX = 1000, FIELDS_MAX = 1000 };
 
 /* Reads "3,7,12". */
 static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
@@ -44,16 +44,16 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
                          "--grey16 and --quantity exclude each other: grey values are made of energies");
     const skg_status status = skg_scan_file_path_check(a->place);
     if (status != SKG_OK) return cli_fail(status);
-    int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, MOST_PROJECTIONS, &a->options.from);
+    int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, PROJECTIONS_MAX, &a->options.from);
     if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_scan_to, 0, MOST_PROJECTIONS, &to);
+        exit_status = cli_integer(arguments, &cli_flag_scan_to, 0, PROJECTIONS_MAX, &to);
     if (exit_status == CLI_DONE)
         exit_status =
-            cli_integer(arguments, &cli_flag_scan_subframes, 1, MOST_SUBFRAMES, &a->options.subframes);
+            cli_integer(arguments, &cli_flag_scan_subframes, 1, SUBFRAMES_MAX, &a->options.subframes);
     if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_scan_flats, 0, MOST_FIELDS, &a->flats);
+        exit_status = cli_integer(arguments, &cli_flag_scan_flats, 0, FIELDS_MAX, &a->flats);
     if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_scan_darks, 0, MOST_FIELDS, &a->darks);
+        exit_status = cli_integer(arguments, &cli_flag_scan_darks, 0, FIELDS_MAX, &a->darks);
     if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
     a->options.to = to + 1;
     if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
@@ -151,7 +151,7 @@ static int write_geometry(const cli_arguments *arguments, const cli_acquisition 
     const char *path;
     for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
          i++) {
-        const skg_status status = skg_scan_geometry_write(a->record.known ? a->record.known : a->scan, path);
+        const skg_status status = skg_scan_geometry_save(a->record.known ? a->record.known : a->scan, path);
         if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
         if (status != SKG_OK) return cli_fail(status);
     }

@@ -18,7 +18,7 @@ static int launched_ranks(void) {
     return 1;
 }
 
-enum { TAG_REQUEST = 1, TAG_ANSWER, PARTS_PER_RANK = 8, PART_LEAST = 16, PART_MOST = 64 };
+enum { TAG_REQUEST = 1, TAG_ANSWER, PARTS_PER_RANK = 8, PART_LEAST = 16, PART_MAX = 64 };
 
 /* An answer of rank 0 that is on its way. */
 typedef struct {
@@ -97,7 +97,7 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
 /* Rank 0 alone: the next numbers. Not fewer than a batch, unless the whole is small: answers would come too late. */
 static void share_out(cli_ranks *ranks, int64_t numbers[2]) {
     const int64_t parts = (int64_t)PARTS_PER_RANK * ranks->count, left = ranks->total - ranks->next;
-    const int64_t part = clamp(left / parts, clamp(ranks->total / parts, 1, PART_LEAST), PART_MOST);
+    const int64_t part = clamp(left / parts, clamp(ranks->total / parts, 1, PART_LEAST), PART_MAX);
     numbers[0] = ranks->next;
     numbers[1] = left < part ? left : part;
     ranks->next += numbers[1];

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PHASES = 100 };
+enum { PHASES_MAX = 100 };
 
 int phases_read_flag(const cli_arguments *arguments, cli_acquisition *a) {
-    const int exit_status = cli_integer(arguments, &cli_flag_scan_phases, 1, MOST_PHASES, &a->phases);
+    const int exit_status = cli_integer(arguments, &cli_flag_scan_phases, 1, PHASES_MAX, &a->phases);
     if (exit_status != CLI_DONE || a->phases == 0) return exit_status;
     if (!cli_given(arguments, &cli_flag_scan_breathing))
         return cli_error(CLI_USAGE, "--phases sorts a scan of a breathing scene; add --breathing");

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { MOST_VOXELS = 4096 };
+enum { VOXELS_MAX = 4096 };
 
 typedef struct {
     skg_scan_reader *reader;
@@ -36,7 +36,7 @@ static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t
     if (!r->place) return cli_error(CLI_USAGE, "reconstruct: no volume is named; add -o FILE.mha");
     if (!cli_has_extension(r->place, ".mha"))
         return cli_error(CLI_USAGE, "reconstruct: %s is no .mha; give -o FILE.mha", r->place);
-    int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, MOST_VOXELS, size);
+    int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, VOXELS_MAX, size);
     if (exit_status == CLI_DONE && is_bare(arguments->operands[0]))
         return cli_error(
             CLI_INPUT,
@@ -77,7 +77,7 @@ static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int
     if (!cli_given(arguments, &cli_flag_reconstruct_voxel))
         r->options.voxel_mm = step_at_axis(&view, r->options.centre);
     for (int k = 0; k < 3; k++) {
-        r->options.voxels[k] = size > 0 ? size : view.columns < MOST_VOXELS ? view.columns : MOST_VOXELS;
+        r->options.voxels[k] = size > 0 ? size : view.columns < VOXELS_MAX ? view.columns : VOXELS_MAX;
         r->options.middle[k] = r->options.centre[k];
     }
     r->image = calloc((size_t)(view.columns * view.rows), sizeof *r->image);
@@ -133,7 +133,7 @@ int cli_reconstruct(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) {
         skg_status status = prepare(arguments, &r, size);
         if (status == SKG_OK) status = add_projections(&r);
-        if (status == SKG_OK) status = skg_fdk_write(r.fdk, r.place);
+        if (status == SKG_OK) status = skg_fdk_save(r.fdk, r.place);
         exit_status = status == SKG_OK                ? print(arguments, &r)
                       : status == SKG_ERR_UNSUPPORTED ? (cli_fail(status), CLI_INPUT)
                                                       : cli_fail(status);

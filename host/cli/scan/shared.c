@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WINDOWS_PER_RANK = 8, WINDOW_MOST = 64 }; /* several batches: rank 0 answers after each of its own */
+enum { WINDOWS_PER_RANK = 8, WINDOW_MAX = 64 }; /* several batches: rank 0 answers after each of its own */
 
 /* What this rank computes. */
 typedef struct {
@@ -81,7 +81,7 @@ static skg_status fill(cli_acquisition *a, const int64_t *list, share *s) {
 
 static int take_share(cli_acquisition *a, const int64_t *list, int64_t missing) {
     const int64_t even = missing / ((int64_t)WINDOWS_PER_RANK * a->ranks.count);
-    share s = {.window = even < 1 ? 1 : even < WINDOW_MOST ? even : WINDOW_MOST};
+    share s = {.window = even < 1 ? 1 : even < WINDOW_MAX ? even : WINDOW_MAX};
     int64_t count = 1;
     a->ranks.total = missing;
     if (a->ranks.rank == 0) cli_progress_begin("projections", missing);

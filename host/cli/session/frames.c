@@ -12,7 +12,7 @@
 static cli_stage_times *find_stage(cli_times *times, const char *name) {
     for (int i = 0; i < times->stage_count; i++)
         if (strcmp(times->stages[i].name, name) == 0) return &times->stages[i];
-    if (times->stage_count == CLI_MOST_STAGES) return NULL;
+    if (times->stage_count == CLI_STAGES_MAX) return NULL;
     cli_stage_times *stage = &times->stages[times->stage_count];
     stage->ms = calloc((size_t)times->repeats, sizeof *stage->ms);
     if (!stage->ms) return NULL;

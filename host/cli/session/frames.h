@@ -6,7 +6,7 @@
 
 #include <jansson.h>
 
-enum { CLI_MOST_STAGES = 32 };
+enum { CLI_STAGES_MAX = 32 };
 
 typedef struct {
     char name[64];
@@ -18,7 +18,7 @@ typedef struct {
     double plan_ms, first_ms;
     int64_t repeats;
     double *frame_ms; /* [repeats], wall time from the submission to the image in host memory */
-    cli_stage_times stages[CLI_MOST_STAGES];
+    cli_stage_times stages[CLI_STAGES_MAX];
     int stage_count;
 } cli_times;
 

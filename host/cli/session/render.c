@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_REPEATS = 1000000 };
+enum { REPEATS_MAX = 1000000 };
 
 /* The share of an image's pixels that a .png shows black because they are below its window, and white because they are
  * above. */
@@ -21,7 +21,7 @@ static const double OUTSIDE = 0.005;
 
 static int read_repeats(const cli_arguments *arguments, int64_t *repeats) {
     *repeats = 0;
-    return cli_integer(arguments, &cli_flag_repeat, 1, MOST_REPEATS, repeats);
+    return cli_integer(arguments, &cli_flag_repeat, 1, REPEATS_MAX, repeats);
 }
 
 /* Whether an output is a .png whose range --range leaves open. */
@@ -66,7 +66,7 @@ static int write_files(const cli_rendering *rendering) {
     int failure = CLI_DONE, written = 0;
     const char *path;
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
-        skg_status status = skg_picture_write(&rendering->picture, path);
+        skg_status status = skg_picture_save(&rendering->picture, path);
         if (status == SKG_OK) {
             written++;
             cli_keep("outputs written: %d; the last one is %s", written, path);

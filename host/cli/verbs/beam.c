@@ -11,13 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_FILTERS = 32 };
+enum { FILTERS_MAX = 32 };
 
 static const char *const authors[] = {"Ebel", "Birch and Marshall"}; /* by SKG_TUBE_MODEL_ */
 
 typedef struct {
-    skg_filter filters[MOST_FILTERS];
-    skg_material *materials[MOST_FILTERS];
+    skg_filter filters[FILTERS_MAX];
+    skg_material *materials[FILTERS_MAX];
     int64_t filter_count;
     skg_tube tube;
     skg_spectrum *spectrum; /* of the given load and distance, or of the file */
@@ -33,8 +33,8 @@ static int read_filter(const char *text, beam *b) {
     double mm = 0;
     int exit_status = cli_read_filter(text, name, sizeof name, &mm);
     if (exit_status != CLI_DONE) return exit_status;
-    if (b->filter_count == MOST_FILTERS)
-        return cli_error(CLI_USAGE, "--filter: more than %d filters", MOST_FILTERS);
+    if (b->filter_count == FILTERS_MAX)
+        return cli_error(CLI_USAGE, "--filter: more than %d filters", FILTERS_MAX);
     skg_material **material = &b->materials[b->filter_count];
     skg_status status = skg_material_create_named(name, material);
     if (status != SKG_OK) return cli_fail(status);

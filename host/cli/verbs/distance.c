@@ -95,7 +95,7 @@ static int write_maps(work *w) {
     for (int m = 0; m < (picture ? 2 : map ? 1 : 0) && exit_status == CLI_DONE; m++)
         exit_status = find_map(w, m);
     if (map && exit_status == CLI_DONE) {
-        const skg_status status = skg_distance_map_write(w->mesh[0], w->map[0], high, map);
+        const skg_status status = skg_distance_map_save(w->mesh[0], w->map[0], high, map);
         if (status != SKG_OK) exit_status = cli_fail(status);
     }
     return picture && exit_status == CLI_DONE ? write_picture(w, picture, high) : exit_status;

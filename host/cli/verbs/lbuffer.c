@@ -33,7 +33,7 @@ int cli_lbuffer(const cli_arguments *arguments) {
     int exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 1, &rendering.session);
     if (exit_status == CLI_DONE && label) {
-        skg_status status = skg_scene_find(rendering.session.scene, label, &wanted.part);
+        skg_status status = skg_scene_part_find(rendering.session.scene, label, &wanted.part);
         if (status != SKG_OK) exit_status = cli_fail(status);
     }
     if (exit_status == CLI_DONE) {

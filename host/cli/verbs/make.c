@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LISTED = 64 };
+enum { LISTED_MAX = 64 };
 
 /* Numbers separated by commas; `numbers` holds the defaults, whose count *count is, and stays if the flag was not given. */
 static int read_list(const cli_arguments *arguments, const cli_flag *flag, int64_t most, double *numbers,
@@ -93,9 +93,9 @@ static int make_gyroid(const cli_arguments *a, skg_mesh **mesh) {
 }
 
 static int make_lines(const cli_arguments *a, skg_mesh **mesh) {
-    double per_mm[MOST_LISTED] = {0.5, 1, 2}, length = 20, thickness = 1;
+    double per_mm[LISTED_MAX] = {0.5, 1, 2}, length = 20, thickness = 1;
     int64_t groups = 3, bars = 4;
-    int exit_status = read_list(a, &cli_flag_make_per_mm, MOST_LISTED, per_mm, &groups);
+    int exit_status = read_list(a, &cli_flag_make_per_mm, LISTED_MAX, per_mm, &groups);
     if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_bars, &bars);
     if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_length, &length);
     if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_thickness, &thickness);
@@ -117,9 +117,9 @@ static int make_star(const cli_arguments *a, skg_mesh **mesh) {
 }
 
 static int make_steps(const cli_arguments *a, skg_mesh **mesh) {
-    double heights[MOST_LISTED] = {5, 10, 15, 20, 25}, length = 50, width = 20;
+    double heights[LISTED_MAX] = {5, 10, 15, 20, 25}, length = 50, width = 20;
     int64_t steps = 5;
-    int exit_status = read_list(a, &cli_flag_make_heights, MOST_LISTED, heights, &steps);
+    int exit_status = read_list(a, &cli_flag_make_heights, LISTED_MAX, heights, &steps);
     if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_length, &length);
     if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_width, &width);
     if (exit_status != CLI_DONE) return exit_status;

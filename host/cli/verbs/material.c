@@ -12,7 +12,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MOST_ROWS = 100000, GRID = 600 };
+enum { ROWS_MAX = 100000, GRID = 600 };
 
 static const double usual_kev[] = {10, 15, 20, 30, 40, 50, 60, 80, 100, 150};
 
@@ -35,9 +35,9 @@ static int read_energies(const char *text, double numbers[3]) {
         return cli_error(CLI_USAGE, "--energy %s is not KEV, LOW:HIGH or LOW:HIGH:STEP in keV", text);
     if (count == 1) numbers[1] = numbers[0], numbers[2] = 0;
     if (count == 2) numbers[2] = 1;
-    if (count > 1 && (numbers[1] - numbers[0]) / numbers[2] >= MOST_ROWS)
+    if (count > 1 && (numbers[1] - numbers[0]) / numbers[2] >= ROWS_MAX)
         return cli_error(CLI_USAGE, "--energy %s: more than %d energies; make the step wider", text,
-                         MOST_ROWS);
+                         ROWS_MAX);
     return CLI_DONE;
 }
 

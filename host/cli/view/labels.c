@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* How many parts are named at most. */
-enum { MOST_NAMED = 20 };
+enum { NAMED_MAX = 20 };
 
 /* What is drawn on. */
 typedef struct {
@@ -75,7 +75,7 @@ static int is_hidden(const cli_session *session, const uint8_t *colours, int64_t
     return 0;
 }
 
-/* The largest part of each kind that can be seen, at most MOST_NAMED. Returns how many. */
+/* The largest part of each kind that can be seen, at most NAMED_MAX. Returns how many. */
 static int choose_parts(const cli_session *session, const view_places *places, const view_part **parts) {
     int64_t seen = 0;
     int chosen = 0;
@@ -85,7 +85,7 @@ static int choose_parts(const cli_session *session, const view_places *places, c
             if (!is_hidden(session, colours, i)) parts[seen++] = places->parts + i;
     free(colours);
     qsort(parts, (size_t)seen, sizeof *parts, by_area);
-    for (int64_t i = 0; i < seen && chosen < MOST_NAMED; i++) {
+    for (int64_t i = 0; i < seen && chosen < NAMED_MAX; i++) {
         char kind[64], other[64];
         int is_new = 1;
         kind_of(parts[i]->label, kind, sizeof kind);
@@ -125,7 +125,7 @@ static void name_side(const sheet *s, const view_part *const *parts, int count, 
 /* Returns how many parts are named. */
 static int64_t name_parts(const sheet *s, const cli_session *session, const view_places *places) {
     const int room = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
-    const view_part **parts = calloc((size_t)places->count + 1, sizeof *parts), *of_side[2][MOST_NAMED];
+    const view_part **parts = calloc((size_t)places->count + 1, sizeof *parts), *of_side[2][NAMED_MAX];
     int count[2] = {0, 0};
     double middle = 0, left = HUGE_VAL, right = -HUGE_VAL;
     if (!parts) return 0;

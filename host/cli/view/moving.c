@@ -10,16 +10,16 @@
 
 /* Between its key frames a page moves every vertex in a straight line. */
 static const double KEY_FRAMES_PER_SECOND = 5;
-enum { MOST_KEY_FRAMES = 100, MOST_FRAMES = 1000000 };
+enum { KEY_FRAMES_MAX = 100, FRAMES_MAX = 1000000 };
 
 /* A page stays below 5 MB: its geometry has at most 3 MB, which are 4 MB in base 64, and its images 0.6 MB, which are
  * 0.8 MB. */
-enum { MOST_TRIANGLES = 100000, MOST_BYTES = 3000000, MOST_PIXELS = 600000, MOST_SIDE = 512 };
+enum { TRIANGLES_MAX = 100000, BYTES_MAX = 3000000, PIXELS_MAX = 600000, SIDE_MAX = 512 };
 
 /* A triangle has 3 corners of 2 bytes; for each triangle there is half a vertex, of 6 bytes in each frame. */
 static int64_t most_triangles(int64_t frames) {
-    const double most = (double)MOST_BYTES / (6 + 3 * (double)frames);
-    return most < MOST_TRIANGLES ? (int64_t)most : MOST_TRIANGLES;
+    const double most = (double)BYTES_MAX / (6 + 3 * (double)frames);
+    return most < TRIANGLES_MAX ? (int64_t)most : TRIANGLES_MAX;
 }
 
 /* How many pixels of the detector become one, in each direction. */
@@ -27,7 +27,7 @@ static int64_t block_size(const skg_view *view, int64_t frames) {
     int64_t block = 1;
     for (;; block++) {
         const int64_t columns = (view->columns + block - 1) / block, rows = (view->rows + block - 1) / block;
-        if (columns <= MOST_SIDE && rows <= MOST_SIDE && columns * rows * frames <= MOST_PIXELS) return block;
+        if (columns <= SIDE_MAX && rows <= SIDE_MAX && columns * rows * frames <= PIXELS_MAX) return block;
     }
 }
 
@@ -60,7 +60,7 @@ static int take_frame(view_work *w, int64_t frame, int64_t block, view_shapes *s
 static int64_t key_frames(const view_work *w) {
     if (isnan(w->seconds)) return 1;
     const double frames = fmax(2, ceil(w->seconds * KEY_FRAMES_PER_SECOND));
-    return frames < MOST_KEY_FRAMES ? (int64_t)frames : MOST_KEY_FRAMES;
+    return frames < KEY_FRAMES_MAX ? (int64_t)frames : KEY_FRAMES_MAX;
 }
 
 /* Says how the page differs from the scene. */
@@ -127,8 +127,8 @@ int view_write_film(view_work *w, const char *path) {
     film *opened = NULL;
     const film_format format = {
         .columns = w->look.columns, .rows = w->look.rows, .channels = 4, .fps = w->fps, .comment = comment};
-    if (frames > MOST_FRAMES)
-        return cli_error(CLI_USAGE, "%g frames are too many; %d at most", frames, MOST_FRAMES);
+    if (frames > FRAMES_MAX)
+        return cli_error(CLI_USAGE, "%g frames are too many; %d at most", frames, FRAMES_MAX);
     snprintf(comment, sizeof comment, "skiagraph %s: a view of the scene, %.9g frames per second",
              skg_version(), w->fps);
     int exit_status = film_open(path, &format, &opened);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* No part loses all of its shape. */
-enum { LEAST_TRIANGLES = 100, MOST_ROUNDS = 3 };
+enum { LEAST_TRIANGLES = 100, ROUNDS_MAX = 3 };
 
 static skg_status get_part(const skg_scene *scene, int64_t id, skg_part *part) {
     skg_part_init(part);
@@ -67,7 +67,7 @@ int view_shapes_make(const skg_scene *scene, int64_t frames, int64_t most, view_
     double share = shapes->of > most ? (double)most / (double)shapes->of : 1;
     int exit_status = make_shapes(scene, share, shapes);
     /* Where some surfaces keep more than they should, the others keep less. */
-    for (int round = 0; round < MOST_ROUNDS && exit_status == CLI_DONE && view_can_thin; round++) {
+    for (int round = 0; round < ROUNDS_MAX && exit_status == CLI_DONE && view_can_thin; round++) {
         if (shapes->triangles <= most) break;
         share *= (double)most / (double)shapes->triangles;
         exit_status = make_shapes(scene, share, shapes);

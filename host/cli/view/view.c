@@ -51,9 +51,9 @@ static int read_size(view_work *w) {
     w->look.columns = 1280, w->look.rows = 800;
     if (!value) return CLI_DONE;
     if (!read_numbers(value, 2, size) || size[0] != floor(size[0]) || size[1] != floor(size[1]) ||
-        size[0] < 64 || size[1] < 64 || size[0] > SKG_LOOK_MOST_PIXELS || size[1] > SKG_LOOK_MOST_PIXELS)
+        size[0] < 64 || size[1] < 64 || size[0] > SKG_LOOK_PIXELS_MAX || size[1] > SKG_LOOK_PIXELS_MAX)
         return cli_error(CLI_USAGE, "--size %s is not W,H, two whole numbers from 64 to %d", value,
-                         SKG_LOOK_MOST_PIXELS);
+                         SKG_LOOK_PIXELS_MAX);
     w->look.columns = (int64_t)size[0], w->look.rows = (int64_t)size[1];
     return CLI_DONE;
 }

@@ -69,6 +69,6 @@ int view_draw(view_work *w) {
     if (!w->rgba) w->rgba = malloc((size_t)(4 * w->look.columns * w->look.rows));
     if (!w->rgba) return cli_error(CLI_DEVICE, "out of host memory for the picture");
     const skg_status status =
-        skg_view_picture(w->session.context, w->session.scene, &w->session.view, &w->look, w->rgba);
+        skg_scene_picture(w->session.context, w->session.scene, &w->session.view, &w->look, w->rgba);
     return status == SKG_OK ? view_label(&w->session, &w->look, &w->places, w->rgba) : cli_fail(status);
 }

@@ -6,16 +6,16 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_FILTERS = 32 };
+enum { FILTERS_MAX = 32 };
 
 typedef struct {
-    skg_filter filters[MOST_FILTERS];
-    skg_material *materials[MOST_FILTERS];
+    skg_filter filters[FILTERS_MAX];
+    skg_material *materials[FILTERS_MAX];
     int64_t count;
 } filter_list;
 
 static void filters_free(filter_list *list) {
-    for (int64_t i = 0; i < MOST_FILTERS; i++) skg_material_release(&list->materials[i]);
+    for (int64_t i = 0; i < FILTERS_MAX; i++) skg_material_release(&list->materials[i]);
 }
 
 /* Adds the layers of an array of {material_id, thickness}. */
@@ -26,9 +26,9 @@ static skg_status add_filters(const skg_item *array, filter_list *list) {
         skg_filter filter;
         skg_filter_init(&filter);
         if (!one.value) continue;
-        if (list->count == MOST_FILTERS)
+        if (list->count == FILTERS_MAX)
             return skg_item_fail(array, SKG_ERR_BEAM, "is filter %d; at most %d are possible",
-                                 MOST_FILTERS + 1, MOST_FILTERS);
+                                 FILTERS_MAX + 1, FILTERS_MAX);
         SKG_TRY(skg_item_number(&thickness, SKG_UNIT_MM, &filter.thickness_mm));
         SKG_TRY(skg_ctsimu_material(&id, &list->materials[list->count]));
         filter.material = list->materials[list->count];

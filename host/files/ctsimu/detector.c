@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { HALF_MOST = 64 };
+enum { HALF_MAX = 64 };
 
 /* Two columns of a characteristics file as a list of pairs; a third one, the uncertainty, is passed over. */
 static skg_status put_file(const skg_item *item, const char *path, const char *key, json_t *object) {
@@ -122,9 +122,9 @@ static double line_spread(double mm, const modulation_table *table) {
 
 /* Samples a pixel apart; beyond them all are below 1e-4 of the middle one. */
 static json_t *sample_line(double pitch, const double *resolution, const modulation_table *table) {
-    double right[HALF_MOST + 1], samples[2 * HALF_MOST + 1];
+    double right[HALF_MAX + 1], samples[2 * HALF_MAX + 1];
     int half = 0;
-    for (int i = 0; i <= HALF_MOST; i++) {
+    for (int i = 0; i <= HALF_MAX; i++) {
         right[i] = table ? line_spread(i * pitch, table) : gaussian(i * pitch, resolution);
         if (fabs(right[i]) > 1e-4 * right[0]) half = i;
     }

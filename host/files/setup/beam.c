@@ -123,11 +123,11 @@ static skg_status read_mas(const skg_json_object *beam, double *mas, int32_t *gi
     return SKG_OK;
 }
 
-enum { MOST_FILTERS = 32 };
+enum { FILTERS_MAX = 32 };
 
 typedef struct {
-    skg_filter filters[MOST_FILTERS];
-    skg_material *materials[MOST_FILTERS];
+    skg_filter filters[FILTERS_MAX];
+    skg_material *materials[FILTERS_MAX];
     int64_t count;
 } filter_list;
 
@@ -165,9 +165,9 @@ static skg_status read_filters(const skg_json_object *beam, filter_list *list) {
     int64_t count = 0;
     if (!node.value) return SKG_OK;
     SKG_TRY(skg_json_array(&node, "[[\"Cu\", 0.1, \"mm\"]]", &count));
-    if (count > MOST_FILTERS)
+    if (count > FILTERS_MAX)
         return skg_json_fail(&node, SKG_ERR_FORMAT, "has %" PRId64 " filters; at most %d are possible", count,
-                             MOST_FILTERS);
+                             FILTERS_MAX);
     for (int64_t i = 0; i < count; i++) {
         skg_json_node filter = skg_json_element(&node, i);
         SKG_TRY(read_filter(&filter, list));
@@ -244,7 +244,7 @@ static skg_status read_tube(skg_setup_reader *reader, const skg_json_object *bea
     status = skg_spectrum_create_tube(&tube, &reader->setup->spectrum);
     status = skg_json_at(beam->node, status);
 cleanup:
-    for (int64_t i = 0; i < MOST_FILTERS; i++) skg_material_release(&list.materials[i]);
+    for (int64_t i = 0; i < FILTERS_MAX; i++) skg_material_release(&list.materials[i]);
     return status;
 }
 

@@ -79,12 +79,12 @@ static skg_status scale_fractions(const skg_json_node *node, int64_t count, doub
 /* [1, 0.112, 8, 0.888]: elements and fractions by mass. */
 static skg_status read_fractions(skg_setup_reader *reader, const skg_json_node *node, const char *label,
                                  skg_material **material) {
-    enum { MOST = 2 * 92 };
-    int32_t z[MOST / 2];
-    double fractions[MOST / 2];
+    enum { LIMIT = 2 * 92 };
+    int32_t z[LIMIT / 2];
+    double fractions[LIMIT / 2];
     int64_t count = 0;
     SKG_TRY(skg_json_array(node, "[1, 0.112, 8, 0.888]", &count));
-    if (count % 2 != 0 || count > MOST)
+    if (count % 2 != 0 || count > LIMIT)
         return skg_json_fail(node, SKG_ERR_FORMAT,
                              "has %" PRId64 " elements; give pairs of an element and its fraction by mass: "
                              "[1, 0.112, 8, 0.888]",

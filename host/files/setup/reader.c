@@ -12,6 +12,6 @@ skg_status skg_setup_resolve(const skg_setup_reader *reader, const char *path, c
 
 skg_status skg_setup_find_part(const skg_setup_reader *reader, const skg_json_node *node, const char *label,
                                int64_t *part) {
-    skg_status status = skg_scene_find(reader->setup->scene, label, part);
+    skg_status status = skg_scene_part_find(reader->setup->scene, label, part);
     return skg_json_at(node, status);
 }

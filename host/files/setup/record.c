@@ -233,7 +233,8 @@ skg_status skg_setup_read_poses(skg_setup_reader *reader, const skg_json_node *n
     }
     if (status == SKG_OK) status = add_moving(section, projections, part, columns);
     /* The other verbs show the first projection. */
-    if (status == SKG_OK) status = skg_json_at(node, skg_scene_pose_set(reader->setup->scene, part, columns));
+    if (status == SKG_OK)
+        status = skg_json_at(node, skg_scene_part_pose_set(reader->setup->scene, part, columns));
     skg_free(&columns);
     return status;
 }

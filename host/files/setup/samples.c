@@ -158,7 +158,7 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     SKG_TRY_CLEANUP(choose_label(reader, sample, &part, numbered, sizeof numbered));
     SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
     SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
-    status = skg_scene_add(reader->setup->scene, &part, id);
+    status = skg_scene_part_add(reader->setup->scene, &part, id);
     SKG_TRY_CLEANUP(skg_json_at(sample->node, status));
     const skg_json_node poses = skg_json_member(sample, "Poses");
     if (poses.value) status = skg_setup_read_poses(reader, &poses, own, *id);
@@ -199,7 +199,7 @@ static skg_status read_parent(skg_scene *scene, const sample_list *list, const s
     if (parent.value && !json_is_null(parent.value)) {
         const char *label = NULL;
         SKG_TRY(skg_json_text(&parent, &label));
-        skg_status status = skg_scene_find(scene, label, &inside);
+        skg_status status = skg_scene_part_find(scene, label, &inside);
         if (status == SKG_OK) status = skg_scene_set_inside(scene, part->part, inside);
         return skg_json_at(&parent, status);
     }
@@ -220,7 +220,7 @@ static skg_status move_all_to_centre(skg_scene *scene) {
         double pose[16];
         memcpy(pose, scene->parts[i].pose, sizeof pose);
         for (int k = 0; k < 3; k++) pose[4 * k + 3] -= 0.5 * (bounds[k] + bounds[3 + k]);
-        SKG_TRY(skg_scene_pose_set(scene, i, pose));
+        SKG_TRY(skg_scene_part_pose_set(scene, i, pose));
     }
     return SKG_OK;
 }

@@ -17,7 +17,7 @@ static const struct {
              [CYLINDER] = {1, 2, "[sectors, height, radius, \"mm\"]"},
              [SPHERE] = {1, 1, "[sectors, radius, \"mm\"]"}};
 
-enum { MOST_SECTORS = 100000 };
+enum { SECTORS_MAX = 100000 };
 
 /* The mesh gets one more owner; the path belongs to the set-up. */
 static skg_status remember(skg_mesh_cache *cache, const char *path, double unit_mm, int32_t flip,
@@ -122,7 +122,7 @@ static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
     double length[4], mm = 1;
     SKG_TRY(skg_json_read_object(node, wedge_keys, sizeof wedge_keys / sizeof *wedge_keys, &wedge));
     SKG_TRY(skg_json_need(&wedge, "NumberOfSteps", "5", &member));
-    SKG_TRY(skg_json_integer(&member, 1, MOST_SECTORS, &steps));
+    SKG_TRY(skg_json_integer(&member, 1, SECTORS_MAX, &steps));
     SKG_TRY(skg_json_need(&wedge, "Unit", "\"mm\"", &member));
     SKG_TRY(skg_json_unit_of_length(&member, &mm));
     for (int k = 0; k < 4; k++) {
@@ -152,7 +152,7 @@ static skg_status make(const skg_json_node *node, int shape, skg_mesh **mesh, do
                              count, wanted, forms[shape].example);
     if (forms[shape].sectors) {
         skg_json_node element = skg_json_element(node, 0);
-        SKG_TRY(skg_json_integer(&element, 3, MOST_SECTORS, &sectors));
+        SKG_TRY(skg_json_integer(&element, 3, SECTORS_MAX, &sectors));
     }
     skg_json_node unit = skg_json_element(node, count - 1);
     SKG_TRY(skg_json_unit_of_length(&unit, &mm));

@@ -108,8 +108,8 @@ SKG_API skg_status skg_distance_colour(double value, uint8_t *rgb);
  *     distances   [vertices] mm
  *     high_mm     the value at the bright end of the colours, above 0; the dark end is 0
  *     errors      SKG_ERR_ARGUMENT, SKG_ERR_MESH, SKG_ERR_OUTPUT */
-SKG_API skg_status skg_distance_map_write(const skg_mesh *mesh, const double *distances, double high_mm,
-                                          const char *path);
+SKG_API skg_status skg_distance_map_save(const skg_mesh *mesh, const double *distances, double high_mm,
+                                         const char *path);
 
 #ifdef __cplusplus
 }

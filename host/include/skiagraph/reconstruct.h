@@ -77,7 +77,7 @@ SKG_API skg_status skg_fdk_volume_get(const skg_fdk *fdk, const float **volume);
 
 /** Writes the volume as MetaImage, with its place in the scene. Errors: SKG_ERR_ARGUMENT if the path does not end in
  * .mha, SKG_ERR_OUTPUT. */
-SKG_API skg_status skg_fdk_write(const skg_fdk *fdk, const char *path);
+SKG_API skg_status skg_fdk_save(const skg_fdk *fdk, const char *path);
 
 #ifdef __cplusplus
 }

@@ -134,7 +134,7 @@ SKG_API void skg_scan_release(skg_scan **scan);
 /** Number of projections of a scan. */
 SKG_API skg_status skg_scan_projection_count(const skg_scan *scan, int64_t *count);
 
-/** Gets the view of a projection, as it is in the middle of its exposure: skg_plan_move takes it, and skg_frame
+/** Gets the view of a projection, as it is in the middle of its exposure: skg_plan_view_set takes it, and skg_frame
  * points to one.
  *
  *     index    0 <= index < number of projections
@@ -186,7 +186,7 @@ SKG_API skg_status skg_scan_short_range_get(const skg_view *view, const skg_scan
  *     errors   SKG_ERR_ARGUMENT (extension), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for a view that a tool cannot express: a
  *              parallel beam (RTK, TIGRE, and CIL if the scan does more than turn), a detector that is skewed (all but .csv)
  *              or seen from behind (RTK), pixels of different sizes (TIGRE, CIL) */
-SKG_API skg_status skg_scan_geometry_write(const skg_scan *scan, const char *path);
+SKG_API skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path);
 
 #ifdef __cplusplus
 }

@@ -39,6 +39,6 @@
 #include <skiagraph/thorax.h>
 #include <skiagraph/types.h>
 #include <skiagraph/version.h>
-#include <skiagraph/view_picture.h>
+#include <skiagraph/scene_picture.h>
 
 #endif

@@ -133,7 +133,7 @@ inline mesh make_mesh(std::span<const float> positions, std::span<const std::int
 
 /** Adds a part to a scene and returns its number. */
 inline std::int64_t add(const scene &to, const skg_part &part) {
-    return number<std::int64_t>(skg_scene_add, to.get(), &part);
+    return number<std::int64_t>(skg_scene_part_add, to.get(), &part);
 }
 
 /** Work that was submitted. Its destructor waits, because the output's memory is in use until then. */

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_VOXELS = 4096 };
+enum { VOXELS_MAX = 4096 };
 
 struct skg_fdk {
     skg_scan *scan;
@@ -37,9 +37,9 @@ static skg_status check_options(const skg_fdk_options *o) {
         return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: filter %" PRId32 " is no SKG_FDK_FILTER_ value",
                         o->filter);
     for (int k = 0; k < 3; k++)
-        if (o->voxels[k] < 1 || o->voxels[k] > MOST_VOXELS)
+        if (o->voxels[k] < 1 || o->voxels[k] > VOXELS_MAX)
             return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: %" PRId64 " voxels along %c; give 1 to %d",
-                            o->voxels[k], "xyz"[k], MOST_VOXELS);
+                            o->voxels[k], "xyz"[k], VOXELS_MAX);
     if (!(o->voxel_mm > 0) || isinf(o->voxel_mm))
         return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: voxels of %g mm", o->voxel_mm);
     if (!skg_all_finite(o->axis, 3) || !(skg_length(o->axis) > 0) || !skg_all_finite(o->centre, 3) ||
@@ -235,7 +235,7 @@ skg_status skg_fdk_volume_get(const skg_fdk *fdk, const float **volume) {
     return SKG_OK;
 }
 
-skg_status skg_fdk_write(const skg_fdk *fdk, const char *path) {
+skg_status skg_fdk_save(const skg_fdk *fdk, const char *path) {
     SKG_PLAIN;
     skg_output_file file;
     SKG_NEEDS(fdk);

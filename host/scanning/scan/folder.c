@@ -78,7 +78,7 @@ static skg_status write_picture(const skg_scan_file *file, const skg_view *view,
     picture.name = file->options.name;
     picture.unit = file->options.unit;
     picture.view = view;
-    return skg_picture_write(&picture, path);
+    return skg_picture_save(&picture, path);
 }
 
 static skg_status write_one(skg_scan_file *file, int64_t index, const void *image, double phase) {

@@ -8,7 +8,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { SLOTS = 3, BATCH_BYTES = 1 << 24, BATCH_MOST = 32, SUBFRAMES_MOST = 1000 };
+enum { SLOTS = 3, BATCH_BYTES = 1 << 24, BATCH_MAX = 32, SUBFRAMES_MAX = 1000 };
 
 struct skg_scan_run {
     skg_scan_work work;
@@ -40,9 +40,9 @@ static skg_status check_options(const skg_scan_run_options *o, int64_t projectio
         return skg_fail(SKG_ERR_ARGUMENT, "run: shard %" PRId64 " of %" PRId64 "; shards count from 0",
                         o->shard, o->shards);
     if (o->batch < 0) return skg_fail(SKG_ERR_ARGUMENT, "run: batches of %" PRId64 " projections", o->batch);
-    if (o->subframes < 1 || o->subframes > SUBFRAMES_MOST)
+    if (o->subframes < 1 || o->subframes > SUBFRAMES_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "run: %" PRId64 " sub-frames; give 1 to %d", o->subframes,
-                        SUBFRAMES_MOST);
+                        SUBFRAMES_MAX);
     if (o->only_count < 0 || (o->only_count > 0 && !o->only))
         return skg_fail(SKG_ERR_ARGUMENT, "run: `only` has %" PRId64 " numbers, but no array", o->only_count);
     if (o->moving_count < 0 || (o->moving_count > 0 && (!o->moving_parts || !o->moving_poses || o->motion)))
@@ -104,7 +104,7 @@ static skg_status prepare(skg_scan_run *run, const skg_scan_run_options *o) {
     SKG_TRY(skg_scan_work_init(&run->work));
     SKG_TRY(list_projections(run, o));
     const int64_t bytes = run->work.image_elements * skg_element_bytes(run->work.options.type) * o->subframes;
-    run->batch = BATCH_BYTES / bytes < BATCH_MOST ? BATCH_BYTES / bytes : BATCH_MOST;
+    run->batch = BATCH_BYTES / bytes < BATCH_MAX ? BATCH_BYTES / bytes : BATCH_MAX;
     if (run->batch < 1) run->batch = 1;
     if (o->batch > 0) run->batch = o->batch;
     if (run->batch > run->count && run->count > 0) run->batch = run->count;

@@ -29,7 +29,7 @@ static const struct {
                {".csv", write_table},
                {".xml", skg_scan_write_rtk}};
 
-skg_status skg_scan_geometry_write(const skg_scan *scan, const char *path) {
+skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path) {
     SKG_PLAIN;
     skg_output_file file;
     size_t f = 0;

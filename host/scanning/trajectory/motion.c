@@ -90,9 +90,9 @@ skg_status skg_scan_check_options(const skg_scan_options *o) {
                      skg_all_finite(o->detector_drift_mm, 3) && skg_all_finite(o->detector_tilt_rad, 3);
     for (size_t i = 0; i < sizeof finite / sizeof *finite; i++) are_finite &= isfinite(*finite[i]) != 0;
     if (!are_finite) return skg_fail(SKG_ERR_ARGUMENT, "scan: an angle, length or time is not finite");
-    if (o->projections < 1 || o->projections > SKG_SCAN_MOST)
+    if (o->projections < 1 || o->projections > SKG_SCAN_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "scan: %" PRId64 " projections; give 1 to %d", o->projections,
-                        SKG_SCAN_MOST);
+                        SKG_SCAN_MAX);
     if (!(skg_length(o->axis) > 0)) return skg_fail(SKG_ERR_ARGUMENT, "scan: the axis has no length");
     if (!(fabs(o->detector_skew_rad) <= 1.2))
         return skg_fail(SKG_ERR_ARGUMENT, "scan: a skew of %g rad; give -1.2 to 1.2", o->detector_skew_rad);

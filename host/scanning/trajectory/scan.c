@@ -78,9 +78,9 @@ skg_status skg_scan_create_table(const skg_view *view, const skg_scan_options *o
     *scan = NULL;
     SKG_NEEDS(view);
     SKG_NEEDS(poses);
-    if (count < 1 || count > SKG_SCAN_MOST)
+    if (count < 1 || count > SKG_SCAN_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "table of poses: %" PRId64 " projections; give 1 to %d", count,
-                        SKG_SCAN_MOST);
+                        SKG_SCAN_MAX);
     SKG_TRY_CLEANUP(make(view, options, &made));
     made->options.projections = count;
     SKG_TRY_CLEANUP(skg_alloc(count * SKG_POSE_NUMBERS, sizeof *made->poses, "table of poses", &made->poses));

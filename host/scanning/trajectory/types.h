@@ -6,7 +6,7 @@
 
 #include <skiagraph/scan.h>
 
-enum { SKG_POSE_NUMBERS = 12, SKG_SCAN_MOST = 10000000 };
+enum { SKG_POSE_NUMBERS = 12, SKG_SCAN_MAX = 10000000 };
 
 struct skg_scan {
     skg_refs refs;

@@ -69,10 +69,10 @@ static inline void skg_picture_init(skg_picture *picture) {
  *              -: as .mha, to standard output
  *     errors   SKG_ERR_ARGUMENT (unknown extension), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for .mha if the
  *              detector's steps are not perpendicular, which MetaImage cannot express: use TIFF */
-SKG_API skg_status skg_picture_write(const skg_picture *picture, const char *path);
+SKG_API skg_status skg_picture_save(const skg_picture *picture, const char *path);
 
-/** Checks that skg_picture_write could write to a path, before a long computation: the extension is known,
- * and a file can be made beside it (one is, for a moment). Errors as of skg_picture_write. */
+/** Checks that skg_picture_save could write to a path, before a long computation: the extension is known,
+ * and a file can be made beside it (one is, for a moment). Errors as of skg_picture_save. */
 SKG_API skg_status skg_picture_path_check(const char *path);
 
 /** Gets the values that a .png would show as black and as white if low and high were 0, so that all frames of

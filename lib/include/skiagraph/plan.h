@@ -49,7 +49,7 @@ SKG_API skg_status skg_spectrum_create_resolved(const skg_spectrum *spectrum, co
 
 /** Sets the view of frames without their own. Returns SKG_STALE, and changes nothing, if the view has another size than the
  * plan's, or if the spectrum is absolute and one of the two is parallel and the other is not. */
-SKG_API skg_status skg_plan_move(skg_plan *plan, const skg_view *view);
+SKG_API skg_status skg_plan_view_set(skg_plan *plan, const skg_view *view);
 
 #ifdef __cplusplus
 }

@@ -68,7 +68,7 @@ SKG_API void skg_scene_release(skg_scene **scene);
  *     id       result: the part's number, counted from 0; may be NULL
  *     errors   SKG_ERR_SCENE if the label is taken, the pose is singular, or the part lies inside itself or a
  *              part that is not there */
-SKG_API skg_status skg_scene_add(skg_scene *scene, const skg_part *part, int64_t *id);
+SKG_API skg_status skg_scene_part_add(skg_scene *scene, const skg_part *part, int64_t *id);
 
 /** Number of parts in a scene. */
 SKG_API skg_status skg_scene_part_count(const skg_scene *scene, int64_t *count);
@@ -78,18 +78,18 @@ SKG_API skg_status skg_scene_part_count(const skg_scene *scene, int64_t *count);
 SKG_API skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part);
 
 /** Gets the label of part 0 <= id < count, valid as long as the scene. */
-SKG_API skg_status skg_scene_label_get(const skg_scene *scene, int64_t id, const char **label);
+SKG_API skg_status skg_scene_part_label_get(const skg_scene *scene, int64_t id, const char **label);
 
 /** Finds a part by its label: the one with exactly this label, or else the only one that differs in case
  * alone. Errors: SKG_ERR_SCENE with the nearest label. */
-SKG_API skg_status skg_scene_find(const skg_scene *scene, const char *label, int64_t *id);
+SKG_API skg_status skg_scene_part_find(const skg_scene *scene, const char *label, int64_t *id);
 
 /** Sets the pose of a part. Plans use it from the next frame on. */
-SKG_API skg_status skg_scene_pose_set(skg_scene *scene, int64_t id, const double *pose);
+SKG_API skg_status skg_scene_part_pose_set(skg_scene *scene, int64_t id, const double *pose);
 
 /** Sets the material of a part and retains it. Plans use it from the next frame on; a plan that compresses
  * several energies (skg_plan_options.tolerance above 0) becomes stale. */
-SKG_API skg_status skg_scene_material_set(skg_scene *scene, int64_t id, skg_material *material);
+SKG_API skg_status skg_scene_part_material_set(skg_scene *scene, int64_t id, skg_material *material);
 
 /** Checks that a view can be imaged. Errors: SKG_ERR_SCENE with the reason: no pixels, a step that is zero or
  * parallel to the other, a source in the detector's plane, a beam along the detector, a number that is not

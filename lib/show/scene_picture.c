@@ -6,7 +6,7 @@
 #include "show/markers.h"
 #include "show/parts.h"
 
-#include <skiagraph/view_picture.h>
+#include <skiagraph/scene_picture.h>
 
 #include <inttypes.h>
 #include <math.h>
@@ -22,12 +22,12 @@ void skg_look_init_sized(void *look, int32_t size) {
 static skg_status read_look(const skg_look *theirs, skg_look *look) {
     skg_look_init(look);
     if (theirs) SKG_TRY(skg_struct_read(theirs, "skg_look", look, sizeof *look));
-    if (look->columns < 1 || look->rows < 1 || look->columns > SKG_LOOK_MOST_PIXELS ||
-        look->rows > SKG_LOOK_MOST_PIXELS)
+    if (look->columns < 1 || look->rows < 1 || look->columns > SKG_LOOK_PIXELS_MAX ||
+        look->rows > SKG_LOOK_PIXELS_MAX)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "the picture has %" PRId64 " columns and %" PRId64
                         " rows; 1 to %d of each can be drawn",
-                        look->columns, look->rows, SKG_LOOK_MOST_PIXELS);
+                        look->columns, look->rows, SKG_LOOK_PIXELS_MAX);
     if (look->path_count < 0 || (look->path_count > 0 && !look->path))
         return skg_fail(SKG_ERR_ARGUMENT, "the look has %" PRId64 " points of a path, and %s",
                         look->path_count, look->path ? "a count cannot be negative" : "path is NULL");
@@ -48,7 +48,7 @@ static skg_status find_box(const skg_scene *scene, const uint8_t *colours, doubl
     for (int64_t i = 0; i < scene->count; i++)
         if (colours[4 * i + 3] > 0) skg_show_part_bounds(scene->parts + i, low, high);
     if (scene->count == 0)
-        return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_add");
+        return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_part_add");
     if (!(low[0] <= high[0]))
         return skg_fail(SKG_ERR_SCENE, "the picture would be empty: every part of the scene is left out");
     return SKG_OK;
@@ -68,8 +68,8 @@ static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look
     return skg_show_camera_make(view, look, low, high, camera);
 }
 
-skg_status skg_view_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
-                            const skg_look *look, uint8_t *rgba) {
+skg_status skg_scene_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
+                             const skg_look *look, uint8_t *rgba) {
     SKG_PLAIN;
     SKG_TRY(skg_context_enter(context));
     SKG_TRY(skg_self_test_need(context, SKG_SELF_TEST_PICTURE));

@@ -4,8 +4,8 @@
  *
  * Positions are in mm. The picture has perspective unless the look says otherwise, and always holds everything:
  * parts, source, detector and the path of the source. */
-#ifndef SKIAGRAPH_VIEW_PICTURE_H
-#define SKIAGRAPH_VIEW_PICTURE_H
+#ifndef SKIAGRAPH_SCENE_PICTURE_H
+#define SKIAGRAPH_SCENE_PICTURE_H
 
 #include <skiagraph/context.h>
 #include <skiagraph/scene.h>
@@ -16,7 +16,7 @@ extern "C" {
 #endif
 
 /** Largest number of columns and rows of a picture of a scene. */
-#define SKG_LOOK_MOST_PIXELS 8192
+#define SKG_LOOK_PIXELS_MAX 8192
 
 /** How a picture of a scene is drawn. Prepare with skg_look_init: 1024 x 768 pixels from the side of the source,
  * in perspective, without an image on the detector. */
@@ -25,9 +25,9 @@ typedef struct {
     int32_t size;
     /** 1: parallel lines stay parallel; 0: perspective */
     int32_t orthographic;
-    /** Number of columns of the picture, 1 to SKG_LOOK_MOST_PIXELS. */
+    /** Number of columns of the picture, 1 to SKG_LOOK_PIXELS_MAX. */
     int64_t columns;
-    /** Number of rows of the picture, 1 to SKG_LOOK_MOST_PIXELS. */
+    /** Number of rows of the picture, 1 to SKG_LOOK_PIXELS_MAX. */
     int64_t rows;
     /** Direction from the scene to the eye, of any length. Zero: obliquely from the side of the source. */
     double from[3];
@@ -73,15 +73,15 @@ SKG_API skg_status skg_look_colours_get(const skg_scene *scene, uint8_t *colours
  *     method    Triangles are sorted into tiles of the picture; in each tile the device keeps the nearest opaque
  *               surface, then adds the translucent ones in front of it, nearest first (depth peeling, Everitt
  *               2001; at most 8 layers). 2 x 2 samples a pixel. The bytes do not depend on the number of threads. */
-SKG_API skg_status skg_view_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
-                                    const skg_look *look, uint8_t *rgba);
+SKG_API skg_status skg_scene_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
+                                     const skg_look *look, uint8_t *rgba);
 
-/** Gets where points of the world appear in the picture that skg_view_picture draws with the same arguments, for
+/** Gets where points of the world appear in the picture that skg_scene_picture draws with the same arguments, for
  * labels.
  *
  *     points    [count][3] mm
  *     places    result: [count][2] column and row; pixel centres are whole numbers
- *     errors    as skg_view_picture */
+ *     errors    as skg_scene_picture */
 SKG_API skg_status skg_view_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
                                        int64_t count, const double *points, double *places);
 
