@@ -14,7 +14,7 @@ def distance(a: Any, b: Any, *, sampling: str = "surface", spacing: float = 0, p
     "back" has the same from the second to the first, which differs, and "hausdorff_mm" is the greater of both maxima.
     a, b: meshes, as of Scene.add. sampling: "surface", over the area, or "vertices". spacing: the largest side of the
     triangles that a sample of the surface stands for, mm; 0: such that there are about 200,000. progress: True, or
-    a function of (done, of); if it returns False, or raises, the measurement is cancelled.
+    a function of (done, of), for one direction after the other; if it returns False, or raises, the measurement is cancelled.
 
     >>> from skiagraph import Mesh
     >>> found = distance(Mesh.cube(10), Mesh.cube(12), sampling="vertices")

