@@ -12,8 +12,6 @@
 #include "stage/kernels.h"
 #include "stage/staging.h"
 
-#include <skiagraph/plan.h>
-
 /* A part in one frame. */
 typedef struct {
     const double *pose;   /* 4x4, row by row */
@@ -58,24 +56,6 @@ typedef struct {
     /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;
-
-/* Bytes of a number, and of an entry of the tables of parts and contributions. */
-static inline int skg_geometry_is_double(const skg_geometry *geometry) {
-    return geometry->precision == SKG_PRECISION_DOUBLE;
-}
-static inline size_t skg_geometry_real_size(const skg_geometry *geometry) {
-    return skg_geometry_is_double(geometry) ? sizeof(double) : sizeof(float);
-}
-static inline size_t skg_geometry_entry_size(const skg_geometry *geometry) {
-    return skg_geometry_is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
-}
-static inline size_t skg_geometry_contribution_size(const skg_geometry *geometry) {
-    return skg_geometry_is_double(geometry) ? sizeof(skg_contribution_double)
-                                            : sizeof(skg_contribution_float);
-}
-
-/* Waits until the device has read what a slot was last filled with: only then may it be filled again. */
-skg_status skg_table_slot_wait(skg_table_slot *slot);
 
 /* The arguments that kernels which take triangles have in common. */
 #define SKG_TRIANGLE_ARGUMENTS(kernel, raster_layout, geometry)                                              \

@@ -19,10 +19,6 @@ static skg_status choose_strategy(skg_raster *raster) {
     return skg_fail(SKG_ERR_INTERNAL, "no strategy %d", (int)raster->options.strategy);
 }
 
-int64_t skg_raster_sum_bytes(const skg_raster *raster) {
-    return raster->options.kernels.bits / 8;
-}
-
 static skg_status lay_out(skg_raster *raster) {
     const skg_raster_options *o = &raster->options;
     skg_raster_layout *layout = &raster->layout;
@@ -47,25 +43,10 @@ static skg_status lay_out(skg_raster *raster) {
     return SKG_OK;
 }
 
-skg_status skg_raster_reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes, const char *what) {
-    return skg_buffer_reserve(raster->context, buffer, bytes, CL_MEM_READ_WRITE, what);
-}
-
 static int64_t bytes_of_sums(const skg_raster *raster) {
     const skg_raster_layout *layout = &raster->layout;
     return (int64_t)layout->copies * skg_raster_passes(raster) * layout->planes * layout->plane *
            skg_raster_sum_bytes(raster);
-}
-
-int64_t skg_raster_plane_bytes(const skg_raster *raster) {
-    return (int64_t)raster->layout.planes * raster->layout.plane * skg_raster_sum_bytes(raster);
-}
-
-skg_status skg_raster_reserve_lists(skg_raster *raster) {
-    const int64_t of_int = sizeof(cl_int), triangles = raster->options.triangles;
-    SKG_TRY(
-        skg_raster_reserve(raster, &raster->list, triangles * SKG_TILES_MAX * of_int, "lists of the tiles"));
-    return skg_raster_reserve(raster, &raster->for_all, triangles * of_int, "list for all tiles");
 }
 
 static skg_status allocate(skg_raster *raster) {
@@ -78,13 +59,6 @@ static skg_status allocate(skg_raster *raster) {
     return raster->strategy->allocate ? raster->strategy->allocate(raster) : SKG_OK;
 }
 
-skg_status skg_raster_fill(const skg_raster *raster, const skg_buffer *buffer, cl_int value, int64_t from,
-                           int64_t bytes) {
-    SKG_CL_TRY(clEnqueueFillBuffer(raster->context->device->queue, buffer->memory, &value, sizeof value,
-                                   (size_t)from, (size_t)bytes, 0, NULL, NULL));
-    return SKG_OK;
-}
-
 /* On the host the whole detector for each plane; on the device any extent, until a frame sends its own. */
 static skg_status make_extents(skg_raster *raster) {
     const skg_raster_layout *layout = &raster->layout;
@@ -94,16 +68,6 @@ static skg_status make_extents(skg_raster *raster) {
     for (int32_t p = 0; p < layout->planes; p++)
         raster->whole[4 * p + 1] = layout->rows, raster->whole[4 * p + 3] = layout->stride;
     return skg_raster_fill(raster, &raster->used, 1, 0, raster->used.bytes);
-}
-
-skg_status skg_raster_get_program(const skg_raster *raster, cl_program *program) {
-    const char *files[2 + SKG_STRATEGY_FILES] = {"fine.clh", "project.cl"};
-    const skg_define side[] = {{"SKG_SIDE", skg_raster_side(raster)}};
-    int32_t count = 2;
-    for (int32_t f = 0; f < SKG_STRATEGY_FILES && raster->strategy->files[f]; f++)
-        files[count++] = raster->strategy->files[f];
-    return skg_kernels_get(raster->context, &raster->options.kernels, count, files, SKG_DEFINES(side),
-                           program);
 }
 
 static skg_status compile_strategy(skg_raster *raster) {
@@ -206,14 +170,6 @@ int64_t skg_raster_bytes(const skg_raster *raster) {
     return raster->sums.bytes + raster->used.bytes + raster->scratch.bytes + raster->counts.bytes +
            raster->starts.bytes + raster->list.bytes + raster->for_all.bytes + raster->queue.bytes +
            raster->rows_bad.bytes;
-}
-
-int32_t skg_raster_passes(const skg_raster *raster) {
-    return raster->options.passes > 1 ? raster->options.passes : 1;
-}
-
-int32_t skg_raster_side(const skg_raster *raster) {
-    return raster->options.side > 1 ? raster->options.side : 1;
 }
 
 int64_t skg_raster_plane_count(const skg_raster *raster) {
