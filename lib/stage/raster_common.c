@@ -16,7 +16,7 @@ int64_t skg_raster_plane_bytes(const skg_raster *raster) {
 skg_status skg_raster_reserve_lists(skg_raster *raster) {
     const int64_t of_int = sizeof(cl_int), triangles = raster->options.triangles;
     SKG_TRY(
-        skg_raster_reserve(raster, &raster->list, triangles * SKG_MOST_TILES * of_int, "lists of the tiles"));
+        skg_raster_reserve(raster, &raster->list, triangles * SKG_TILES_MAX * of_int, "lists of the tiles"));
     return skg_raster_reserve(raster, &raster->for_all, triangles * of_int, "list for all tiles");
 }
 
