@@ -27,6 +27,7 @@ echo "CMake:"
 cmake -S "$source/examples" -B cmake -DCMAKE_PREFIX_PATH="$stage/usr" >cmake.log
 cmake --build cmake >>cmake.log
 cmake/first_image
+cmake/on_device
 
 if [ -e "$lib/libskiagraph.a" ]; then
     # But for the locks of OpenMP, which are common to a whole program.
@@ -73,6 +74,9 @@ echo "skiagraph/opencl.h by pkg-config:"
 printf '#include <skiagraph/opencl.h>\nint main(void) { return (int)skg_last_cl_error(); }\n' |
     cc -std=c11 -xc - $(pkg-config --cflags --libs skiagraph-opencl) -o opencl_pc
 ./opencl_pc
+# shellcheck disable=SC2046
+cc -std=c11 -Wall -Wextra -Werror "$source/examples/on_device.c" $(pkg-config --cflags --libs skiagraph-opencl) -lm -o on_device
+./on_device
 
 echo "every public header compiles alone, in C and as it stands:"
 for header in "$stage"/usr/include/skiagraph/*.h; do
