@@ -226,7 +226,7 @@ static const struct {
     {"blur.cl", "k < pixels; k++) place[k] = add", "k < pixels - 1; k++) place[k] = add", SKG_SELF_TEST_BLUR},
     {"detect.cl", "k < pixels; k++) image[k] = rest[k]", "k < pixels - 1; k++) image[k] = rest[k]",
      SKG_SELF_TEST_DETECTOR},
-    {"attenuate.cl", "skg_noisy_v(strip, pixels, r, c, all) - value", "skg_noisy_v(pass, pixels, r, c, all)",
+    {"attenuate.cl", "skg_noisy_v(strip, pixels, r, c, all) - value", "skg_noisy_v(strip, pixels, r, c, all)",
      SKG_SELF_TEST_APART},
     {"attenuate.cl", "pixels.spread[c], SKG_CHANNELS + c)", "pixels.spread[c], c)", SKG_SELF_TEST_APART},
     {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_SELF_TEST_APART},
