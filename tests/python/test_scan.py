@@ -276,4 +276,4 @@ def test_cost_sees_every_change(path):
     assert state_of(scene).is_changed()
     moved = sk.Scene(path)
     moved.view.source[1] -= 10
-    assert moved._is_changed()
+    assert state_of(moved).is_changed()
