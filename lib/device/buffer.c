@@ -62,3 +62,12 @@ skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t by
                                         data, 0, NULL, NULL));
     return SKG_OK;
 }
+
+skg_status skg_queue_flush(const skg_context *context) {
+    SKG_CL_TRY(clFlush(context->device->queue));
+    return SKG_OK;
+}
+
+cl_int skg_event_wait(cl_event event) {
+    return clWaitForEvents(1, &event);
+}

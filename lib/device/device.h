@@ -116,4 +116,12 @@ skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *da
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what);
 
+/* --- the queue --- */
+
+/* Gives the device what was enqueued. */
+skg_status skg_queue_flush(const skg_context *context);
+
+/* Waits until a command is done. */
+cl_int skg_event_wait(cl_event event);
+
 #endif

@@ -75,8 +75,7 @@ static skg_status set_positions(skg_plan *plan, int64_t part, cl_mem buffer, int
                                 plan->recipe->meshes.of_part[part], &source));
     cl_command_queue queue = plan->context->device->queue;
     if (events->done) SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, events->done));
-    SKG_CL_TRY(clFlush(queue));
-    return SKG_OK;
+    return skg_queue_flush(plan->context);
 }
 
 skg_status skg_plan_positions_set_cl(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,

@@ -133,8 +133,7 @@ skg_status skg_submission_finish(skg_job *job) {
     SKG_TRY(skg_raster_read_listed(job->main.raster, results->listed));
     SKG_TRY(read_outside(job));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
-    SKG_CL_TRY(clFlush(queue));
-    return SKG_OK;
+    return skg_queue_flush(machine->context);
 }
 
 static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
@@ -144,7 +143,7 @@ static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
     SKG_TRY(enqueue_until(job, frames, ahead < job->count ? ahead : job->count));
     if (job->enqueued == job->count) return skg_submission_finish(job);
     SKG_TRY(skg_held_frames_copy(job, frames));
-    SKG_CL_TRY(clFlush(context->device->queue));
+    SKG_TRY(skg_queue_flush(context));
     context->held = job;
     return SKG_OK;
 }
@@ -158,8 +157,7 @@ skg_status skg_submission_enqueue(skg_job **job, const skg_frame *frames, int at
 static skg_status enqueue_held(skg_job *job, int64_t end) {
     SKG_TRY(enqueue_until(job, job->then.frames, end < job->count ? end : job->count));
     if (job->enqueued == job->count) return skg_submission_finish(job);
-    SKG_CL_TRY(clFlush(job->machine->context->device->queue));
-    return SKG_OK;
+    return skg_queue_flush(job->machine->context);
 }
 
 /* Enqueues frames that were held back, up to number `end`. Their failure is that of the job. */

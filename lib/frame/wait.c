@@ -12,7 +12,7 @@ static cl_int wait_for_frames(skg_job *job) {
     while (code == CL_SUCCESS && !job->last) {
         skg_submission_continue(job);
         if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) break;
-        code = clWaitForEvents(1, &job->ends[job->done]);
+        code = skg_event_wait(job->ends[job->done]);
         job->done++;
     }
     return code;
@@ -39,7 +39,7 @@ skg_status skg_job_complete(skg_job **job) {
     if (first) skg_signals_keep();
     cl_int code = wait_for_frames(done);
     if (code == CL_SUCCESS) status = skg_submission_finish(done);
-    if (code == CL_SUCCESS && status == SKG_OK) code = clWaitForEvents(1, &done->last);
+    if (code == CL_SUCCESS && status == SKG_OK) code = skg_event_wait(done->last);
     if (first) skg_signals_restore();
     context->device->launched = programs;
     done->finished = code == CL_SUCCESS && status == SKG_OK;

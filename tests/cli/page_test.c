@@ -27,7 +27,7 @@ static const char worker[] =
     "  const slider = byId(id), all = [];\n"
     "  for (let v = 0; v <= Number(slider.max); v++) { slider.value = v; fire(slider, 'input'); all.push(await seen());\n"
     "    check(id + ' stays', Number(slider.value) === v); check('best ' + v, study.settings[chosen].best); }\n"
-    "  for (const key of ['command', 'numbers', 'difference']) check(id + ' ' + key, new Set(all.map(a => a[key])).size === all.length);\n"
+    "  for (const key of ['command', 'difference']) check(id + ' ' + key, new Set(all.map(a => a[key])).size === all.length);\n"
     "  check(id + ' words', !study.priced || new Set(all.map(a => a.accepted + a.had)).size === all.length);\n"
     "  check(id + ' pictures', new Set(all.map(a => a.image)).size > 1);\n"
     "  return all.map((_, v) => { slider.value = v; fire(slider, 'input'); return study.settings[chosen]; }); };\n"

@@ -10,7 +10,7 @@ rm -f "$SKG_SITES"
 cd "$folder"
 
 # The library's sources, not those of the tests or of libraries that are linked in.
-ours='/\(lib\|host\|materials\)/[a-z0-9]*/[a-z0-9_]*\.c:'
+ours='/\(lib\|host\|materials\)/[a-z0-9/]*/[a-z0-9_]*\.c:'
 
 # Of each call that can fail: the address to which it returns. Absolute, as the program's file has them.
 "$objdump" -d --no-show-raw-insn "$program" | awk '
