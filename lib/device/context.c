@@ -147,11 +147,8 @@ static void fit_to_cpus(skg_context *context) {
 static skg_status limit_threads(skg_context *context, int32_t threads) {
     skg_device *device = context->device;
     if (threads >= device->info.compute_units) return SKG_OK;
-    cl_device_partition_property how[] = {CL_DEVICE_PARTITION_BY_COUNTS, threads,
-                                          CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
     cl_device_id part = NULL;
-    cl_uint parts = 0;
-    cl_int code = clCreateSubDevices(device->id, how, 1, &part, &parts);
+    const cl_int code = skg_sub_device_get(device->id, threads, &part);
     if (code != CL_SUCCESS)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "%s cannot be limited to threads=%" PRId32 ": %s from clCreateSubDevices",

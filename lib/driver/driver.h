@@ -115,6 +115,15 @@ int32_t skg_opencl_cpu_count(void);
 void skg_signals_keep(void);
 void skg_signals_restore(void);
 
+/* --- parts of a device (sub_devices.c)
+ *
+ * A thread of PoCL 3.1 still looks at the device of a command after it has told the waiting thread that the command is done. A
+ * sub-device that is released at once with its context is then gone, and the process ends. Devices of a platform stay. */
+
+/* Gets the part of a device with this many compute units. Each is made once in a process and stays; the caller releases it as
+ * often as it gets it. Returns the code of OpenCL. */
+cl_int skg_sub_device_get(cl_device_id device, int32_t units, cl_device_id *part);
+
 /* --- slow compilers (watch.c) */
 
 /* Time that a context has spent compiling. All zero: none. */

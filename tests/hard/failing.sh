@@ -12,6 +12,9 @@ cd "$folder"
 # The library's sources, not those of the tests or of libraries that are linked in.
 ours='/\(lib\|host\|materials\)/[a-z0-9/]*/[a-z0-9_]*\.c:'
 
+# Made once in a process, before calls are counted; sub_device_test makes it fail.
+once='/driver/sub_devices.c:'
+
 # Of each call that can fail: the address to which it returns. Absolute, as the program's file has them.
 "$objdump" -d --no-show-raw-insn "$program" | awk '
     found { sub(":", "", $1); print $1; found = 0 }
@@ -24,7 +27,7 @@ done <"$SKG_SITES" | sort -u >failing_reached.txt
 comm -23 failing_calls.txt failing_reached.txt | while read -r address; do
     # one byte before the return address is the call
     printf '%x\n' $((0x$address - 1))
-done | "$addr2line" -e "$program" | { grep "$ours" || true; } >failing_missed.txt
+done | "$addr2line" -e "$program" | { grep "$ours" || true; } | { grep -v "$once" || true; } >failing_missed.txt
 known=$("$addr2line" -e "$program" <failing_reached.txt | grep -c "$ours" || true)
 echo "$known calls of the library were made to fail, $(wc -l <failing_missed.txt) were not"
 if [ "$known" -lt 40 ]; then
