@@ -200,6 +200,35 @@ typedef struct {
     skg_noise_args key;                                                                                      \
     skg_image_args image;
 
+/* Scattered photons (scatter.cl). */
+#define SKG_SCATTER_STEPS 64      /* of a path through the object */
+#define SKG_SCATTER_SIDE 2        /* an interaction contributes to a place in each of side x side pieces of the detector */
+#define SKG_SCATTER_ANGLES 256    /* equally likely ranges of the angle of scattering */
+#define SKG_SCATTER_DIMENSIONS 16 /* of a history's point of the lattice */
+#define SKG_SCATTER_KINDS 6       /* planes of sums: orders 1, 2, higher of Rayleigh scattering alone, then with Compton */
+#define SKG_SCATTER_PLANES (SKG_SCATTER_KINDS + 1) /* the last: what adds to the variance */
+#define SKG_SCATTER_COLUMNS 6     /* of the table by energy */
+#define SKG_SCATTER_ORDERS 64     /* interactions after which a photon is given up */
+#define SKG_SCATTER_LEAST 0.2f    /* weights below this play roulette */
+#define SKG_SCATTER_FAR 1e6f      /* mm */
+
+/* Of skg_scatter. Places and vectors are in mm from the lowest corner of the cells. */
+typedef struct {
+    float size[3], per_mm[3];           /* of the box of the cells; cells per mm */
+    float corner[3], across[3], down[3]; /* the detector: its first corner, its sides */
+    float normal[3], area;              /* away from the source; mm2 */
+    float to_u[3], to_v[3];             /* from a place relative to `corner` to shares of the sides */
+    float field[3], field_u[3], field_v[3]; /* the field of the beam: its first corner, its sides */
+    float far;                          /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
+    float log_low, per_log;             /* of the table by energy */
+    float per_momentum, per_log_momentum;
+    float angle_rows;                   /* rows of the table of angles for one of that by energy */
+    float least_kev, scale;             /* photons below are given up; of sums */
+    SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
+    SKG_INT first, end, each;           /* histories of a batch; of a work-item */
+    SKG_INT seed[2];                    /* low word first */
+} skg_scatter_args;
+
 /* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
 #define SKG_STRUCTS_WITH(real, suffix)                                                                       \
     typedef struct {                                                                                         \

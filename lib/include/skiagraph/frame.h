@@ -69,7 +69,12 @@ enum skg_output_kind {
     /** Images: as many channels as the plan has, in its quantity. */
     SKG_OUTPUT_IMAGE = 0,
     /** Path lengths through one part in mm (the L-buffer): one channel. */
-    SKG_OUTPUT_LENGTHS = 1
+    SKG_OUTPUT_LENGTHS = 1,
+    /** The scattered part of the images, without noise and blur, in the plan's quantity; of an attenuation or a transmission, as a
+     * fraction of the flat field. Needs skg_plan_options.scatter. */
+    SKG_OUTPUT_SCATTER = 2,
+    /** Its standard error, smoothing included. */
+    SKG_OUTPUT_SCATTER_SIGMA = 3
 };
 
 /** Which lengths an output of SKG_OUTPUT_LENGTHS receives. */

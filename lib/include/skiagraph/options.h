@@ -322,6 +322,47 @@ static inline void skg_grid_init(skg_grid *grid) {
 SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy_kev, double oblique,
                                              double tilt, double *transmission);
 
+/** Scattered photons: what the object sends to the detector after one or more interactions. Prepare with
+ * skg_scatter_init: to 1 % of the mean.
+ *
+ * method   Monte Carlo on the device, through cells of which each holds the mixture of materials in it. Photons are made
+ *          to interact and to survive; from each interaction they contribute to directions to the detector. The first
+ *          interactions follow a lattice of points in place of random numbers. What arrives is counted on a coarse grid of
+ *          the detector and smoothed by cosines, as many as independent batches show to pay.
+ * physics  photo absorption, Compton scattering (Klein and Nishina, times the scattering functions of free atoms),
+ *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary. Left out:
+ *          fluorescence, Doppler broadening, the order of molecules, air, what the detector itself scatters.
+ * field    without skg_plan_options.collimation the beam that scatters is limited to the detector, from its pixels'
+ *          outer edges on */
+typedef struct {
+    /** Set by skg_scatter_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Standard error aimed at, smoothing included, over the mean of the scatter: root mean square over the detector. 0.01
+     * by default; 0: `histories` decides. */
+    double tolerance;
+    /** Photons from the source, 0 to 2^30; 0 (default): as many as the tolerance needs. */
+    int64_t histories;
+    /** Of the histories. Frames with the same scene, view and seed have the same scatter. */
+    int64_t seed;
+    /** Sides of the cells, mm, about; 0 (default): 64 cells along each side of the box of all parts. At most 256. */
+    double voxel_mm;
+    /** Places of the detector, along its rows and columns, that arriving photons are counted in; 0 (default): 32 along the
+     * longer side, at most one for a pixel. At most 256. */
+    int64_t columns;
+    /** Likewise, along its columns. */
+    int64_t rows;
+} skg_scatter;
+
+/** Prepares scatter of `size` bytes (export.h). */
+SKG_API void skg_scatter_init_sized(void *scatter, int32_t size);
+
+/** Prepares scatter. */
+static inline void skg_scatter_init(skg_scatter *scatter) {
+    skg_scatter_init_sized(scatter, (int32_t)sizeof *scatter);
+}
+
 /** Falloff: intensity falls with the cube of the distance from the source (inverse square and obliquity). Photons per
  * pixel of the spectrum are then those at the foot of the perpendicular from the source to the plane of the detector,
  * whether or not a pixel lies there. */
@@ -416,6 +457,11 @@ typedef struct {
     /** Noise power by spatial frequency; NULL: quantum noise is blurred as the signal is. Needs noise, and neither bands
      * nor depth_blur. */
     const skg_dqe *dqe;
+    /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
+     * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
+     * composition and density, energies up to 1,022 keV, and one channel; not with priorities, clip, world, heel, bowtie,
+     * grid, oblique, depth_blur, dqe, nor half precision. */
+    const skg_scatter *scatter;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.

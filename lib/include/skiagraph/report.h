@@ -113,6 +113,43 @@ static inline void skg_plan_report_init(skg_plan_report *report) {
 /** Gets the report of a plan. */
 SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report);
 
+/** What the scatter of the last frame was. The library fills it; prepare with skg_scatter_report_init. */
+typedef struct {
+    /** Set by skg_scatter_report_init. */
+    int32_t size;
+    /** Cosines along the detector's rows and columns that the smoothing has kept. */
+    int32_t cosines;
+    /** Mean over the detector, in the unit of SKG_OUTPUT_SCATTER. */
+    double mean;
+    /** Its standard error: root mean square over the detector, smoothing included, in the same unit. */
+    double sigma;
+    /** Photons from the source. */
+    int64_t histories;
+    /** Wall time, from the cells to the smoothed image. */
+    double seconds;
+    /** Share of photons with one, two, and three or more interactions. */
+    double orders[3];
+    /** Share of Rayleigh scattering alone; the rest had at least one Compton scattering. */
+    double rayleigh;
+    /** Cells along x, y and z. */
+    int64_t cells[3];
+    /** Greatest relative error of attenuation and angles that four coefficients per cell make, over the materials. */
+    double mixture_error;
+} skg_scatter_report;
+
+/** Prepares a skg_scatter_report of `size` bytes (export.h). */
+SKG_API void skg_scatter_report_init_sized(void *report, int32_t size);
+
+/** Prepares a skg_scatter_report. */
+static inline void skg_scatter_report_init(skg_scatter_report *report) {
+    skg_scatter_report_init_sized(report, (int32_t)sizeof *report);
+}
+
+/** Gets what the scatter of the last frame was.
+ *
+ *     errors   SKG_ERR_ARGUMENT if the plan has no scatter, or no frame was submitted yet */
+SKG_API skg_status skg_plan_scatter_report_get(const skg_plan *plan, skg_scatter_report *report);
+
 /** Computes a bound of the error that the precision makes: the rounding of path lengths, exponents and
  * exponentials. It adds to skg_plan_report.bound, the error of fewer energies and planes.
  *

@@ -1,0 +1,319 @@
+/* Histories of scattered photons. Each work-item follows SKG_WIDE photons side by side, and begins another where one has ended.
+ *
+ * A photon is made to interact in the object (its weight carries the probability) and to survive. From each interaction it
+ * contributes to SKG_SCATTER_POINTS places of the detector, and by where it flies on, if that is the detector. Either way could
+ * do alone: they are combined by the balance heuristic (Veach and Guibas, Optimally combining sampling techniques for Monte
+ * Carlo rendering, SIGGRAPH 1995), so that contributions stay finite however near the detector is. */
+typedef struct {
+    const skg_scatter_args *args;
+    __global const float4 *cells, *energies, *momenta;
+    __global uint *sums; /* of the batch */
+} skg_scattering;
+
+/* Photons under way: `order` is the number of interactions so far. */
+typedef struct {
+    skg_place3 at, way;
+    skg_fv kev, weight;
+    skg_fv share; /* of what they contribute where they fly on; the rest are the places on the detector */
+    skg_uv history, order;
+    skg_intv alive, changed; /* -1 or 0; changed: a Compton scattering was among the interactions */
+} skg_photons;
+
+/* An interaction: what stands in its cell. In 1/mm, and what normalises the shapes. */
+typedef struct {
+    skg_mixtures cell;
+    skg_fv total, compton, rayleigh, compton_shape, rayleigh_shape;
+} skg_interaction;
+
+/* Adds to 64-bit sums, low word first, of one lane. */
+static void skg_deposit(__global uint *sums, int place, float value) {
+    const long whole = convert_long_rte(value);
+    volatile __global uint *word = (volatile __global uint *)sums + 2 * place;
+    const uint low = (uint)whole;
+    const uint old = low ? atomic_add(word, low) : 0;
+    const uint high = (uint)((ulong)whole >> 32) + (uint)(old + low < old);
+    if (high) atomic_add(word + 1, high);
+}
+
+/* Adds what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
+static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u, skg_fv v, skg_fv kev,
+                      skg_fv weight) {
+    const skg_intv column = clamp(SKG_TO_INT_V(u * (skg_fv)((float)s->args->columns)), (skg_intv)(0), (skg_intv)(s->args->columns - 1));
+    const skg_intv row = clamp(SKG_TO_INT_V(v * (skg_fv)((float)s->args->rows)), (skg_intv)(0), (skg_intv)(s->args->rows - 1));
+    const skg_intv plane = min(SKG_AS_INT_V(order), (skg_intv)(3)) - 1 + (changed & 3);
+    const skg_intv cell = row * s->args->columns + column, cells = (skg_intv)(s->args->rows * s->args->columns);
+    skg_mixtures signal;
+    float weights[SKG_WIDE];
+    int places[SKG_WIDE], wanted[SKG_WIDE];
+    skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, skg_energy_place(s->args, kev), &signal);
+    SKG_STORE_V(realv, weight * (skg_fv)(s->args->scale), weights);
+    SKG_STORE_V(intv, plane * cells + cell, places);
+#if SKG_NOISE
+    int powers[SKG_WIDE];
+    SKG_STORE_V(intv, SKG_SCATTER_KINDS * cells + cell, powers);
+#endif
+    SKG_STORE_V(intv, who & (weight > (skg_fv)(0.0f)), wanted);
+    for (int l = 0; l < SKG_WIDE; l++) {
+        if (!wanted[l]) continue;
+        skg_deposit(s->sums, places[l], weights[l] * signal.of[l].x);
+#if SKG_NOISE
+        skg_deposit(s->sums, powers[l], weights[l] * signal.of[l].y);
+#endif
+    }
+}
+
+/* How likely a photon is scattered to an angle, per sr and interaction: by Compton scattering (Klein and Nishina, times S), which
+ * leaves it *left keV, and by Rayleigh scattering (Thomson, times F^2). */
+static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv kev, skg_fv cosine, skg_fv *compton, skg_fv *rayleigh,
+                       skg_fv *left) {
+    const skg_fv one = (skg_fv)(1.0f), less = max(one - cosine, (skg_fv)(0.0f));
+    const skg_fv ratio = one / fma(kev * (skg_fv)(1.0f / SKG_ELECTRON_KEV), less, one);
+    const skg_fv momentum = kev * (skg_fv)(1.0f / SKG_KEV_ANGSTROM) * skg_root_v(max(less * (skg_fv)(0.5f), (skg_fv)(1e-12f)));
+    const skg_fv place = min(skg_float_log_v(fma(momentum, (skg_fv)(s->args->per_momentum), one)) * (skg_fv)(s->args->per_log_momentum),
+                             (skg_fv)((float)s->args->momenta - 1.001f));
+    const skg_fv klein = (skg_fv)(0.5f) * ratio * ratio * (ratio + one / ratio - less * (one + cosine));
+    const skg_fv thomson = (skg_fv)(0.5f) * fma(cosine, cosine, one);
+    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->cell), f_of = skg_value(s->momenta, 2, 1, place, &i->cell);
+    const skg_fv tiny = (skg_fv)(1e-30f);
+    *compton = i->compton * klein * s_of / max(i->compton_shape * i->total, tiny);
+    *rayleigh = i->rayleigh * thomson * f_of / max(i->rayleigh_shape * i->total, tiny);
+    *left = kev * ratio;
+}
+
+/* The share of photons that come through a mixture of coefficients times mm. */
+static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, skg_fv kev) {
+    return skg_exp(-skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, skg_energy_place(s->args, kev), sums));
+}
+
+/* A place of the detector as seen from photons: the direction to it, its distance, and how many of its places a random one
+ * is per sr; 0 behind the detector. */
+static skg_fv skg_see(const skg_scatter_args *args, skg_place3 at, skg_fv u, skg_fv v, skg_place3 *way, skg_fv *distance) {
+    const skg_place3 to = {
+        fma((skg_fv)(args->across[0]), u, fma((skg_fv)(args->down[0]), v, (skg_fv)(args->corner[0]))) - at.x,
+        fma((skg_fv)(args->across[1]), u, fma((skg_fv)(args->down[1]), v, (skg_fv)(args->corner[1]))) - at.y,
+        fma((skg_fv)(args->across[2]), u, fma((skg_fv)(args->down[2]), v, (skg_fv)(args->corner[2]))) - at.z};
+    const skg_fv square = max(skg_dot3(to, to), (skg_fv)(1e-20f));
+    *distance = skg_root_v(square);
+    *way = skg_times(to, (skg_fv)(1.0f) / *distance);
+    const skg_fv facing = way->x * args->normal[0] + way->y * args->normal[1] + way->z * args->normal[2];
+    return facing > (skg_fv)(1e-6f) ? square / (max(facing, (skg_fv)(1e-6f)) * (skg_fv)(args->area)) : (skg_fv)(0.0f);
+}
+
+/* Where photons that fly on meet the detector's plane, in (u, v), and how many of its places a random one is per sr; 0 if they
+ * do not meet the detector. */
+static skg_fv skg_meet(const skg_scatter_args *args, skg_place3 at, skg_place3 way, skg_fv *u, skg_fv *v, skg_fv *distance) {
+    const skg_place3 from = {(skg_fv)(args->corner[0]) - at.x, (skg_fv)(args->corner[1]) - at.y, (skg_fv)(args->corner[2]) - at.z};
+    const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
+    const skg_fv height = from.x * args->normal[0] + from.y * args->normal[1] + from.z * args->normal[2];
+    const skg_fv t = height / max(facing, (skg_fv)(1e-6f));
+    const skg_place3 on = {fma(way.x, t, -from.x), fma(way.y, t, -from.y), fma(way.z, t, -from.z)};
+    *u = on.x * args->to_u[0] + on.y * args->to_u[1] + on.z * args->to_u[2];
+    *v = on.x * args->to_v[0] + on.y * args->to_v[1] + on.z * args->to_v[2];
+    *distance = t;
+    const skg_fv zero = (skg_fv)(0.0f), one = (skg_fv)(1.0f);
+    const skg_intv meets = (facing > (skg_fv)(1e-6f)) & (t > zero) & (*u >= zero) & (*u < one) & (*v >= zero) & (*v < one);
+    return meets ? t * t / (max(facing, (skg_fv)(1e-6f)) * (skg_fv)(args->area)) : zero;
+}
+
+/* Contributions of an interaction to places of the detector, one in each of SKG_SCATTER_SIDE^2 equal pieces. */
+static void skg_contribute(const skg_scattering *s, const skg_photons *p, const skg_interaction *i, skg_fv across, skg_fv down,
+                           skg_fv jitter) {
+    const float side = 1.0f / SKG_SCATTER_SIDE;
+    for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
+        const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
+        const skg_fv v = (down + (skg_fv)((float)(k / SKG_SCATTER_SIDE))) * side;
+        skg_place3 way;
+        skg_mixtures sums;
+        skg_fv distance, enter, compton, rayleigh, left;
+        const skg_fv per_sr = skg_see(s->args, p->at, u, v, &way, &distance);
+        const skg_intv seen = p->alive & (per_sr > (skg_fv)(0.0f));
+        const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
+        skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
+        skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
+        /* The likelihood over those of both ways to get there: of all places, and of flying on. */
+        const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
+        const skg_fv both = fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)),
+                                (compton + rayleigh) / max(albedo, (skg_fv)(1e-30f)));
+        const skg_fv weight = p->weight / max(both, (skg_fv)(1e-30f));
+        skg_bring(s, seen, p->order, p->changed, u, v, p->kev, weight * rayleigh * skg_passes(s, &sums, p->kev));
+        skg_bring(s, seen, p->order, (skg_intv)(-1), u, v, left, weight * compton * skg_passes(s, &sums, left));
+    }
+}
+
+/* Lets photons fly on: the direction from a table of equally likely angles for the whole object, the weight by the cell's own
+ * likelihood over the table's. */
+static void skg_fly_on(const skg_scattering *s, __global const float *angles, skg_photons *p, const skg_interaction *i, skg_fv angle,
+                       skg_fv turn, skg_fv process) {
+    const skg_intv row = clamp(SKG_TO_INT_V(fma(skg_energy_place(s->args, p->kev), (skg_fv)(s->args->angle_rows), (skg_fv)(0.5f))),
+                               (skg_intv)(0), (skg_intv)(s->args->angle_last));
+    const skg_fv place = angle * (skg_fv)((float)SKG_SCATTER_ANGLES);
+    const skg_intv bin = clamp(SKG_TO_INT_V(place), (skg_intv)(0), (skg_intv)(SKG_SCATTER_ANGLES - 1));
+    int from[SKG_WIDE];
+    float low[SKG_WIDE], wide[SKG_WIDE];
+    SKG_STORE_V(intv, row * (SKG_SCATTER_ANGLES + 1) + bin, from);
+    for (int l = 0; l < SKG_WIDE; l++) low[l] = angles[from[l]], wide[l] = angles[from[l] + 1] - low[l];
+    const skg_fv width = SKG_LOAD_V(realv, wide);
+    const skg_fv cosine = fma(place - SKG_TO_FLOAT_V(bin), width, SKG_LOAD_V(realv, low));
+    skg_fv compton, rayleigh, left, u, v, distance;
+    skg_likely(s, i, p->kev, cosine, &compton, &rayleigh, &left);
+    const skg_fv sum = max(compton + rayleigh, (skg_fv)(1e-30f));
+    p->weight *= sum * width * (skg_fv)(SKG_SCATTER_ANGLES * 6.28318531f);
+    p->way = skg_deflect(p->way, cosine, turn);
+    const skg_intv changes = process * sum < compton;
+    p->kev = changes ? left : p->kev;
+    p->changed |= changes;
+    const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
+    const skg_fv own = sum / max(albedo, (skg_fv)(1e-30f));
+    const skg_fv per_sr = skg_meet(s->args, p->at, p->way, &u, &v, &distance);
+    p->share = own / fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)), own);
+}
+
+/* A photon whose weight is low dies, or goes on with that of several. */
+static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv word) {
+    const skg_fv chance = min(p->weight * (skg_fv)(1.0f / SKG_SCATTER_LEAST), (skg_fv)(1.0f));
+    const skg_intv stays = word < chance;
+    p->weight = p->weight / max(chance, (skg_fv)(1e-30f));
+    p->alive &= stays & (p->kev > (skg_fv)(args->least_kev)) & (p->order < (skg_uv)(SKG_SCATTER_ORDERS));
+}
+
+/* Number `dimension` of a history's point of a lattice in [0, 1), shifted for each batch at random. */
+static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history, int dimension) {
+    skg_uv bits = history;
+    bits = bits >> 16 | bits << 16;
+    bits = (bits & (skg_uv)(0xff00ff00u)) >> 8 | (bits & (skg_uv)(0x00ff00ffu)) << 8;
+    bits = (bits & (skg_uv)(0xf0f0f0f0u)) >> 4 | (bits & (skg_uv)(0x0f0f0f0fu)) << 4;
+    bits = (bits & (skg_uv)(0xccccccccu)) >> 2 | (bits & (skg_uv)(0x33333333u)) << 2;
+    bits = (bits & (skg_uv)(0xaaaaaaaau)) >> 1 | (bits & (skg_uv)(0x55555555u)) << 1;
+    return skg_uniform(bits * lattice[dimension] + lattice[SKG_SCATTER_DIMENSIONS * (batch + 1) + dimension]);
+}
+
+/* Photons that leave the source: the place in the field, the energy, the point of the focal spot. */
+static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __global const float4 *beam,
+                     __global const float4 *spots, uint batch, skg_intv fresh, skg_photons *p) {
+    const skg_scatter_args *args = s->args;
+    const skg_fv u = skg_lattice(s, lattice, batch, p->history, 0), v = skg_lattice(s, lattice, batch, p->history, 1);
+    const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2), spot = skg_lattice(s, lattice, batch, p->history, 12);
+    float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
+    SKG_STORE_V(realv, energy, at);
+    SKG_STORE_V(realv, spot * (skg_fv)((float)args->spots), x);
+    for (int l = 0; l < SKG_WIDE; l++) {
+        int low = 0, high = args->bins - 1;
+        while (low < high) {
+            const int middle = (low + high) / 2;
+            if (beam[middle].y > at[l])
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        kev[l] = beam[low].x;
+        weight[l] = beam[low].z;
+        const float4 point = spots[min((int)x[l], args->spots - 1)];
+        x[l] = point.x, y[l] = point.y, z[l] = point.z;
+    }
+    const skg_place3 source = {SKG_LOAD_V(realv, x), SKG_LOAD_V(realv, y), SKG_LOAD_V(realv, z)};
+    const skg_place3 on = {
+        fma((skg_fv)(args->field_u[0]), u, fma((skg_fv)(args->field_v[0]), v, (skg_fv)(args->field[0]))),
+        fma((skg_fv)(args->field_u[1]), u, fma((skg_fv)(args->field_v[1]), v, (skg_fv)(args->field[1]))),
+        fma((skg_fv)(args->field_u[2]), u, fma((skg_fv)(args->field_v[2]), v, (skg_fv)(args->field[2])))};
+#if SKG_PARALLEL
+    const skg_place3 way = source; /* the beam's direction */
+    const skg_place3 begin = {fma(way.x, (skg_fv)(-args->far), on.x), fma(way.y, (skg_fv)(-args->far), on.y),
+                              fma(way.z, (skg_fv)(-args->far), on.z)};
+    const skg_fv share = (skg_fv)(1.0f);
+#else
+    const skg_place3 to = {on.x - source.x, on.y - source.y, on.z - source.z}, begin = source;
+    const skg_fv square = skg_dot3(to, to), one_over = (skg_fv)(1.0f) / skg_root_v(square);
+    const skg_place3 way = skg_times(to, one_over);
+    /* Photons per sr: the field's area as the source sees it, over that at its middle. */
+    const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
+    const skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
+#endif
+    p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y, p->at.z = fresh ? begin.z : p->at.z;
+    p->way.x = fresh ? way.x : p->way.x, p->way.y = fresh ? way.y : p->way.y, p->way.z = fresh ? way.z : p->way.z;
+    p->kev = fresh ? SKG_LOAD_V(realv, kev) : p->kev;
+    p->weight = fresh ? SKG_LOAD_V(realv, weight) * share : p->weight;
+    p->order = fresh ? (skg_uv)(0) : p->order;
+    p->changed &= ~fresh;
+    p->share = fresh ? (skg_fv)(0.0f) : p->share;
+    p->alive |= fresh;
+}
+
+/* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
+static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles, uint batch,
+                       skg_photons *p) {
+    skg_uv a[4], b[4];
+    skg_mixtures sums, mu;
+    skg_interaction i;
+    skg_fv enter, u, v, distance;
+    int met[SKG_WIDE];
+    skg_words(s->args, p->history, p->order, batch, 0, a);
+    skg_words(s->args, p->history, p->order, batch, 1, b);
+    const skg_intv first = p->order == (skg_uv)(0), second = p->order == (skg_uv)(1);
+#define SKG_DRAW(word, of_first, of_second)                                                                                \
+    (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                                       \
+     : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                                      \
+              : skg_uniform(word))
+    const skg_fv length = skg_within(s->args, p->at, p->way, (skg_fv)(SKG_SCATTER_FAR), &enter);
+    const skg_fv jitter = skg_uniform(a[0]);
+    skg_march(s->args, s->cells, p->at, p->way, enter, length, jitter, &sums);
+    const skg_fv place = skg_energy_place(s->args, p->kev);
+    const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
+    const skg_fv passed = skg_exp(-depth);
+    const skg_fv meets = skg_meet(s->args, p->at, p->way, &u, &v, &distance);
+    skg_bring(s, p->alive & ~first & (meets > (skg_fv)(0.0f)), p->order, p->changed, u, v, p->kev, p->weight * p->share * passed);
+    /* Somewhere within the object. */
+    skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
+    p->weight *= (skg_fv)(1.0f) - passed;
+    p->alive &= depth > (skg_fv)(1e-7f);
+    const skg_fv until = -skg_float_log_v(max(fma(-SKG_DRAW(a[1], 3, 9), (skg_fv)(1.0f) - passed, (skg_fv)(1.0f)), (skg_fv)(1e-37f)));
+    const skg_fv on = skg_collide(s->args, s->cells, p->at, p->way, enter, length, jitter, &mu, min(until, depth), met);
+    p->at = skg_on(p->at, p->way, enter + on);
+    p->order += 1;
+    for (int l = 0; l < SKG_WIDE; l++) i.cell.of[l] = s->cells[met[l]];
+    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.cell);
+    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.cell);
+    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.cell);
+    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.cell);
+    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.cell);
+    p->alive &= i.total > (skg_fv)(0.0f);
+    skg_contribute(s, p, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11), skg_uniform(b[3]));
+    const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, 6) : skg_uniform(b[0]);
+    const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, 7) : skg_uniform(b[1]);
+    const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, 8) : skg_uniform(b[2]);
+    skg_fly_on(s, angles, p, &i, angle, turn, process);
+    skg_words(s->args, p->history, p->order, batch, 2, a);
+    skg_roulette(s->args, p, skg_uniform(a[0]));
+}
+
+/* cells     [cells] coefficients of their mixtures
+ * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
+ * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
+ * beam      [bins] energy, share of the bins up to this one, weight
+ * spots     [spots] points of the source, or the direction of a parallel beam
+ * lattice   [SKG_SCATTER_DIMENSIONS] generating vector; then for each batch its shift
+ * sums      [batches][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
+ * Work-items: those of a batch, then batches. */
+__kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells, __global const float4 *energies,
+                          __global const float4 *momenta, __global const float *angles, __global const float4 *beam,
+                          __global const float4 *spots, __constant const uint *lattice, __global uint *sums) {
+    const uint batch = (uint)get_global_id(1);
+    uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
+    const uint end = min(next + (uint)args.each, (uint)args.end);
+    const skg_scattering s = {&args, cells, energies, momenta,
+                              sums + (size_t)batch * (size_t)(2 * SKG_SCATTER_PLANES * args.rows * args.columns)};
+    skg_photons p = {.alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
+    uint numbers[SKG_WIDE];
+    int alive[SKG_WIDE], fresh[SKG_WIDE];
+    for (;;) {
+        SKG_STORE_V(intv, p.alive, alive);
+        SKG_STORE_V(intv, SKG_AS_INT_V(p.history), (int *)numbers);
+        for (int l = 0; l < SKG_WIDE; l++) {
+            fresh[l] = !alive[l] && next < end ? -1 : 0;
+            if (fresh[l]) numbers[l] = next++;
+        }
+        p.history = SKG_AS_UINT_V(SKG_LOAD_V(intv, (int *)numbers));
+        if (skg_any(SKG_LOAD_V(intv, fresh))) skg_emit(&s, lattice, beam, spots, batch, SKG_LOAD_V(intv, fresh), &p);
+        if (!skg_any(p.alive)) break;
+        skg_flight(&s, lattice, angles, batch, &p);
+    }
+}
