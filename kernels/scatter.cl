@@ -14,6 +14,7 @@ typedef struct {
 typedef struct {
     skg_place3 at, way;
     skg_fv kev, weight;
+    skg_fv x, y;  /* where they meet the detector, in shares of its sides */
     skg_fv share; /* of what they contribute where they fly on; the rest are the places on the detector */
     skg_uv history, order;
     skg_intv alive, changed; /* -1 or 0; changed: a Compton scattering was among the interactions */
@@ -36,12 +37,15 @@ static void skg_deposit(__global uint *sums, int place, float value) {
 }
 
 /* Adds what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
-static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u, skg_fv v, skg_fv kev,
-                      skg_fv weight) {
-    const skg_intv column = clamp(SKG_TO_INT_V(u * (skg_fv)((float)s->args->columns)), (skg_intv)(0), (skg_intv)(s->args->columns - 1));
-    const skg_intv row = clamp(SKG_TO_INT_V(v * (skg_fv)((float)s->args->rows)), (skg_intv)(0), (skg_intv)(s->args->rows - 1));
+static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u,
+                      skg_fv v, skg_fv kev, skg_fv weight) {
+    const skg_intv column = clamp(SKG_TO_INT_V(u * (skg_fv)((float)s->args->columns)), (skg_intv)(0),
+                                  (skg_intv)(s->args->columns - 1));
+    const skg_intv row =
+        clamp(SKG_TO_INT_V(v * (skg_fv)((float)s->args->rows)), (skg_intv)(0), (skg_intv)(s->args->rows - 1));
     const skg_intv plane = min(SKG_AS_INT_V(order), (skg_intv)(3)) - 1 + (changed & 3);
-    const skg_intv cell = row * s->args->columns + column, cells = (skg_intv)(s->args->rows * s->args->columns);
+    const skg_intv cell = row * s->args->columns + column,
+                   cells = (skg_intv)(s->args->rows * s->args->columns);
     skg_mixtures signal;
     float weights[SKG_WIDE];
     int places[SKG_WIDE], wanted[SKG_WIDE];
@@ -64,16 +68,19 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
 
 /* How likely a photon is scattered to an angle, per sr and interaction: by Compton scattering (Klein and Nishina, times S), which
  * leaves it *left keV, and by Rayleigh scattering (Thomson, times F^2). */
-static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv kev, skg_fv cosine, skg_fv *compton, skg_fv *rayleigh,
-                       skg_fv *left) {
+static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv kev, skg_fv cosine,
+                       skg_fv *compton, skg_fv *rayleigh, skg_fv *left) {
     const skg_fv one = (skg_fv)(1.0f), less = max(one - cosine, (skg_fv)(0.0f));
     const skg_fv ratio = one / fma(kev * (skg_fv)(1.0f / SKG_ELECTRON_KEV), less, one);
-    const skg_fv momentum = kev * (skg_fv)(1.0f / SKG_KEV_ANGSTROM) * skg_root_v(max(less * (skg_fv)(0.5f), (skg_fv)(1e-12f)));
-    const skg_fv place = min(skg_float_log_v(fma(momentum, (skg_fv)(s->args->per_momentum), one)) * (skg_fv)(s->args->per_log_momentum),
+    const skg_fv momentum =
+        kev * (skg_fv)(1.0f / SKG_KEV_ANGSTROM) * skg_root_v(max(less * (skg_fv)(0.5f), (skg_fv)(1e-12f)));
+    const skg_fv place = min(skg_float_log_v(fma(momentum, (skg_fv)(s->args->per_momentum), one)) *
+                                 (skg_fv)(s->args->per_log_momentum),
                              (skg_fv)((float)s->args->momenta - 1.001f));
     const skg_fv klein = (skg_fv)(0.5f) * ratio * ratio * (ratio + one / ratio - less * (one + cosine));
     const skg_fv thomson = (skg_fv)(0.5f) * fma(cosine, cosine, one);
-    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->cell), f_of = skg_value(s->momenta, 2, 1, place, &i->cell);
+    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->cell),
+                 f_of = skg_value(s->momenta, 2, 1, place, &i->cell);
     const skg_fv tiny = (skg_fv)(1e-30f);
     *compton = i->compton * klein * s_of / max(i->compton_shape * i->total, tiny);
     *rayleigh = i->rayleigh * thomson * f_of / max(i->rayleigh_shape * i->total, tiny);
@@ -82,42 +89,13 @@ static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv
 
 /* The share of photons that come through a mixture of coefficients times mm. */
 static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, skg_fv kev) {
-    return skg_exp(-skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, skg_energy_place(s->args, kev), sums));
-}
-
-/* A place of the detector as seen from photons: the direction to it, its distance, and how many of its places a random one
- * is per sr; 0 behind the detector. */
-static skg_fv skg_see(const skg_scatter_args *args, skg_place3 at, skg_fv u, skg_fv v, skg_place3 *way, skg_fv *distance) {
-    const skg_place3 to = {
-        fma((skg_fv)(args->across[0]), u, fma((skg_fv)(args->down[0]), v, (skg_fv)(args->corner[0]))) - at.x,
-        fma((skg_fv)(args->across[1]), u, fma((skg_fv)(args->down[1]), v, (skg_fv)(args->corner[1]))) - at.y,
-        fma((skg_fv)(args->across[2]), u, fma((skg_fv)(args->down[2]), v, (skg_fv)(args->corner[2]))) - at.z};
-    const skg_fv square = max(skg_dot3(to, to), (skg_fv)(1e-20f));
-    *distance = skg_root_v(square);
-    *way = skg_times(to, (skg_fv)(1.0f) / *distance);
-    const skg_fv facing = way->x * args->normal[0] + way->y * args->normal[1] + way->z * args->normal[2];
-    return facing > (skg_fv)(1e-6f) ? square / (max(facing, (skg_fv)(1e-6f)) * (skg_fv)(args->area)) : (skg_fv)(0.0f);
-}
-
-/* Where photons that fly on meet the detector's plane, in (u, v), and how many of its places a random one is per sr; 0 if they
- * do not meet the detector. */
-static skg_fv skg_meet(const skg_scatter_args *args, skg_place3 at, skg_place3 way, skg_fv *u, skg_fv *v, skg_fv *distance) {
-    const skg_place3 from = {(skg_fv)(args->corner[0]) - at.x, (skg_fv)(args->corner[1]) - at.y, (skg_fv)(args->corner[2]) - at.z};
-    const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
-    const skg_fv height = from.x * args->normal[0] + from.y * args->normal[1] + from.z * args->normal[2];
-    const skg_fv t = height / max(facing, (skg_fv)(1e-6f));
-    const skg_place3 on = {fma(way.x, t, -from.x), fma(way.y, t, -from.y), fma(way.z, t, -from.z)};
-    *u = on.x * args->to_u[0] + on.y * args->to_u[1] + on.z * args->to_u[2];
-    *v = on.x * args->to_v[0] + on.y * args->to_v[1] + on.z * args->to_v[2];
-    *distance = t;
-    const skg_fv zero = (skg_fv)(0.0f), one = (skg_fv)(1.0f);
-    const skg_intv meets = (facing > (skg_fv)(1e-6f)) & (t > zero) & (*u >= zero) & (*u < one) & (*v >= zero) & (*v < one);
-    return meets ? t * t / (max(facing, (skg_fv)(1e-6f)) * (skg_fv)(args->area)) : zero;
+    return skg_exp(
+        -skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, skg_energy_place(s->args, kev), sums));
 }
 
 /* Contributions of an interaction to places of the detector, one in each of SKG_SCATTER_SIDE^2 equal pieces. */
-static void skg_contribute(const skg_scattering *s, const skg_photons *p, const skg_interaction *i, skg_fv across, skg_fv down,
-                           skg_fv jitter) {
+static void skg_contribute(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
+                           const skg_interaction *i, skg_fv across, skg_fv down, skg_fv jitter) {
     const float side = 1.0f / SKG_SCATTER_SIDE;
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
         const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
@@ -125,8 +103,21 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         skg_place3 way;
         skg_mixtures sums;
         skg_fv distance, enter, compton, rayleigh, left;
-        const skg_fv per_sr = skg_see(s->args, p->at, u, v, &way, &distance);
-        const skg_intv seen = p->alive & (per_sr > (skg_fv)(0.0f));
+        skg_fv x, y;
+        skg_sight_draw(sight, u, v, &x, &y);
+        const skg_fv per_sr = skg_sight_per_sr(s->args, sight, x, y);
+        distance = skg_root_v(fma(x, x, fma(y, y, sight->z * sight->z)));
+        const skg_fv one_over = (skg_fv)(1.0f) / distance;
+        const skg_fv du = x * one_over * s->args->side_u, dv = y * one_over * s->args->side_v,
+                     dn = -sight->z * one_over;
+        way.x =
+            fma(du, (skg_fv)(s->args->to_u[0]), fma(dv, (skg_fv)(s->args->to_v[0]), dn * s->args->normal[0]));
+        way.y =
+            fma(du, (skg_fv)(s->args->to_u[1]), fma(dv, (skg_fv)(s->args->to_v[1]), dn * s->args->normal[1]));
+        way.z =
+            fma(du, (skg_fv)(s->args->to_u[2]), fma(dv, (skg_fv)(s->args->to_v[2]), dn * s->args->normal[2]));
+        const skg_intv seen = p->alive & sight->ahead;
+        const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
         const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
         skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
@@ -135,17 +126,21 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv both = fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)),
                                 (compton + rayleigh) / max(albedo, (skg_fv)(1e-30f)));
         const skg_fv weight = p->weight / max(both, (skg_fv)(1e-30f));
-        skg_bring(s, seen, p->order, p->changed, u, v, p->kev, weight * rayleigh * skg_passes(s, &sums, p->kev));
-        skg_bring(s, seen, p->order, (skg_intv)(-1), u, v, left, weight * compton * skg_passes(s, &sums, left));
+        skg_bring(s, seen, p->order, p->changed, pu, pv, p->kev,
+                  weight * rayleigh * skg_passes(s, &sums, p->kev));
+        skg_bring(s, seen, p->order, (skg_intv)(-1), pu, pv, left,
+                  weight * compton * skg_passes(s, &sums, left));
     }
 }
 
 /* Lets photons fly on: the direction from a table of equally likely angles for the whole object, the weight by the cell's own
  * likelihood over the table's. */
-static void skg_fly_on(const skg_scattering *s, __global const float *angles, skg_photons *p, const skg_interaction *i, skg_fv angle,
-                       skg_fv turn, skg_fv process) {
-    const skg_intv row = clamp(SKG_TO_INT_V(fma(skg_energy_place(s->args, p->kev), (skg_fv)(s->args->angle_rows), (skg_fv)(0.5f))),
-                               (skg_intv)(0), (skg_intv)(s->args->angle_last));
+static void skg_fly_on(const skg_scattering *s, __global const float *angles, skg_photons *p,
+                       const skg_sight *sight, const skg_interaction *i, skg_fv angle, skg_fv turn,
+                       skg_fv process) {
+    const skg_intv row = clamp(
+        SKG_TO_INT_V(fma(skg_energy_place(s->args, p->kev), (skg_fv)(s->args->angle_rows), (skg_fv)(0.5f))),
+        (skg_intv)(0), (skg_intv)(s->args->angle_last));
     const skg_fv place = angle * (skg_fv)((float)SKG_SCATTER_ANGLES);
     const skg_intv bin = clamp(SKG_TO_INT_V(place), (skg_intv)(0), (skg_intv)(SKG_SCATTER_ANGLES - 1));
     int from[SKG_WIDE];
@@ -164,8 +159,14 @@ static void skg_fly_on(const skg_scattering *s, __global const float *angles, sk
     p->changed |= changes;
     const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
     const skg_fv own = sum / max(albedo, (skg_fv)(1e-30f));
-    const skg_fv per_sr = skg_meet(s->args, p->at, p->way, &u, &v, &distance);
-    p->share = own / fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)), own);
+    const skg_intv meets = skg_meet(s->args, sight, p->way, &u, &v);
+    const skg_fv per_sr = skg_sight_per_sr(s->args, sight, u, v);
+    p->x = (u - sight->x0) / s->args->side_u;
+    p->y = (v - sight->y0) / s->args->side_v;
+    p->share = (skg_fv)(0.0f);
+    if (skg_any(meets))
+        p->share =
+            meets ? own / fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)), own) : p->share;
 }
 
 /* A photon whose weight is low dies, or goes on with that of several. */
@@ -177,7 +178,8 @@ static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv wo
 }
 
 /* Number `dimension` of a history's point of a lattice in [0, 1), shifted for each batch at random. */
-static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history, int dimension) {
+static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history,
+                          int dimension) {
     skg_uv bits = history;
     bits = bits >> 16 | bits << 16;
     bits = (bits & (skg_uv)(0xff00ff00u)) >> 8 | (bits & (skg_uv)(0x00ff00ffu)) << 8;
@@ -191,8 +193,10 @@ static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattic
 static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __global const float4 *beam,
                      __global const float4 *spots, uint batch, skg_intv fresh, skg_photons *p) {
     const skg_scatter_args *args = s->args;
-    const skg_fv u = skg_lattice(s, lattice, batch, p->history, 0), v = skg_lattice(s, lattice, batch, p->history, 1);
-    const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2), spot = skg_lattice(s, lattice, batch, p->history, 12);
+    const skg_fv u = skg_lattice(s, lattice, batch, p->history, 0),
+                 v = skg_lattice(s, lattice, batch, p->history, 1);
+    const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2),
+                 spot = skg_lattice(s, lattice, batch, p->history, 12);
     float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
     SKG_STORE_V(realv, energy, at);
     SKG_STORE_V(realv, spot * (skg_fv)((float)args->spots), x);
@@ -228,8 +232,10 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
     const skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
 #endif
-    p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y, p->at.z = fresh ? begin.z : p->at.z;
-    p->way.x = fresh ? way.x : p->way.x, p->way.y = fresh ? way.y : p->way.y, p->way.z = fresh ? way.z : p->way.z;
+    p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y,
+    p->at.z = fresh ? begin.z : p->at.z;
+    p->way.x = fresh ? way.x : p->way.x, p->way.y = fresh ? way.y : p->way.y,
+    p->way.z = fresh ? way.z : p->way.z;
     p->kev = fresh ? SKG_LOAD_V(realv, kev) : p->kev;
     p->weight = fresh ? SKG_LOAD_V(realv, weight) * share : p->weight;
     p->order = fresh ? (skg_uv)(0) : p->order;
@@ -239,19 +245,20 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
 }
 
 /* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
-static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles, uint batch,
-                       skg_photons *p) {
+static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles,
+                       uint batch, skg_photons *p) {
     skg_uv a[4], b[4];
     skg_mixtures sums, mu;
     skg_interaction i;
-    skg_fv enter, u, v, distance;
+    skg_sight sight;
+    skg_fv enter;
     int met[SKG_WIDE];
     skg_words(s->args, p->history, p->order, batch, 0, a);
     skg_words(s->args, p->history, p->order, batch, 1, b);
     const skg_intv first = p->order == (skg_uv)(0), second = p->order == (skg_uv)(1);
-#define SKG_DRAW(word, of_first, of_second)                                                                                \
-    (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                                       \
-     : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                                      \
+#define SKG_DRAW(word, of_first, of_second)                                                                  \
+    (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                         \
+     : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                        \
               : skg_uniform(word))
     const skg_fv length = skg_within(s->args, p->at, p->way, (skg_fv)(SKG_SCATTER_FAR), &enter);
     const skg_fv jitter = skg_uniform(a[0]);
@@ -259,14 +266,22 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv place = skg_energy_place(s->args, p->kev);
     const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     const skg_fv passed = skg_exp(-depth);
-    const skg_fv meets = skg_meet(s->args, p->at, p->way, &u, &v, &distance);
-    skg_bring(s, p->alive & ~first & (meets > (skg_fv)(0.0f)), p->order, p->changed, u, v, p->kev, p->weight * p->share * passed);
+    skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->kev,
+              p->weight * p->share * passed);
     /* Somewhere within the object. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
-    p->weight *= (skg_fv)(1.0f) - passed;
     p->alive &= depth > (skg_fv)(1e-7f);
-    const skg_fv until = -skg_float_log_v(max(fma(-SKG_DRAW(a[1], 3, 9), (skg_fv)(1.0f) - passed, (skg_fv)(1.0f)), (skg_fv)(1e-37f)));
-    const skg_fv on = skg_collide(s->args, s->cells, p->at, p->way, enter, length, jitter, &mu, min(until, depth), met);
+    const skg_fv chosen = SKG_DRAW(a[1], 3, 9), share = (skg_fv)(SKG_SCATTER_EVEN);
+    const skg_intv evenly = chosen < share;
+    const skg_fv rest = evenly ? chosen / share : (chosen - share) / ((skg_fv)(1.0f) - share);
+    const skg_fv until =
+        evenly ? rest * depth
+               : -skg_float_log_v(max(fma(-rest, (skg_fv)(1.0f) - passed, (skg_fv)(1.0f)), (skg_fv)(1e-37f)));
+    const skg_fv fall = skg_exp(-until);
+    p->weight *= fall / (share / max(depth, (skg_fv)(1e-7f)) +
+                         ((skg_fv)(1.0f) - share) * fall / max((skg_fv)(1.0f) - passed, (skg_fv)(1e-7f)));
+    const skg_fv on =
+        skg_collide(s->args, s->cells, p->at, p->way, enter, length, jitter, &mu, min(until, depth), met);
     p->at = skg_on(p->at, p->way, enter + on);
     p->order += 1;
     for (int l = 0; l < SKG_WIDE; l++) i.cell.of[l] = s->cells[met[l]];
@@ -276,11 +291,12 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.cell);
     i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.cell);
     p->alive &= i.total > (skg_fv)(0.0f);
-    skg_contribute(s, p, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11), skg_uniform(b[3]));
+    skg_see(s->args, p->at, &sight);
+    skg_contribute(s, p, &sight, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11), skg_uniform(b[3]));
     const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, 6) : skg_uniform(b[0]);
     const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, 7) : skg_uniform(b[1]);
     const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, 8) : skg_uniform(b[2]);
-    skg_fly_on(s, angles, p, &i, angle, turn, process);
+    skg_fly_on(s, angles, p, &sight, &i, angle, turn, process);
     skg_words(s->args, p->history, p->order, batch, 2, a);
     skg_roulette(s->args, p, skg_uniform(a[0]));
 }
@@ -293,15 +309,18 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
  * lattice   [SKG_SCATTER_DIMENSIONS] generating vector; then for each batch its shift
  * sums      [batches][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
  * Work-items: those of a batch, then batches. */
-__kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells, __global const float4 *energies,
-                          __global const float4 *momenta, __global const float *angles, __global const float4 *beam,
+__kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
+                          __global const float4 *energies, __global const float4 *momenta,
+                          __global const float *angles, __global const float4 *beam,
                           __global const float4 *spots, __constant const uint *lattice, __global uint *sums) {
     const uint batch = (uint)get_global_id(1);
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
     const skg_scattering s = {&args, cells, energies, momenta,
-                              sums + (size_t)batch * (size_t)(2 * SKG_SCATTER_PLANES * args.rows * args.columns)};
-    skg_photons p = {.alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
+                              sums + (size_t)batch *
+                                         (size_t)(2 * SKG_SCATTER_PLANES * args.rows * args.columns)};
+    skg_photons p = {
+        .alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
     uint numbers[SKG_WIDE];
     int alive[SKG_WIDE], fresh[SKG_WIDE];
     for (;;) {
@@ -312,7 +331,8 @@ __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells, _
             if (fresh[l]) numbers[l] = next++;
         }
         p.history = SKG_AS_UINT_V(SKG_LOAD_V(intv, (int *)numbers));
-        if (skg_any(SKG_LOAD_V(intv, fresh))) skg_emit(&s, lattice, beam, spots, batch, SKG_LOAD_V(intv, fresh), &p);
+        if (skg_any(SKG_LOAD_V(intv, fresh)))
+            skg_emit(&s, lattice, beam, spots, batch, SKG_LOAD_V(intv, fresh), &p);
         if (!skg_any(p.alive)) break;
         skg_flight(&s, lattice, angles, batch, &p);
     }

@@ -209,6 +209,7 @@ typedef struct {
 #define SKG_SCATTER_PLANES (SKG_SCATTER_KINDS + 1) /* the last: what adds to the variance */
 #define SKG_SCATTER_COLUMNS 6     /* of the table by energy */
 #define SKG_SCATTER_ORDERS 64     /* interactions after which a photon is given up */
+#define SKG_SCATTER_EVEN 0.5f     /* share of interactions whose place is even in the optical depth */
 #define SKG_SCATTER_LEAST 0.2f    /* weights below this play roulette */
 #define SKG_SCATTER_FAR 1e6f      /* mm */
 
@@ -217,6 +218,7 @@ typedef struct {
     float size[3], per_mm[3];           /* of the box of the cells; cells per mm */
     float corner[3], across[3], down[3]; /* the detector: its first corner, its sides */
     float normal[3], area;              /* away from the source; mm2 */
+    float side_u, side_v;               /* mm */
     float to_u[3], to_v[3];             /* from a place relative to `corner` to shares of the sides */
     float field[3], field_u[3], field_v[3]; /* the field of the beam: its first corner, its sides */
     float far;                          /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
