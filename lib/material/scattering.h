@@ -15,8 +15,8 @@
 /* Avogadro's number (SI 2019), 1/mol. */
 #define SKG_AVOGADRO 6.02214076e23
 
-/* F^2 and S of one atom, in this order (materials/rows.h), at a momentum transfer from 0. Below the table's first F = Z - c x^2 and
- * S = c x^2; above its last F falls like x^-4, as that of a nucleus' 1s electrons does, and S stays Z. */
+/* F^2 and S of one atom, in the order of materials/rows.h, at a momentum transfer >= 0 in 1/Angstrom. Below the first row of the
+ * table F = Z - c x^2 and S = c x^2; above the last one F falls like x^-4, as that of 1s electrons does, and S stays Z. */
 void skg_atom_scattering(int32_t z, double x, double factors[SKG_SCATTERINGS]);
 
 /* Sums over the atoms of 1 g of a material, in 1/g: of F^2 and of S at momentum transfer x (1/Angstrom).
