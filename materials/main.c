@@ -18,6 +18,7 @@ int main(int count, char **words) {
     write_elements(words[1], out);
     write_mixtures(words[1], out);
     write_all_shells(words[1], out);
+    write_scattering(words[1], out);
     if (fclose(out) != 0) {
         perror(words[2]);
         return EXIT_FAILURE;

@@ -12,7 +12,8 @@ enum {
     SKG_PROCESSES = 4,
     SKG_LAST_ELEMENT = 92,
     SKG_K_LINES = 6,
-    SKG_L_LINES = 12
+    SKG_L_LINES = 12,
+    SKG_MOMENTA = 41
 };
 
 /* Twice the rest energy of the electron in keV (CODATA 2018): below it there is no pair production. */
@@ -61,6 +62,14 @@ typedef struct {
     double line_kev[SKG_L_LINES], share[SKG_L_LINES]; /* of the yield; 0: no such line */
 } skg_shell_row;
 
+/* The form factor F and the incoherent scattering function S of an atom. */
+enum { SKG_COHERENT = 0, SKG_INCOHERENT = 1, SKG_SCATTERINGS = 2 };
+
+/* One momentum transfer of an element: ln F and ln S, and their second derivatives by ln x. */
+typedef struct {
+    float value[SKG_SCATTERINGS], second[SKG_SCATTERINGS];
+} skg_scattering_row;
+
 extern const skg_knot skg_knots[];
 extern const skg_element_row skg_elements[SKG_LAST_ELEMENT + 1]; /* by atomic number */
 extern const skg_mass_fraction skg_mass_fractions[];
@@ -72,5 +81,7 @@ extern const skg_shell_row skg_k_shells[];
 extern const int32_t skg_k_shell_count;
 extern const skg_shell_row skg_l_shells[];
 extern const int32_t skg_l_shell_count;
+extern const double skg_log_momenta[SKG_MOMENTA]; /* ln(x / (1/Angstrom)), rising */
+extern const skg_scattering_row skg_scattering_rows[SKG_LAST_ELEMENT + 1][SKG_MOMENTA]; /* by atomic number */
 
 #endif

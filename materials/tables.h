@@ -34,6 +34,7 @@ void write_cross_sections(const char *folder, FILE *out);
 void write_elements(const char *folder, FILE *out);
 void write_mixtures(const char *folder, FILE *out);
 void write_all_shells(const char *folder, FILE *out);
+void write_scattering(const char *folder, FILE *out);
 
 /* The first knot of each element, filled by write_cross_sections. The last knot lies before the first one of the next
  * element. */

@@ -5,7 +5,7 @@
  * at 6 keV); xraylib's spline goes through both and swings. Left-out points (element_test) and neighbouring
  * elements say that ours does not: at Cr's 8 keV the two ways miss the left-out row by 1.2 % (ours) and 20.6
  * %. */
-#include "material/material.h"
+#include "material/scattering.h"
 #include "suite.h"
 
 #include <math.h>
@@ -72,10 +72,33 @@ START_TEST(agrees_between_from_5_keV) {
 }
 END_TEST
 
+/* F^2 and S between the rows of materials/scattering.txt, which come from this library. */
+START_TEST(scattering_agrees_between_the_rows) {
+    enum { STEPS = 500 };
+    for (int32_t z = 1; z <= SKG_LAST_ELEMENT; z++)
+        for (int i = 0; i < STEPS; i++) {
+            const double x = 0.005 * pow(10 / 0.005, (i + 0.5) / STEPS);
+            const double form = FF_Rayl(z, x, NULL), theirs = SF_Compt(z, x, NULL);
+            double own[SKG_SCATTERINGS];
+            skg_atom_scattering(z, x, own);
+            /* Measured: 1.14e-3 to 1/Angstrom (beryllium). Above it xraylib's
+             * spline over steps of 0.25 to 2 swings: it misses the exact F^2 of hydrogen by 2 %, ours by 0.03 %. */
+            const double bar = x < 1 ? 1.2e-3 : 3e-2;
+            ck_assert_msg(fabs(own[SKG_COHERENT] / (form * form) - 1) <= bar, "F^2 of Z %d at %g: %.2e",
+                          (int)z, x, own[SKG_COHERENT] / (form * form) - 1);
+            /* Measured: 3.1e-4 from 0.02/Angstrom. Below it, where S is 1e-3 of Z, xraylib's spline starts from a straight
+             * line (1.4e-2). */
+            ck_assert_msg(fabs(own[SKG_INCOHERENT] / theirs - 1) <= (x < 0.02 ? 2e-2 : 5e-4),
+                          "S of Z %d at %g: %.2e", (int)z, x, own[SKG_INCOHERENT] / theirs - 1);
+        }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, agrees_at_grid_energies);
     tcase_add_test(tests, agrees_between_from_10_keV);
     tcase_add_test(tests, agrees_between_from_5_keV);
+    tcase_add_test(tests, scattering_agrees_between_the_rows);
 }
 
 SKG_SUITE_MAIN("xraylib", add_tests)
