@@ -36,6 +36,11 @@ skg_status skg_collimation_check(const skg_collimation *collimation) {
     return SKG_OK;
 }
 
+int skg_collimation_limits(const skg_collimation *collimation) {
+    if (!collimation || collimation->kind == SKG_COLLIMATION_OPEN) return 0;
+    return collimation->kind == SKG_COLLIMATION_RECTANGLE || collimation->margin_mm < 0;
+}
+
 /* The detector's rectangle, on its plane. */
 static skg_status take_detector(double margin, const skg_view *view, skg_field *field) {
     const double half[2] = {0.5 * (double)view->columns * skg_length(view->column_step) + margin,

@@ -17,6 +17,9 @@ typedef struct {
 /* Fails with SKG_ERR_ARGUMENT or SKG_ERR_SCENE unless the numbers of a collimation are usable in some view. */
 skg_status skg_collimation_check(const skg_collimation *collimation);
 
+/* Whether a collimation stops rays to pixels of its own detector. NULL: it does not. */
+int skg_collimation_limits(const skg_collimation *collimation);
+
 /* Finds the field of a view.
  *
  * collimation   NULL or open: the detector's own rectangle (outer edges of the pixels), on the detector's plane
