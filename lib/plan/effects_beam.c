@@ -150,30 +150,39 @@ static double find_share(const skg_recipe *recipe) {
     return columns * rows / ((double)view->columns * (double)view->rows);
 }
 
+/* What the jaws leave, in words. */
+static void describe_jaws(const skg_recipe *recipe, char *text, size_t size) {
+    const skg_collimation *collimation = recipe->options.collimation;
+    char distance[48] = "";
+    if (collimation->kind == SKG_COLLIMATION_DETECTOR) {
+        snprintf(text, size, "the field is %g mm smaller than the detector on each side",
+                 -collimation->margin_mm);
+        return;
+    }
+    if (recipe->view.projection == SKG_PROJECTION_POINT)
+        snprintf(distance, sizeof distance, ", %g mm from the source", collimation->distance_mm);
+    snprintf(text, size, "jaws leave %g x %g mm%s", collimation->high[0] - collimation->low[0],
+             collimation->high[1] - collimation->low[1], distance);
+}
+
 static void find_collimation(const skg_effect_facts *f, skg_effect_state *state) {
     const skg_collimation *collimation = f->recipe->options.collimation;
-    char jaws[128];
+    char jaws[160];
     if (!skg_collimation_limits(collimation)) {
         skg_effect_set(state, 0, "%s",
                        collimation && collimation->kind == SKG_COLLIMATION_DETECTOR
                            ? "the field holds the whole detector"
-                           : "the beam is open");
+                           : "no jaws limit the beam");
         return;
     }
     const double share = find_share(f->recipe);
-    if (collimation->kind == SKG_COLLIMATION_DETECTOR)
-        snprintf(jaws, sizeof jaws, "the field is %g mm smaller than the detector on each side",
-                 -collimation->margin_mm);
-    else
-        snprintf(jaws, sizeof jaws, "jaws leave %g x %g mm, %g mm from the source",
-                 collimation->high[0] - collimation->low[0], collimation->high[1] - collimation->low[1],
-                 collimation->distance_mm);
+    describe_jaws(f->recipe, jaws, sizeof jaws);
     skg_effect_set(state, 1, "%s; %.3g %% of the pixels see the middle of the source", jaws, 100 * share);
     if (!(share > 0))
         skg_log(
             f->context, SKG_LOG_WARNING,
-            "no pixel lies in the field: %s. The image is dark but for the penumbra; see `low` and `high` of "
-            "the rectangle",
+            "no ray from the middle of the source to a pixel passes the jaws, so the image is dark: %s; check the "
+            "place and the size of the rectangle",
             jaws);
 }
 

@@ -294,7 +294,7 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
     nothing.layout.copies = 0; /* sums over no copies are 0 */
     no_sums.raster = &nothing;
     quiet.noise = 0;
-    quiet.collimated = 0; /* ratios are to the open beam */
+    quiet.collimated = 0; /* ratios are to the flat field without jaws */
     quiet.range = (skg_buffer){0};
     return skg_attenuate(attenuator, &no_sums, camera, &quiet, factor, 1, -HUGE_VAL, negative, NULL, place,
                          log);

@@ -345,7 +345,7 @@ START_TEST(the_plan_says_what_the_jaws_leave) {
     jaws.margin_mm = -4;
     check_effect(1, "4 mm smaller than the detector");
     jaws.kind = SKG_COLLIMATION_OPEN;
-    check_effect(0, "open");
+    check_effect(0, "no jaws limit the beam");
 }
 END_TEST
 

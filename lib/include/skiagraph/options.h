@@ -324,7 +324,7 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
 
 /** What limits the beam. */
 enum skg_collimation_kind {
-    /** Nothing: the beam is open. */
+    /** Nothing. */
     SKG_COLLIMATION_OPEN = 0,
     /** Jaws that leave a rectangle open. */
     SKG_COLLIMATION_RECTANGLE = 1,
@@ -333,7 +333,7 @@ enum skg_collimation_kind {
 };
 
 /** A collimator: jaws between source and detector that stop every ray outside a rectangle, the field. Prepare with
- * skg_collimation_init: open.
+ * skg_collimation_init: no limits.
  *
  * The rectangle lies in a plane parallel to the detector, and its sides along the detector's column and row steps.
  * SKG_COLLIMATION_RECTANGLE: its coordinates are measured from the point where the ray from the middle of the source to the
@@ -347,8 +347,8 @@ enum skg_collimation_kind {
  *          leakage nor scatter from their edges, and no radiation from outside the focal spot.
  *
  * In a parallel beam the rectangle is carried along the beam, and distance_mm has no effect. Path lengths are not
- * limited. Ratios are to the open beam: behind the jaws the transmission is 0, and the attenuation is the logarithm of the
- * smallest normal float, 87.34. */
+ * limited. Ratios are to the flat field without jaws: behind them the transmission is 0, and the attenuation is the logarithm of
+ * the smallest normal float, 87.34. */
 typedef struct {
     /** Set by skg_collimation_init. */
     int32_t size;
@@ -467,7 +467,7 @@ typedef struct {
     /** Noise power by spatial frequency; NULL: quantum noise is blurred as the signal is. Needs noise, and neither bands
      * nor depth_blur. */
     const skg_dqe *dqe;
-    /** Jaws in the beam; NULL: the beam is open. */
+    /** Jaws in the beam; NULL: nothing limits it. */
     const skg_collimation *collimation;
 } skg_plan_options;
 
