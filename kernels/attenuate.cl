@@ -236,6 +236,27 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
 #endif
 }
 
+#if SKG_COLLIMATED
+/* What a ray that does not arrive shows: the logarithm is that of skg_logarithm. */
+#define SKG_STOPPED (SKG_SHOW == SKG_SHOW_INTENSITY ? (skg_real)(0) : 126 * (skg_real)SKG_LN2)
+
+/* Rays outside the window do not arrive. What noise has drawn for them is dropped. */
+static void skg_collimate(const skg_strip *strip, skg_pixels *pixels) {
+    const int in_rows = strip->row >= strip->args.window[2] && strip->row < strip->args.window[3];
+    const int from = strip->args.window[0], to = in_rows ? strip->args.window[1] : from;
+    SKG_EACH_RUN {
+        const skg_intv column = strip->column + r * SKG_WIDE + SKG_TO_INT_V(SKG_LANES);
+        const skg_maskv arrives = SKG_TO_MASK_V((column >= from) & (column < to));
+        SKG_EACH_CHANNEL {
+            pixels->shown[c][r] = arrives ? pixels->shown[c][r] : (skg_realv)(SKG_STOPPED);
+#if SKG_NOISE_APART
+            pixels->spread[c][r] = arrives ? pixels->spread[c][r] : (skg_realv)(0);
+#endif
+        }
+    }
+}
+#endif
+
 /* Writes the values of a channel of the runs. */
 static void skg_show_channel(const skg_strip *strip, const skg_realv *values, int channel) {
     __global skg_out *place = strip->output + strip->args.image.offset + channel * strip->args.image.channel_stride +
@@ -285,6 +306,9 @@ static void skg_attenuate_runs(const skg_strip *strip) {
 #else
     skg_add_nodes(strip, &pixels);
     SKG_EACH_RUN skg_finish(strip, &pixels, r);
+#endif
+#if SKG_COLLIMATED
+    skg_collimate(strip, &pixels);
 #endif
     SKG_EACH_CHANNEL {
         skg_show_channel(strip, pixels.shown[c], c);

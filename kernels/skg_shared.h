@@ -189,6 +189,8 @@ typedef struct {
     skg_raster_layout layout;                                                                                \
     skg_noise_args key;                                                                                      \
     SKG_INT nodes, world_plane;                                                                              \
+    SKG_INT                                                                                                  \
+        window[4]; /* SKG_COLLIMATED: columns from, columns to, rows from, rows to; others are stopped */    \
     skg_image_args image;
 
 /* Of skg_detect (detect.cl). */
@@ -275,7 +277,7 @@ _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_d
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
 _Static_assert(sizeof(skg_shade_float) == 22 * 4 && sizeof(skg_shade_double) == 21 * 8, "layout of shades");
-_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 152 && sizeof(skg_attenuate_double) == 40 * 8 + 152,
+_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 168 && sizeof(skg_attenuate_double) == 40 * 8 + 168,
                "layout of the arguments of skg_attenuate");
 _Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_double) == 4 * 8 + 64,
                "layout of the arguments of skg_detect");

@@ -26,7 +26,7 @@ typedef enum {
     SKG_SELF_TEST_PARALLEL, /* all strategies, with exact sums */
     SKG_SELF_TEST_LENGTHS,
     SKG_SELF_TEST_DETECTOR, /* electronic noise, steps, flat field */
-    SKG_SELF_TEST_SHADES,   /* bow-tie filter, grid, oblique scintillator */
+    SKG_SELF_TEST_SHADES,   /* bow-tie filter, grid, oblique scintillator, jaws */
     SKG_SELF_TEST_PLACE,    /* positions in memory of the device */
     SKG_SELF_TEST_PICTURE,  /* the 3D view */
     SKG_SELF_TEST_RAYS,     /* several rays of a pixel in one pass */

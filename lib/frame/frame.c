@@ -5,6 +5,8 @@
 #include "plan/unseen.h"
 #include "spectral/quantity.h"
 
+#include <string.h>
+
 /* The tile that is asked for, in pixels of a pass. Of a finer detector, bands may have to be higher. */
 static int32_t tile_of(const skg_recipe *recipe, const skg_pass *pass) {
     const int32_t tile = recipe->strategy == SKG_STRATEGY_TILES ? recipe->options.tile : 0;
@@ -187,6 +189,7 @@ static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_
     place.add = number > 0;
     noise.sample = number > 0 ? (cl_int)number * pass->fine * pass->fine : 0;
     if (recipe->linear) attenuation.noise = 0;
+    memcpy(attenuation.window, pass->window, sizeof attenuation.window);
     if (number < 0 ||
         number + 1 == skg_samples_passes(&recipe->samples)) /* the last pass's count is reported */
         SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,

@@ -1,5 +1,6 @@
 #include "frame/parts.h"
 #include "frame/overrides.h"
+#include "geometry/collimation.h"
 
 #include <math.h>
 
@@ -107,6 +108,15 @@ static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work
     return SKG_OK;
 }
 
+/* Which pixels the jaws leave. */
+static skg_status find_window(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
+    const skg_collimation *collimation = recipe->options.collimation;
+    skg_field field;
+    if (work->lengths_of >= 0 || !skg_collimation_limits(collimation)) return SKG_OK;
+    SKG_TRY(skg_field_make(collimation, work->view, &field));
+    return skg_field_window(&field, &pass->camera, pass->window);
+}
+
 skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t number,
                          const skg_pass_memory *memory, skg_pass *pass) {
     skg_kernel_options *kernels = &pass->kernels;
@@ -115,6 +125,7 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
         SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &pass->camera));
     else
         SKG_TRY(skg_samples_camera(&recipe->samples, work->view, number, &pass->camera));
+    SKG_TRY(find_window(recipe, work, pass));
     SKG_TRY(list_contributions(recipe, work, pass));
     SKG_TRY(mix_planes(recipe, work, pass));
     place_parts(recipe, work, memory, pass);

@@ -1,4 +1,5 @@
 #include "plan/decide.h"
+#include "geometry/collimation.h"
 #include "spectral/quantity.h"
 
 /* Whether the weights of the model are those of a ratio already. */
@@ -37,6 +38,7 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
                                .shades = &model->shades,
                                .ratio = (has_world || model->shades.count > 0) && is_ratio,
                                .falloff = options->falloff && !is_ratio,
+                               .collimated = skg_collimation_limits(options->collimation),
                                .noise = options->noise,
                                .apart = options->noise && options->dqe,
                                .energies = options->quantity == SKG_QUANTITY_ENERGY};

@@ -1,8 +1,10 @@
 /* Effects of the beam, and of what stands in it beside the parts. */
 #include "beam/bowtie.h"
 #include "beam/grid.h"
+#include "core/log.h"
 #include "core/maths.h"
 #include "core/names.h"
+#include "geometry/collimation.h"
 #include "plan/decide.h"
 #include "plan/effect.h"
 #include "plan/options.h"
@@ -127,6 +129,68 @@ static double cost_bowtie(const skg_effect_facts *f) {
     return f->counts.passes * (2 * SKG_COST_RAY + SKG_COST_LOOKED_UP + (double)f->recipe->model.nodes);
 }
 
+static skg_status copy_collimation(skg_recipe *recipe) {
+    const skg_collimation **collimation = &recipe->options.collimation;
+    if (!*collimation) return SKG_OK;
+    SKG_TRY(skg_copies_struct(&recipe->copies, *collimation, "skg_collimation", sizeof **collimation,
+                              skg_collimation_init_sized, collimation));
+    return skg_collimation_check(*collimation);
+}
+
+/* The share of the pixels that the middle of the source reaches past the jaws. */
+static double find_share(const skg_recipe *recipe) {
+    const skg_view *view = &recipe->view;
+    skg_field field;
+    skg_camera camera;
+    int32_t window[4] = {0};
+    if (skg_field_make(recipe->options.collimation, view, &field) == SKG_OK &&
+        skg_camera_make(view, NULL, 0, 0, &camera) == SKG_OK)
+        (void)skg_field_window(&field, &camera, window); /* the frame that is prepared has found its field */
+    const double columns = fmax(0, window[1] - window[0]), rows = fmax(0, window[3] - window[2]);
+    return columns * rows / ((double)view->columns * (double)view->rows);
+}
+
+/* What the jaws leave, in words. */
+static void describe_jaws(const skg_recipe *recipe, char *text, size_t size) {
+    const skg_collimation *collimation = recipe->options.collimation;
+    char distance[48] = "";
+    if (collimation->kind == SKG_COLLIMATION_DETECTOR) {
+        snprintf(text, size, "the field is %g mm smaller than the detector on each side",
+                 -collimation->margin_mm);
+        return;
+    }
+    if (recipe->view.projection == SKG_PROJECTION_POINT)
+        snprintf(distance, sizeof distance, ", %g mm from the source", collimation->distance_mm);
+    snprintf(text, size, "jaws leave %g x %g mm%s", collimation->high[0] - collimation->low[0],
+             collimation->high[1] - collimation->low[1], distance);
+}
+
+static void find_collimation(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_collimation *collimation = f->recipe->options.collimation;
+    char jaws[160];
+    if (!skg_collimation_limits(collimation)) {
+        skg_effect_set(state, 0, "%s",
+                       collimation && collimation->kind == SKG_COLLIMATION_DETECTOR
+                           ? "the field holds the whole detector"
+                           : "no jaws limit the beam");
+        return;
+    }
+    const double share = find_share(f->recipe);
+    describe_jaws(f->recipe, jaws, sizeof jaws);
+    skg_effect_set(state, 1, "%s; %.3g %% of the pixels see the middle of the source", jaws, 100 * share);
+    if (!(share > 0))
+        skg_log(
+            f->context, SKG_LOG_WARNING,
+            "no ray from the middle of the source to a pixel passes the jaws, so the image is dark: %s; check the "
+            "place and the size of the rectangle",
+            jaws);
+}
+
+/* Four comparisons and a choice for each ray. */
+static double cost_collimation(const skg_effect_facts *f) {
+    return 5 * f->counts.passes;
+}
+
 static skg_status copy_grid(skg_recipe *recipe) {
     skg_copies *copies = &recipe->copies;
     skg_grid *ours = NULL;
@@ -176,6 +240,8 @@ const skg_effect_row skg_effect_heel = {"heel effect", SKG_SELF_TEST_HEEL,
     copy_heel, NULL, has_heel, find_heel, cost_heel};
 const skg_effect_row skg_effect_bowtie = {"bow-tie filter", SKG_SELF_TEST_SHADES,
     copy_bowtie, NULL, has_bowtie, find_bowtie, cost_bowtie};
+const skg_effect_row skg_effect_collimation = {"collimation", SKG_SELF_TEST_SHADES,
+    copy_collimation, NULL, NULL, find_collimation, cost_collimation};
 const skg_effect_row skg_effect_grid = {"anti-scatter grid", SKG_SELF_TEST_SHADES,
     copy_grid, NULL, has_grid, find_grid, cost_grid};
 /* clang-format on */

@@ -1,6 +1,7 @@
 /* Makes recipes: copies the options and decides. */
 #include "beam/spectrum.h"
 #include "device/device.h"
+#include "geometry/collimation.h"
 #include "geometry/exposure.h"
 #include "geometry/priority.h"
 #include "plan/choose.h"
@@ -139,6 +140,24 @@ static skg_status make_model(skg_recipe *recipe) {
     return skg_model_begin(recipe->scene, &recipe->view, recipe->spectrum, &recipe->options, &recipe->model);
 }
 
+/* Fails if a view has no field, or if a sample of the source does not lie before the jaws. */
+static skg_status check_field(const skg_recipe *recipe) {
+    const skg_collimation *collimation = recipe->options.collimation;
+    const int64_t passes = skg_samples_passes(&recipe->samples);
+    skg_field field;
+    if (!skg_collimation_limits(collimation)) return SKG_OK;
+    for (int64_t v = 0; v < recipe->options.view_count; v++)
+        SKG_TRY(skg_field_make(collimation, &recipe->options.views[v], &field));
+    SKG_TRY(skg_field_make(collimation, &recipe->view, &field));
+    for (int64_t p = 0; p < passes; p++) {
+        skg_camera camera;
+        int32_t window[4];
+        SKG_TRY(skg_samples_camera(&recipe->samples, &recipe->view, p, &camera));
+        SKG_TRY(skg_field_window(&field, &camera, window));
+    }
+    return SKG_OK;
+}
+
 static skg_status decide(skg_recipe *recipe, const skg_device_info *device, const skg_spot *spot) {
     const skg_plan_options *options = &recipe->options;
     const int parallel = recipe->view.projection != SKG_PROJECTION_POINT;
@@ -149,6 +168,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
     SKG_TRY(skg_samples_make(parallel ? NULL : spot, options->supersampling, &recipe->samples));
     if (spot) recipe->options.spot = &recipe->samples.spot;
+    SKG_TRY(check_field(recipe));
     SKG_TRY(make_model(recipe));
     SKG_TRY(skg_channel_names_create(options, recipe->model.channels, &recipe->channel_names));
     SKG_TRY(find_leaky(recipe));

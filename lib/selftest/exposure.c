@@ -65,8 +65,10 @@ enum { ROWS = SKG_SELF_TEST_BOWTIE_ROWS };
 skg_status skg_self_test_shades_choose(skg_self_test_scene *scene) {
     skg_bowtie *bowtie = &scene->bowtie;
     skg_grid *grid = &scene->grid;
+    skg_collimation *jaws = &scene->jaws;
     skg_bowtie_init(bowtie);
     skg_grid_init(grid);
+    skg_collimation_init(jaws);
     SKG_TRY(skg_material_create_formula("Al", 2.7, &scene->filter));
     SKG_TRY(skg_material_create_formula("CsI", 4.51, &scene->crystal));
     SKG_TRY(skg_response_create_scintillator(scene->crystal, layer, 1, &scene->response));
@@ -83,6 +85,11 @@ skg_status skg_self_test_shades_choose(skg_self_test_scene *scene) {
     scene->view.centre[2] = 100;
     scene->options.bowtie = bowtie;
     scene->options.grid = grid;
+    jaws->kind = SKG_COLLIMATION_RECTANGLE;
+    jaws->distance_mm = 100;
+    jaws->low[0] = -13, jaws->high[0] = 16;
+    jaws->low[1] = -17, jaws->high[1] = 15;
+    scene->options.collimation = jaws;
     scene->options.response = scene->response;
     scene->options.oblique = 1;
     return SKG_OK;
@@ -102,6 +109,11 @@ skg_status skg_self_test_shade(const skg_self_test_scene *scene, int64_t row, in
     SKG_TRY(skg_material_attenuation_get(scene->filter, energy, &filter));
     SKG_TRY(skg_material_attenuation_get(scene->crystal, energy, &crystal));
     *share = passed * exp(-0.1 * filter * mm) * (1 - exp(-0.1 * crystal * layer * oblique));
+    const skg_collimation *jaws = &scene->jaws;
+    const double near = jaws->distance_mm / down;
+    if (x * near < jaws->low[0] || x * near > jaws->high[0] || y * near < jaws->low[1] ||
+        y * near > jaws->high[1])
+        *share = 0;
     return SKG_OK;
 }
 

@@ -59,6 +59,7 @@ typedef struct {
     skg_bowtie bowtie;
     double angles[SKG_SELF_TEST_BOWTIE_ROWS]; /* of the bow-tie, degrees */
     skg_grid grid;
+    skg_collimation jaws;
     skg_heel heel;
     skg_depth_blur depths;
     skg_detector_blur depth_blurs[SKG_SELF_TEST_DEPTH_COUNT];

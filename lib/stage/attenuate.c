@@ -36,6 +36,7 @@ static const double LOG2_E = 1.4426950408889634;
     X(WORLD, attenuation->world_plane >= 0, 0)                                                               \
     X(RATIO, attenuation->ratio, 0)                                                                          \
     X(FALLOFF, attenuation->falloff && !camera->parallel, 0)                                                 \
+    X(COLLIMATED, attenuation->collimated, 0)                                                                \
     X(NOISE, attenuation->noise, 0)                                                                          \
     X(NOISE_APART, attenuation->noise && attenuation->apart, 0)                                              \
     X(OUTPUT_DOUBLE, place->output_double, 0)                                                                \
@@ -234,6 +235,7 @@ static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *su
         .image = skg_image_of(place, sums->raster->layout.columns / sums->fine,
                               sums->raster->layout.rows / sums->fine, attenuation->channels),
     };
+    for (int k = 0; k < 4; k++) args.window[k] = attenuation->window[k];
     args.layout.first_plane = sums->pass * args.layout.planes;
     skg_camera_rays(camera, sums->scale, &args.ray);
     find_world(camera, attenuation, args.world);
@@ -292,6 +294,7 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
     nothing.layout.copies = 0; /* sums over no copies are 0 */
     no_sums.raster = &nothing;
     quiet.noise = 0;
+    quiet.collimated = 0; /* ratios are to the flat field without jaws */
     quiet.range = (skg_buffer){0};
     return skg_attenuate(attenuator, &no_sums, camera, &quiet, factor, 1, -HUGE_VAL, negative, NULL, place,
                          log);

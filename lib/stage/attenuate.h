@@ -21,6 +21,8 @@ typedef struct {
     int32_t energies;      /* 1: shows keV, which half precision stores in MeV */
     int32_t noise;         /* 1: quantum noise is drawn; then intensities are no ratio */
     int32_t apart;       /* 1, with noise: deviations are written behind the channels, apart from the means */
+    int32_t collimated;  /* 1: rays outside the window are stopped; never of flat fields */
+    int32_t window[4];   /* of a pass: columns from, columns to, rows from, rows to */
     double world_weight; /* of a mm of the world's path in its plane */
     const skg_shades *shades; /* borrowed; count 0, or NULL: none */
     skg_buffer coefficients, weights, variances;

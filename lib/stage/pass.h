@@ -41,7 +41,9 @@ typedef struct {
     skg_priority priority; /* closed parts that compete for intervals */
     int32_t clip;          /* 1: children are clipped to their parents */
     int32_t fine;          /* pixels of the camera along each side of a pixel of the image */
-    skg_raster_pin main;   /* the raster of the closed parts */
+    int32_t
+        window[4]; /* of the camera: the pixels that jaws leave (skg_field_window), of an image with jaws */
+    skg_raster_pin main; /* the raster of the closed parts */
 } skg_pass;
 
 /* Releases what the pass owns, and its pin. */

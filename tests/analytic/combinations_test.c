@@ -1,6 +1,7 @@
 /* Effects together against the same image made the plain way: path lengths of every part for one point source
  * and one ray a pixel at a time; exponentials, energies, samples, ratios and blur are summed here. Which
- * effects meet is a design of Plackett and Burman (1946): every pair is met on and off in all four ways. */
+ * effects meet is a design of Plackett and Burman (1946): every pair is met on and off in all four ways. All of it is done without
+ * and with jaws. */
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -22,12 +23,19 @@ enum {
     BANDS,
     FALLOFF,
     RATIO,
-    EFFECTS
+    EFFECTS,
+    JAWS = EFFECTS, /* not of the design */
+    SWITCHES
 };
 
 static const double edges[CHANNELS_MAX + 1] = {10, 38, 55, 120};
 static const double point_spread[PSF * PSF] = {0.05, 0.1, 0.02, 0.1, 0.4, 0.08, 0.05, 0.15, 0.05};
 static const double spot_width = 3; /* mm */
+static const skg_collimation jaws = {.size = sizeof jaws,
+                                     .kind = SKG_COLLIMATION_RECTANGLE,
+                                     .distance_mm = 60,
+                                     .low = {-15.3, -12.1},
+                                     .high = {17.9, 13.7}};
 
 static skg_context *context;
 static skg_scene *scene;
@@ -128,10 +136,23 @@ static skg_plan_options plain_options(const int *on) {
 
 /* --- the plain way --------------------------------------------------------------------------------------- */
 
+/* Whether the jaws stop the ray between two points. */
+static int jaws_stop(const double *from, const double *to) {
+    const double share = (view.source[2] + jaws.distance_mm - from[2]) / (to[2] - from[2]);
+    for (int a = 0; a < 2; a++) {
+        const double middle = view.source[a] + (view.centre[a] - view.source[a]) * jaws.distance_mm /
+                                                   (view.centre[2] - view.source[2]);
+        const double at = from[a] + share * (to[a] - from[a]) - middle;
+        if (at < jaws.low[a] || at > jaws.high[a]) return 1;
+    }
+    return 0;
+}
+
 /* What a ray meets, mm. */
 typedef struct {
     double lengths[PARTS][PIXELS];
     double all[PIXELS], distance; /* rays from end to end; from the source to the plane of the detector */
+    int stopped[PIXELS];          /* by the jaws */
 } rays;
 
 static skg_plan *plan_lengths(const skg_plan_options *options) {
@@ -163,13 +184,14 @@ static void find_rays(skg_plan *plan, int32_t precision, const skg_view *from, r
     /* Steps lie along x and y. */
     found->distance = fabs(from->centre[2] - from->source[2]);
     for (int k = 0; k < PIXELS; k++) {
-        double square = 0;
+        double square = 0, to[3];
         for (int a = 0; a < 3; a++) {
-            const double to = from->centre[a] + (k % SIDE - 0.5 * (SIDE - 1)) * from->column_step[a] +
-                              (k / SIDE - 0.5 * (SIDE - 1)) * from->row_step[a] - from->source[a];
-            square += to * to;
+            to[a] = from->centre[a] + (k % SIDE - 0.5 * (SIDE - 1)) * from->column_step[a] +
+                    (k / SIDE - 0.5 * (SIDE - 1)) * from->row_step[a];
+            square += (to[a] - from->source[a]) * (to[a] - from->source[a]);
         }
         found->all[k] = sqrt(square);
+        found->stopped[k] = jaws_stop(from->source, to);
     }
 }
 
@@ -200,6 +222,7 @@ static void add_rays(const int *on, const rays *r, double share, int channels, d
     }
     for (int c = 0; c < channels; c++)
         for (int k = 0; k < PIXELS; k++) {
+            if (on[JAWS] && r->stopped[k]) continue;
             const double fall = on[FALLOFF] ? pow(r->distance / r->all[k], 3) : 1;
             image[c * PIXELS + k] += share * (on[RATIO] ? behind[c][k] / before[c][k] : fall * behind[c][k]);
         }
@@ -277,6 +300,7 @@ static void check_together(const int *on) {
     options.blur = on[BLUR] ? &spread : NULL;
     options.bands = on[BANDS] ? CHANNELS_MAX : 0, options.band_kev = edges;
     options.falloff = on[FALLOFF];
+    options.collimation = on[JAWS] ? &jaws : NULL;
     options.band_weight = SKG_BAND_WEIGHT_ENERGY;
     options.quantity = on[RATIO] ? SKG_QUANTITY_TRANSMISSION : SKG_QUANTITY_ENERGY;
     ck_skg(skg_plan_create(context, scene, &view, spectrum, &options, &plan));
@@ -304,8 +328,10 @@ static void check_together(const int *on) {
 /* Rows 0 to 10: turns of Plackett and Burman's first; then none of the effects, and all of them. */
 START_TEST(effects_together) {
     static const int first[EFFECTS] = {1, 1, 0, 1, 1, 1, 0, 0, 0, 1, 0};
-    int on[EFFECTS];
-    for (int k = 0; k < EFFECTS; k++) on[k] = _i < EFFECTS ? first[(k + _i) % EFFECTS] : _i > EFFECTS;
+    const int run = _i % (EFFECTS + 2);
+    int on[SWITCHES];
+    for (int k = 0; k < EFFECTS; k++) on[k] = run < EFFECTS ? first[(k + run) % EFFECTS] : run > EFFECTS;
+    on[JAWS] = _i >= EFFECTS + 2;
     check_together(on);
 }
 END_TEST
@@ -360,7 +386,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_all, close_all);
-    tcase_add_loop_test(tests, effects_together, 0, EFFECTS + 2);
+    tcase_add_loop_test(tests, effects_together, 0, 2 * (EFFECTS + 2));
     tcase_add_test(tests, half_with_several_samples);
 }
 

@@ -129,6 +129,7 @@ typedef struct {
     skg_heel heel;
     skg_bowtie bowtie;
     skg_grid grid;
+    skg_collimation jaws;
 } shades;
 
 static void add_shades(shades *s, skg_plan_options *options) {
@@ -137,6 +138,7 @@ static void add_shades(shades *s, skg_plan_options *options) {
     skg_heel_init(&s->heel);
     skg_bowtie_init(&s->bowtie);
     skg_grid_init(&s->grid);
+    skg_collimation_init(&s->jaws);
     s->heel.kvp = 100, s->heel.direction[1] = 1;
     s->bowtie.count = 3, s->bowtie.angle_deg = angles, s->bowtie.path_mm = paths;
     s->grid.ratio = 8, s->grid.lines_per_cm = 40, s->grid.strip_mm = 0.05, s->grid.focus_mm = 1000;
@@ -145,6 +147,8 @@ static void add_shades(shades *s, skg_plan_options *options) {
     TRY(skg_response_create_scintillator(csi, 0.6, 0.8, &options->response));
     skg_material_release(&csi);
     options->heel = &s->heel, options->bowtie = &s->bowtie, options->grid = &s->grid, options->oblique = 1;
+    s->jaws.kind = SKG_COLLIMATION_DETECTOR, s->jaws.margin_mm = -20;
+    options->collimation = &s->jaws;
 }
 
 static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_view *view, const group *g) {

@@ -1,4 +1,6 @@
 """Images, batches and path lengths, against closed forms and against each other."""
+import json
+
 import numpy as np
 import pytest
 
@@ -257,3 +259,29 @@ def test_pictures_are_written(scene, tmp_path):
         scene.save(tmp_path / "line.png", np.zeros(3))
     with pytest.raises(sk.OutputError):
         scene.save(tmp_path / "nowhere" / "ball.png", scene.image())
+
+
+def test_jaws_limit_the_beam(scene):
+    jaws = {"kind": "rectangle", "distance_mm": 400, "low": [-10.1, -4.1], "high": [7.3, 9.2]}
+    image, limited = scene.image(), scene.image(collimation=jaws)
+    x = 2 * (np.arange(SIDE + 16) - (SIDE + 15) / 2) / 3  # in the plane of the jaws, at a third of the distance
+    y = 2 * (np.arange(SIDE) - (SIDE - 1) / 2) / 3
+    field = ((y > -4.1) & (y < 9.2))[:, None] & ((x > -10.1) & (x < 7.3))
+    assert 0 < field.sum() < field.size
+    np.testing.assert_array_equal(limited, np.where(field, image, 0))
+    with pytest.raises(sk.SceneError, match="behind the detector at 1200 mm"):
+        scene.image(collimation={**jaws, "distance_mm": 1300})
+    with pytest.raises(sk.ArgumentError, match="'rectangle'"):
+        scene.image(collimation={"kind": "circle"})
+
+
+def test_a_saved_scene_keeps_its_collimation(scene, tmp_path):
+    scene.save(tmp_path / "open.json")
+    text = json.loads((tmp_path / "open.json").read_text())
+    text["Collimation"] = {"Rectangle": [[-10.1, 7.3], [-9.2, 4.1], "mm"], "Distance": [400, "mm"]}
+    (tmp_path / "limited.json").write_text(json.dumps(text))
+    limited = sk.Scene(tmp_path / "limited.json")
+    limited.save(tmp_path / "again.json")
+    jaws = {"kind": "rectangle", "distance_mm": 400, "low": [-10.1, -4.1], "high": [7.3, 9.2]}
+    np.testing.assert_array_equal(limited.image(), scene.image(collimation=jaws))
+    np.testing.assert_array_equal(sk.Scene(tmp_path / "again.json").image(), limited.image())

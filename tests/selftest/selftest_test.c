@@ -218,6 +218,8 @@ static const struct {
     {"shades.clh", "value = fma(value, z, (skg_realv)(terms[t]))",
      "value = fma(value, z, (skg_realv)(terms[0]))", SKG_SELF_TEST_SHADES},
     {"shades.clh", "fma(at - row, next[g] - here[g], here[g])", "2 * here[g]", SKG_SELF_TEST_SHADES},
+    {"attenuate.cl", "(column >= from) & (column < to)", "column >= from", SKG_SELF_TEST_SHADES},
+    {"attenuate.cl", "strip->row < strip->args.window[3]", "1", SKG_SELF_TEST_SHADES},
     {"shades.clh", "polynomials + s * SKG_TERMS, heel)", "polynomials, heel)", SKG_SELF_TEST_HEEL},
     {"shades.clh", "column, row) / length + args->heel[3]", "column, row) / length", SKG_SELF_TEST_HEEL},
     {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_SELF_TEST_DEPTHS},

@@ -60,6 +60,10 @@ skg_status skg_setup_read_bowtie(skg_setup_reader *reader, const skg_json_node *
 skg_status skg_setup_read_grid(skg_setup_reader *reader, const skg_json_object *detector);
 void skg_setup_in_beam_free(skg_setup *setup);
 
+/* The key Collimation (value NULL: none). has_view: 1: source and detector have been read, and the jaws have to stand before the
+ * detector. */
+skg_status skg_setup_read_collimation(skg_setup_reader *reader, const skg_json_node *node, int has_view);
+
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
 

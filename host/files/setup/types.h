@@ -121,6 +121,8 @@ struct skg_setup {
     double *bowtie_rows;
     skg_grid grid; /* its materials are the set-up's */
     int32_t has_bowtie, has_grid;
+    skg_collimation collimation;
+    int32_t has_collimation;
     int32_t oblique;       /* 1: rays cross the scintillator obliquely */
     int32_t supersampling; /* rays along a side of a pixel */
     skg_view view;         /* of the first projection */
