@@ -72,7 +72,7 @@ static const char *const few[] = {"Water, Liquid", "Tissue, Soft (ICRU-44)", "Bo
 static int near_edge(double kev) {
     static const double edges[] = {33.169, 69.525, 88.005};
     for (size_t i = 0; i < sizeof edges / sizeof *edges; i++)
-        if (fabs(log(kev / edges[i])) < 0.013) return 1;
+        if (fabs(log(kev / edges[i])) < 0.013) return 1; /* the step of the energies is 0.012 */
     return 0;
 }
 
