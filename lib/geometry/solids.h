@@ -9,6 +9,7 @@
  *
  * inside      the parent's number, or -1
  * positions   result: [vertices][3] the caller frees it after the solid's last use; NULL of a leaky mesh */
-skg_status skg_solid_place(const skg_mesh *mesh, const double pose[16], int64_t inside, skg_solid *solid, double **positions);
+skg_status skg_solid_place(const skg_mesh *mesh, const double pose[16], int64_t inside, skg_solid *solid,
+                           double **positions);
 
 #endif

@@ -46,8 +46,8 @@ static skg_status check_overlaps(checking *c) {
     const skg_scene *scene = c->recipe->scene;
     if (scene->count < 2) return SKG_OK;
     for (int64_t i = 0; i < scene->count; i++)
-        SKG_TRY(skg_solid_place(scene->parts[i].mesh, scene->parts[i].pose, scene->parts[i].inside, &c->solids[i],
-                                &c->positions[i]));
+        SKG_TRY(skg_solid_place(scene->parts[i].mesh, scene->parts[i].pose, scene->parts[i].inside,
+                                &c->solids[i], &c->positions[i]));
     return skg_overlaps_find(scene->count, c->solids, &c->found->side, &c->found->pair_count,
                              &c->found->pairs);
 }

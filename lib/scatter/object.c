@@ -35,14 +35,16 @@ static skg_status make_physics(const skg_scatter_work *work, const palette *p, s
     const skg_spectrum *spectrum = work->recipe->spectrum;
     double low = HUGE_VAL, high = 0;
     for (int64_t i = 0; i < spectrum->count; i++)
-        if (spectrum->photons[i] > 0) low = fmin(low, spectrum->energy_kev[i]), high = spectrum->energy_kev[i];
+        if (spectrum->photons[i] > 0)
+            low = fmin(low, spectrum->energy_kev[i]), high = spectrum->energy_kev[i];
     low = fmax(low * LOWEST, 1);
-    return skg_scatter_physics_make(p->count, p->materials, low, fmin(high * 1.01, fmax(high, 1022)), physics);
+    return skg_scatter_physics_make(p->count, p->materials, low, fmin(high * 1.01, fmax(high, 1022)),
+                                    physics);
 }
 
 /* What a mm of each part adds: its own material less its parent's, as in frame/overrides.c. */
-static void find_differences(const skg_scatter_work *work, const palette *p, const skg_scatter_physics *physics,
-                             double (*differences)[SKG_SCATTER_RANK]) {
+static void find_differences(const skg_scatter_work *work, const palette *p,
+                             const skg_scatter_physics *physics, double (*differences)[SKG_SCATTER_RANK]) {
     const skg_scene *scene = work->recipe->scene;
     for (int64_t i = 0; i < scene->count; i++) {
         const int64_t parent = scene->parts[i].inside;

@@ -52,8 +52,8 @@ static void find_places(const skg_scatter_work *work, int64_t *columns, int64_t 
 
 /* What came so far. */
 typedef struct {
-    int64_t *sums;   /* as skg_trace_read */
-    double *values;  /* [batches][rows][columns] workspace */
+    int64_t *sums;  /* as skg_trace_read */
+    double *values; /* [batches][rows][columns] workspace */
     int64_t columns, rows;
     skg_cosines mean, variance;
 } arrived;
@@ -64,7 +64,8 @@ static void add_planes(const arrived *a, int first, int end) {
     for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++)
         for (int64_t p = 0; p < places; p++) {
             double sum = 0;
-            for (int k = first; k < end; k++) sum += (double)a->sums[(b * SKG_SCATTER_PLANES + k) * places + p];
+            for (int k = first; k < end; k++)
+                sum += (double)a->sums[(b * SKG_SCATTER_PLANES + k) * places + p];
             a->values[b * places + p] = sum;
         }
 }
@@ -116,13 +117,14 @@ static skg_status trace(skg_context *context, const skg_scatter_work *work, cons
     SKG_TRY_CLEANUP(skg_scatter_tables_make(work->recipe, object, &tables));
     SKG_TRY_CLEANUP(skg_trace_begin(context, work, object, &tables, a->columns, a->rows, &s->tracing));
     SKG_TRY_CLEANUP(follow(context, work->recipe->options.scatter, &s->tracing, a));
-    if (work->recipe->options.noise) SKG_TRY_CLEANUP(fit(a, &a->variance, SKG_SCATTER_KINDS, SKG_SCATTER_PLANES));
+    if (work->recipe->options.noise)
+        SKG_TRY_CLEANUP(fit(a, &a->variance, SKG_SCATTER_KINDS, SKG_SCATTER_PLANES));
     const skg_shown_scatter shown = {
         .work = work,
         .mean = &a->mean,
         .variance = work->recipe->options.noise ? &a->variance : NULL,
         .photons = tables.photons * skg_sight_photons(work, &s->tracing.args) /
-                   ((double)s->tracing.args.scale * (double)s->tracing.args.end) / SKG_SCATTER_BATCHES,
+                   ((double)s->tracing.args.scale * (double)s->tracing.args.end),
         .signal = tables.signal,
         .power = tables.variance,
     };
@@ -133,13 +135,14 @@ cleanup:
     return status;
 }
 
-static skg_status compute(skg_context *context, const skg_scatter_work *work, const skg_scatter_object *object,
-                          skg_scatterer *s) {
+static skg_status compute(skg_context *context, const skg_scatter_work *work,
+                          const skg_scatter_object *object, skg_scatterer *s) {
     arrived a = {0};
     skg_status status = SKG_OK;
     find_places(work, &a.columns, &a.rows);
     const int64_t places = a.columns * a.rows;
-    SKG_TRY_CLEANUP(skg_alloc(SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * places, sizeof *a.sums, "scatter", &a.sums));
+    SKG_TRY_CLEANUP(
+        skg_alloc(SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * places, sizeof *a.sums, "scatter", &a.sums));
     SKG_TRY_CLEANUP(skg_alloc(SKG_SCATTER_BATCHES * places, sizeof *a.values, "scatter", &a.values));
     if (object->cells.mixtures)
         SKG_TRY_CLEANUP(trace(context, work, object, s, &a));

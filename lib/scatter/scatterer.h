@@ -18,9 +18,6 @@ typedef struct {
     skg_scatter_report report;
 } skg_scatterer;
 
-/* Fails if the scatter of these options cannot be computed. */
-skg_status skg_scatter_check(const skg_recipe *recipe);
-
 /* Computes the scatter of a frame, unless it is that of the last one, and waits for it. After a failure nothing is known. */
 skg_status skg_scatterer_run(skg_context *context, skg_scatterer *scatterer, const skg_scatter_work *work);
 

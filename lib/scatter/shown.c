@@ -46,15 +46,16 @@ typedef struct {
     double factor;
 } picture;
 
-static skg_status send(skg_context *context, const skg_view *view, const picture *p, skg_buffer *buffer, double *mean,
-                       double *square) {
+static skg_status send(skg_context *context, const skg_view *view, const picture *p, skg_buffer *buffer,
+                       double *mean, double *square) {
     const int64_t size = view->rows * view->columns;
     double *values = NULL;
     float *floats = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *values, "scatter", &values));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *floats, "scatter", &floats));
-    if (p->cosines) SKG_TRY_CLEANUP(skg_cosines_show(p->cosines, p->squares, view->rows, view->columns, values));
+    if (p->cosines)
+        SKG_TRY_CLEANUP(skg_cosines_show(p->cosines, p->squares, view->rows, view->columns, values));
     *mean = *square = 0;
     for (int64_t i = 0; i < size; i++) {
         const double positive = values[i] > 0 ? values[i] : 0; /* cosines may swing below 0 */

@@ -39,10 +39,11 @@ static skg_status fill_detector(const skg_view *view, const skg_cells *cells, sk
     skg_scale_vector((double)view->rows, view->row_step, down);
     const double u = skg_length(across), v = skg_length(down);
     if (fabs(skg_dot(across, down)) > OBLIQUE * u * v)
-        return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "scatter: the detector's rows and columns are at %.4g degrees; make them perpendicular, or leave out "
-                        "the scatter",
-                        acos(skg_dot(across, down) / (u * v)) * 57.29577951308232);
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "scatter: the detector's rows and columns are at %.4g degrees; make them perpendicular, or leave out "
+            "the scatter",
+            acos(skg_dot(across, down) / (u * v)) * 57.29577951308232);
     skg_cross(across, down, normal);
     if (is_parallel(view))
         find_direction(view, way);
@@ -93,7 +94,8 @@ skg_status skg_sight_fill(const skg_scatter_work *work, const skg_cells *cells, 
     return fill_field(work, cells, args);
 }
 
-skg_status skg_sight_spots(const skg_scatter_work *work, const skg_cells *cells, int64_t *count, float (**spots)[4]) {
+skg_status skg_sight_spots(const skg_scatter_work *work, const skg_cells *cells, int64_t *count,
+                           float (**spots)[4]) {
     const skg_samples *samples = &work->recipe->samples;
     const int64_t all = samples->spot_count > 1 ? samples->spot_count : 1;
     double source[3], shift[2];
@@ -105,7 +107,8 @@ skg_status skg_sight_spots(const skg_scatter_work *work, const skg_cells *cells,
         return SKG_OK;
     }
     for (int64_t s = 0; s < *count; s++) {
-        skg_samples_at(samples, work->view, s * all / *count * samples->shifts * samples->shifts, source, shift);
+        skg_samples_at(samples, work->view, s * all / *count * samples->shifts * samples->shifts, source,
+                       shift);
         set_place(source, cells, (*spots)[s]);
     }
     return SKG_OK;

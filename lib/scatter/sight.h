@@ -12,7 +12,8 @@ skg_status skg_sight_fill(const skg_scatter_work *work, const skg_cells *cells, 
 
 /* The points of the source, [count][4] mm from the lowest corner of the cells; of a parallel beam its direction. The caller frees
  * *spots. */
-skg_status skg_sight_spots(const skg_scatter_work *work, const skg_cells *cells, int64_t *count, float (**spots)[4]);
+skg_status skg_sight_spots(const skg_scatter_work *work, const skg_cells *cells, int64_t *count,
+                           float (**spots)[4]);
 
 /* What a history whose photon arrives adds to a pixel, as photons of the spectrum: the photons that the field receives over those
  * of a pixel. */

@@ -13,7 +13,8 @@ enum { TOTAL, COMPTON, RAYLEIGH, COMPTON_SHAPE, RAYLEIGH_SHAPE, SIGNAL };
 /* The share of photons that is followed as the beam has them, whatever they add. */
 static const double AS_THEY_ARE = 0.1;
 
-static skg_status fill_signals(const skg_recipe *recipe, const skg_scatter_physics *p, skg_scatter_tables *t) {
+static skg_status fill_signals(const skg_recipe *recipe, const skg_scatter_physics *p,
+                               skg_scatter_tables *t) {
     double *signals = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(skg_alloc(2 * p->energies, sizeof *signals, "scatter", &signals));
@@ -36,7 +37,8 @@ cleanup:
 }
 
 static void fill_energies(const skg_scatter_physics *p, skg_scatter_tables *t) {
-    const skg_mix4 *const columns[] = {p->total, p->compton, p->rayleigh, p->compton_shape, p->rayleigh_shape};
+    const skg_mix4 *const columns[] = {p->total, p->compton, p->rayleigh, p->compton_shape,
+                                       p->rayleigh_shape};
     for (int64_t i = 0; i < p->energies; i++)
         for (int c = TOTAL; c <= RAYLEIGH_SHAPE; c++)
             memcpy(t->energies[i * SKG_SCATTER_COLUMNS + c], columns[c][i], sizeof *t->energies);
@@ -77,7 +79,8 @@ static skg_status fill_beam(const skg_recipe *recipe, skg_scatter_tables *t) {
     return t->bins > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
-skg_status skg_scatter_tables_make(const skg_recipe *recipe, const skg_scatter_object *object, skg_scatter_tables *t) {
+skg_status skg_scatter_tables_make(const skg_recipe *recipe, const skg_scatter_object *object,
+                                   skg_scatter_tables *t) {
     const skg_scatter_physics *p = &object->physics;
     *t = (skg_scatter_tables){0};
     SKG_TRY(skg_alloc(p->energies * SKG_SCATTER_COLUMNS, sizeof *t->energies, "scatter", &t->energies));

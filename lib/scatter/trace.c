@@ -15,8 +15,9 @@ static const double LAUNCH_S = 0.3;
 /* The first coordinates of exod2_base2_m20_CKN, a lattice whose first 2^m points are good for every m (R. Cools, F. Y. Kuo and
  * D. Nuyens, Constructing embedded lattice rules for multivariate integration, SIAM Journal on Scientific Computing 28 (2006)
  * 2162-2188). */
-static const uint32_t LATTICE[SKG_SCATTER_DIMENSIONS] = {1,      182667, 469891, 498753, 110745, 446247, 250185, 118627,
-                                                         245333, 283199, 408519, 391023, 246327, 126539, 399185, 461527};
+static const uint32_t LATTICE[SKG_SCATTER_DIMENSIONS] = {1,      182667, 469891, 498753, 110745, 446247,
+                                                         250185, 118627, 245333, 283199, 408519, 391023,
+                                                         246327, 126539, 399185, 461527};
 
 /* A shift for each batch and coordinate, by SplitMix64 (G. L. Steele, D. Lea and C. H. Flood, Fast splittable pseudorandom number
  * generators, OOPSLA 2014). */
@@ -36,7 +37,8 @@ static skg_status send_lattice(skg_context *context, int64_t seed, skg_buffer *b
     return skg_buffer_write(context, buffer, sizeof table, table, "lattice");
 }
 
-static skg_status send_spots(skg_context *context, const skg_scatter_work *work, const skg_cells *cells, skg_tracing *t) {
+static skg_status send_spots(skg_context *context, const skg_scatter_work *work, const skg_cells *cells,
+                             skg_tracing *t) {
     float(*spots)[4] = NULL;
     int64_t count = 0;
     skg_status status = skg_sight_spots(work, cells, &count, &spots);
@@ -47,20 +49,23 @@ static skg_status send_spots(skg_context *context, const skg_scatter_work *work,
     return status;
 }
 
-static skg_status send_tables(skg_context *context, const skg_scatter_object *object, const skg_scatter_tables *tables,
-                              skg_tracing *t) {
+static skg_status send_tables(skg_context *context, const skg_scatter_object *object,
+                              const skg_scatter_tables *tables, skg_tracing *t) {
     const skg_scatter_physics *p = &object->physics;
     const int64_t *count = object->cells.count, four = 4 * (int64_t)sizeof(float);
-    SKG_TRY(skg_buffer_write(context, &t->cells, count[0] * count[1] * count[2] * four, object->cells.mixtures, "cells"));
-    SKG_TRY(skg_buffer_write(context, &t->energies, p->energies * SKG_SCATTER_COLUMNS * four, tables->energies, "energies"));
+    SKG_TRY(skg_buffer_write(context, &t->cells, count[0] * count[1] * count[2] * four,
+                             object->cells.mixtures, "cells"));
+    SKG_TRY(skg_buffer_write(context, &t->energies, p->energies * SKG_SCATTER_COLUMNS * four,
+                             tables->energies, "energies"));
     SKG_TRY(skg_buffer_write(context, &t->momenta, p->momenta * 2 * four, tables->momenta, "momenta"));
     SKG_TRY(skg_buffer_write(context, &t->angles,
-                             SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1) * (int64_t)sizeof *tables->angles, tables->angles,
-                             "angles"));
+                             SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1) * (int64_t)sizeof *tables->angles,
+                             tables->angles, "angles"));
     return skg_buffer_write(context, &t->beam, tables->bins * four, tables->beam, "beam");
 }
 
-static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *tables, skg_scatter_args *args) {
+static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *tables,
+                        skg_scatter_args *args) {
     args->energies = (SKG_INT)p->energies;
     args->momenta = (SKG_INT)p->momenta;
     args->bins = (SKG_INT)tables->bins;
@@ -79,13 +84,14 @@ static skg_status clear(skg_context *context, skg_tracing *t) {
     t->sums_count = (int64_t)SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * t->args.rows * t->args.columns;
     const int64_t bytes = t->sums_count * (int64_t)sizeof(int64_t);
     SKG_TRY(skg_buffer_reserve(context, &t->sums, bytes, CL_MEM_READ_WRITE, "scatter"));
-    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, t->sums.memory, &none, sizeof none, 0, (size_t)bytes, 0, NULL,
-                                   NULL));
+    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, t->sums.memory, &none, sizeof none, 0,
+                                   (size_t)bytes, 0, NULL, NULL));
     return SKG_OK;
 }
 
-skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work, const skg_scatter_object *object,
-                           const skg_scatter_tables *tables, int64_t columns, int64_t rows, skg_tracing *t) {
+skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
+                           const skg_scatter_object *object, const skg_scatter_tables *tables,
+                           int64_t columns, int64_t rows, skg_tracing *t) {
     const int64_t seed = work->recipe->options.scatter->seed;
     t->args = (skg_scatter_args){.columns = (SKG_INT)columns, .rows = (SKG_INT)rows};
     t->args.seed[0] = (SKG_INT)(uint32_t)(uint64_t)seed;
@@ -103,10 +109,11 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work, c
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
     static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh",
                                         "scatter.clh",     "sight.clh",  "scatter.cl"};
-    const skg_kernel_options options = {.precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
+    const skg_kernel_options options = {
+        .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
     const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}};
-    return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files, SKG_DEFINES(defines),
-                           program);
+    return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
+                           SKG_DEFINES(defines), program);
 }
 
 /* Enqueues histories args.first to args.end of all batches. */
@@ -168,6 +175,6 @@ void skg_trace_release(skg_tracing *t) {
 }
 
 int64_t skg_trace_bytes(const skg_tracing *t) {
-    return t->cells.bytes + t->energies.bytes + t->momenta.bytes + t->angles.bytes + t->beam.bytes + t->spots.bytes +
-           t->lattice.bytes + t->sums.bytes;
+    return t->cells.bytes + t->energies.bytes + t->momenta.bytes + t->angles.bytes + t->beam.bytes +
+           t->spots.bytes + t->lattice.bytes + t->sums.bytes;
 }

@@ -21,8 +21,9 @@ typedef struct {
 } skg_tracing;
 
 /* Uploads what a frame needs and clears the sums. columns, rows: places of the detector. */
-skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work, const skg_scatter_object *object,
-                           const skg_scatter_tables *tables, int64_t columns, int64_t rows, skg_tracing *tracing);
+skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
+                           const skg_scatter_object *object, const skg_scatter_tables *tables,
+                           int64_t columns, int64_t rows, skg_tracing *tracing);
 
 /* Follows the histories of each batch up to number `end`, and waits for them. */
 skg_status skg_trace_until(skg_context *context, skg_tracing *tracing, int64_t end);

@@ -13,7 +13,8 @@ skg_status skg_signal_get(const skg_plan_options *options, double energy_kev, do
 /* A photon that arrives is recorded with the probability `efficiency` and then adds signal / efficiency on average; the
  * distribution of the pulse heights divides by the Swank factor. Counted photons all add 1, whatever the size of their
  * signals. */
-skg_status skg_signal_variance_get(const skg_plan_options *options, double energy_kev, double signal, double *variance) {
+skg_status skg_signal_variance_get(const skg_plan_options *options, double energy_kev, double signal,
+                                   double *variance) {
     const skg_response *response = options->response;
     double efficiency = 1, swank = 1;
     *variance = signal;

@@ -8,6 +8,7 @@
 skg_status skg_signal_get(const skg_plan_options *options, double energy_kev, double *signal);
 
 /* To the variance, of a photon that adds `signal` (docs/physics.md, Noise). */
-skg_status skg_signal_variance_get(const skg_plan_options *options, double energy_kev, double signal, double *variance);
+skg_status skg_signal_variance_get(const skg_plan_options *options, double energy_kev, double signal,
+                                   double *variance);
 
 #endif

@@ -16,8 +16,8 @@ typedef struct {
 } skg_scattered_image;
 
 skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const skg_scattered_image *what,
-                             const skg_noise_args *key, const skg_image_place *image, int64_t columns, int64_t rows,
-                             skg_stage_log *log);
+                             const skg_noise_args *key, const skg_image_place *image, int64_t columns,
+                             int64_t rows, skg_stage_log *log);
 void skg_scattered_release(skg_scattered *stage);
 
 #endif
