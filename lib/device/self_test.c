@@ -33,6 +33,7 @@ const char *skg_self_test_name(skg_self_test number) {
         [SKG_SELF_TEST_APART] = "noise power",
         [SKG_SELF_TEST_PASSES] = "extended source",
         [SKG_SELF_TEST_SIDE] = "extended source, side by side",
+        [SKG_SELF_TEST_SCATTER] = "scatter",
     };
     return names[number];
 }

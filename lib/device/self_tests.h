@@ -35,6 +35,7 @@ typedef enum {
     SKG_SELF_TEST_APART,    /* noise with a blur of its own, added */
     SKG_SELF_TEST_PASSES,   /* passes of a frame, each by a worker */
     SKG_SELF_TEST_SIDE,     /* the same, several side by side */
+    SKG_SELF_TEST_SCATTER,  /* scattered photons */
     SKG_SELF_TESTS
 } skg_self_test;
 

@@ -108,6 +108,6 @@ static void find_scatter(const skg_effect_facts *f, skg_effect_state *state) {
 
 /* clang-format off */
 /* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_scatter = {"scatter", SKG_SELF_TEST_CORE,
+const skg_effect_row skg_effect_scatter = {"scatter", SKG_SELF_TEST_SCATTER,
     copy_scatter, NULL, refuses_half, find_scatter, NULL};
 /* clang-format on */

@@ -1,5 +1,6 @@
 #include "scatter/angles.h"
 
+#include "material/scattering.h"
 #include "scatter/shapes.h"
 #include "skg_shared.h"
 
@@ -56,7 +57,7 @@ static void fill_density(const skg_scatter_physics *p, double kev, double weight
     const double range = log1p(p->momentum_high / p->momentum_scale);
     for (int i = 0; i <= POINTS; i++) {
         const double t = (double)i / POINTS, s = t * t, cosine = 1 - 2 * s * s;
-        const double x = kev / 12.398420 * s;
+        const double x = kev / SKG_HC_KEV_ANGSTROM * s;
         const double place = log1p(x / p->momentum_scale) / range * (double)(p->momenta - 1);
         double incoherent[SKG_SCATTER_RANK], coherent[SKG_SCATTER_RANK];
         row_at(p->incoherent, p->momenta, place, incoherent);

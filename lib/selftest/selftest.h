@@ -147,4 +147,7 @@ skg_status skg_self_test_exact(skg_context *context, skg_verdict *verdict);
 /* Compares the 3D view of two boxes of which one hides the other (picture.c). */
 skg_status skg_self_test_picture(skg_context *context, skg_verdict *verdict);
 
+/* Compares the scatter of a small cube with a formula, and that of a slab with another program's (scatter.c). */
+skg_status skg_self_test_scatter(skg_context *context, skg_verdict *verdict);
+
 #endif

@@ -239,6 +239,11 @@ static const struct {
     {"show.cl", "skg_show_outside(rows, 1, r) | skg_show_outside(rows, 2, r)", "skg_show_outside(rows, 1, r)",
      SKG_SELF_TEST_PICTURE},
     {"show.cl", "strip->through[r] -= share;", "", SKG_SELF_TEST_PICTURE},
+    {"scatter.cl", "p->weight *= fall / ", "p->weight *= ", SKG_SELF_TEST_SCATTER},
+    {"scatter.cl", "*left = kev * ratio", "*left = kev", SKG_SELF_TEST_SCATTER},
+    {"scatter.cl", "p->changed |= changes;", "p->weight *= (skg_fv)(0.8f);", SKG_SELF_TEST_SCATTER},
+    {"sight.clh", "s->sr = g0 + g1 - s->k", "s->sr = g0 + g1", SKG_SELF_TEST_SCATTER},
+    {"scattered.cl", "args.add ? image[k] : (skg_real)(0)", "(skg_real)(0)", SKG_SELF_TEST_SCATTER},
     {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_SELF_TEST_PICTURE},
 };
 
