@@ -12,7 +12,7 @@ FEW = {"histories": 2000}
 def slab():
     """20 cm of water before a detector 20 cm behind it, at 60 keV: set W1 of docs/scatter.md, in fewer pixels."""
     made = sk.Scene()
-    made.add("slab", sk.Mesh.cuboid((300, 300, 200)), material="water")
+    made.add("slab", sk.Mesh.cuboid(300, 300, 200), material="water")
     made.view = sk.View(source=(0, 0, -900), detector=(0, 0, 300), column_step=(18.75, 0, 0), row_step=(0, 18.75, 0),
                         pixels=(16, 16))
     made.beam = sk.Beam.mono(60, 1e6)
