@@ -125,6 +125,13 @@
 
 #define SKG_ARGUMENTS_DETECT(X) X(DETECT, args) X(DETECT, factor) X(DETECT, flat_field) X(DETECT, image)
 
+#define SKG_ARGUMENTS_SCATTER(X) \
+    X(SCATTER, args) X(SCATTER, cells) X(SCATTER, energies) X(SCATTER, momenta) X(SCATTER, angles) X(SCATTER, beam) \
+    X(SCATTER, spots) X(SCATTER, lattice) X(SCATTER, sums)
+
+#define SKG_ARGUMENTS_SCATTERED(X) \
+    X(SCATTERED, args) X(SCATTERED, mean) X(SCATTERED, variance) X(SCATTERED, image)
+
 #define SKG_ARGUMENTS_SHOW_COUNT(X) \
     X(SHOW_COUNT, args) X(SHOW_COUNT, vertices) X(SHOW_COUNT, corners) X(SHOW_COUNT, normals) \
     X(SHOW_COUNT, colours) X(SHOW_COUNT, faces) X(SHOW_COUNT, counts)
@@ -147,7 +154,7 @@
     X(HITS_SETTLE, skg_hits_settle) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
     X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(LOGARITHM, skg_logarithm) \
-    X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(DETECT, skg_detect) \
+    X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(DETECT, skg_detect) X(SCATTER, skg_scatter) X(SCATTERED, skg_scattered) \
     X(SHOW_COUNT, skg_show_count) X(SHOW_FILL, skg_show_fill) X(SHOW_DRAW, skg_show_draw)
 /* clang-format on */
 

@@ -1,7 +1,7 @@
 /* Histories of scattered photons. Each work-item follows SKG_WIDE photons side by side, and begins another where one has ended.
  *
  * A photon is made to interact in the object (its weight carries the probability) and to survive. From each interaction it
- * contributes to SKG_SCATTER_POINTS places of the detector, and by where it flies on, if that is the detector. Either way could
+ * contributes to SKG_SCATTER_SIDE^2 places of the detector, and by where it flies on, if that is the detector. Either way could
  * do alone: they are combined by the balance heuristic (Veach and Guibas, Optimally combining sampling techniques for Monte
  * Carlo rendering, SIGGRAPH 1995), so that contributions stay finite however near the detector is. */
 typedef struct {
@@ -16,6 +16,7 @@ typedef struct {
     skg_fv kev, weight;
     skg_fv x, y;  /* where they meet the detector, in shares of its sides */
     skg_fv share; /* of what they contribute where they fly on; the rest are the places on the detector */
+    skg_fv reach; /* mm to the detector, if they fly to it: it stops them */
     skg_uv history, order;
     skg_intv alive, changed; /* -1 or 0; changed: a Compton scattering was among the interactions */
 } skg_photons;
@@ -100,22 +101,12 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
         const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
         const skg_fv v = (down + (skg_fv)((float)(k / SKG_SCATTER_SIDE))) * side;
-        skg_place3 way;
         skg_mixtures sums;
-        skg_fv distance, enter, compton, rayleigh, left;
-        skg_fv x, y;
+        skg_fv enter, compton, rayleigh, left, x, y;
         skg_sight_draw(sight, u, v, &x, &y);
         const skg_fv per_sr = skg_sight_per_sr(s->args, sight, x, y);
-        distance = skg_root_v(fma(x, x, fma(y, y, sight->z * sight->z)));
-        const skg_fv one_over = (skg_fv)(1.0f) / distance;
-        const skg_fv du = x * one_over * s->args->side_u, dv = y * one_over * s->args->side_v,
-                     dn = -sight->z * one_over;
-        way.x =
-            fma(du, (skg_fv)(s->args->to_u[0]), fma(dv, (skg_fv)(s->args->to_v[0]), dn * s->args->normal[0]));
-        way.y =
-            fma(du, (skg_fv)(s->args->to_u[1]), fma(dv, (skg_fv)(s->args->to_v[1]), dn * s->args->normal[1]));
-        way.z =
-            fma(du, (skg_fv)(s->args->to_u[2]), fma(dv, (skg_fv)(s->args->to_v[2]), dn * s->args->normal[2]));
+        const skg_fv distance = skg_root_v(fma(x, x, fma(y, y, sight->z * sight->z)));
+        const skg_place3 way = skg_sight_way(s->args, sight, x, y, distance);
         const skg_intv seen = p->alive & sight->ahead;
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
         const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
@@ -163,10 +154,8 @@ static void skg_fly_on(const skg_scattering *s, __global const float *angles, sk
     const skg_fv per_sr = skg_sight_per_sr(s->args, sight, u, v);
     p->x = (u - sight->x0) / s->args->side_u;
     p->y = (v - sight->y0) / s->args->side_v;
-    p->share = (skg_fv)(0.0f);
-    if (skg_any(meets))
-        p->share =
-            meets ? own / fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)), own) : p->share;
+    p->share = meets ? own / fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)), own) : (skg_fv)(0.0f);
+    p->reach = meets ? skg_root_v(fma(u, u, fma(v, v, sight->z * sight->z))) : (skg_fv)(SKG_SCATTER_FAR);
 }
 
 /* A photon whose weight is low dies, or goes on with that of several. */
@@ -241,6 +230,7 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     p->order = fresh ? (skg_uv)(0) : p->order;
     p->changed &= ~fresh;
     p->share = fresh ? (skg_fv)(0.0f) : p->share;
+    p->reach = fresh ? skg_until_plane(args, begin, way) : p->reach;
     p->alive |= fresh;
 }
 
@@ -260,7 +250,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                         \
      : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                        \
               : skg_uniform(word))
-    const skg_fv length = skg_within(s->args, p->at, p->way, (skg_fv)(SKG_SCATTER_FAR), &enter);
+    const skg_fv length = skg_within(s->args, p->at, p->way, p->reach, &enter);
     const skg_fv jitter = skg_uniform(a[0]);
     skg_march(s->args, s->cells, p->at, p->way, enter, length, jitter, &sums);
     const skg_fv place = skg_energy_place(s->args, p->kev);

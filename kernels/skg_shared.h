@@ -218,7 +218,7 @@ typedef struct {
 /* Of skg_scatter. Places and vectors are in mm from the lowest corner of the cells. */
 typedef struct {
     float size[3], per_mm[3];           /* of the box of the cells; cells per mm */
-    float corner[3], across[3], down[3]; /* the detector: its first corner, its sides */
+    float corner[3];                    /* of the detector */
     float normal[3], area;              /* away from the source; mm2 */
     float side_u, side_v;               /* mm */
     float to_u[3], to_v[3];             /* from a place relative to `corner` to shares of the sides */
@@ -232,6 +232,13 @@ typedef struct {
     SKG_INT first, end, each;           /* histories of a batch; of a work-item */
     SKG_INT seed[2];                    /* low word first */
 } skg_scatter_args;
+
+/* Of skg_scattered. add: 1: to what the image holds; 0: in its place. */
+typedef struct {
+    skg_noise_args key;
+    skg_image_args image;
+    SKG_INT add, reserved;
+} skg_scattered_args;
 
 /* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
 #define SKG_STRUCTS_WITH(real, suffix)                                                                       \
@@ -287,5 +294,6 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
+_Static_assert(sizeof(skg_scatter_args) == 38 * 4 + 15 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
 #endif
 #endif

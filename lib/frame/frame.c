@@ -1,5 +1,6 @@
 #include "frame/frame.h"
 #include "frame/parts.h"
+#include "frame/scatter.h"
 #include "plan/choose.h"
 #include "plan/decide.h"
 #include "plan/unseen.h"
@@ -325,6 +326,8 @@ static skg_status detect(skg_job *job, const skg_frame_work *work, const skg_ima
 skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
     const skg_recipe *recipe = job->recipe;
     if (work->lengths_of >= 0) return enqueue_passes(job, work, -1, 0);
+    if (work->shows == SKG_OUTPUT_SCATTER || work->shows == SKG_OUTPUT_SCATTER_SIGMA)
+        return skg_frame_show_scatter(job, work);
     const int64_t first = first_of(recipe);
     const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
     skg_frame_work layered = *work;
@@ -332,6 +335,7 @@ skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
                              recipe->view.columns, recipe->view.rows, recipe->model.channels,
                              &layered.place));
     SKG_TRY(enqueue_passes(job, &layered, first, end));
+    if (skg_frame_scatters(job)) SKG_TRY(skg_frame_add_scatter(job, work, &layered.place));
     SKG_TRY(detect(job, work, &layered.place));
     if (!skg_decide_late_logarithm(recipe)) return SKG_OK;
     const skg_sums sums = layout_of(job->machine, recipe, &job->main);

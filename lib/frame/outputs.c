@@ -47,6 +47,13 @@ static skg_status check_strides(const skg_view *view, int64_t frames, skg_frame_
 static skg_status check_kind(const char *call, const skg_recipe *recipe, const skg_output *to) {
     const int64_t parts = recipe->scene->count;
     if (to->kind == SKG_OUTPUT_IMAGE) return SKG_OK;
+    if (to->kind == SKG_OUTPUT_SCATTER || to->kind == SKG_OUTPUT_SCATTER_SIGMA) {
+        if (recipe->options.scatter) return SKG_OK;
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "%s: the scatter is asked for, but the plan has none; set skg_plan_options.scatter (Scatter)",
+            call);
+    }
     if (to->kind != SKG_OUTPUT_LENGTHS)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: an output of kind %" PRId32 " is no SKG_OUTPUT_ value", call,
                         to->kind);

@@ -32,7 +32,13 @@ static skg_status read_one(const skg_frame *given, int64_t k, overrides *o) {
                             fill, scene->parts[p].label);
     o->density[part] = density;
     o->fill[part] = fill;
-    o->overridden[part] = 1;
+    if (o->overridden) o->overridden[part] = 1;
+    return SKG_OK;
+}
+
+static skg_status read_all(const skg_frame *given, overrides *o) {
+    for (int64_t p = 0; p < o->recipe->scene->count; p++) o->density[p] = o->fill[p] = 1;
+    for (int64_t k = 0; k < given->override_count; k++) SKG_TRY(read_one(given, k, o));
     return SKG_OK;
 }
 
@@ -79,8 +85,7 @@ static skg_status list_all(overrides *o, const skg_frame *given, skg_contributio
                            int64_t *first) {
     const skg_model *model = &o->recipe->model;
     const int64_t parts = o->recipe->scene->count;
-    for (int64_t p = 0; p < parts; p++) o->density[p] = o->fill[p] = 1;
-    for (int64_t k = 0; k < given->override_count; k++) SKG_TRY(read_one(given, k, o));
+    SKG_TRY(read_all(given, o));
     if (model->world_plane >= 0) o->own[parts * model->planes + model->world_plane] = model->world_weight;
     for (int64_t p = 0; p < parts; p++) find_own(o, p);
     for (int64_t p = 0; p < parts; p++) first[p + 1] = first[p] + list_part(o, p, contributions + first[p]);
@@ -108,4 +113,10 @@ cleanup:
     skg_free(&o.known);
     skg_free(&o.own);
     return status;
+}
+
+skg_status skg_overrides_matter(const skg_recipe *recipe, const skg_frame *given, double *density,
+                                double *fill) {
+    overrides o = {.recipe = recipe, .density = density, .fill = fill};
+    return read_all(given, &o);
 }

@@ -12,4 +12,8 @@
 skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given,
                                skg_contribution **contributions, int64_t **first);
 
+/* The matter of all parts in a frame: density over that of the material, and the share that is there. [parts] each */
+skg_status skg_overrides_matter(const skg_recipe *recipe, const skg_frame *given, double *density,
+                                double *fill);
+
 #endif

@@ -17,6 +17,7 @@ void skg_plan_release(skg_plan **plan) {
     if (!skg_unref(&last->refs)) return;
     skg_machine_release(&last->machine);
     skg_outcome_release(&last->outcome);
+    skg_scatterer_release(&last->scatterer);
     skg_recipe_release(&last->recipe);
     skg_context_release(&last->context);
     skg_free(&last);

@@ -4,6 +4,7 @@
 
 #include "frame/caller.h"
 #include "plan/outcome.h"
+#include "scatter/scatterer.h"
 #include "stage/machine.h"
 
 struct skg_plan {
@@ -12,6 +13,7 @@ struct skg_plan {
     skg_recipe *recipe;   /* replaced, never changed */
     skg_machine machine;
     skg_outcome outcome;
+    skg_scatterer scatterer;
 };
 
 /* Makes sure that the device has passed the self-tests of the kernels that the plan uses (self_tests.c). */

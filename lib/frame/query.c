@@ -34,6 +34,21 @@ skg_status skg_plan_precision_bound_get(const skg_plan *plan, double *bound) {
     return skg_plan_precision_bound(recipe, bound);
 }
 
+void skg_scatter_report_init_sized(void *report, int32_t size) {
+    const skg_scatter_report defaults = {0};
+    skg_struct_init(report, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_plan_scatter_report_get(const skg_plan *plan, skg_scatter_report *report) {
+    SKG_NEEDS(plan);
+    const skg_scatterer *scatterer = &plan->scatterer;
+    if (!plan->recipe->options.scatter)
+        return skg_fail(SKG_ERR_ARGUMENT, "the plan has no scatter; set skg_plan_options.scatter (Scatter)");
+    if (!scatterer->known)
+        return skg_fail(SKG_ERR_ARGUMENT, "the scatter is known when a frame was submitted; none was yet");
+    return skg_struct_write(&scatterer->report, sizeof scatterer->report, "skg_scatter_report", report);
+}
+
 void skg_channel_init_sized(void *channel, int32_t size) {
     const skg_channel defaults = {0};
     skg_struct_init(channel, size, &defaults, sizeof defaults);

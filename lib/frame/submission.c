@@ -15,6 +15,7 @@ static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, i
     const skg_view *view = &job->recipe->view;
     work->lengths_of = is_length ? output->to.part : -1;
     work->kind = output->to.lengths;
+    work->shows = output->to.kind;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_enqueue(job, work));
     return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log);
@@ -84,11 +85,11 @@ static int64_t frames_ahead(const skg_job *job) {
 }
 
 /* What a device was given cannot be taken back. The repair of leaky parts looks at the meshes on the host, and commands of the
- * caller may follow those for a buffer of theirs. */
+ * caller may follow those for a buffer of theirs. Scatter is waited for in each frame. */
 static int is_for_later(const skg_job *job) {
     for (int64_t o = 0; o < job->output_count; o++)
         if (job->outputs[o].to.buffer) return 0;
-    return job->recipe->leaky_count == 0;
+    return job->recipe->leaky_count == 0 && !job->recipe->options.scatter;
 }
 
 /* --- jobs */

@@ -11,8 +11,8 @@ typedef struct {
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t kind;               /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE */
-    int32_t reserved;
-    skg_noise_args noise; /* its key */
+    int32_t shows;              /* enum skg_output_kind */
+    skg_noise_args noise;       /* its key */
     skg_image_place place;
 } skg_frame_work;
 

@@ -10,7 +10,8 @@ static int has_ratio_weights(const skg_plan_options *options) {
 /* Whether -ln of the mean of several passes, or of noisy or blurred intensities, is wanted; else the attenuation is
  * computed with the intensities. */
 static int is_late(const skg_recipe *recipe) {
-    return skg_recipe_averages(recipe) || recipe->is_blurred || skg_quantity_is_absolute(&recipe->options);
+    return skg_recipe_averages(recipe) || recipe->is_blurred || skg_quantity_is_absolute(&recipe->options) ||
+           recipe->options.scatter;
 }
 
 int skg_decide_late_logarithm(const skg_recipe *recipe) {

@@ -4,25 +4,9 @@
 #include "core/parallel.h"
 #include "geometry/nesting.h"
 #include "geometry/priority.h"
+#include "geometry/solids.h"
 
 #include <inttypes.h>
-
-static skg_status place_solid(const skg_scene_part_data *part, skg_solid *solid, double **positions) {
-    const skg_mesh *mesh = part->mesh;
-    *solid = (skg_solid){.inside = part->inside};
-    if (!mesh->closed) return SKG_OK;
-    SKG_TRY(skg_alloc(mesh->vertices * 3, sizeof **positions, "overlap check", positions));
-    for (int64_t v = 0; v < mesh->vertices; v++) {
-        double at[3];
-        skg_mesh_vertex(mesh, v, at);
-        for (int k = 0; k < 3; k++) {
-            const double *row = part->pose + 4 * k;
-            (*positions)[3 * v + k] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2] + row[3];
-        }
-    }
-    *solid = (skg_solid){mesh->vertices, mesh->triangles, *positions, mesh->corners, part->inside};
-    return SKG_OK;
-}
 
 /* Warns of the pairs that nothing settles. */
 static void warn(const skg_recipe *recipe, const skg_context *context, const skg_outcome *outcome) {
@@ -62,7 +46,8 @@ static skg_status check_overlaps(checking *c) {
     const skg_scene *scene = c->recipe->scene;
     if (scene->count < 2) return SKG_OK;
     for (int64_t i = 0; i < scene->count; i++)
-        SKG_TRY(place_solid(&scene->parts[i], &c->solids[i], &c->positions[i]));
+        SKG_TRY(skg_solid_place(scene->parts[i].mesh, scene->parts[i].pose, scene->parts[i].inside,
+                                &c->solids[i], &c->positions[i]));
     return skg_overlaps_find(scene->count, c->solids, &c->found->side, &c->found->pair_count,
                              &c->found->pairs);
 }

@@ -174,6 +174,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(find_leaky(recipe));
     recipe->priority_possible = skg_priority_possible(recipe->scene, options->clip);
     SKG_TRY(check_half(recipe));
+    SKG_TRY(skg_scatter_check(recipe));
     return choose_layout(recipe, device);
 }
 

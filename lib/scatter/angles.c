@@ -37,7 +37,8 @@ static void shares_of(const skg_scatter_physics *p, double place, const double *
 }
 
 /* Weights of the coefficients in a row of S and in one of F^2 such that their sums are the mean distribution's. */
-static void weigh(const skg_scatter_physics *p, double place, const double *mixture, double weights[2][SKG_SCATTER_RANK]) {
+static void weigh(const skg_scatter_physics *p, double place, const double *mixture,
+                  double weights[2][SKG_SCATTER_RANK]) {
     double shares[2];
     const double each = 0.5 / (double)p->materials;
     for (int k = 0; k < SKG_SCATTER_RANK; k++) weights[0][k] = weights[1][k] = 0;
@@ -50,7 +51,8 @@ static void weigh(const skg_scatter_physics *p, double place, const double *mixt
 }
 
 /* The density of s at one energy: that of the solid angle times 4 s / (2 pi), its square's derivative left to the caller. */
-static void fill_density(const skg_scatter_physics *p, double kev, double weights[2][SKG_SCATTER_RANK], double *density) {
+static void fill_density(const skg_scatter_physics *p, double kev, double weights[2][SKG_SCATTER_RANK],
+                         double *density) {
     const double range = log1p(p->momentum_high / p->momentum_scale);
     for (int i = 0; i <= POINTS; i++) {
         const double t = (double)i / POINTS, s = t * t, cosine = 1 - 2 * s * s;
@@ -81,7 +83,8 @@ static void split(const double *density, double *sums, float *row) {
     row[SKG_SCATTER_ANGLES] = 1;
 }
 
-skg_status skg_angles_make(const skg_scatter_physics *p, const double mixture[SKG_SCATTER_RANK], float *table) {
+skg_status skg_angles_make(const skg_scatter_physics *p, const double mixture[SKG_SCATTER_RANK],
+                           float *table) {
     double *density = NULL;
     SKG_TRY(skg_alloc(2 * (POINTS + 1), sizeof *density, "angles of scattering", &density));
     for (int r = 0; r < SKG_ANGLE_ROWS; r++) {

@@ -22,8 +22,8 @@ static void add(int64_t *sum, const int64_t *amount, int64_t factor) {
 }
 
 /* Adds one column's hits. sums: [z + 1] what each cell has of its own hits alone, and what begins in it for all behind. */
-static void add_column(const filling *f, const skg_columns *grid, int64_t column, int64_t (*own)[SKG_SCATTER_RANK],
-                       int64_t (*behind)[SKG_SCATTER_RANK]) {
+static void add_column(const filling *f, const skg_columns *grid, int64_t column,
+                       int64_t (*own)[SKG_SCATTER_RANK], int64_t (*behind)[SKG_SCATTER_RANK]) {
     const int64_t cells = f->cells->count[2];
     const double per_mm = (double)cells / f->cells->size[2];
     for (int64_t h = grid->first[column]; h < grid->first[column + 1]; h++) {
@@ -104,7 +104,8 @@ skg_status skg_cells_make(int64_t count, const skg_solid *solids, const int32_t 
     skg_column_rows *rows = NULL;
     *cells = (skg_cells){0};
     skg_columns_bound(&grid, count, solids);
-    if (!(grid.high[0] > grid.low[0] && grid.high[1] > grid.low[1] && grid.high[2] > grid.low[2])) return SKG_OK;
+    if (!(grid.high[0] > grid.low[0] && grid.high[1] > grid.low[1] && grid.high[2] > grid.low[2]))
+        return SKG_OK;
     count_cells(&grid, voxel_mm, cells);
     grid.side = grid.rows = cells->count[0] * SKG_CELL_COLUMNS;
     for (int k = 0; k < 2; k++) grid.step[k] = cells->size[k] / (double)grid.side;

@@ -13,9 +13,9 @@
 enum { SKG_CELLS_DEFAULT = 64, SKG_CELLS_MAX = 256, SKG_CELL_COLUMNS = 2 };
 
 typedef struct {
-    int64_t count[3];         /* cells along x, y, z; along x and y as many */
-    double low[3], size[3];   /* mm, of the box of all parts */
-    skg_mix4 *mixtures;       /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    int64_t count[3];              /* cells along x, y, z; along x and y as many */
+    double low[3], size[3];        /* mm, of the box of all parts */
+    skg_mix4 *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
     double mean[SKG_SCATTER_RANK]; /* over the cells */
 } skg_cells;
 

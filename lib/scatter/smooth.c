@@ -106,7 +106,8 @@ skg_status skg_cosines_fit(const skg_arrivals *a, skg_cosines *c) {
     SKG_TRY_CLEANUP(skg_alloc(a->batches * size, sizeof *all, "smoothing", &all));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->variance, "smoothing", &c->variance));
-    for (int64_t b = 0; b < a->batches; b++) transform(c, across, down, a->values + b * size, half, all + b * size);
+    for (int64_t b = 0; b < a->batches; b++)
+        transform(c, across, down, a->values + b * size, half, all + b * size);
     average(a, all, c);
     choose(c);
     finish(c);

@@ -28,6 +28,7 @@ void skg_cosines_free(skg_cosines *cosines);
 
 /* The smooth function at the middles of rows x columns pixels that fill the same detector, per pixel; squares: 1: the variance
  * instead, bias included. image: [rows][columns] */
-skg_status skg_cosines_show(const skg_cosines *cosines, int squares, int64_t rows, int64_t columns, double *image);
+skg_status skg_cosines_show(const skg_cosines *cosines, int squares, int64_t rows, int64_t columns,
+                            double *image);
 
 #endif

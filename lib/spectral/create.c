@@ -4,6 +4,7 @@
 #include "material/material.h"
 #include "spectral/compress.h"
 #include "spectral/quantity.h"
+#include "spectral/signal.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -153,30 +154,6 @@ static skg_status list_contributions(const making *m, skg_model *model) {
     return SKG_OK;
 }
 
-/* What a photon of an energy adds to the image: the recorded energy, or 1 if photons are counted. */
-static skg_status worth_of(const making *m, double energy, double *worth) {
-    const int counts = skg_quantity_counts(m->options);
-    *worth = counts ? 1 : energy;
-    if (!m->options->response) return SKG_OK;
-    return skg_response_get(m->options->response, energy, 1, counts ? NULL : worth, counts ? worth : NULL);
-}
-
-/* The variance that a photon which arrives adds (docs/physics.md, Noise). It is recorded with the probability
- * `efficiency` and then adds worth / efficiency on average; the distribution of the pulse heights divides by the Swank
- * factor. Counted photons all add 1, whatever the size of their signals. */
-static skg_status variance_of(const making *m, double energy, double worth, double *variance) {
-    const skg_response *response = m->options->response;
-    double efficiency = 1, swank = 1;
-    *variance = worth;
-    if (skg_quantity_counts(m->options)) return SKG_OK;
-    if (response) {
-        SKG_TRY(skg_response_get(response, energy, 1, NULL, &efficiency));
-        SKG_TRY(skg_response_swank_get(response, energy, 1, &swank));
-    }
-    *variance = efficiency > 0 ? worth * worth / (efficiency * swank * m->options->swank) : 0;
-    return SKG_OK;
-}
-
 static int in_band(const making *m, int64_t channel, double energy) {
     const double *edges = m->options->band_kev;
     return m->options->bands == 0 || (energy >= edges[channel] && energy < edges[channel + 1]);
@@ -240,9 +217,9 @@ static skg_status weigh(const making *m, skg_model *model) {
         const int64_t bin = m->bins[n];
         const double energy = m->spectrum->energy_kev[bin];
         double worth = 0, variance = 0, shares[SKG_DEPTHS_MAX];
-        SKG_TRY(worth_of(m, energy, &worth));
+        SKG_TRY(skg_signal_get(m->options, energy, &worth));
         SKG_TRY(share_out(m, energy, model->layers, shares));
-        if (noise) SKG_TRY(variance_of(m, energy, worth, &variance));
+        if (noise) SKG_TRY(skg_signal_variance_get(m->options, energy, worth, &variance));
         for (int32_t c = 0; c < channels; c++)
             for (int32_t l = 0; in_band(m, c, energy) && l < model->layers; l++) {
                 const int32_t at = n * sums + l * channels + c;

@@ -68,9 +68,17 @@ static double attenuation(const skg_material *material, double kev) {
 static const char *const few[] = {"Water, Liquid", "Tissue, Soft (ICRU-44)", "Bone, Cortical (ICRU-44)",
                                   "Al"};
 
-START_TEST(few_materials_are_exact_at_and_between_points) {
+/* Within a step of a K edge (I, W, Pb; keV), which a straight line cuts off. */
+static int near_edge(double kev) {
+    static const double edges[] = {33.169, 69.525, 88.005};
+    for (size_t i = 0; i < sizeof edges / sizeof *edges; i++)
+        if (fabs(log(kev / edges[i])) < 0.013) return 1; /* the step of the energies is 0.012 */
+    return 0;
+}
+
+static void compare_with_materials(int64_t count, const char *const *names) {
     subject s = {0};
-    take(&s, 4, few, 20, 300);
+    take(&s, count, names, 20, 300);
     /* Roundings of the four floats of a point. */
     ck_assert_double_le(s.physics.error, 1e-6);
     for (int64_t m = 0; m < s.count; m++)
@@ -82,14 +90,20 @@ START_TEST(few_materials_are_exact_at_and_between_points) {
             const double exact = attenuation(s.material[m], kev), density = exact / c.total;
             const skg_mix4 *const table[] = {s.physics.total, s.physics.compton, s.physics.rayleigh};
             const double expected[] = {exact, density * c.compton, density * c.rayleigh};
-            for (int f = 0; f < 3; f++) {
+            for (int f = 0; f < 3 && !near_edge(kev); f++) {
                 const double found = at_energy(&s, m, table[f], kev);
                 /* What physics.h promises of interpolation. */
                 ck_assert_msg(fabs(found / expected[f] - 1) <= 2e-4, "%s, function %d at %g keV: %.2e",
-                              few[m], f, kev, found / expected[f] - 1);
+                              names[m], f, kev, found / expected[f] - 1);
             }
         }
     drop(&s);
+}
+
+START_TEST(few_materials_are_exact_at_and_between_points) {
+    static const char *const heavy[] = {"Stainless steel 304 (needle)", "I", "W", "Pb"};
+    compare_with_materials(4, few);
+    compare_with_materials(4, heavy);
 }
 END_TEST
 

@@ -1,0 +1,61 @@
+#include "frame/scatter.h"
+
+#include "frame/overrides.h"
+
+int skg_frame_scatters(const skg_job *job) {
+    return job->recipe->options.scatter && job->scatterer && !job->recipe->linear;
+}
+
+/* Positions that are on the device alone are not known here. */
+static skg_status check_places(const skg_job *job) {
+    const skg_plan_meshes *meshes = &job->recipe->meshes;
+    for (int64_t m = 0; m < meshes->count; m++)
+        if (skg_placement_of(&job->machine->placement, meshes->meshes[m], m))
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "scatter: positions of %s were set on the device, where the cells of scattering are not made; set "
+                "them with skg_mesh_positions_set",
+                meshes->meshes[m]->name);
+    return SKG_OK;
+}
+
+static skg_status compute(skg_job *job, const skg_frame_work *work) {
+    const skg_recipe *recipe = job->recipe;
+    skg_scatter_work scatter = {.recipe = recipe, .view = work->view, .poses = work->poses};
+    double *matter = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(check_places(job));
+    if (work->frame && work->frame->override_count) {
+        SKG_TRY(skg_alloc(2 * recipe->scene->count, sizeof *matter, "overrides of a frame", &matter));
+        scatter.density = matter;
+        scatter.fill = matter + recipe->scene->count;
+        SKG_TRY_CLEANUP(skg_overrides_matter(recipe, work->frame, matter, matter + recipe->scene->count));
+    }
+    status = skg_scatterer_run(job->machine->context, job->scatterer, &scatter);
+cleanup:
+    skg_free(&matter);
+    return status;
+}
+
+static skg_status run(skg_job *job, const skg_frame_work *work, const skg_scattered_image *what,
+                      const skg_image_place *image) {
+    const skg_view *view = work->view;
+    return skg_scattered_run(job->machine->context, &job->scatterer->stage, what, &work->noise, image,
+                             view->columns, view->rows, &job->staging.log);
+}
+
+skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image) {
+    SKG_TRY(compute(job, work));
+    const skg_scatterer *s = job->scatterer;
+    const skg_scattered_image what = {s->mean.memory, job->recipe->options.noise ? s->variance.memory : NULL,
+                                      1};
+    return s->report.mean > 0 ? run(job, work, &what, image) : SKG_OK;
+}
+
+skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
+    SKG_TRY(compute(job, work));
+    const skg_scatterer *s = job->scatterer;
+    const skg_scattered_image what = {work->shows == SKG_OUTPUT_SCATTER ? s->shown.memory : s->sigma.memory,
+                                      NULL, 0};
+    return run(job, work, &what, &work->place);
+}

@@ -1,0 +1,16 @@
+/* Scattered photons of a frame. Private. */
+#ifndef SKG_FRAME_SCATTER_H
+#define SKG_FRAME_SCATTER_H
+
+#include "frame/job.h"
+
+/* Whether images of the job hold scattered photons. */
+int skg_frame_scatters(const skg_job *job);
+
+/* Computes the scatter of the frame, waits for it, and enqueues what adds it to the intensities. image: where these are. */
+skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image);
+
+/* The same of an output that shows the scatter, or its standard error, alone. */
+skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work);
+
+#endif

@@ -1,0 +1,111 @@
+/* The effect of scattered photons. */
+#include "beam/spectrum.h"
+#include "material/scattering.h"
+#include "plan/effects.h"
+#include "plan/options.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/* Above this energy photons make pairs. */
+static const double HIGHEST_KEV = 1022;
+
+enum { PLACES_MAX = 256 };
+#define HISTORIES_MAX ((int64_t)1 << 30)
+
+void skg_scatter_init_sized(void *scatter, int32_t size) {
+    const skg_scatter defaults = {.tolerance = 0.01};
+    skg_struct_init(scatter, size, &defaults, sizeof defaults);
+}
+
+static skg_status check_numbers(const skg_scatter *s) {
+    if (!(s->tolerance >= 0 && s->tolerance < 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "scatter: a tolerance of %g; a share of its mean from 0 to below 1",
+                        s->tolerance);
+    if (s->histories < 0 || s->histories > HISTORIES_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT, "scatter: %" PRId64 " histories; 0 to %" PRId64, s->histories,
+                        HISTORIES_MAX);
+    if (s->tolerance == 0 && s->histories == 0)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "scatter: neither a tolerance nor histories are given; give one of them");
+    if (!(s->voxel_mm >= 0 && isfinite(s->voxel_mm)))
+        return skg_fail(SKG_ERR_ARGUMENT, "scatter: cells of %g mm; above 0, or 0 for 64 along each side",
+                        s->voxel_mm);
+    if (s->columns < 0 || s->columns > PLACES_MAX || s->rows < 0 || s->rows > PLACES_MAX)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "scatter: %" PRId64 " x %" PRId64 " places of the detector; 0 to %d along each side",
+                        s->columns, s->rows, PLACES_MAX);
+    return SKG_OK;
+}
+
+/* The option that scatter does not go with; NULL: none. */
+static const char *find_conflict(const skg_plan_options *o) {
+    return o->world        ? "World: the surroundings scatter nothing here; leave them out"
+           : o->heel       ? "the heel effect; leave it out"
+           : o->bowtie     ? "a bow-tie filter; leave it out"
+           : o->grid       ? "an anti-scatter grid; leave it out"
+           : o->oblique    ? "an oblique response; take the straight one"
+           : o->bands > 1  ? "several bands; take one"
+           : o->depth_blur ? "a blur by depths; take one blur"
+           : o->dqe        ? "a DQE; take a Swank factor"
+           : o->clip       ? "clipped children; put each part inside its parent"
+                           : NULL;
+}
+
+static skg_status copy_scatter(skg_recipe *recipe) {
+    const skg_scatter **scatter = &recipe->options.scatter;
+    if (!*scatter) return SKG_OK;
+    SKG_TRY(skg_copies_struct(&recipe->copies, *scatter, "skg_scatter", sizeof **scatter,
+                              skg_scatter_init_sized, scatter));
+    const char *conflict = find_conflict(&recipe->options);
+    if (conflict) return skg_fail(SKG_ERR_UNSUPPORTED, "scatter is not simulated together with %s", conflict);
+    return check_numbers(*scatter);
+}
+
+static int refuses_half(const skg_recipe *recipe) {
+    return recipe->options.scatter != NULL;
+}
+
+skg_status skg_scatter_check(const skg_recipe *recipe) {
+    const skg_scene *scene = recipe->scene;
+    if (!recipe->options.scatter) return SKG_OK;
+    for (int64_t i = 0; i < scene->count; i++) {
+        const skg_status status = skg_scattering_check(scene->parts[i].material);
+        if (status != SKG_OK)
+            return skg_fail(status, "scatter: %s: %s", scene->parts[i].label, skg_last_error());
+        if (!scene->parts[i].mesh->closed)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "scatter: %s: its mesh is not closed, so what lies inside is not known; close it, or leave out "
+                "the scatter",
+                scene->parts[i].label);
+    }
+    if (recipe->priority_possible)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "scatter is not simulated where priorities decide between parts; put one part inside the other");
+    for (int64_t i = 0; i < recipe->spectrum->count; i++)
+        if (recipe->spectrum->photons[i] > 0 && recipe->spectrum->energy_kev[i] > HIGHEST_KEV)
+            return skg_fail(SKG_ERR_UNSUPPORTED,
+                            "scatter: the beam has photons of %g keV; up to %g, where pairs begin",
+                            recipe->spectrum->energy_kev[i], HIGHEST_KEV);
+    return SKG_OK;
+}
+
+static void find_scatter(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_scatter *s = f->recipe->options.scatter;
+    if (!s)
+        skg_effect_set(state, 0, "not asked for: directly transmitted photons only");
+    else if (s->histories)
+        skg_effect_set(state, 1, "asked for: %" PRId64 " histories, once for each scene and view",
+                       s->histories);
+    else
+        skg_effect_set(state, 1, "asked for: to %g %% of its mean, once for each scene and view",
+                       100 * s->tolerance);
+}
+
+/* clang-format off */
+/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
+const skg_effect_row skg_effect_scatter = {"scatter", SKG_SELF_TEST_CORE,
+    copy_scatter, NULL, refuses_half, find_scatter, NULL};
+/* clang-format on */

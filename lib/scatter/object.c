@@ -1,0 +1,113 @@
+#include "scatter/object.h"
+
+#include "core/vector.h"
+#include "geometry/solids.h"
+
+#include <math.h>
+
+/* Photons are followed down to this share of the lowest energy of the beam. */
+static const double LOWEST = 0.25;
+
+const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part) {
+    return work->poses && work->poses[part] ? work->poses[part] : work->recipe->scene->parts[part].pose;
+}
+
+/* The materials of a scene, each once. */
+typedef struct {
+    int64_t count;
+    skg_material **materials; /* [parts] borrowed */
+    int64_t *of_part;         /* [parts] */
+} palette;
+
+static skg_status find_palette(const skg_scene *scene, palette *p) {
+    SKG_TRY(skg_alloc(scene->count, sizeof *p->materials, "materials", &p->materials));
+    SKG_TRY(skg_alloc(scene->count, sizeof *p->of_part, "materials", &p->of_part));
+    for (int64_t i = 0; i < scene->count; i++) {
+        int64_t m = 0;
+        while (m < p->count && p->materials[m] != scene->parts[i].material) m++;
+        if (m == p->count) p->materials[p->count++] = scene->parts[i].material;
+        p->of_part[i] = m;
+    }
+    return SKG_OK;
+}
+
+static skg_status make_physics(const skg_scatter_work *work, const palette *p, skg_scatter_physics *physics) {
+    const skg_spectrum *spectrum = work->recipe->spectrum;
+    double low = HUGE_VAL, high = 0;
+    for (int64_t i = 0; i < spectrum->count; i++)
+        if (spectrum->photons[i] > 0)
+            low = fmin(low, spectrum->energy_kev[i]), high = spectrum->energy_kev[i];
+    low = fmax(low * LOWEST, 1);
+    return skg_scatter_physics_make(p->count, p->materials, low, fmin(high * 1.01, fmax(high, 1022)),
+                                    physics);
+}
+
+/* What a mm of each part adds: its own material less its parent's, as in frame/overrides.c. */
+static void find_differences(const skg_scatter_work *work, const palette *p,
+                             const skg_scatter_physics *physics, double (*differences)[SKG_SCATTER_RANK]) {
+    const skg_scene *scene = work->recipe->scene;
+    for (int64_t i = 0; i < scene->count; i++) {
+        const int64_t parent = scene->parts[i].inside;
+        const double density = work->density ? work->density[i] : 1, fill = work->fill ? work->fill[i] : 1;
+        const double around = parent >= 0 && work->density ? work->density[parent] : 1;
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) {
+            const double own = density * physics->coefficients[p->of_part[i]][k];
+            const double outside = parent < 0 ? 0 : around * physics->coefficients[p->of_part[parent]][k];
+            differences[i][k] = fill * (own - outside);
+        }
+    }
+}
+
+typedef struct {
+    skg_solid *solids;  /* [parts] */
+    double **positions; /* [parts] */
+    int32_t *sign;
+    double (*differences)[SKG_SCATTER_RANK];
+} placed;
+
+static skg_status place(const skg_scatter_work *work, placed *to) {
+    const skg_scene *scene = work->recipe->scene;
+    SKG_TRY(skg_alloc(scene->count, sizeof *to->solids, "cells", &to->solids));
+    SKG_TRY(skg_alloc(scene->count, sizeof *to->positions, "cells", &to->positions));
+    SKG_TRY(skg_alloc(scene->count, sizeof *to->sign, "cells", &to->sign));
+    SKG_TRY(skg_alloc(scene->count, sizeof *to->differences, "cells", &to->differences));
+    for (int64_t i = 0; i < scene->count; i++) {
+        const skg_mesh *mesh = scene->parts[i].mesh;
+        const double *pose = skg_scatter_pose(work, i);
+        SKG_TRY(skg_solid_place(mesh, pose, scene->parts[i].inside, &to->solids[i], &to->positions[i]));
+        to->sign[i] = (skg_pose_determinant(pose) < 0 ? -1 : 1) * mesh->orientation;
+    }
+    return SKG_OK;
+}
+
+static void drop(int64_t count, placed *p) {
+    for (int64_t i = 0; p->positions && i < count; i++) skg_free(&p->positions[i]);
+    skg_free(&p->positions);
+    skg_free(&p->solids);
+    skg_free(&p->sign);
+    skg_free(&p->differences);
+}
+
+skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_object *object) {
+    palette p = {0};
+    placed parts = {0};
+    skg_status status = SKG_OK;
+    *object = (skg_scatter_object){0};
+    SKG_TRY_CLEANUP(find_palette(work->recipe->scene, &p));
+    SKG_TRY_CLEANUP(make_physics(work, &p, &object->physics));
+    SKG_TRY_CLEANUP(place(work, &parts));
+    find_differences(work, &p, &object->physics, parts.differences);
+    status = skg_cells_make(work->recipe->scene->count, parts.solids, parts.sign,
+                            (const double(*)[SKG_SCATTER_RANK])parts.differences,
+                            work->recipe->options.scatter->voxel_mm, &object->cells);
+cleanup:
+    drop(work->recipe->scene->count, &parts);
+    skg_free(&p.materials);
+    skg_free(&p.of_part);
+    return status;
+}
+
+void skg_scatter_object_free(skg_scatter_object *object) {
+    skg_scatter_physics_free(&object->physics);
+    skg_cells_free(&object->cells);
+}

@@ -1,0 +1,190 @@
+#include "scatter/scatterer.h"
+
+#include "core/vector.h"
+#include "scatter/shown.h"
+#include "scatter/smooth.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+/* Places along the longer side of the detector, and first histories of a batch. */
+enum { PLACES = 32, FIRST = 64 };
+
+/* A round may have so many times the histories of the last one. */
+static const double GROWTH_MAX = 16;
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* What the scatter of a frame depends on. */
+static skg_digest key_of(const skg_scatter_work *work) {
+    const skg_recipe *recipe = work->recipe;
+    const skg_scene *scene = recipe->scene;
+    skg_digester digester;
+    skg_digest_start(&digester);
+    skg_digest_add(&digester, work->view, sizeof *work->view);
+    skg_digest_add(&digester, &recipe->materials, sizeof recipe->materials);
+    for (int64_t i = 0; i < scene->count; i++) {
+        const double matter[2] = {work->density ? work->density[i] : 1, work->fill ? work->fill[i] : 1};
+        skg_digest_add(&digester, skg_scatter_pose(work, i), 16 * sizeof(double));
+        skg_digest_add(&digester, &scene->parts[i].mesh->version, sizeof scene->parts[i].mesh->version);
+        skg_digest_add(&digester, matter, sizeof matter);
+    }
+    return skg_digest_end(&digester);
+}
+
+/* The grid on which photons are counted. */
+static void find_places(const skg_scatter_work *work, int64_t *columns, int64_t *rows) {
+    const skg_view *view = work->view;
+    const skg_scatter *asked = work->recipe->options.scatter;
+    const double across = skg_length(view->column_step) * (double)view->columns;
+    const double down = skg_length(view->row_step) * (double)view->rows, longer = fmax(across, down);
+    *columns = asked->columns ? asked->columns : (int64_t)ceil(PLACES * across / longer - 1e-9);
+    *rows = asked->rows ? asked->rows : (int64_t)ceil(PLACES * down / longer - 1e-9);
+    if (*columns > view->columns) *columns = view->columns;
+    if (*rows > view->rows) *rows = view->rows;
+}
+
+/* What came so far. */
+typedef struct {
+    int64_t *sums;  /* as skg_trace_read */
+    double *values; /* [batches][rows][columns] workspace */
+    int64_t columns, rows;
+    skg_cosines mean, variance;
+} arrived;
+
+/* Adds planes first to before end of each batch. */
+static void add_planes(const arrived *a, int first, int end) {
+    const int64_t places = a->columns * a->rows;
+    for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++)
+        for (int64_t p = 0; p < places; p++) {
+            double sum = 0;
+            for (int k = first; k < end; k++)
+                sum += (double)a->sums[(b * SKG_SCATTER_PLANES + k) * places + p];
+            a->values[b * places + p] = sum;
+        }
+}
+
+static skg_status fit(arrived *a, skg_cosines *cosines, int first, int end) {
+    const skg_arrivals arrivals = {SKG_SCATTER_BATCHES, a->columns, a->rows, a->values};
+    skg_cosines_free(cosines);
+    add_planes(a, first, end);
+    return skg_cosines_fit(&arrivals, cosines);
+}
+
+/* Follows histories until the error is what was asked for. */
+static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tracing *t, arrived *a) {
+    const int64_t batches = SKG_SCATTER_BATCHES;
+    int64_t end = asked->histories ? (asked->histories + batches - 1) / batches : FIRST;
+    for (;;) {
+        SKG_TRY(skg_trace_until(context, t, end));
+        SKG_TRY(skg_trace_read(context, t, a->sums));
+        SKG_TRY(fit(a, &a->mean, 0, SKG_SCATTER_KINDS));
+        const double error = a->mean.mean > 0 ? a->mean.sigma / a->mean.mean : 0;
+        if (asked->histories || error <= asked->tolerance || end >= SKG_SCATTER_HISTORIES) break;
+        /* Powers of two, of which the lattice is best; the error falls with the root of the histories, or faster. */
+        const double more = fmin(error / asked->tolerance * (error / asked->tolerance), GROWTH_MAX);
+        end *= 2;
+        for (double factor = 2; factor < more && end < SKG_SCATTER_HISTORIES; factor *= 2) end *= 2;
+    }
+    return SKG_OK;
+}
+
+/* Shares of the orders and kinds. */
+static void share_out(const arrived *a, skg_scatter_report *report) {
+    const int64_t places = a->columns * a->rows;
+    double kinds[SKG_SCATTER_KINDS] = {0}, sum = 0;
+    for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++)
+        for (int k = 0; k < SKG_SCATTER_KINDS; k++)
+            for (int64_t p = 0; p < places; p++)
+                kinds[k] += (double)a->sums[(b * SKG_SCATTER_PLANES + k) * places + p];
+    for (int k = 0; k < SKG_SCATTER_KINDS; k++) sum += kinds[k];
+    for (int k = 0; k < 3 && sum > 0; k++) {
+        report->orders[k] = (kinds[k] + kinds[k + 3]) / sum;
+        report->rayleigh += kinds[k] / sum;
+    }
+}
+
+static skg_status trace(skg_context *context, const skg_scatter_work *work, const skg_scatter_object *object,
+                        skg_scatterer *s, arrived *a) {
+    skg_scatter_tables tables;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_scatter_tables_make(work->recipe, object, &tables));
+    SKG_TRY_CLEANUP(skg_trace_begin(context, work, object, &tables, a->columns, a->rows, &s->tracing));
+    SKG_TRY_CLEANUP(follow(context, work->recipe->options.scatter, &s->tracing, a));
+    if (work->recipe->options.noise)
+        SKG_TRY_CLEANUP(fit(a, &a->variance, SKG_SCATTER_KINDS, SKG_SCATTER_PLANES));
+    const skg_shown_scatter shown = {
+        .work = work,
+        .mean = &a->mean,
+        .variance = work->recipe->options.noise ? &a->variance : NULL,
+        .photons = tables.photons * skg_sight_photons(work, &s->tracing.args) /
+                   ((double)s->tracing.args.scale * (double)s->tracing.args.end),
+        .signal = tables.signal,
+        .power = tables.variance,
+    };
+    s->report.histories = (int64_t)s->tracing.args.end * SKG_SCATTER_BATCHES;
+    status = skg_shown_scatter_send(context, &shown, s);
+cleanup:
+    skg_scatter_tables_free(&tables);
+    return status;
+}
+
+static skg_status compute(skg_context *context, const skg_scatter_work *work,
+                          const skg_scatter_object *object, skg_scatterer *s) {
+    arrived a = {0};
+    skg_status status = SKG_OK;
+    find_places(work, &a.columns, &a.rows);
+    const int64_t places = a.columns * a.rows;
+    SKG_TRY_CLEANUP(
+        skg_alloc(SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * places, sizeof *a.sums, "scatter", &a.sums));
+    SKG_TRY_CLEANUP(skg_alloc(SKG_SCATTER_BATCHES * places, sizeof *a.values, "scatter", &a.values));
+    if (object->cells.mixtures)
+        SKG_TRY_CLEANUP(trace(context, work, object, s, &a));
+    else
+        SKG_TRY_CLEANUP(skg_shown_nothing_send(context, work, s));
+    share_out(&a, &s->report);
+    s->report.cosines = (int32_t)(a.mean.kept[0] > a.mean.kept[1] ? a.mean.kept[0] : a.mean.kept[1]);
+cleanup:
+    skg_cosines_free(&a.mean);
+    skg_cosines_free(&a.variance);
+    skg_free(&a.sums);
+    skg_free(&a.values);
+    return status;
+}
+
+skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_scatter_work *work) {
+    const skg_digest key = key_of(work);
+    const double begun = seconds_now();
+    skg_scatter_object object;
+    if (s->known && skg_digest_same(&s->key, &key)) return SKG_OK;
+    s->known = 0;
+    s->report = (skg_scatter_report){.size = sizeof s->report};
+    skg_status status = skg_scatter_object_make(work, &object);
+    if (status == SKG_OK) status = compute(context, work, &object, s);
+    s->report.mixture_error = object.physics.error;
+    memcpy(s->report.cells, object.cells.count, sizeof s->report.cells);
+    s->report.seconds = seconds_now() - begun;
+    skg_scatter_object_free(&object);
+    s->key = key;
+    s->known = status == SKG_OK;
+    return status;
+}
+
+void skg_scatterer_release(skg_scatterer *s) {
+    skg_trace_release(&s->tracing);
+    skg_scattered_release(&s->stage);
+    skg_buffer_release(&s->mean);
+    skg_buffer_release(&s->variance);
+    skg_buffer_release(&s->shown);
+    skg_buffer_release(&s->sigma);
+}
+
+int64_t skg_scatterer_bytes(const skg_scatterer *s) {
+    return skg_trace_bytes(&s->tracing) + s->mean.bytes + s->variance.bytes + s->shown.bytes + s->sigma.bytes;
+}

@@ -1,0 +1,27 @@
+/* Scattered photons of the frames of a plan. Private. */
+#ifndef SKG_SCATTERER_H
+#define SKG_SCATTERER_H
+
+#include "core/digest.h"
+#include "scatter/trace.h"
+#include "stage/scattered.h"
+
+/* All zero: nothing was computed yet. */
+typedef struct {
+    skg_tracing tracing;
+    skg_scattered stage;
+    skg_buffer mean, variance; /* what images get, before detector and quantity: [rows][columns] floats */
+    skg_buffer shown, sigma;   /* in the plan's quantity */
+    skg_digest key;            /* of the frame they hold for */
+    int32_t known;             /* 1: they hold for it */
+    int32_t reserved;
+    skg_scatter_report report;
+} skg_scatterer;
+
+/* Computes the scatter of a frame, unless it is that of the last one, and waits for it. After a failure nothing is known. */
+skg_status skg_scatterer_run(skg_context *context, skg_scatterer *scatterer, const skg_scatter_work *work);
+
+void skg_scatterer_release(skg_scatterer *scatterer);
+int64_t skg_scatterer_bytes(const skg_scatterer *scatterer);
+
+#endif

@@ -1,0 +1,100 @@
+#include "scatter/tables.h"
+
+#include "beam/spectrum.h"
+#include "scatter/angles.h"
+#include "skg_shared.h"
+#include "spectral/signal.h"
+
+#include <string.h>
+
+/* Columns of the table by energy, as kernels/scatter.clh has them. */
+enum { TOTAL, COMPTON, RAYLEIGH, COMPTON_SHAPE, RAYLEIGH_SHAPE, SIGNAL };
+
+/* The share of photons that is followed as the beam has them, whatever they add. */
+static const double AS_THEY_ARE = 0.1;
+
+static skg_status fill_signals(const skg_recipe *recipe, const skg_scatter_physics *p,
+                               skg_scatter_tables *t) {
+    double *signals = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(2 * p->energies, sizeof *signals, "scatter", &signals));
+    double *variances = signals + p->energies;
+    for (int64_t i = 0; i < p->energies; i++) {
+        const double kev = skg_scatter_energy(p, i);
+        SKG_TRY_CLEANUP(skg_signal_get(&recipe->options, kev, &signals[i]));
+        SKG_TRY_CLEANUP(skg_signal_variance_get(&recipe->options, kev, signals[i], &variances[i]));
+        if (signals[i] > t->signal) t->signal = signals[i];
+        if (variances[i] > t->variance) t->variance = variances[i];
+    }
+    for (int64_t i = 0; i < p->energies; i++) {
+        float *row = t->energies[i * SKG_SCATTER_COLUMNS + SIGNAL];
+        row[0] = t->signal > 0 ? (float)(signals[i] / t->signal) : 0;
+        row[1] = t->variance > 0 ? (float)(variances[i] / t->variance) : 0;
+    }
+cleanup:
+    skg_free(&signals);
+    return status;
+}
+
+static void fill_energies(const skg_scatter_physics *p, skg_scatter_tables *t) {
+    const skg_mix4 *const columns[] = {p->total, p->compton, p->rayleigh, p->compton_shape,
+                                       p->rayleigh_shape};
+    for (int64_t i = 0; i < p->energies; i++)
+        for (int c = TOTAL; c <= RAYLEIGH_SHAPE; c++)
+            memcpy(t->energies[i * SKG_SCATTER_COLUMNS + c], columns[c][i], sizeof *t->energies);
+    for (int64_t i = 0; i < p->momenta; i++) {
+        memcpy(t->momenta[2 * i], p->incoherent[i], sizeof *t->momenta);
+        memcpy(t->momenta[2 * i + 1], p->coherent[i], sizeof *t->momenta);
+    }
+}
+
+/* Photons are drawn with the probability of photons times (signal + a share of the mean signal). */
+static skg_status fill_beam(const skg_recipe *recipe, skg_scatter_tables *t) {
+    const skg_spectrum *spectrum = recipe->spectrum;
+    double signals = 0, sum = 0, share = 0;
+    SKG_TRY(skg_alloc(spectrum->count, sizeof *t->beam, "scatter", &t->beam));
+    for (int64_t i = 0; i < spectrum->count; i++) {
+        double signal = 0;
+        SKG_TRY(skg_signal_get(&recipe->options, spectrum->energy_kev[i], &signal));
+        t->photons += spectrum->photons[i];
+        signals += spectrum->photons[i] * signal;
+    }
+    const double mean = t->photons > 0 ? signals / t->photons : 0;
+    for (int64_t pass = 0; pass < 2; pass++)
+        for (int64_t i = 0; i < spectrum->count; i++) {
+            double signal = 0;
+            if (!(spectrum->photons[i] > 0)) continue;
+            SKG_TRY(skg_signal_get(&recipe->options, spectrum->energy_kev[i], &signal));
+            const double drawn = spectrum->photons[i] * (mean > 0 ? signal + AS_THEY_ARE * mean : 1);
+            if (pass == 0) {
+                sum += drawn;
+                continue;
+            }
+            share += drawn / sum;
+            float *row = t->beam[t->bins++];
+            row[0] = (float)spectrum->energy_kev[i];
+            row[1] = (float)share;
+            row[2] = (float)(spectrum->photons[i] / t->photons / (drawn / sum));
+        }
+    return t->bins > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
+}
+
+skg_status skg_scatter_tables_make(const skg_recipe *recipe, const skg_scatter_object *object,
+                                   skg_scatter_tables *t) {
+    const skg_scatter_physics *p = &object->physics;
+    *t = (skg_scatter_tables){0};
+    SKG_TRY(skg_alloc(p->energies * SKG_SCATTER_COLUMNS, sizeof *t->energies, "scatter", &t->energies));
+    SKG_TRY(skg_alloc(p->momenta * 2, sizeof *t->momenta, "scatter", &t->momenta));
+    SKG_TRY(skg_alloc(SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1), sizeof *t->angles, "scatter", &t->angles));
+    fill_energies(p, t);
+    SKG_TRY(fill_signals(recipe, p, t));
+    SKG_TRY(fill_beam(recipe, t));
+    return skg_angles_make(p, object->cells.mean, t->angles);
+}
+
+void skg_scatter_tables_free(skg_scatter_tables *t) {
+    skg_free(&t->energies);
+    skg_free(&t->momenta);
+    skg_free(&t->angles);
+    skg_free(&t->beam);
+}

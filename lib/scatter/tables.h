@@ -1,0 +1,23 @@
+/* Tables of a frame's photons as the device has them. Private. */
+#ifndef SKG_SCATTER_TABLES_H
+#define SKG_SCATTER_TABLES_H
+
+#include "plan/recipe.h"
+#include "scatter/object.h"
+
+typedef struct {
+    float (*energies)[SKG_SCATTER_RANK]; /* [energies][SKG_SCATTER_COLUMNS] */
+    float (*momenta)[SKG_SCATTER_RANK];  /* [momenta][2] S, F^2 */
+    float *angles;                       /* [SKG_ANGLE_ROWS][SKG_SCATTER_ANGLES + 1] */
+    float (*beam)[4]; /* [bins] keV, share of the photons that are followed up to here, weight, 0 */
+    int64_t bins;
+    double photons;          /* of the spectrum */
+    double signal, variance; /* what 1 in the columns of what a photon adds stands for */
+} skg_scatter_tables;
+
+/* More photons are followed of energies that add more to the image. Free the tables also after a failure. */
+skg_status skg_scatter_tables_make(const skg_recipe *recipe, const skg_scatter_object *object,
+                                   skg_scatter_tables *tables);
+void skg_scatter_tables_free(skg_scatter_tables *tables);
+
+#endif
