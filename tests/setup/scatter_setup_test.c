@@ -16,7 +16,7 @@ static const skg_scatter *given(void) {
 }
 
 START_TEST(absent_unless_asked_for) {
-    static const char *const none[] = {"Tolerance=0", "Scatter=false", "Scatter=null"};
+    static const char *const none[] = {"Tolerance=0", "Scatter=false"};
     for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
         ck_skg(load_with(none[i], NULL));
         ck_assert_ptr_null(given());
