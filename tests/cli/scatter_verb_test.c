@@ -14,7 +14,7 @@ static const char scene[] =
     "    \"NumberOfPixels\": [32, 32], \"Size\": [300, 300, \"mm\"] },\n"
     "  \"Falloff\": true,\n"
     "  \"Samples\": [ {\"Label\": \"slab\", \"Cuboid\": [300, 200, 300, \"mm\"], \"Material\": \"water\"} ] }\n";
-static const char aside[] = "--set 'Samples.slab.Transform=[{\"Translation\": [3, 0, 0, \"m\"]}]'";
+static const char aside[] = "--set 'Samples.slab.Transform=[[\"Translation\", 3, 0, 0, \"m\"]]'";
 
 static void set_up_scene(void) {
     set_up();
@@ -158,7 +158,7 @@ static const struct {
     {"--scater 0.01", "did you mean --scatter"},
     {"--scatter-image a.mha", "--scatter-image a.mha: -o writes this file; name another one"},
     {"--scatter-sigma s.mha --scatter-image s.mha", "--scatter-sigma writes this file"},
-    {"--scatter-image - --json", "standard output takes one thing"},
+    {"--scatter-image - -o -", "standard output takes one thing"},
 };
 
 START_TEST(refused_flags) {
@@ -185,7 +185,7 @@ START_TEST(other_verbs_meet_the_key) {
     ck_run(0, "lbuffer scene.json --part slab -o a.mha %s --set Clip=true", with);
     ck_run(0, "plan scene.json %s", with);
     ck_assert_msg(strstr(said, "those that the parts scatter"), "%s", said);
-    ck_run(0, "view scene.json -o v.png --size 64,48 %s", with);
+    ck_run(0, "view scene.json -o v.png --size 96,64 %s", with);
     ck_run(0, "cost scene.json --quick --within 1 --json %s", with);
     ck_assert_msg(strstr(said, "the scene has Scatter"), "%s", said);
     static const char scan[] =

@@ -45,7 +45,8 @@ def test_an_image_has_the_scatter_of_its_planes(slab):
 
 def test_nothing_in_the_beam_scatters_nothing(slab):
     slab["slab"].pose = sk.translate(3000, 0, 0)
-    found = slab.scatter(histories=2000)
+    with pytest.warns(sk.SkiagraphWarning, match="nothing falls on the detector"):
+        found = slab.scatter(histories=2000)
     assert not found["image"].any() and found["mean"] == found["ratio"] == 0
     np.testing.assert_array_equal(found["total"], slab.image())
 

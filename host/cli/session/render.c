@@ -53,6 +53,7 @@ static int check_twins(const cli_arguments *arguments) {
     for (int i = 0; i < arguments->given_count; i++)
         for (int j = 0; j < i; j++) {
             const struct cli_given *one = &arguments->given[i], *other = &arguments->given[j];
+            if (strcmp(one->value ? one->value : "-", "-") == 0 || !other->value) continue;
             if (one->flag != other->flag && cli_flag_is_output(one->flag) &&
                 cli_flag_is_output(other->flag) && strcmp(one->value, other->value) == 0)
                 return cli_error(CLI_USAGE, "%s %s: %s writes this file; name another one", one->flag->name,
