@@ -37,9 +37,22 @@ static void skg_deposit(__global uint *sums, int place, float value) {
     if (high) atomic_add(word + 1, high);
 }
 
+#if SKG_GRID
+/* The share that passes the grid at place (u, v) of the detector. signal: rows of SKG_OF_SIGNAL. */
+static skg_fv skg_through_grid(const skg_scatter_args *args, const skg_mixtures *signal, skg_fv u, skg_fv v, skg_place3 way) {
+    float strip[SKG_WIDE], interspace[SKG_WIDE];
+    for (int l = 0; l < SKG_WIDE; l++) strip[l] = signal->of[l].z, interspace[l] = signal->of[l].w;
+    const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
+    const skg_fv oblique = (skg_fv)(1.0f) / max(facing, (skg_fv)(1e-3f));
+    const skg_fv slope = (way.x * args->strips[0] + way.y * args->strips[1] + way.z * args->strips[2]) * oblique;
+    const skg_fv place = (u - (skg_fv)(0.5f)) * args->strips_u + (v - (skg_fv)(0.5f)) * args->strips_v;
+    return skg_strips_pass(args, SKG_LOAD_V(realv, strip), SKG_LOAD_V(realv, interspace), oblique, slope - place * args->focus);
+}
+#endif
+
 /* Adds what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
 static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u,
-                      skg_fv v, skg_fv kev, skg_fv weight) {
+                      skg_fv v, skg_place3 way, skg_fv kev, skg_fv weight) {
     const skg_intv column = clamp(SKG_TO_INT_V(u * (skg_fv)((float)s->args->columns)), (skg_intv)(0),
                                   (skg_intv)(s->args->columns - 1));
     const skg_intv row =
@@ -51,6 +64,9 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
     float weights[SKG_WIDE];
     int places[SKG_WIDE], wanted[SKG_WIDE];
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, skg_energy_place(s->args, kev), &signal);
+#if SKG_GRID
+    weight *= skg_through_grid(s->args, &signal, u, v, way);
+#endif
     SKG_STORE_V(realv, weight * (skg_fv)(s->args->scale), weights);
     SKG_STORE_V(intv, plane * cells + cell, places);
 #if SKG_NOISE
@@ -117,9 +133,9 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv both = fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)),
                                 (compton + rayleigh) / max(albedo, (skg_fv)(1e-30f)));
         const skg_fv weight = p->weight / max(both, (skg_fv)(1e-30f));
-        skg_bring(s, seen, p->order, p->changed, pu, pv, p->kev,
+        skg_bring(s, seen, p->order, p->changed, pu, pv, way, p->kev,
                   weight * rayleigh * skg_passes(s, &sums, p->kev));
-        skg_bring(s, seen, p->order, (skg_intv)(-1), pu, pv, left,
+        skg_bring(s, seen, p->order, (skg_intv)(-1), pu, pv, way, left,
                   weight * compton * skg_passes(s, &sums, left));
     }
 }
@@ -256,7 +272,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv place = skg_energy_place(s->args, p->kev);
     const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     const skg_fv passed = skg_exp(-depth);
-    skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->kev,
+    skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
               p->weight * p->share * passed);
     /* Somewhere within the object. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);

@@ -228,6 +228,10 @@ typedef struct {
     float per_momentum, per_log_momentum;
     float angle_rows;                   /* rows of the table of angles for one of that by energy */
     float least_kev, scale;             /* photons below are given up; of sums */
+    float strips[3], focus;             /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */
+    float strips_u, strips_v;           /* mm across the strips along the sides of the detector */
+    float period, strip, height;        /* of the strips, mm */
+    float unused;                       /* 0 */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
     SKG_INT first, end, each;           /* histories of a batch; of a work-item */
     SKG_INT seed[2];                    /* low word first */
@@ -294,6 +298,6 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 38 * 4 + 15 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
+_Static_assert(sizeof(skg_scatter_args) == 48 * 4 + 15 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
 #endif
 #endif

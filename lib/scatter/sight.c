@@ -1,7 +1,9 @@
 #include "scatter/sight.h"
 
+#include "beam/grid.h"
 #include "core/vector.h"
 #include "geometry/collimation.h"
+#include "spectral/grid_shades.h"
 
 #include <math.h>
 
@@ -84,6 +86,24 @@ static skg_status fill_field(const skg_scatter_work *work, const skg_cells *cell
     return SKG_OK;
 }
 
+static skg_status fill_grid(const skg_scatter_work *work, skg_scatter_args *args) {
+    const skg_grid *grid = work->recipe->options.grid;
+    skg_camera camera;
+    double across[3];
+    if (!grid) return SKG_OK;
+    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
+    if (!skg_grid_across(&work->recipe->model.shades, &camera, across))
+        return skg_fail(SKG_ERR_SCENE, "scatter: the grid's direction points along the detector's normal");
+    set(across, args->strips);
+    args->focus = grid->focus_mm > 0 ? (float)(1 / grid->focus_mm) : 0;
+    args->strips_u = (float)(skg_dot(across, work->view->column_step) * (double)work->view->columns);
+    args->strips_v = (float)(skg_dot(across, work->view->row_step) * (double)work->view->rows);
+    args->period = (float)(10 / grid->lines_per_cm);
+    args->strip = (float)grid->strip_mm;
+    args->height = (float)skg_grid_height(grid);
+    return SKG_OK;
+}
+
 skg_status skg_sight_fill(const skg_scatter_work *work, const skg_cells *cells, skg_scatter_args *args) {
     for (int k = 0; k < 3; k++) {
         args->size[k] = (float)cells->size[k];
@@ -91,6 +111,7 @@ skg_status skg_sight_fill(const skg_scatter_work *work, const skg_cells *cells, 
         args->per_mm[k] = (float)((double)cells->count[k] / cells->size[k]);
     }
     SKG_TRY(fill_detector(work->view, cells, args));
+    SKG_TRY(fill_grid(work, args));
     return fill_field(work, cells, args);
 }
 

@@ -1,5 +1,6 @@
 #include "scatter/tables.h"
 
+#include "beam/grid.h"
 #include "beam/spectrum.h"
 #include "scatter/angles.h"
 #include "skg_shared.h"
@@ -30,6 +31,11 @@ static skg_status fill_signals(const skg_recipe *recipe, const skg_scatter_physi
         float *row = t->energies[i * SKG_SCATTER_COLUMNS + SIGNAL];
         row[0] = t->signal > 0 ? (float)(signals[i] / t->signal) : 0;
         row[1] = t->variance > 0 ? (float)(variances[i] / t->variance) : 0;
+        double strip = 0, interspace = 0;
+        if (recipe->options.grid)
+            SKG_TRY_CLEANUP(
+                skg_grid_attenuation(recipe->options.grid, skg_scatter_energy(p, i), &strip, &interspace));
+        row[2] = (float)strip, row[3] = (float)interspace;
     }
 cleanup:
     skg_free(&signals);

@@ -97,6 +97,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     t->args.seed[0] = (SKG_INT)(uint32_t)(uint64_t)seed;
     t->args.seed[1] = (SKG_INT)(uint32_t)((uint64_t)seed >> 32);
     t->noise = work->recipe->options.noise;
+    t->grid = work->recipe->options.grid != NULL;
     t->parallel = work->view->projection != SKG_PROJECTION_POINT;
     SKG_TRY(skg_sight_fill(work, &object->cells, &t->args));
     fill_tables(&object->physics, tables, &t->args);
@@ -107,11 +108,11 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 }
 
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh",
-                                        "scatter.clh",     "sight.clh",  "scatter.cl"};
+    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "scatter.clh",
+                                        "sight.clh",       "strips.clh", "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}};
+    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid}};
     return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
                            SKG_DEFINES(defines), program);
 }

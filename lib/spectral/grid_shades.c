@@ -9,8 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The unit vector across the strips, in the plane of the detector. 0 if there is none. */
-static int strips_across(const skg_shades *shades, const skg_camera *camera, double across[3]) {
+int skg_grid_across(const skg_shades *shades, const skg_camera *camera, double across[3]) {
     double frame[3][3], normal[3];
     skg_detector_frame(camera->column, camera->row, frame);
     skg_scale_vector(1 / skg_length(frame[2]), frame[2], normal);
@@ -27,7 +26,7 @@ void skg_grid_tilt(const skg_shades *shades, const skg_camera *camera, double ti
     double across[3];
     const double foot = skg_camera_foot(camera);
     const double focus = shades->grid_focus > 0 ? 1 / shades->grid_focus : 0;
-    (void)strips_across(shades, camera, across);
+    (void)skg_grid_across(shades, camera, across);
     tilt[0] = skg_dot(across, camera->first) / foot - focus * skg_dot(across, camera->corner);
     tilt[1] = skg_dot(across, camera->column) * ((camera->parallel ? 0 : 1 / foot) - focus);
     tilt[2] = skg_dot(across, camera->row) * ((camera->parallel ? 0 : 1 / foot) - focus);
@@ -41,7 +40,7 @@ typedef struct {
 static skg_status see(void *user, const skg_camera *camera, const double ray[3], double column, double row) {
     extent *e = user;
     double tilt[3], across[3];
-    if (!strips_across(e->shades, camera, across))
+    if (!skg_grid_across(e->shades, camera, across))
         return skg_fail(SKG_ERR_SCENE, "the grid's direction points along the detector's normal; give a "
                                        "direction across the strips");
     skg_grid_tilt(e->shades, camera, tilt);

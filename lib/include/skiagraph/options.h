@@ -513,7 +513,7 @@ typedef struct {
     /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
      * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
      * composition and density, energies up to 1,022 keV, and one channel; not with priorities, clip, world, heel, bowtie,
-     * grid, oblique, depth_blur, dqe, nor half precision. */
+     * oblique, depth_blur, dqe, nor half precision, and a grid not with ratios to the flat field. */
     const skg_scatter *scatter;
 } skg_plan_options;
 
