@@ -50,15 +50,17 @@ static int count_streams(const cli_arguments *arguments) {
 
 /* Pictures of different things need different files. */
 static int check_twins(const cli_arguments *arguments) {
-    for (int i = 0; i < arguments->given_count; i++)
+    for (int i = 0; i < arguments->given_count; i++) {
+        const struct cli_given *one = &arguments->given[i];
+        if (!cli_flag_is_output(one->flag) || strcmp(one->value, "-") == 0) continue;
         for (int j = 0; j < i; j++) {
-            const struct cli_given *one = &arguments->given[i], *other = &arguments->given[j];
-            if (strcmp(one->value ? one->value : "-", "-") == 0 || !other->value) continue;
-            if (one->flag != other->flag && cli_flag_is_output(one->flag) &&
-                cli_flag_is_output(other->flag) && strcmp(one->value, other->value) == 0)
+            const struct cli_given *other = &arguments->given[j];
+            if (one->flag != other->flag && cli_flag_is_output(other->flag) &&
+                strcmp(one->value, other->value) == 0)
                 return cli_error(CLI_USAGE, "%s %s: %s writes this file; name another one", one->flag->name,
                                  one->value, other->flag->name);
         }
+    }
     return CLI_DONE;
 }
 
