@@ -189,8 +189,7 @@ typedef struct {
     skg_raster_layout layout;                                                                                \
     skg_noise_args key;                                                                                      \
     SKG_INT nodes, world_plane;                                                                              \
-    SKG_INT                                                                                                  \
-        window[4]; /* SKG_COLLIMATED: columns from, columns to, rows from, rows to; others are stopped */    \
+    SKG_INT window[4]; /* SKG_COLLIMATED: columns from, to, rows from, to */                                 \
     skg_image_args image;
 
 /* Of skg_detect (detect.cl). */

@@ -73,9 +73,9 @@ static void check_field(const skg_collimation *collimation, const double low[2],
         if (in)
             ck_assert_msg(memcmp(&limited[p], &open[p], sizeof *open) == 0, "pixel %d: %.9g instead of %.9g",
                           p, limited[p], open[p]);
-        else
+        else /* two roundings of a float */
             ck_assert_msg(fabs(limited[p] - dark) <= 2e-7 * dark, "pixel %d outside: %.9g instead of %.9g", p,
-                          limited[p], dark); /* two roundings of a float */
+                          limited[p], dark);
         inside += in;
     }
     ck_assert_int_gt(inside, 0);
@@ -273,7 +273,7 @@ START_TEST(a_rectangle_has_its_penumbra_in_both_directions) {
                          high = fmin((jaws.high[a] - x * ratio) / (1 - ratio), f / 2);
             share *= fmax(high - low, 0) / f;
         }
-        if (fabs(open[p] - 60000) < 1)
+        if (fabs(open[p] - 60000) < 1) /* beside the box */
             ck_assert_msg(fabs(limited[p] / open[p] - share) <= 8.0 / 1024, "pixel %d: %.5g instead of %.5g",
                           p, limited[p] / open[p], share);
     }
