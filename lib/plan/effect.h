@@ -49,7 +49,7 @@ typedef struct {
     X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
     X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
     X(noise) X(blur) X(electronic) X(quantisation) X(priority) \
-    X(heel) X(bowtie) X(collimation) X(grid) X(oblique) X(escape) X(depths) X(dqe) X(scatter)
+    X(heel) X(bowtie) X(collimation) X(scatter) X(grid) X(oblique) X(escape) X(depths) X(dqe)
 /* clang-format on */
 
 #define SKG_EFFECT_DECLARE(row) extern const skg_effect_row skg_effect_##row;
@@ -59,6 +59,9 @@ SKG_EFFECT_ROWS(SKG_EFFECT_DECLARE)
 #define SKG_EFFECT_ONE(row) +1
 enum { SKG_EFFECTS = SKG_EFFECT_ROWS(SKG_EFFECT_ONE) };
 #undef SKG_EFFECT_ONE
+
+/* Fails if the scatter that the options ask for cannot be computed of the scene. Whether priorities may decide is known. */
+skg_status skg_scatter_check(const skg_recipe *recipe);
 
 /* Sets whether an effect is on, and why. */
 void skg_effect_set(skg_effect_state *state, int on, const char *format, ...)

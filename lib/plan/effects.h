@@ -13,9 +13,6 @@ skg_status skg_effects_copy(skg_recipe *recipe);
 /* Refuses options of effects that cannot be used. */
 skg_status skg_effects_check(const skg_plan_options *options);
 
-/* Fails if the scatter that the options ask for cannot be computed of the scene. Whether priorities may decide is known. */
-skg_status skg_scatter_check(const skg_recipe *recipe);
-
 /* Whether any effect refuses half precision. */
 int skg_effects_refuse_half(const skg_recipe *recipe);
 

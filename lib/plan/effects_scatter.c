@@ -1,7 +1,7 @@
 /* The effect of scattered photons. */
 #include "beam/spectrum.h"
 #include "material/scattering.h"
-#include "plan/effects.h"
+#include "plan/effect.h"
 #include "plan/options.h"
 #include "spectral/quantity.h"
 

@@ -5,6 +5,7 @@
 #include "geometry/exposure.h"
 #include "geometry/priority.h"
 #include "plan/choose.h"
+#include "plan/effect.h"
 #include "plan/effects.h"
 #include "plan/options.h"
 

@@ -1,8 +1,6 @@
 #include "scatter/scatterer.h"
 
 #include "core/vector.h"
-#include "scatter/shown.h"
-#include "scatter/smooth.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -129,7 +127,7 @@ static skg_status trace(skg_context *context, const skg_scatter_work *work, cons
         .power = tables.variance,
     };
     s->report.histories = (int64_t)s->tracing.args.end * SKG_SCATTER_BATCHES;
-    status = skg_shown_scatter_send(context, &shown, s);
+    status = skg_shown_scatter_send(context, &shown, &s->images);
 cleanup:
     skg_scatter_tables_free(&tables);
     return status;
@@ -144,10 +142,13 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
     SKG_TRY_CLEANUP(
         skg_alloc(SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * places, sizeof *a.sums, "scatter", &a.sums));
     SKG_TRY_CLEANUP(skg_alloc(SKG_SCATTER_BATCHES * places, sizeof *a.values, "scatter", &a.values));
+    const skg_shown_scatter nothing = {.work = work};
     if (object->cells.mixtures)
         SKG_TRY_CLEANUP(trace(context, work, object, s, &a));
     else
-        SKG_TRY_CLEANUP(skg_shown_nothing_send(context, work, s));
+        SKG_TRY_CLEANUP(skg_shown_scatter_send(context, &nothing, &s->images));
+    s->report.mean = s->images.average;
+    s->report.sigma = s->images.error;
     share_out(&a, &s->report);
     s->report.cosines = (int32_t)(a.mean.kept[0] > a.mean.kept[1] ? a.mean.kept[0] : a.mean.kept[1]);
 cleanup:
@@ -179,12 +180,9 @@ skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_s
 void skg_scatterer_release(skg_scatterer *s) {
     skg_trace_release(&s->tracing);
     skg_scattered_release(&s->stage);
-    skg_buffer_release(&s->mean);
-    skg_buffer_release(&s->variance);
-    skg_buffer_release(&s->shown);
-    skg_buffer_release(&s->sigma);
+    skg_scatter_images_release(&s->images);
 }
 
 int64_t skg_scatterer_bytes(const skg_scatterer *s) {
-    return skg_trace_bytes(&s->tracing) + s->mean.bytes + s->variance.bytes + s->shown.bytes + s->sigma.bytes;
+    return skg_trace_bytes(&s->tracing) + skg_scatter_images_bytes(&s->images);
 }

@@ -3,6 +3,7 @@
 #define SKG_SCATTERER_H
 
 #include "core/digest.h"
+#include "scatter/shown.h"
 #include "scatter/trace.h"
 #include "stage/scattered.h"
 
@@ -10,8 +11,7 @@
 typedef struct {
     skg_tracing tracing;
     skg_scattered stage;
-    skg_buffer mean, variance; /* what images get, before detector and quantity: [rows][columns] floats */
-    skg_buffer shown, sigma;   /* in the plan's quantity */
+    skg_scatter_images images;
     skg_digest key;            /* of the frame they hold for */
     int32_t known;             /* 1: they hold for it */
     int32_t reserved;

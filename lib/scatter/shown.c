@@ -72,7 +72,7 @@ cleanup:
     return status;
 }
 
-skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown, skg_scatterer *s) {
+skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown, skg_scatter_images *images) {
     const skg_scatter_work *work = shown->work;
     const units u = units_of(work);
     const int absolute = skg_quantity_is_absolute(&work->recipe->options);
@@ -83,15 +83,21 @@ skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter 
     const picture variance = {shown->variance, 0, 0, staged_flat, shown->photons * shown->power * u.staged};
     const picture image = {shown->mean, 0, 0, u.flat, unit * u.shown};
     const picture sigma = {shown->mean, 1, 1, u.flat, unit * u.shown};
-    SKG_TRY(send(context, work->view, &staged, &s->mean, &mean, &square));
-    if (shown->variance) SKG_TRY(send(context, work->view, &variance, &s->variance, &mean, &square));
-    SKG_TRY(send(context, work->view, &image, &s->shown, &s->report.mean, &square));
-    SKG_TRY(send(context, work->view, &sigma, &s->sigma, &mean, &square));
-    s->report.sigma = sqrt(square);
+    SKG_TRY(send(context, work->view, &staged, &images->mean, &mean, &square));
+    if (shown->variance) SKG_TRY(send(context, work->view, &variance, &images->variance, &mean, &square));
+    SKG_TRY(send(context, work->view, &image, &images->shown, &images->average, &square));
+    SKG_TRY(send(context, work->view, &sigma, &images->sigma, &mean, &square));
+    images->error = sqrt(square);
     return SKG_OK;
 }
 
-skg_status skg_shown_nothing_send(skg_context *context, const skg_scatter_work *work, skg_scatterer *s) {
-    const skg_shown_scatter none = {.work = work};
-    return skg_shown_scatter_send(context, &none, s);
+void skg_scatter_images_release(skg_scatter_images *images) {
+    skg_buffer_release(&images->mean);
+    skg_buffer_release(&images->variance);
+    skg_buffer_release(&images->shown);
+    skg_buffer_release(&images->sigma);
+}
+
+int64_t skg_scatter_images_bytes(const skg_scatter_images *images) {
+    return images->mean.bytes + images->variance.bytes + images->shown.bytes + images->sigma.bytes;
 }

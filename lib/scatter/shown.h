@@ -2,22 +2,29 @@
 #ifndef SKG_SCATTER_SHOWN_H
 #define SKG_SCATTER_SHOWN_H
 
-#include "scatter/scatterer.h"
+#include "scatter/object.h"
 #include "scatter/smooth.h"
+#include "stage/kernels.h"
 
 typedef struct {
     const skg_scatter_work *work;
-    const skg_cosines *mean, *variance; /* variance: NULL without noise */
-    double photons;       /* that a sum of 1 stands for, of a pixel: photons of the spectrum per pixel */
+    const skg_cosines *mean, *variance; /* mean: NULL: nothing scatters; variance: NULL without noise */
+    double photons;       /* that a sum of 1 stands for: photons of the spectrum per pixel */
     double signal, power; /* what a photon of 1 in the tables adds to the image and to its variance */
 } skg_shown_scatter;
 
-/* Fills the images of the scatterer, and the report's mean and sigma. */
-skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown,
-                                  skg_scatterer *scatterer);
+/* [rows][columns] floats on the device each, and what they are on average. All zero: none. */
+typedef struct {
+    skg_buffer mean, variance; /* what images get, before detector and quantity; variance: with noise alone */
+    skg_buffer shown, sigma;   /* in the plan's quantity */
+    double average;            /* of `shown` */
+    double error;              /* root mean square of sigma */
+} skg_scatter_images;
 
-/* The same where nothing scatters. */
-skg_status skg_shown_nothing_send(skg_context *context, const skg_scatter_work *work,
-                                  skg_scatterer *scatterer);
+/* Fills the images. */
+skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown,
+                                  skg_scatter_images *images);
+void skg_scatter_images_release(skg_scatter_images *images);
+int64_t skg_scatter_images_bytes(const skg_scatter_images *images);
 
 #endif

@@ -32,6 +32,7 @@ typedef struct {
     int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
     double electronic, step, tolerance;
     int32_t picture; /* draws the 3D view instead of an image */
+    int32_t scatter; /* histories */
     int32_t placed;  /* the positions of the ball are taken from device memory */
 } group;
 
@@ -74,6 +75,8 @@ static const group groups[] = {
     {.name = "blur_point", .blur = BLUR_POINT},
     {.name = "noise", .noise = 1, .colours = 1},
     {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1},
+    {.name = "scatter", .scatter = 32, .colours = 1, .noise = 1},
+    {.name = "double_scatter", .precision = SKG_PRECISION_DOUBLE, .scatter = 32, .parallel = 1},
     {.name = "show", .picture = 1},
     {.name = "place", .placed = 1},
     {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};
@@ -160,6 +163,7 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     skg_dqe dqe;
     skg_spot spot;
     shades more = {0};
+    skg_scatter scatter;
     skg_spectrum *beam = NULL;
     skg_plan *plan = NULL;
     skg_plan_options_init(&options);
@@ -181,6 +185,9 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     if (g->strategy == SKG_STRATEGY_COPIES) spot.samples = g->spot * context->device->info.compute_units;
     if (g->spot) options.spot = &spot;
     if (g->shades) add_shades(&more, &options);
+    skg_scatter_init(&scatter);
+    scatter.histories = g->scatter;
+    if (g->scatter) options.scatter = &scatter;
     TRY(skg_spectrum_create_bins(g->colours ? 3 : 1, energies, photons, &beam));
     TRY(skg_plan_create(context, scene, view, beam, &options, &plan));
     skg_spectrum_release(&beam);
