@@ -28,14 +28,9 @@ static int find_verb(const char *name, const cli_verb **verb) {
     return cli_unknown(name[0] == '-' ? "flag" : "verb", name, names, count, "help");
 }
 
-/* In every verb -o names an output. */
 static void guard_outputs(const cli_arguments *arguments) {
-    const char *path;
-    for (int f = 0; arguments->manual->flags[f]; f++)
-        for (int i = 0; strcmp(arguments->manual->flags[f]->name, "-o") == 0 &&
-                        (path = cli_nth_value(arguments, arguments->manual->flags[f], i));
-             i++)
-            cli_guard_output(path);
+    for (int i = 0; i < arguments->given_count; i++)
+        if (cli_flag_is_output(arguments->given[i].flag)) cli_guard_output(arguments->given[i].value);
 }
 
 static int run_verb(const cli_verb *verb, int count, char **words) {

@@ -69,8 +69,9 @@ def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progres
         while done < batch.count:
             while sent < batch.count and len(started) < 2:
                 count = min(size, batch.count - sent)
+                begun = time.monotonic()  # frames with scatter are computed as they are submitted
                 job, keep = _start(submit, batch, sent, count, out)
-                started.append((job, keep, count, time.monotonic()))
+                started.append((job, keep, count, begun))
                 sent += count
             job, keep, count, begun = started[0]
             _wait(job)

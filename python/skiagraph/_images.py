@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from . import _arrays
 from ._frames import Batch, Stale, Submit, run
-from ._interface import ArgumentError, SceneError
-from ._library import integer, lib
+from ._interface import ENUMS, ArgumentError, SceneError
+from ._library import choice, ffi, integer, lib
 from ._progress import Progress
 from ._state import State
 from .view import View, as_views
@@ -76,6 +76,26 @@ def render(state: State, batch: Batch, out: Any, progress: Progress, one: bool, 
     if unit is not None and unit != "keV":
         image /= image.dtype.type(_KEV[unit])
     return image
+
+
+def lengths(state: State, label: str, kind: str, poses: Mapping[str, Any] | None, views: Sequence[View] | None, out: Any,
+            progress: Progress, options: dict[str, Any]) -> NDArray[Any]:
+    """Path lengths through a part, of the scene as it stands without poses and views."""
+    one = poses is None and views is None
+    batch = Batch(1) if one else batch_of(state, poses, views)
+    part, what = state.number(label), choice("lengths", kind, "kind")
+
+    def submit(plan: Any) -> Any:
+        def start(count: int, frames: Any, output: Any, job: Any) -> int:
+            output.kind, output.part, output.lengths = ENUMS["output_kind"]["lengths"], part, what
+            return int(lib.skg_plan_submit(plan, count, frames, output, job))
+
+        return start
+
+    with state.calls():
+        if state.plans.options(state.setup, {}, []).scatter != ffi.NULL:
+            options = {"scatter": False, **options}  # lengths have none, and it is not for every scene
+        return compute(state, submit, batch, out, progress, one, False, options)
 
 
 def compute(state: State, submit: Callable[[Any], Submit], batch: Batch, out: Any, progress: Progress, one: bool, banded: bool,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ._device import Device
-from ._interface import OK, STALE
+from ._interface import OK, STALE, ArgumentError
 from ._library import call, check, choice, ffi, fill, lib, make, struct
 from .beam import Beam
 from .view import View
@@ -57,6 +57,9 @@ class Plans:
         call("skg_setup_options_get", setup, options)
         values = {name: value for name, value in given.items() if value is not None}
         bands, views, blur = values.pop("bands", None), values.pop("views", None), values.pop("blur", None)
+        scatter = values.pop("scatter", None)
+        if scatter is not None:
+            options.scatter = _scatter(scatter, options.scatter, keep)
         if bands is not None:
             edges = np.atleast_1d(np.asarray(bands, dtype=float))
             values.update(band_kev=edges, bands=len(edges) - 1)
@@ -70,6 +73,40 @@ class Plans:
             keep.append(written)
             options.views, options.view_count = written, len(sample)
         return fill(options, "skg_plan_options", values, keep, "option")
+
+
+def _scatter(given: Any, of_file: Any, keep: list[Any]) -> Any:
+    """A skg_scatter: True, a tolerance, or its fields by name, over what the file says; NULL for False."""
+    if isinstance(given, (bool, np.bool_)):
+        if not given or of_file != ffi.NULL:
+            return of_file if given else ffi.NULL
+        given = {}
+    if not isinstance(given, Mapping):
+        given = {"tolerance": _number(given, "scatter")}
+    if given.get("tolerance") is not None and given.get("histories") is not None:
+        raise ArgumentError("scatter: tolerance and histories exclude each other: with a tolerance, the number of "
+                            "histories follows; give one of them")
+    made = struct("skg_scatter")
+    if of_file != ffi.NULL:
+        made[0] = of_file[0]
+    values = dict(given)
+    if values.get("tolerance") is not None:
+        made.histories = 0
+    elif values.get("histories") is not None:
+        made.tolerance = 0
+        histories = _number(values["histories"], "scatter: histories")
+        if not histories.is_integer():
+            raise ArgumentError(f"scatter: histories is {histories!r}; give a whole number")
+        values["histories"] = int(histories)
+    keep.append(fill(made, "skg_scatter", values, keep, "scatter: the field"))
+    return made
+
+
+def _number(value: Any, what: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{what} is {value!r}; give a number") from None
 
 
 def _blur(blur: Mapping[str, Any]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ import html
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ._interface import ArgumentError
 from ._library import call, ffi, filled, integer, listed
 
 _OVERLAPS_SHOWN = 3
@@ -14,7 +15,7 @@ class Report(Mapping[str, Any]):
     """A plan's decisions, as a mapping and as text: what is simulated, what is not, and why.
 
     The keys are the fields of the library's skg_plan_report, and `effects`, `channels`, `energies`, `overlaps` and
-    `stages`.
+    `stages`; `scatter` are those of skg_scatter_report for the last image, or None.
     """
 
     def __init__(self, plan: Any, labels: list[str]) -> None:
@@ -27,6 +28,7 @@ class Report(Mapping[str, Any]):
         found["overlaps"] = listed("skg_overlap", "skg_plan_overlap", plan)
         for overlap in found["overlaps"]:
             overlap["part"], overlap["other"] = labels[overlap["part"]], labels[overlap["other"]]
+        found["scatter"] = scatter_report(plan)
         found["stages"] = listed("skg_stage", "skg_plan_stage", plan)
         self._found = found
 
@@ -71,6 +73,14 @@ class Report(Mapping[str, Any]):
                           for e in self._found["effects"])
         return (f"<table>{summary}</table><table><tr><th></th><th>effect</th><th>cost</th><th>reason</th></tr>"
                 f"{effects}</table>")
+
+
+def scatter_report(plan: Any) -> dict[str, Any] | None:
+    """What the scatter of the last image was; None: the plan has none, or has made no image."""
+    try:
+        return filled("skg_scatter_report", "skg_plan_scatter_report_get", plan)
+    except ArgumentError:
+        return None
 
 
 def _energies(plan: Any) -> list[tuple[float, float]]:

@@ -10,11 +10,11 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _edit, _images, _look, _pickle, _projections, _save, _show, _source
+from . import _arrays, _command, _edit, _images, _look, _pickle, _projections, _save, _scatter, _show, _source
 from ._device import Device
 from ._frames import Batch
-from ._interface import ENUMS, ArgumentError, SceneError
-from ._library import call, choice, encode, ffi, filled, lib, listed, struct
+from ._interface import ArgumentError, SceneError
+from ._library import call, encode, ffi, filled, listed, struct
 from ._picture import write_picture
 from ._progress import Progress
 from ._state import State
@@ -148,7 +148,8 @@ class Scene:
         counted from 0 on, so that each has noise of its own, and with noise_seed, frames of each call, so that a call
         with a seed can be repeated. out: an array to write to.
         options: others of the library's skg_plan_options, such as noise=True, supersampling=2, bands=[20, 40, 60]
-        (edges in keV), spot={"shape": "disc", "extent": 0.6}, response=, world=, repair="exact".
+        (edges in keV), spot={"shape": "disc", "extent": 0.6}, response=, world=, repair="exact",
+        scatter=0.01 (scattered photons, to this error of their mean; {"histories": 1e6}; False for none).
         """
         batch = Batch(1, index=_images.number_frames(self._state, 1, index, options))
         return _images.render(self._state, batch, out, False, True, unit, quantity=quantity, precision=precision,
@@ -197,19 +198,17 @@ class Scene:
             for name in wanted:  # all of them, before the first is computed
                 self._state.number(name)
             return {name: self.lengths(name, kind, **given) for name in wanted}
-        one = poses is None and views is None
-        batch = Batch(1) if one else _images.batch_of(self._state, poses, views)
-        part, what = self._state.number(label), choice("lengths", kind, "kind")
+        return _images.lengths(self._state, label, kind, poses, views, out, progress, {"precision": precision, **options})
 
-        def submit(plan: Any) -> Any:
-            def start(count: int, frames: Any, output: Any, job: Any) -> int:
-                output.kind, output.part, output.lengths = ENUMS["output_kind"]["lengths"], part, what
-                return int(lib.skg_plan_submit(plan, count, frames, output, job))
+    def scatter(self, tolerance: float | None = None, *, histories: float | None = None, quantity: str | None = None,
+                **options: Any) -> dict[str, Any]:
+        """The scattered part of an image, by itself.
 
-            return start
-
-        with self._state.calls():
-            return _images.compute(self._state, submit, batch, out, progress, one, False, {"precision": precision, **options})
+        tolerance: its standard error over its mean; histories: instead, the number of photons. Without both, as the file
+        says, or 0.01. The rest is as in image(). Returns "image", the scatter, "sigma", its standard error, and "total", the
+        image with it, [row, column], and numbers: docs/python.md lists them.
+        """
+        return _scatter.planes(self._state, quantity, {**options, "scatter": _scatter.accuracy(tolerance, histories)})
 
     # Scans
 

@@ -83,7 +83,7 @@ int cli_check_overwrite(const cli_arguments *arguments, const char *path) {
         exit_status = check(arguments->operands[i], path, &there);
     for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++) {
         const struct cli_given *given = &arguments->given[i];
-        if (given->flag->names == CLI_NAMES_FILE && strcmp(given->flag->name, "-o") != 0)
+        if (given->flag->names == CLI_NAMES_FILE && !cli_flag_is_output(given->flag))
             exit_status = check(given->value, path, &there);
     }
     return exit_status;
@@ -93,7 +93,7 @@ int cli_check_overwrites(const cli_arguments *arguments) {
     if (arguments->manual->checks_outputs) return CLI_DONE;
     int exit_status = CLI_DONE;
     for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++)
-        if (strcmp(arguments->given[i].flag->name, "-o") == 0)
+        if (cli_flag_is_output(arguments->given[i].flag))
             exit_status = cli_check_overwrite(arguments, arguments->given[i].value);
     return exit_status;
 }

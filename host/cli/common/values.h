@@ -12,7 +12,7 @@
  * did not write: its files name it. Inputs are the operands and the files of flags. */
 int cli_check_overwrite(const cli_arguments *arguments, const char *path);
 
-/* Checks the files of every -o. */
+/* Checks every file that flags name as an output. */
 int cli_check_overwrites(const cli_arguments *arguments);
 
 /* Opens the device of --device. The caller releases the context, which is nevertheless held until the process ends. */

@@ -60,6 +60,8 @@ static int look_at_breath(cost_study *study) {
 
 int cost_open(cost_study *study) {
     int exit_status = cli_open_session(study->arguments, 0, &study->session);
+    study->has_scatter = study->session.options.scatter != NULL;
+    study->session.options.scatter = NULL; /* its noise would hide the errors of the primary */
     if (exit_status == CLI_DONE) exit_status = look_at_scene(study);
     if (exit_status == CLI_DONE) exit_status = look_at_beam(study);
     if (exit_status == CLI_DONE) exit_status = look_at_breath(study);

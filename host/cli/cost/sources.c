@@ -204,8 +204,11 @@ static void name_unknown(const cost_study *study, int number, cost_source *sourc
     const char *label = "";
     const int64_t parts = cost_count_unknown(study, &label);
     if (number == COST_SOURCE_SCATTER)
-        snprintf(source->reason, sizeof source->reason,
-                 "the image has directly transmitted photons only: scattered ones are not simulated here");
+        snprintf(
+            source->reason, sizeof source->reason, "%s",
+            study->has_scatter
+                ? "the scene has Scatter; errors and times are those of its images without it"
+                : "the image has directly transmitted photons only; the key Scatter adds scattered ones");
     else if (study->is_thorax < 0)
         snprintf(source->reason, sizeof source->reason,
                  "not known while the time does not suffice to measure the triangles");

@@ -193,6 +193,7 @@ typedef struct {
     cost_setting own;  /* the scene's own setting */
     int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
     int has_tube, has_energies, has_spot, has_leaky, has_breath;
+    int has_scatter;       /* 1: the scene has it, and images are computed without */
     int64_t triangles;     /* of the scene */
     skg_body_options body; /* if has_breath */
     struct {

@@ -31,6 +31,20 @@ const cli_flag cli_flag_image_band_weight = {
     "How photons count in the transmission and attenuation of bands, in the place of BandWeight of the scene.",
     weights, CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_image_scatter = {
+    "--scatter", "ERROR|histories=N",
+    "Adds scattered photons, to a standard error of the scatter over its mean, such as 0.01, or with N histories. The "
+    "flag overrides the accuracy of the scene's key Scatter.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_image_scatter_image = {
+    "--scatter-image", "FILE",
+    "The file for the scattered part of the image, in any format of -o, without noise and blur. Scatter is then simulated "
+    "also without the key, with an error of 1 %.",
+    NULL, CLI_NAMES_OUTPUT};
+const cli_flag cli_flag_image_scatter_sigma = {
+    "--scatter-sigma", "FILE", "Likewise the file for the standard error of the scatter in each pixel.", NULL,
+    CLI_NAMES_OUTPUT};
+
 static const char *const text[] = {
     "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
     "and --range. A .tif or .mha holds floats, or doubles with --precision double; a .mha also holds the "
@@ -38,23 +52,44 @@ static const char *const text[] = {
     "With --bands the image has one channel for each band: a .tif has a page for each, a .mha a component; a .png "
     "shows the first. Energy and fluence of a band are in keV; photons, transmission and attenuation count photons. "
     "A file appears whole or not at all.",
+    "With --scatter, or the key Scatter in the scene, photons that the parts scatter are added before noise and blur. "
+    "Images of an attenuation or a transmission have the scatter as a share of the flat field. --repeat then times frames "
+    "of the same scene, whose scatter is computed once. A .png of the scatter follows its values linearly.",
     cli_text_meshes,
-    "--json prints {frame_ms, first_ms, plan_ms, stages, range, window, files, plan}; times are in ms; range has the least and "
-    "the largest value of each channel, and window what a .png shows as black and as white.",
+    "--json prints {frame_ms, first_ms, plan_ms, stages, range, window, files, scatter, plan}; times are in ms; range has the "
+    "least and the largest value of each channel, and window what a .png shows as black and as white. scatter is null without "
+    "scatter, otherwise {mean, ratio, sigma, histories, seconds, cosines, orders, kinds}: the mean over the detector, the mean "
+    "over that of the primary, the standard error, the shares of one, two, and more interactions, and those of rayleigh and "
+    "compton.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_output,        &cli_flag_image_quantity,
-                                        &cli_flag_image_bands,   &cli_flag_image_band_weight,
-                                        &cli_flag_image_display, &cli_flag_range,
-                                        &cli_flag_repeat,        &cli_flag_meshes_material,
-                                        &cli_flag_meshes_kvp,    &cli_flag_meshes_kev,
-                                        &cli_flag_meshes_filter, &cli_flag_meshes_from,
-                                        &cli_flag_mesh_unit,     &cli_flag_device,
-                                        &cli_flag_precision,     &cli_flag_tolerance,
-                                        &cli_flag_strategy,      &cli_flag_set,
-                                        &cli_flag_lenient,       &cli_flag_json,
-                                        &cli_flag_verbose,       &cli_flag_strict,
-                                        &cli_flag_quiet,         NULL};
+static const cli_flag *const flags[] = {&cli_flag_output,
+                                        &cli_flag_image_quantity,
+                                        &cli_flag_image_bands,
+                                        &cli_flag_image_band_weight,
+                                        &cli_flag_image_scatter,
+                                        &cli_flag_image_scatter_image,
+                                        &cli_flag_image_scatter_sigma,
+                                        &cli_flag_image_display,
+                                        &cli_flag_range,
+                                        &cli_flag_repeat,
+                                        &cli_flag_meshes_material,
+                                        &cli_flag_meshes_kvp,
+                                        &cli_flag_meshes_kev,
+                                        &cli_flag_meshes_filter,
+                                        &cli_flag_meshes_from,
+                                        &cli_flag_mesh_unit,
+                                        &cli_flag_device,
+                                        &cli_flag_precision,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_strategy,
+                                        &cli_flag_set,
+                                        &cli_flag_lenient,
+                                        &cli_flag_json,
+                                        &cli_flag_verbose,
+                                        &cli_flag_strict,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item examples[] = {
     {"skiagraph image bunny.stl --material Al --kvp 120 -o bunny.png",
@@ -63,6 +98,8 @@ static const cli_item examples[] = {
     {"skiagraph image scene.json -o image.mha --quantity attenuation --precision double",
      "writes -ln(I/I0) as doubles"},
     {"skiagraph image scene.json -o bands.tif --bands 20,40,60", "writes two photon-counting channels"},
+    {"skiagraph image scene.json --scatter 0.01 -o total.mha --scatter-image scatter.mha",
+     "writes an image with scattered photons, and these alone"},
     {"skiagraph image scene.json --repeat 100", "measures the times of 100 frames and writes nothing"},
     {NULL, NULL}};
 

@@ -1,6 +1,11 @@
 #include "manual/manual.h"
 
 #include <stdio.h>
+#include <string.h>
+
+int cli_flag_is_output(const cli_flag *flag) {
+    return flag->names == CLI_NAMES_OUTPUT || strcmp(flag->name, "-o") == 0;
+}
 
 int cli_flag_has_value(const cli_flag *flag) {
     return flag->argument || flag->values;

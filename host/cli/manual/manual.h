@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* What a value or an operand names, for completion. */
-enum { CLI_NAMES_NOTHING, CLI_NAMES_FILE, CLI_NAMES_FOLDER, CLI_NAMES_SCENE };
+/* What a value or an operand names, for completion. CLI_NAMES_OUTPUT: a file that is written, by another flag than -o. */
+enum { CLI_NAMES_NOTHING, CLI_NAMES_FILE, CLI_NAMES_FOLDER, CLI_NAMES_SCENE, CLI_NAMES_OUTPUT };
 
 /* A name or a number and what it means. Lists end with a row whose name is NULL. */
 typedef struct {
@@ -38,6 +38,9 @@ typedef struct {
     int checks_outputs;           /* it refuses outputs that are not its own itself */
 } cli_manual;
 
+/* Whether the value of a flag is a file that is written. */
+int cli_flag_is_output(const cli_flag *flag);
+
 /* Whether a value follows the flag, and what the help calls it: "FILE", "single|double|half". */
 int cli_flag_has_value(const cli_flag *flag);
 void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
@@ -62,7 +65,8 @@ extern const char cli_text_meshes[];                /* a paragraph on them */
 
 /* Flags of one verb. */
 extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
-    cli_flag_image_band_weight;
+    cli_flag_image_band_weight, cli_flag_image_scatter, cli_flag_image_scatter_image,
+    cli_flag_image_scatter_sigma;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames;
 extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;

@@ -12,6 +12,7 @@ static void put_words(const cli_item *items, FILE *stream) {
 static void put_names(int names, FILE *stream) {
     static const char *const commands[] = {[CLI_NAMES_NOTHING] = ":",
                                            [CLI_NAMES_FILE] = "_skiagraph_files -f",
+                                           [CLI_NAMES_OUTPUT] = "_skiagraph_files -f",
                                            [CLI_NAMES_FOLDER] = "_skiagraph_files -d",
                                            [CLI_NAMES_SCENE] =
                                                "_skiagraph_files -d; _skiagraph_files -f -X '!*.json'"};

@@ -183,6 +183,8 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &a->session);
     if (exit_status != CLI_DONE) return exit_status;
     a->session.options.quantity = quantity;
+    if (a->session.options.scatter)
+        a->options.batch = 1; /* each waits: so progress moves, and Ctrl-C is heard */
     a->options.type =
         a->session.options.precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     skg_status status = skg_setup_scan_get(a->session.setup, &a->scan);
@@ -214,8 +216,9 @@ int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
 
 static int run_alone(cli_acquisition *a) {
     skg_scan_run *run = NULL;
+    const double begun_ms = cli_now_ms(); /* a run computes from its creation on */
     skg_status status = skg_scan_run_create(a->plan, a->scan, &a->options, &run);
-    if (status == SKG_OK) status = write_batches(a, run);
+    if (status == SKG_OK) status = write_batches(a, run, begun_ms);
     skg_scan_run_release(&run);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }

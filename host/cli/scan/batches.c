@@ -21,8 +21,7 @@ skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count) {
     return SKG_OK;
 }
 
-skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
-    const double start = cli_now_ms();
+skg_status write_batches(cli_acquisition *a, skg_scan_run *run, double begun_ms) {
     int64_t count = 1;
     skg_status status = SKG_OK;
     cli_progress_follow("projections");
@@ -30,6 +29,6 @@ skg_status write_batches(cli_acquisition *a, skg_scan_run *run) {
     cli_progress_end();
     a->is_stopped = status == SKG_ERR_CANCELLED;
     if (a->is_stopped) status = SKG_OK;
-    a->seconds = 1e-3 * (cli_now_ms() - start);
+    a->seconds = 1e-3 * (cli_now_ms() - begun_ms);
     return status;
 }

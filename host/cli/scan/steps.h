@@ -17,8 +17,8 @@ void acquisition_close(cli_acquisition *a);
 /* Computes and writes the next batch of a run. count: its projections; 0: the run is finished */
 skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count);
 
-/* Computes and writes a run, batch after batch. */
-skg_status write_batches(cli_acquisition *a, skg_scan_run *run);
+/* Computes and writes a run, batch after batch. begun_ms: when the run was created, by cli_now_ms */
+skg_status write_batches(cli_acquisition *a, skg_scan_run *run, double begun_ms);
 
 /* Computes and writes the missing projections together with the other ranks. Returns an exit status that all ranks
  * agree on. */

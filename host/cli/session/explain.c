@@ -280,6 +280,18 @@ static void print_strategy(const skg_plan_report *report) {
                report->triangles_per_tile);
 }
 
+static void print_left_out(const cli_session *session) {
+    if (session->options.scatter)
+        printf(
+            "\nTransmitted photons, and those that the parts scatter (Compton, Rayleigh). Left out are fluorescence, the "
+            "order of\nmolecules, and what air, filters, jaws and the detector scatter.\n");
+    else
+        printf(
+            "\nDirectly transmitted photons only. Scatter is off: it is 7.7 %% of the primary behind 2 cm of bone in a 3 cm "
+            "cube of\nsoft tissue, and 6 to 11 times the primary below the diaphragm of a thorax without a grid. \"Scatter\": "
+            "0.01 adds it.\n");
+}
+
 void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     skg_plan_report report;
     skg_plan_report_init(&report);
@@ -306,7 +318,5 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     print_nodes(plan, &report);
     print_stages(plan);
     print_overlaps(plan, session->scene);
-    printf(
-        "\nDirectly transmitted photons only. Scatter is not simulated: it is 7.7 %% of the primary behind 2 cm of bone\n"
-        "in a 3 cm cube of soft tissue, and 6 to 11 times the primary below the diaphragm of a thorax without a grid.\n");
+    print_left_out(session);
 }

@@ -33,13 +33,35 @@ static int has_window(const cli_rendering *rendering) {
     return 0;
 }
 
+/* The output `index`, of any flag; NULL: there are no more. */
+static const char *nth_output(const cli_arguments *arguments, int index) {
+    for (int i = 0; i < arguments->given_count; i++)
+        if (cli_flag_is_output(arguments->given[i].flag) && index-- == 0) return arguments->given[i].value;
+    return NULL;
+}
+
 /* How many outputs are standard output. */
 static int count_streams(const cli_arguments *arguments) {
     const char *path;
     int count = 0;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++)
-        count += strcmp(path, "-") == 0;
+    for (int i = 0; (path = nth_output(arguments, i)); i++) count += strcmp(path, "-") == 0;
     return count;
+}
+
+/* Pictures of different things need different files. */
+static int check_twins(const cli_arguments *arguments) {
+    for (int i = 0; i < arguments->given_count; i++) {
+        const struct cli_given *one = &arguments->given[i];
+        if (!cli_flag_is_output(one->flag) || strcmp(one->value, "-") == 0) continue;
+        for (int j = 0; j < i; j++) {
+            const struct cli_given *other = &arguments->given[j];
+            if (one->flag != other->flag && cli_flag_is_output(other->flag) &&
+                strcmp(one->value, other->value) == 0)
+                return cli_error(CLI_USAGE, "%s %s: %s writes this file; name another one", one->flag->name,
+                                 one->value, other->flag->name);
+        }
+    }
+    return CLI_DONE;
 }
 
 int cli_check_outputs(const cli_arguments *arguments) {
@@ -48,13 +70,15 @@ int cli_check_outputs(const cli_arguments *arguments) {
     int exit_status = read_repeats(arguments, &repeats);
     if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &low, &high);
     if (exit_status != CLI_DONE) return exit_status;
-    if (!cli_given(arguments, &cli_flag_output) && !repeats)
+    exit_status = check_twins(arguments);
+    if (exit_status != CLI_DONE) return exit_status;
+    if (!nth_output(arguments, 0) && !repeats)
         return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif or .mha)",
                          arguments->manual->name);
     if (count_streams(arguments) + cli_given(arguments, &cli_flag_json) > 1)
         return cli_error(CLI_USAGE, "standard output takes one thing: -o - once, or --json");
     const char *path;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++) {
+    for (int i = 0; (path = nth_output(arguments, i)); i++) {
         skg_status status = skg_picture_path_check(path);
         if (status != SKG_OK) return cli_fail(status);
     }
@@ -112,7 +136,7 @@ static void add_outputs(const cli_rendering *rendering, json_t *object) {
         find_range(&rendering->picture, c, &ends[0], &ends[1]);
         json_array_append_new(ranges, cli_json_numbers(ends, 2));
     }
-    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
+    for (int i = 0; (path = nth_output(rendering->arguments, i)); i++)
         json_array_append_new(files, cli_json_text(path));
     json_object_set_new(object, "range", ranges);
     if (has_window(rendering)) {
@@ -128,11 +152,14 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
         json_t *object = json_object();
         cli_times_json(times, object);
         add_outputs(rendering, object);
+        if (rendering->scattering)
+            json_object_set_new(object, "scatter", cli_scattering_json(plan, &rendering->picture));
         json_object_set_new(object, "plan", cli_explain_json(plan, &rendering->session));
         return cli_json_print(object);
     }
     if (cli_is_quiet() || count_streams(rendering->arguments) > 0) return CLI_DONE;
     print_values(&rendering->picture);
+    if (rendering->scattering) cli_scattering_print(plan, &rendering->picture);
     cli_times_print(times);
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
         cli_print("wrote %s", path);
@@ -143,6 +170,8 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
                 rendering->picture.low, rendering->picture.high, 100 * OUTSIDE, 100 - 100 * OUTSIDE);
         putchar('\n');
     }
+    for (int i = 0; rendering->scattering && i < CLI_SCATTERED_COUNT; i++)
+        if (rendering->scattering->paths[i]) cli_print("wrote %s\n", rendering->scattering->paths[i]);
     return CLI_DONE;
 }
 
@@ -223,10 +252,14 @@ int cli_render(cli_rendering *rendering) {
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);
     if (exit_status == CLI_DONE) exit_status = name_channels(rendering, plan);
     if (exit_status == CLI_DONE) exit_status = allocate_frame(rendering, &output);
+    if (exit_status == CLI_DONE && rendering->scattering)
+        exit_status = cli_scattering_allocate(session, output.type, rendering->scattering);
     if (exit_status == CLI_DONE)
         exit_status = cli_run_frames(plan, rendering->frame, &output, rendering->frame_user, &times);
     if (exit_status == CLI_DONE && has_window(rendering)) exit_status = find_window(&rendering->picture);
     if (exit_status == CLI_DONE) exit_status = write_files(rendering);
+    if (exit_status == CLI_DONE && rendering->scattering)
+        exit_status = cli_scattering_write(rendering->scattering, &rendering->picture);
     if (exit_status == CLI_DONE) exit_status = print_rendering(rendering, plan, &times);
     free(output.data);
     skg_plan_release(&plan);

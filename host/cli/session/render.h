@@ -3,6 +3,7 @@
 #define SKG_CLI_RENDER_H
 
 #include "session/frames.h"
+#include "session/scattering.h"
 #include "session/session.h"
 
 /* What a verb fills in before cli_render. */
@@ -12,7 +13,8 @@ typedef struct {
     cli_frame frame;
     const void *frame_user;
     const char *channel_names[SKG_CHANNELS_MAX];
-    int lengths; /* 1: path lengths, which have one channel whatever the plan's images have */
+    cli_scattering *scattering; /* of an image; NULL: path lengths */
+    int lengths;                /* 1: path lengths, which have one channel whatever the plan's images have */
     skg_picture
         picture; /* quantity and display, for path lengths also name and unit; cli_render fills in the rest */
 } cli_rendering;

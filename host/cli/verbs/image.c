@@ -30,13 +30,12 @@ static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_
     return CLI_DONE;
 }
 
-static skg_status one_image(skg_plan *plan, const skg_output *output, const void *user) {
-    (void)user;
-    return skg_plan_image(plan, output);
-}
-
 int cli_image(const cli_arguments *arguments) {
-    cli_rendering rendering = {.arguments = arguments, .frame = one_image};
+    cli_scattering scattering = {0};
+    cli_rendering rendering = {.arguments = arguments,
+                               .frame = cli_scattering_frame,
+                               .frame_user = &scattering,
+                               .scattering = &scattering};
     int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH, weight = -1;
     double edges[SKG_CHANNELS_MAX + 1];
     int64_t bands = 0;
@@ -46,9 +45,11 @@ int cli_image(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = read_bands(arguments, edges, &bands);
     if (exit_status == CLI_DONE && weight >= 0 && bands == 0)
         exit_status = cli_error(CLI_USAGE, "--band-weight weighs the photons of bands; add --bands");
+    if (exit_status == CLI_DONE) exit_status = cli_scattering_read(arguments, &scattering);
     if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &rendering.session);
     if (exit_status == CLI_DONE) {
+        cli_scattering_ask(&scattering, &rendering.session);
         rendering.session.options.quantity = quantity;
         rendering.session.options.bands = bands;
         rendering.session.options.band_kev = edges;
@@ -59,5 +60,6 @@ int cli_image(const cli_arguments *arguments) {
         exit_status = cli_render(&rendering);
     }
     cli_close_session(&rendering.session);
+    cli_scattering_free(&scattering);
     return exit_status;
 }

@@ -37,6 +37,7 @@ int cli_lbuffer(const cli_arguments *arguments) {
         if (status != SKG_OK) exit_status = cli_fail(status);
     }
     if (exit_status == CLI_DONE) {
+        rendering.session.options.scatter = NULL; /* lengths have none, and it is not for every scene */
         skg_picture_init(&rendering.picture);
         rendering.picture.name = "path length";
         rendering.picture.unit = "mm";

@@ -66,7 +66,7 @@ static const key_rule rules[] = {
     {"acquisition.dark_field.*", READ, NULL},
     {"acquisition.flat_field.*", READ, NULL},
     {"acquisition.pixel_binning.*", READ, NULL},
-    {"acquisition.scattering", IGNORED, "images have primary photons only"},
+    {"acquisition.scattering", IGNORED, "its photons are added by `image --scatter 0.01` only"},
     {"materials", READ, NULL},
     {"simulation.*", DOCUMENTS, NULL},
 };

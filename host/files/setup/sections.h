@@ -64,6 +64,9 @@ void skg_setup_in_beam_free(skg_setup *setup);
  * detector. */
 skg_status skg_setup_read_collimation(skg_setup_reader *reader, const skg_json_node *node, int has_view);
 
+/* The key Scatter (value NULL: none). */
+skg_status skg_setup_read_scatter(skg_setup_reader *reader, const skg_json_node *node);
+
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
 

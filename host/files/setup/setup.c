@@ -24,6 +24,7 @@ static const skg_json_key top_keys[] = {
     {"Noise", NULL, SKG_KEY_READ},
     {"Falloff", NULL, SKG_KEY_READ},
     {"Collimation", NULL, SKG_KEY_READ},
+    {"Scatter", NULL, SKG_KEY_READ},
     {"BandWeight", NULL, SKG_KEY_READ},
     {"World", NULL, SKG_KEY_READ},
     {"Repair", NULL, SKG_KEY_READ},
@@ -161,6 +162,8 @@ static skg_status read_all(skg_setup_reader *reader) {
     if (falloff.value) SKG_TRY(skg_json_flag(&falloff, &reader->setup->falloff));
     const skg_json_node collimation = skg_json_member(&top, "Collimation");
     SKG_TRY(skg_setup_read_collimation(reader, &collimation, source.value != NULL));
+    const skg_json_node scatter = skg_json_member(&top, "Scatter");
+    SKG_TRY(skg_setup_read_scatter(reader, &scatter));
     SKG_TRY(read_world(reader, &top));
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
@@ -356,6 +359,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->has_bowtie) ours.bowtie = &setup->bowtie;
     if (setup->has_grid) ours.grid = &setup->grid;
     if (setup->has_collimation) ours.collimation = &setup->collimation;
+    if (setup->has_scatter) ours.scatter = &setup->scatter;
     if (setup->oblique) ours.oblique = 1;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;

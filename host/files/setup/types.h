@@ -123,6 +123,8 @@ struct skg_setup {
     int32_t has_bowtie, has_grid;
     skg_collimation collimation;
     int32_t has_collimation;
+    skg_scatter scatter;
+    int32_t has_scatter;
     int32_t oblique;       /* 1: rays cross the scintillator obliquely */
     int32_t supersampling; /* rays along a side of a pixel */
     skg_view view;         /* of the first projection */

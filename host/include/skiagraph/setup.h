@@ -183,7 +183,7 @@ SKG_API skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_
  *
  *     options   in and out: prepared with skg_plan_options_init; fields of which the file says nothing stay
  *
- * Response, world, spot, heel, bow-tie, grid, collimation, blurs, DQE and views are valid as long as the set-up. Falloff is as the key
+ * Response, world, spot, heel, bow-tie, grid, collimation, scatter, blurs, DQE and views are valid as long as the set-up. Falloff is as the key
  * Falloff says; without the key it follows the beam. The views are a sample of those of the scan. */
 SKG_API skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *options);
 

@@ -239,5 +239,18 @@ skg_status lengths(const plan &by, std::int64_t part, std::span<Pixel> to,
     return detail::started(status, submitted).wait();
 }
 
+/** Computes the scattered part of an image, [row][column], and its standard error if `sigma` is not empty. The plan needs
+ * skg_plan_options.scatter. */
+template <class Pixel> skg_status scatter(const plan &by, std::span<Pixel> to, std::span<Pixel> sigma = {}) {
+    skg_job *submitted = nullptr;
+    skg_output outputs[] = {detail::dense(to.data(), detail::type_of(to.data())),
+                            detail::dense(sigma.data(), detail::type_of(sigma.data()))};
+    outputs[0].kind = SKG_OUTPUT_SCATTER;
+    outputs[1].kind = SKG_OUTPUT_SCATTER_SIGMA;
+    const skg_status status =
+        skg_plan_outputs_submit(by, 1, nullptr, sigma.empty() ? 1 : 2, outputs, &submitted);
+    return detail::started(status, submitted).wait();
+}
+
 } // namespace skiagraph
 #endif

@@ -1,0 +1,68 @@
+"""Scattered photons: the option, the planes of an image and what is reported of them. Private."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._frames import Batch
+from ._images import compute, number_frames
+from ._interface import ENUMS, ArgumentError
+from ._library import ffi, lib, struct
+from ._state import State
+from .report import scatter_report
+
+#: What the planes of an image are.
+_KINDS = {"total": "image", "image": "scatter", "sigma": "scatter_sigma"}
+
+
+def accuracy(tolerance: float | None, histories: float | None) -> Any:
+    """The option scatter of an image, from the arguments of scene.scatter()."""
+    if tolerance is not None and histories is not None:
+        raise ArgumentError("tolerance and histories exclude each other: with a tolerance, the number of histories "
+                            "follows; give one of them")
+    if histories is not None:
+        return {"histories": histories}
+    return True if tolerance is None else tolerance
+
+
+def planes(state: State, quantity: str | None, options: dict[str, Any]) -> dict[str, Any]:
+    """The scattered part of an image, its standard error, the image, and what is reported of the scatter."""
+    if options.get("bands") is not None:
+        raise ArgumentError("scatter has one channel; leave bands= out")
+    batch = Batch(1, index=number_frames(state, 1, None, options))
+    dtype = np.float64 if options.get("precision") == "double" else np.float32
+    found = np.empty((len(_KINDS), *state.require_view().shape), dtype)
+    used: list[Any] = []
+
+    def submit(plan: Any) -> Any:
+        used.append(plan)
+
+        def start(count: int, frames: Any, output: Any, job: Any) -> int:
+            outputs = struct("skg_output", len(_KINDS))
+            for i, kind in enumerate(_KINDS.values()):
+                outputs[i] = output[0]
+                outputs[i].kind = ENUMS["output_kind"][kind]
+                outputs[i].data = ffi.cast("void *", found[i].__array_interface__["data"][0])
+            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(_KINDS), outputs, job))
+
+        return start
+
+    with state.calls():
+        compute(state, submit, batch, found[0], False, True, False, {"quantity": quantity, **options})
+        report = scatter_report(used[-1])
+    assert report is not None  # a frame was rendered
+    return {**dict(zip(_KINDS, found)), **_summary(report, found[0], quantity)}
+
+
+def _summary(report: Mapping[str, Any], total: Any, quantity: str | None) -> dict[str, Any]:
+    """The numbers, with those that follow from the image."""
+    image = np.exp(-total.astype(float)) if quantity == "attenuation" else total
+    mean = report["mean"]
+    primary = float(np.mean(image, dtype=float)) - mean
+    return {"mean": mean, "error": report["sigma"] / mean if mean > 0 else 0.0,
+            "ratio": mean / primary if primary > 0 else float("inf") if mean > 0 else 0.0,
+            "orders": report["orders"],
+            "kinds": {"rayleigh": report["rayleigh"], "compton": 1 - report["rayleigh"] if mean > 0 else 0.0},
+            **{name: report[name] for name in ("histories", "seconds", "cosines", "cells", "mixture_error")}}
