@@ -60,7 +60,7 @@ SKG_EFFECT_ROWS(SKG_EFFECT_DECLARE)
 enum { SKG_EFFECTS = SKG_EFFECT_ROWS(SKG_EFFECT_ONE) };
 #undef SKG_EFFECT_ONE
 
-/* Fails if the scatter that the options ask for cannot be computed of the scene. Whether priorities may decide is known. */
+/* Fails if the scatter that the options ask for cannot be computed of the scene. */
 skg_status skg_scatter_check(const skg_recipe *recipe);
 
 /* Sets whether an effect is on, and why. */

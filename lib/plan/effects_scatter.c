@@ -50,7 +50,6 @@ static const char *find_conflict(const skg_plan_options *o) {
            : o->bands > 1  ? "several bands; take one"
            : o->depth_blur ? "a blur by depths; take one blur"
            : o->dqe        ? "a DQE; take a Swank factor"
-           : o->clip       ? "clipped children; put each part inside its parent"
                            : NULL;
 }
 
@@ -82,10 +81,6 @@ skg_status skg_scatter_check(const skg_recipe *recipe) {
                 "the scatter",
                 scene->parts[i].label);
     }
-    if (recipe->priority_possible)
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "scatter is not simulated where priorities decide between parts; put one part inside the other");
     for (int64_t i = 0; i < recipe->spectrum->count; i++)
         if (recipe->spectrum->photons[i] > 0 && recipe->spectrum->energy_kev[i] > HIGHEST_KEV)
             return skg_fail(SKG_ERR_UNSUPPORTED,

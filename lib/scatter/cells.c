@@ -7,34 +7,110 @@
 /* Units of a coefficient: sums of 2^22 hits fit in 63 bits. */
 static const double UNIT = 0x1p40;
 
+typedef int64_t amount[SKG_SCATTER_RANK];
+
 typedef struct {
-    int64_t count;
-    const skg_solid *solids;
-    const int32_t *sign;
-    int64_t (*amounts)[SKG_SCATTER_RANK]; /* [count] */
+    const skg_cell_parts *parts;
+    amount *amounts; /* [parts] */
     const skg_columns *grid;
     const skg_column_rows *rows;
     skg_cells *cells;
 } filling;
 
-static void add(int64_t *sum, const int64_t *amount, int64_t factor) {
-    for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] += factor * amount[k];
+/* One column of cells. own: [z] of the hits in each; behind: [z + 1] what begins before each, for all behind. */
+typedef struct {
+    const skg_cells *cells;
+    amount *own, *behind;
+    int64_t *parts; /* [2][parts] workspace */
+} pile;
+
+static void add(int64_t *sum, const int64_t *more, int64_t factor) {
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] += factor * more[k];
 }
 
-/* Adds one column's hits. sums: [z + 1] what each cell has of its own hits alone, and what begins in it for all behind. */
-static void add_column(const filling *f, const skg_columns *grid, int64_t column,
-                       int64_t (*own)[SKG_SCATTER_RANK], int64_t (*behind)[SKG_SCATTER_RANK]) {
-    const int64_t cells = f->cells->count[2];
-    const double per_mm = (double)cells / f->cells->size[2];
+/* From a depth on there is more. */
+static void deposit(const pile *p, double depth, const int64_t *more, int64_t factor) {
+    const int64_t cells = p->cells->count[2];
+    const double place = (depth - p->cells->low[2]) * (double)cells / p->cells->size[2];
+    const int64_t cell = place < 0 ? 0 : place < (double)cells ? (int64_t)place : cells - 1;
+    const double rest = fmin(fmax((double)(cell + 1) - place, 0), 1);
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) p->own[cell][k] += factor * llrint((double)more[k] * rest);
+    add(p->behind[cell + 1], more, factor);
+}
+
+/* --- parts that compete */
+
+/* The parts that a column is in, and how many times. */
+typedef struct {
+    int64_t count;
+    int64_t *part, *times; /* [parts] */
+} inside;
+
+static int64_t find(const inside *in, int64_t part) {
+    for (int64_t i = 0; i < in->count; i++)
+        if (in->part[i] == part) return i;
+    return -1;
+}
+
+static void pass(inside *in, int64_t part, int64_t sign) {
+    const int64_t i = find(in, part);
+    if (i < 0) {
+        in->part[in->count] = part;
+        in->times[in->count++] = sign;
+    } else if ((in->times[i] += sign) == 0) {
+        in->count--;
+        in->part[i] = in->part[in->count];
+        in->times[i] = in->times[in->count];
+    }
+}
+
+/* Whether a part counts where the column is: neither it nor what it lies in is displaced by one of higher priority with the same
+ * parent, or is clipped. */
+static int counts(const skg_cell_parts *parts, const inside *in, int64_t part) {
+    for (int64_t p = part; p >= 0; p = parts->solids[p].inside) {
+        const int64_t parent = parts->solids[p].inside;
+        if (find(in, p) < 0) {
+            if (parts->clip) return 0;
+            continue;
+        }
+        for (int64_t i = 0; i < in->count; i++)
+            if (parts->solids[in->part[i]].inside == parent &&
+                parts->priority[in->part[i]] > parts->priority[p])
+                return 0;
+    }
+    return 1;
+}
+
+static void sum_up(const filling *f, const inside *in, int64_t *sum) {
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] = 0;
+    for (int64_t i = 0; i < in->count; i++)
+        if (counts(f->parts, in, in->part[i])) add(sum, f->amounts[in->part[i]], in->times[i]);
+}
+
+static void settle_column(const filling *f, skg_columns *grid, int64_t column, const pile *p) {
+    inside in = {0, p->parts, p->parts + f->parts->count};
+    amount before = {0};
+    skg_columns_sort(grid, column);
     for (int64_t h = grid->first[column]; h < grid->first[column + 1]; h++) {
         const skg_column_hit *hit = &grid->hits[h];
-        const int64_t *amount = f->amounts[hit->part];
-        const int64_t sign = hit->sign * f->sign[hit->part];
-        const double place = (hit->depth - f->cells->low[2]) * per_mm;
-        const int64_t cell = place < 0 ? 0 : place < (double)cells ? (int64_t)place : cells - 1;
-        const double rest = fmin(fmax((double)(cell + 1) - place, 0), 1);
-        for (int k = 0; k < SKG_SCATTER_RANK; k++) own[cell][k] += sign * llrint((double)amount[k] * rest);
-        add(behind[cell + 1], amount, sign);
+        amount now, more;
+        pass(&in, hit->part, hit->sign * f->parts->sign[hit->part]);
+        sum_up(f, &in, now);
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) more[k] = now[k] - before[k], before[k] = now[k];
+        deposit(p, hit->depth, more, 1);
+    }
+}
+
+/* --- all cells */
+
+static void add_column(const filling *f, skg_columns *grid, int64_t column, const pile *p) {
+    if (f->parts->priority) {
+        settle_column(f, grid, column, p);
+        return;
+    }
+    for (int64_t h = grid->first[column]; h < grid->first[column + 1]; h++) {
+        const skg_column_hit *hit = &grid->hits[h];
+        deposit(p, hit->depth, f->amounts[hit->part], hit->sign * f->parts->sign[hit->part]);
     }
 }
 
@@ -44,19 +120,22 @@ static skg_status fill_row(void *user, int64_t row) {
     const int64_t side = f->cells->count[0], depth = f->cells->count[2];
     const double each = 1 / (UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
     skg_columns grid = *f->grid;
-    int64_t(*own)[SKG_SCATTER_RANK] = NULL, (*behind)[SKG_SCATTER_RANK] = NULL;
+    amount *own = NULL, *behind = NULL;
+    int64_t *inside_of = NULL;
     skg_status status = SKG_OK;
     grid.first_row = row * SKG_CELL_COLUMNS;
     grid.rows = SKG_CELL_COLUMNS;
-    SKG_TRY_CLEANUP(skg_columns_gather(&grid, f->count, f->solids, f->rows));
+    SKG_TRY_CLEANUP(skg_columns_gather(&grid, f->parts->count, f->parts->solids, f->rows));
+    SKG_TRY_CLEANUP(skg_alloc(2 * f->parts->count, sizeof *inside_of, "cells", &inside_of));
     SKG_TRY_CLEANUP(skg_alloc(side * depth, sizeof *own, "cells", &own));
     SKG_TRY_CLEANUP(skg_alloc(side * (depth + 1), sizeof *behind, "cells", &behind));
     for (int64_t c = 0; c < grid.rows * grid.side; c++) {
         const int64_t x = c % grid.side / SKG_CELL_COLUMNS;
-        add_column(f, &grid, c, own + x * depth, behind + x * (depth + 1));
+        const pile p = {f->cells, own + x * depth, behind + x * (depth + 1), inside_of};
+        add_column(f, &grid, c, &p);
     }
     for (int64_t x = 0; x < side; x++) {
-        int64_t sum[SKG_SCATTER_RANK] = {0};
+        amount sum = {0};
         for (int64_t z = 0; z < depth; z++) {
             float *mixture = f->cells->mixtures[(z * f->cells->count[1] + row) * side + x];
             add(sum, behind[x * (depth + 1) + z], 1);
@@ -66,6 +145,7 @@ static skg_status fill_row(void *user, int64_t row) {
     }
 cleanup:
     skg_columns_free(&grid);
+    skg_free(&inside_of);
     skg_free(&own);
     skg_free(&behind);
     return status;
@@ -84,12 +164,14 @@ static void count_cells(const skg_columns *grid, double voxel_mm, skg_cells *cel
     cells->count[1] = cells->count[0];
 }
 
-static skg_status fill(filling *f, const double (*coefficients)[SKG_SCATTER_RANK]) {
+static skg_status fill(filling *f) {
     skg_cells *cells = f->cells;
+    const skg_cell_parts *parts = f->parts;
     const int64_t total = cells->count[0] * cells->count[1] * cells->count[2];
-    SKG_TRY(skg_alloc(f->count, sizeof *f->amounts, "cells", &f->amounts));
-    for (int64_t i = 0; i < f->count; i++)
-        for (int k = 0; k < SKG_SCATTER_RANK; k++) f->amounts[i][k] = llrint(coefficients[i][k] * UNIT);
+    SKG_TRY(skg_alloc(parts->count, sizeof *f->amounts, "cells", &f->amounts));
+    for (int64_t i = 0; i < parts->count; i++)
+        for (int k = 0; k < SKG_SCATTER_RANK; k++)
+            f->amounts[i][k] = llrint(parts->coefficients[i][k] * UNIT);
     SKG_TRY(skg_alloc(total, sizeof *cells->mixtures, "cells", &cells->mixtures));
     SKG_TRY(skg_parallel(cells->count[1], fill_row, f));
     for (int64_t c = 0; c < total; c++)
@@ -98,20 +180,19 @@ static skg_status fill(filling *f, const double (*coefficients)[SKG_SCATTER_RANK
     return SKG_OK;
 }
 
-skg_status skg_cells_make(int64_t count, const skg_solid *solids, const int32_t *sign,
-                          const double (*coefficients)[SKG_SCATTER_RANK], double voxel_mm, skg_cells *cells) {
+skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells) {
     skg_columns grid = {.side = 1};
     skg_column_rows *rows = NULL;
     *cells = (skg_cells){0};
-    skg_columns_bound(&grid, count, solids);
+    skg_columns_bound(&grid, parts->count, parts->solids);
     if (!(grid.high[0] > grid.low[0] && grid.high[1] > grid.low[1] && grid.high[2] > grid.low[2]))
         return SKG_OK;
     count_cells(&grid, voxel_mm, cells);
     grid.side = grid.rows = cells->count[0] * SKG_CELL_COLUMNS;
     for (int k = 0; k < 2; k++) grid.step[k] = cells->size[k] / (double)grid.side;
-    SKG_TRY(skg_columns_span(&grid, count, solids, &rows));
-    filling f = {.count = count, .solids = solids, .sign = sign, .grid = &grid, .rows = rows, .cells = cells};
-    const skg_status status = fill(&f, coefficients);
+    SKG_TRY(skg_columns_span(&grid, parts->count, parts->solids, &rows));
+    filling f = {.parts = parts, .grid = &grid, .rows = rows, .cells = cells};
+    const skg_status status = fill(&f);
     skg_free(&rows);
     skg_free(&f.amounts);
     return status;

@@ -19,14 +19,19 @@ typedef struct {
     double mean[SKG_SCATTER_RANK]; /* over the cells */
 } skg_cells;
 
-/* Makes the cells of closed solids.
- *
- * sign      [count] 1; -1: the solid's hits have the other sign
- * coefficients   [count] of each solid less those of its parent, per mm
- * voxel_mm  about; 0: SKG_CELLS_DEFAULT cells along each side
- * Without any triangle there are no cells. */
-skg_status skg_cells_make(int64_t count, const skg_solid *solids, const int32_t *sign,
-                          const double (*coefficients)[SKG_SCATTER_RANK], double voxel_mm, skg_cells *cells);
+/* Closed parts. */
+typedef struct {
+    int64_t count;
+    const skg_solid *solids;
+    const int32_t *sign;                            /* 1; -1: the solid's hits have the other sign */
+    const double (*coefficients)[SKG_SCATTER_RANK]; /* of each solid less those of its parent, per mm */
+    const int32_t
+        *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
+    int32_t clip;  /* 1, with priority: a solid counts only inside its parent */
+} skg_cell_parts;
+
+/* Makes the cells of parts. voxel_mm: about; 0: SKG_CELLS_DEFAULT cells along each side. Without any triangle there are no cells. */
+skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells);
 void skg_cells_free(skg_cells *cells);
 
 #endif

@@ -61,7 +61,7 @@ static void find_differences(const skg_scatter_work *work, const palette *p,
 typedef struct {
     skg_solid *solids;  /* [parts] */
     double **positions; /* [parts] */
-    int32_t *sign;
+    int32_t *sign, *priority;
     double (*differences)[SKG_SCATTER_RANK];
 } placed;
 
@@ -70,11 +70,13 @@ static skg_status place(const skg_scatter_work *work, placed *to) {
     SKG_TRY(skg_alloc(scene->count, sizeof *to->solids, "cells", &to->solids));
     SKG_TRY(skg_alloc(scene->count, sizeof *to->positions, "cells", &to->positions));
     SKG_TRY(skg_alloc(scene->count, sizeof *to->sign, "cells", &to->sign));
+    SKG_TRY(skg_alloc(scene->count, sizeof *to->priority, "cells", &to->priority));
     SKG_TRY(skg_alloc(scene->count, sizeof *to->differences, "cells", &to->differences));
     for (int64_t i = 0; i < scene->count; i++) {
         const skg_mesh *mesh = scene->parts[i].mesh;
         const double *pose = skg_scatter_pose(work, i);
         SKG_TRY(skg_solid_place(mesh, pose, scene->parts[i].inside, &to->solids[i], &to->positions[i]));
+        to->priority[i] = scene->parts[i].priority;
         to->sign[i] = (skg_pose_determinant(pose) < 0 ? -1 : 1) * mesh->orientation;
     }
     return SKG_OK;
@@ -85,6 +87,7 @@ static void drop(int64_t count, placed *p) {
     skg_free(&p->positions);
     skg_free(&p->solids);
     skg_free(&p->sign);
+    skg_free(&p->priority);
     skg_free(&p->differences);
 }
 
@@ -97,9 +100,15 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
     SKG_TRY_CLEANUP(make_physics(work, &p, &object->physics));
     SKG_TRY_CLEANUP(place(work, &parts));
     find_differences(work, &p, &object->physics, parts.differences);
-    status = skg_cells_make(work->recipe->scene->count, parts.solids, parts.sign,
-                            (const double(*)[SKG_SCATTER_RANK])parts.differences,
-                            work->recipe->options.scatter->voxel_mm, &object->cells);
+    const skg_cell_parts to_fill = {
+        .count = work->recipe->scene->count,
+        .solids = parts.solids,
+        .sign = parts.sign,
+        .coefficients = (const double(*)[SKG_SCATTER_RANK])parts.differences,
+        .priority = work->recipe->priority_possible ? parts.priority : NULL,
+        .clip = work->recipe->options.clip,
+    };
+    status = skg_cells_make(&to_fill, work->recipe->options.scatter->voxel_mm, &object->cells);
 cleanup:
     drop(work->recipe->scene->count, &parts);
     skg_free(&p.materials);

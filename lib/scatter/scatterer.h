@@ -12,8 +12,8 @@ typedef struct {
     skg_tracing tracing;
     skg_scattered stage;
     skg_scatter_images images;
-    skg_digest key;            /* of the frame they hold for */
-    int32_t known;             /* 1: they hold for it */
+    skg_digest key; /* of the frame they hold for */
+    int32_t known;  /* 1: they hold for it */
     int32_t reserved;
     skg_scatter_report report;
 } skg_scatterer;

@@ -72,7 +72,8 @@ cleanup:
     return status;
 }
 
-skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown, skg_scatter_images *images) {
+skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown,
+                                  skg_scatter_images *images) {
     const skg_scatter_work *work = shown->work;
     const units u = units_of(work);
     const int absolute = skg_quantity_is_absolute(&work->recipe->options);

@@ -9,7 +9,7 @@
 typedef struct {
     const skg_scatter_work *work;
     const skg_cosines *mean, *variance; /* mean: NULL: nothing scatters; variance: NULL without noise */
-    double photons;       /* that a sum of 1 stands for: photons of the spectrum per pixel */
+    double photons;                     /* that a sum of 1 stands for: photons of the spectrum per pixel */
     double signal, power; /* what a photon of 1 in the tables adds to the image and to its variance */
 } skg_shown_scatter;
 
