@@ -182,7 +182,7 @@ static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv wo
     p->alive &= stays & (p->kev > (skg_fv)(args->least_kev)) & (p->order < (skg_uv)(SKG_SCATTER_ORDERS));
 }
 
-/* Number `dimension` of a history's point of a lattice in [0, 1), shifted for each batch at random. */
+/* Number `dimension` of a history's point of a lattice, from 0 to below 1, shifted for each batch at random. */
 static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history,
                           int dimension) {
     skg_uv bits = history;
