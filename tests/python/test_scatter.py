@@ -89,7 +89,9 @@ def test_the_key_of_a_file():
     assert (scene.image() > plain).all()
     np.testing.assert_array_equal(scene.image(), found["total"])
     assert (scene.scatter(histories=4000)["image"] != found["image"]).any()
-    assert scene.lengths("slab", clip=True).max() > 190  # with clip, scatter is refused, and lengths need none
+    with pytest.raises(sk.UnsupportedError, match="together with World"):
+        scene.image(world=sk.Material("air"))
+    assert scene.lengths("slab", world=sk.Material("air")).max() > 190  # lengths need none
 
 
 def test_projections_of_a_scan_have_scatter(slab):
