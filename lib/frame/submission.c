@@ -131,7 +131,8 @@ skg_status skg_submission_finish(skg_job *job) {
     results->frames = job->enqueued;
     SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 3 * sizeof *results->negative,
                              results->negative));
-    SKG_TRY(skg_raster_read_listed(job->main.raster, results->listed));
+    if (job->main.raster) /* scatter alone has none */
+        SKG_TRY(skg_raster_read_listed(job->main.raster, results->listed));
     SKG_TRY(read_outside(job));
     SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
     return skg_queue_flush(machine->context);

@@ -195,6 +195,32 @@ START_TEST(a_second_frame_is_the_first) {
 }
 END_TEST
 
+/* A job need not have an image: the scatter is the same, and so is an image that follows. */
+START_TEST(scatter_comes_alone) {
+    subject s;
+    skg_output output;
+    skg_job *job = NULL;
+    subject_open(&s);
+    subject_fill(&s);
+    subject_plan(&s);
+    const int64_t count = s.view.rows * s.view.columns;
+    float *alone = calloc((size_t)count, sizeof *alone);
+    skg_output_init(&output);
+    output.data = alone, output.kind = SKG_OUTPUT_SCATTER;
+    ck_skg(skg_plan_submit(s.plan, 1, NULL, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    pictures after = subject_pictures(&s, NULL);
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    same(alone, p.scatter, count);
+    same(after.image, p.image, count);
+    free(alone);
+    pictures_free(&after);
+    pictures_free(&p);
+    subject_close(&s);
+}
+END_TEST
+
 /* Density and fill of a part are those of another material. */
 START_TEST(overrides_are_other_materials) {
     static const int64_t part = 0;
@@ -268,6 +294,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, threads_have_the_same_scatter);
     tcase_add_test(tests, batches_are_single_frames);
     tcase_add_test(tests, a_second_frame_is_the_first);
+    tcase_add_test(tests, scatter_comes_alone);
     tcase_add_test(tests, overrides_are_other_materials);
     tcase_add_test(tests, histories_and_tolerances_are_met);
 }
