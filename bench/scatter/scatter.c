@@ -35,7 +35,7 @@ static void read_settings(int count, char **words, settings *out) {
 
 static int compare(skg_context *context, const settings *set, FILE *csv) {
     char prefix[4096];
-    int missed = compare_water(context, set->reference, set->quick ? 1 << 17 : 1 << 20, csv);
+    int missed = compare_water(context, set->reference, set->quick ? 1 << 18 : 1 << 20, csv);
     snprintf(prefix, sizeof prefix, "%sa_", set->reference);
     if (set->cube) missed += compare_cube(context, prefix, set->cube, set->quick ? 0.005 : 0.002, csv);
     return missed;
