@@ -35,7 +35,7 @@ def monte_carlo(page: Page, build: str, data: str) -> None:
                [[row["image"], row["ncc"], row["mean_error"], row["largest_error"]] for row in rows])
     page.judge("Monte Carlo, primary radiation, mean error", float(rows[0]["mean_error"]), 1e-4, "")
     page.judge("Monte Carlo, total radiation, 1 - NCC", 1 - float(rows[1]["ncc"]), 1e-4, "",
-               "scatter is not simulated")
+               "scatter is left out here")
 
 
 #: Material of each part of bench/mc/cube.json by this project's own tables, instead of the simulation's coefficients.
@@ -66,7 +66,7 @@ def shadows(page: Page, data: str) -> None:
     page.claim("A Monte Carlo simulation, in the shadow", "EGSnrc (commit 9edee3eb, 2026-11): the cube above, and a slab of 20 cm of water "
                "at 60 keV with the detector directly behind it (W0) and 20 cm behind it (W1); not part of the repository.",
                "The primary's I/I0, ours over the reference, of all pixels whose rays meet the object, by this project's coefficients and by those of the "
-               "simulation, whose table of incoherent scattering is 0.2 % below XCOM's. Scatter, which is not simulated, is given as the "
+               "simulation, whose table of incoherent scattering is 0.2 % below XCOM's. Scatter, which is left out here, is given as the "
                "simulation's share of the primary in the middle.")
     if not os.path.exists(os.path.join(data, "montecarlo", "w0_primary.raw")):
         page.text("The images were not there when this page was made.")

@@ -13,6 +13,7 @@ import images
 import lengths
 import packages
 import precision
+import scatter
 import skiagraph as sk
 import tubes
 from page import Page
@@ -44,6 +45,7 @@ def main() -> int:
     precision.add(page)
     images.add(page)
     body.add(page, given.build, given.data)
+    scatter.add(page, given.build, given.data)
     names = [packages.rows_of(name)[1] for name in packages.PACKAGES]
     head = [*HEAD.splitlines(), f"Made {datetime.date.today()} from commit {given.commit}, kernels {given.kernels}. Packages: {'; '.join(names)}."]
     sys.stdout.write(page.write(head))

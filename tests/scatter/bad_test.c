@@ -1,0 +1,169 @@
+/* What scatter refuses, and what it says. */
+#include "subject.h"
+#include "suite.h"
+
+#include <math.h>
+#include <string.h>
+
+static subject filled(void) {
+    subject s;
+    subject_open(&s);
+    subject_fill(&s);
+    return s;
+}
+
+static void refuse(subject *s, skg_status status, const char *says) {
+    ck_skg_fails(subject_try(s), status, says);
+    ck_assert_ptr_null(s->plan);
+    subject_close(s);
+}
+
+START_TEST(numbers) {
+    static const struct {
+        skg_scatter scatter;
+        const char *says;
+    } bad[] = {
+        {{.tolerance = -0.1}, "a tolerance of -0.1; a share of its mean from 0 to below 1"},
+        {{.tolerance = 1}, "a tolerance of 1;"},
+        {{.tolerance = (double)NAN}, "a tolerance of nan;"},
+        {{.histories = -1}, "-1 histories; 0 to 1073741824"},
+        {{.histories = ((int64_t)1 << 30) + 1}, "1073741825 histories"},
+        {{.tolerance = 0}, "neither a tolerance nor histories are given; give one of them"},
+        {{.tolerance = 0.1, .voxel_mm = -1}, "cells of -1 mm; above 0, or 0 for 64 along each side"},
+        {{.tolerance = 0.1, .voxel_mm = (double)INFINITY}, "cells of inf mm"},
+        {{.tolerance = 0.1, .columns = 257}, "257 x 0 places of the detector; 0 to 256"},
+        {{.tolerance = 0.1, .rows = -1}, "0 x -1 places of the detector"},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        subject s = filled();
+        s.scatter = bad[k].scatter;
+        s.scatter.size = sizeof s.scatter;
+        refuse(&s, SKG_ERR_ARGUMENT, bad[k].says);
+    }
+}
+END_TEST
+
+START_TEST(materials) {
+    subject s = filled();
+    skg_mesh *mesh = NULL;
+    ck_skg(skg_mesh_create_cube(1, &mesh));
+    subject_add(&s, mesh, "mu:0.2", 100, 0, 0, -1);
+    refuse(&s, SKG_ERR_MATERIAL, "part 2: mu:0.2");
+}
+END_TEST
+
+START_TEST(leaky_meshes) {
+    subject s = filled();
+    solid hole = solid_box(10, 10, 10);
+    hole.triangles--;
+    subject_add(&s, run_mesh(&hole), "Water, Liquid", 100, 0, 0, -1);
+    solid_free(&hole);
+    refuse(&s, SKG_ERR_UNSUPPORTED, "part 2: its mesh is not closed");
+}
+END_TEST
+
+START_TEST(priorities) {
+    subject s = filled();
+    skg_part part;
+    skg_part_init(&part);
+    part.priority = 1;
+    part.label = "first";
+    ck_skg(skg_mesh_create_cube(10, &part.mesh));
+    ck_skg(skg_material_create_named("Al", &part.material));
+    ck_skg(skg_scene_part_add(s.scene, &part, NULL));
+    skg_mesh_release(&part.mesh);
+    skg_material_release(&part.material);
+    refuse(&s, SKG_ERR_UNSUPPORTED, "priorities decide between parts; put one part inside the other");
+}
+END_TEST
+
+START_TEST(energies) {
+    subject s = filled();
+    s.kev = 1100;
+    refuse(&s, SKG_ERR_UNSUPPORTED, "photons of 1100 keV; up to 1022, where pairs begin");
+    s = filled();
+    s.kev = 1022;
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    ck_assert_double_gt(subject_sum(&s, p.scatter), 0);
+    pictures_free(&p);
+    subject_close(&s);
+}
+END_TEST
+
+/* Only a frame has the detector. */
+START_TEST(oblique_detectors) {
+    subject s = filled();
+    skg_output output;
+    s.view.row_step[0] = 1;
+    subject_plan(&s);
+    skg_output_init(&output);
+    output.data = calloc((size_t)(s.view.rows * s.view.columns), sizeof(float));
+    skg_job *job = NULL;
+    skg_status status = skg_plan_submit(s.plan, 1, NULL, &output, &job);
+    if (status == SKG_OK) status = skg_job_wait(&job);
+    ck_skg_fails(status, SKG_ERR_UNSUPPORTED,
+                 "rows and columns are at 78.69 degrees; make them perpendicular");
+    free(output.data);
+    subject_close(&s);
+}
+END_TEST
+
+static const double edges[] = {20, 40, 70};
+
+START_TEST(options) {
+    subject s = filled();
+    ck_skg(skg_material_create_named("Air, Dry (near sea level)", &s.options.world));
+    skg_material *world = s.options.world;
+    refuse(&s, SKG_ERR_UNSUPPORTED, "World: the surroundings scatter nothing here");
+    skg_material_release(&world);
+    s = filled();
+    s.options.bands = 2, s.options.band_kev = edges;
+    refuse(&s, SKG_ERR_UNSUPPORTED, "several bands");
+    s = filled();
+    s.options.clip = 1;
+    refuse(&s, SKG_ERR_UNSUPPORTED, "clipped children");
+    s = filled();
+    s.options.precision = SKG_PRECISION_HALF;
+    refuse(&s, SKG_ERR_UNSUPPORTED, "precision half");
+}
+END_TEST
+
+START_TEST(outputs_need_scatter) {
+    subject s = filled();
+    skg_spectrum *beam = NULL;
+    skg_output output;
+    skg_job *job = NULL;
+    skg_scatter_report report;
+    skg_scatter_report_init(&report);
+    ck_skg(skg_spectrum_create_mono(60, 1, &beam));
+    subject_plan(&s);
+    ck_skg_fails(skg_plan_scatter_report_get(s.plan, &report), SKG_ERR_ARGUMENT, "scatter");
+    skg_plan_release(&s.plan);
+    s.options.scatter = NULL;
+    ck_skg(skg_plan_create(run_context, s.scene, &s.view, beam, &s.options, &s.plan));
+    skg_output_init(&output);
+    output.data = &report;
+    for (int32_t kind = SKG_OUTPUT_SCATTER; kind <= SKG_OUTPUT_SCATTER_SIGMA; kind++) {
+        output.kind = kind;
+        ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "scatter");
+    }
+    ck_skg_fails(skg_plan_scatter_report_get(s.plan, &report), SKG_ERR_ARGUMENT, "scatter");
+    skg_spectrum_release(&beam);
+    subject_close(&s);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, run_open, run_close);
+    tcase_add_test(tests, numbers);
+    tcase_add_test(tests, materials);
+    tcase_add_test(tests, leaky_meshes);
+    tcase_add_test(tests, priorities);
+    tcase_add_test(tests, energies);
+    tcase_add_test(tests, oblique_detectors);
+    tcase_add_test(tests, options);
+    tcase_add_test(tests, outputs_need_scatter);
+}
+
+SKG_SUITE_MAIN("scatter/bad", add_tests)

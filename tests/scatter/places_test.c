@@ -1,0 +1,164 @@
+/* Beams, detectors and parts in all kinds of places, against photons that are followed one by one. */
+#include "analogue.h"
+#include "subject.h"
+#include "suite.h"
+
+#include <math.h>
+
+enum { HISTORIES = 1 << 16, PHOTONS = 1000000 };
+
+/* The image of one box, 200 x 150 mm2 of detector. */
+typedef struct {
+    const char *name;
+    double middle[3], size[3], source[3]; /* of a parallel beam its direction */
+    int parallel;
+    double plane; /* the detector's z */
+} box_scene;
+
+static subject open_box(const box_scene *b) {
+    subject s;
+    skg_mesh *mesh = NULL;
+    subject_open(&s);
+    ck_skg(skg_mesh_create_cuboid(b->size[0], b->size[1], b->size[2], &mesh));
+    subject_add(&s, mesh, "Water, Liquid", b->middle[0], b->middle[1], b->middle[2], -1);
+    for (int k = 0; k < 3; k++) s.view.source[k] = b->source[k];
+    s.view.centre[2] = b->plane;
+    if (b->parallel) s.view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+    s.scatter.histories = HISTORIES;
+    return s;
+}
+
+/* Compares the sum over the detector, and that of each order. */
+static void compare(const box_scene *b) {
+    subject s = open_box(b);
+    analogue_scene a = {.material = "Water, Liquid",
+                        .kev = s.kev,
+                        .parallel = b->parallel,
+                        .plane = b->plane,
+                        .side = {200, 150},
+                        .per_area = s.photons / 25};
+    for (int k = 0; k < 3; k++) {
+        a.low[k] = b->middle[k] - b->size[k] / 2, a.high[k] = b->middle[k] + b->size[k] / 2;
+        a.source[k] = b->source[k];
+    }
+    const analogue_result truth = analogue_run(&a, PHOTONS, 33);
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    const skg_scatter_report report = subject_report(&s);
+    const double sum = subject_sum(&s, p.scatter), error = truth.sigma / truth.sum,
+                 own = report.sigma / report.mean;
+    printf(
+        "%s: %.4f +- %.4f (+- %.4f of pixels) of the analogue sum; orders %.3f %.3f %.3f, not %.3f %.3f %.3f\n",
+        b->name, sum / truth.sum, error, own, report.orders[0], report.orders[1], report.orders[2],
+        truth.order[0] / truth.sum, truth.order[1] / truth.sum, truth.order[2] / truth.sum);
+    fflush(stdout); /* before an assertion ends the process */
+    /* Four standard errors; that of a sum is below that of its pixels. And 2e-3 for cells and tables. */
+    ck_assert_double_eq_tol(sum / truth.sum, 1, 4 * error + own + 2e-3);
+    for (int k = 0; k < 3; k++) /* a share has a smaller error than its order and the sum */
+        ck_assert_double_eq_tol(report.orders[k], truth.order[k] / truth.sum, 4 * error + own + 2e-3);
+    pictures_free(&p);
+    subject_close(&s);
+}
+
+static const box_scene boxes[] = {
+    {"in the middle", {0, 0, 50}, {120, 100, 80}, {0, 0, -500}, 0, 200},
+    {"on the detector", {0, 0, 149.99}, {180, 140, 100}, {0, 0, -500}, 0, 200},
+    {"beside the beam", {90, 20, 100}, {100, 80, 60}, {0, 0, -500}, 0, 200},
+    {"parallel", {0, 0, 100}, {120, 100, 80}, {0, 0, 1}, 1, 200},
+    {"oblique and parallel", {10, 0, 100}, {120, 100, 80}, {0.3, -0.1, 1}, 1, 200},
+    {"source inside", {0, 0, 0}, {150, 150, 150}, {20, 10, -40}, 0, 120},
+    {"oblique", {0, 0, 50}, {120, 100, 80}, {200, 0, -300}, 0, 200},
+};
+
+START_TEST(sums_are_those_of_single_photons) {
+    compare(&boxes[_i]);
+}
+END_TEST
+
+/* A part that the field does not reach scatters nothing; one that only scattered photons reach does. */
+START_TEST(parts_outside_the_field_scatter_what_reaches_them) {
+    const box_scene b = {"", {0, 0, 50}, {60, 60, 60}, {0, 0, -500}, 0, 200};
+    double sums[2];
+    for (int wall = 0; wall < 2; wall++) {
+        subject s = open_box(&b);
+        skg_mesh *mesh = NULL;
+        s.jaws.kind = SKG_COLLIMATION_RECTANGLE;
+        s.jaws.distance_mm = 400;
+        for (int k = 0; k < 2; k++) s.jaws.low[k] = -20, s.jaws.high[k] = 20;
+        ck_skg(skg_mesh_create_cuboid(20, 200, 200, &mesh));
+        if (wall)
+            subject_add(&s, mesh, "Water, Liquid", 80, 0, 60, -1);
+        else
+            skg_mesh_release(&mesh);
+        subject_plan(&s);
+        pictures p = subject_pictures(&s, NULL);
+        sums[wall] = subject_sum(&s, p.scatter);
+        pictures_free(&p);
+        subject_close(&s);
+    }
+    /* The wall sends photons back in, and keeps few that would have arrived. */
+    ck_assert_double_gt(sums[1], 1.01 * sums[0]);
+    ck_assert_double_lt(sums[1], 1.5 * sums[0]);
+}
+END_TEST
+
+/* A spot of 2 mm changes the sum by less than its noise. */
+START_TEST(extended_sources_have_the_scatter_of_their_middle) {
+    const box_scene b = boxes[0];
+    double sums[2], error = 0;
+    skg_spot spot;
+    skg_spot_init(&spot);
+    spot.shape = SKG_SPOT_DISC, spot.extent[0] = 2, spot.samples = 16;
+    for (int k = 0; k < 2; k++) {
+        subject s = open_box(&b);
+        if (k) s.options.spot = &spot;
+        subject_plan(&s);
+        pictures p = subject_pictures(&s, NULL);
+        const skg_scatter_report report = subject_report(&s);
+        sums[k] = subject_sum(&s, p.scatter);
+        error = hypot(error, report.sigma / report.mean);
+        pictures_free(&p);
+        subject_close(&s);
+    }
+    ck_assert_double_eq_tol(sums[1] / sums[0], 1, 4 * error);
+    ck_assert_double_ne(sums[1], sums[0]);
+}
+END_TEST
+
+/* A block that is cut into 216 parts scatters as the whole: their cells are the same but for roundings. */
+START_TEST(many_parts_are_one) {
+    enum { SIDE = 6 };
+    const box_scene b = {"", {0, 0, 50}, {120, 96, 72}, {0, 0, -500}, 0, 200};
+    subject whole = open_box(&b), s;
+    subject_open(&s);
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
+        const int index[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+        skg_mesh *mesh = NULL;
+        double at[3];
+        for (int k = 0; k < 3; k++) at[k] = b.middle[k] + b.size[k] * ((index[k] + 0.5) / SIDE - 0.5);
+        ck_skg(skg_mesh_create_cuboid(b.size[0] / SIDE, b.size[1] / SIDE, b.size[2] / SIDE, &mesh));
+        subject_add(&s, mesh, "Water, Liquid", at[0], at[1], at[2], -1);
+    }
+    s.scatter.histories = HISTORIES;
+    s.options.overlaps = 0;
+    subject_plan(&whole);
+    subject_plan(&s);
+    pictures p = subject_pictures(&whole, NULL), q = subject_pictures(&s, NULL);
+    /* A rounding sends a photon elsewhere now and then. */
+    ck_assert_double_eq_tol(subject_sum(&s, q.scatter) / subject_sum(&whole, p.scatter), 1, 1e-3);
+    pictures_free(&p);
+    pictures_free(&q);
+    subject_close(&s);
+    subject_close(&whole);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, run_open, run_close);
+    tcase_add_loop_test(tests, sums_are_those_of_single_photons, 0, (int)(sizeof boxes / sizeof *boxes));
+    tcase_add_test(tests, parts_outside_the_field_scatter_what_reaches_them);
+    tcase_add_test(tests, extended_sources_have_the_scatter_of_their_middle);
+    tcase_add_test(tests, many_parts_are_one);
+}
+
+SKG_SUITE_MAIN("scatter/places", add_tests)

@@ -1,0 +1,182 @@
+/* Smoothing by cosines: known functions with known noise. */
+#include "scatter/smooth.h"
+
+#include "suite.h"
+#include "support/random.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+enum { BATCHES = 32, SEEDS = 40 };
+
+/* Standard normal, by Box and Muller. */
+static double normal(uint64_t *state) {
+    const double u = draw(state, 0x1p-53, 1), v = draw(state, 0, 1);
+    return sqrt(-2 * log(u)) * cos(2 * PI * v);
+}
+
+typedef struct {
+    int64_t columns, rows;
+    int cosines;   /* along each side of the truth; 0: nothing at all */
+    double spread; /* of a batch's value in a place */
+    double *truth, *values;
+} subject;
+
+/* A mean of 1, and cosines of which none is lost in the noise. */
+static void make(subject *s, uint64_t seed) {
+    const int64_t places = s->rows * s->columns;
+    s->truth = calloc((size_t)places, sizeof *s->truth);
+    s->values = calloc((size_t)(places * BATCHES), sizeof *s->values);
+    for (int64_t p = 0; p < places; p++) {
+        const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
+        const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
+        for (int n = 0; n < s->cosines; n++)
+            for (int m = 0; m < s->cosines; m++)
+                s->truth[p] += cos(PI * m * x) * cos(PI * n * y) / (1 + m + n);
+    }
+    for (int64_t b = 0; b < BATCHES; b++)
+        for (int64_t p = 0; p < places; p++)
+            s->values[b * places + p] = s->truth[p] + (s->spread > 0 ? s->spread * normal(&seed) : 0);
+}
+
+static void drop(subject *s) {
+    free(s->truth);
+    free(s->values);
+}
+
+static void fit(const subject *s, skg_cosines *c) {
+    const skg_arrivals arrivals = {BATCHES, s->columns, s->rows, s->values};
+    ck_skg(skg_cosines_fit(&arrivals, c));
+}
+
+/* The mean square error of the smooth function at the middles of the places; of the mean over a place each cosine is a
+ * known share. */
+static double square_error(const subject *s, const skg_cosines *c) {
+    const int64_t places = s->rows * s->columns;
+    double sum = 0;
+    for (int64_t p = 0; p < places; p++) {
+        double value = 0;
+        for (int64_t n = 0; n < c->kept[1]; n++)
+            for (int64_t m = 0; m < c->kept[0]; m++) {
+                const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
+                const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
+                value += c->value[n * s->columns + m] *
+                         sqrt((m ? 2.0 : 1.0) * (n ? 2.0 : 1.0) / (double)places) * cos(PI * (double)m * x) *
+                         cos(PI * (double)n * y);
+            }
+        sum += (value - s->truth[p]) * (value - s->truth[p]);
+    }
+    return sum / (double)places;
+}
+
+START_TEST(errors_are_those_that_are_stated) {
+    double square = 0, mean = 0;
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        subject s = {.columns = 24, .rows = 20, .cosines = 8, .spread = 0.5};
+        skg_cosines c;
+        make(&s, seed);
+        fit(&s, &c);
+        ck_assert_int_ge(c.kept[0], s.cosines);
+        ck_assert_int_ge(c.kept[1], s.cosines);
+        const double ratio = square_error(&s, &c) / (c.sigma * c.sigma);
+        square += ratio / SEEDS;
+        mean += c.mean / SEEDS;
+        skg_cosines_free(&c);
+        drop(&s);
+    }
+    /* The mean square of 64 normal errors has a spread of sqrt(2 / 64), its mean over 40 draws .028, its root half of that. Twice
+     * this is added to the 5 % that the smoothing may be off. */
+    ck_assert_double_eq_tol(sqrt(square), 1, 0.05 + 2 * 0.014);
+    /* The mean is the first coefficient's: .5 over the root of 480 places, 32 batches and 40 draws; four times that. */
+    ck_assert_double_eq_tol(mean, 1, 4 * 0.5 / sqrt(480.0 * BATCHES * SEEDS));
+}
+END_TEST
+
+/* Nothing is left out of what is there, and of noise alone little is kept. */
+START_TEST(the_number_of_cosines_follows_the_signal) {
+    int64_t most = 0, sum = 0;
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        subject s = {.columns = 32, .rows = 32, .cosines = 1, .spread = 0.5};
+        skg_cosines c;
+        make(&s, seed);
+        fit(&s, &c);
+        sum += c.kept[0];
+        if (c.kept[0] > most) most = c.kept[0];
+        skg_cosines_free(&c);
+        drop(&s);
+    }
+    ck_assert_int_le(most, 16);
+    ck_assert_int_le(sum, 4 * SEEDS);
+}
+END_TEST
+
+START_TEST(without_noise_the_function_comes_back) {
+    subject s = {.columns = 16, .rows = 12, .cosines = 5};
+    skg_cosines c;
+    double image[12 * 16], coarse[4 * 5], sum = 0;
+    make(&s, 0);
+    fit(&s, &c);
+    /* Of the sum of a few values of about 1. */
+    ck_assert_double_le(square_error(&s, &c), 64 * DBL_EPSILON);
+    ck_assert_double_le(c.sigma, 64 * sqrt(DBL_EPSILON)); /* the root of a difference of such squares */
+    ck_skg(skg_cosines_show(&c, 0, 12, 16, image));
+    for (int p = 0; p < 12 * 16; p++) sum += image[p];
+    ck_assert_double_eq_tol(sum / (12 * 16), 1, 64 * DBL_EPSILON);
+    /* On coarser pixels there is as much. */
+    ck_skg(skg_cosines_show(&c, 0, 4, 5, coarse));
+    sum = 0;
+    for (int p = 0; p < 4 * 5; p++) sum += coarse[p];
+    ck_assert_double_eq_tol(sum / (12 * 16), 1, 64 * DBL_EPSILON);
+    skg_cosines_free(&c);
+    drop(&s);
+}
+END_TEST
+
+/* A place holds the mean over it: the function itself is shown. */
+START_TEST(places_are_means_over_their_pixels) {
+    enum { FINE = 256 };
+    double values[BATCHES * 8] = {0}, image[FINE];
+    const skg_arrivals arrivals = {BATCHES, 8, 1, values};
+    skg_cosines c;
+    for (int64_t b = 0; b < BATCHES; b++)
+        for (int i = 0; i < 8; i++) /* the integral of 1 + cos(3 pi x) over the place, times 8 */
+            values[b * 8 + i] = 1 + 8 * (sin(3 * PI * (i + 1) / 8) - sin(3 * PI * i / 8)) / (3 * PI);
+    ck_skg(skg_cosines_fit(&arrivals, &c));
+    ck_assert_int_eq(c.rows, 1);
+    ck_assert_int_eq(c.kept[1], 1);
+    ck_skg(skg_cosines_show(&c, 0, 1, FINE, image));
+    for (int i = 0; i < FINE; i++)
+        ck_assert_double_eq_tol(image[i] * FINE / 8, 1 + cos(3 * PI * (i + 0.5) / FINE), 64 * DBL_EPSILON);
+    skg_cosines_free(&c);
+}
+END_TEST
+
+START_TEST(nothing_stays_nothing) {
+    subject s = {.columns = 7, .rows = 3};
+    skg_cosines c;
+    double image[21];
+    make(&s, 0);
+    fit(&s, &c);
+    ck_assert_double_eq(c.mean, 0);
+    ck_assert_double_eq(c.sigma, 0);
+    ck_assert_double_eq(c.bias, 0);
+    for (int squares = 0; squares < 2; squares++) {
+        ck_skg(skg_cosines_show(&c, squares, 3, 7, image));
+        for (int p = 0; p < 21; p++) ck_assert_double_eq(image[p], 0);
+    }
+    skg_cosines_free(&c);
+    drop(&s);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, errors_are_those_that_are_stated);
+    tcase_add_test(tests, the_number_of_cosines_follows_the_signal);
+    tcase_add_test(tests, without_noise_the_function_comes_back);
+    tcase_add_test(tests, places_are_means_over_their_pixels);
+    tcase_add_test(tests, nothing_stays_nothing);
+}
+
+SKG_SUITE_MAIN("scatter/smooth", add_tests)

@@ -1,0 +1,11 @@
+#include "sums.h"
+
+#include "frame/plan.h"
+
+_Static_assert((int)SUMS_BATCHES == (int)SKG_SCATTER_BATCHES && SUMS_KINDS == SKG_SCATTER_KINDS &&
+                   SUMS_PLANES == SKG_SCATTER_PLANES,
+               "the library's numbers");
+
+skg_status sums_read(skg_context *context, const skg_plan *plan, int64_t *sums) {
+    return skg_trace_read(context, &plan->scatterer.tracing, sums);
+}

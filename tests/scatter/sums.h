@@ -1,0 +1,14 @@
+/* What arrived in the last frame before it is smoothed: sums by batch, kind and place. */
+#ifndef SKG_TESTS_SCATTER_SUMS_H
+#define SKG_TESTS_SCATTER_SUMS_H
+
+#include <skiagraph/context.h>
+#include <skiagraph/frame.h>
+
+/* Planes: Rayleigh scattering alone of orders 1, 2 and higher; the same with Compton scattering; what adds to the variance. */
+enum { SUMS_BATCHES = 32, SUMS_KINDS = 6, SUMS_PLANES = 7 };
+
+/* sums: [SUMS_BATCHES][SUMS_PLANES][places] */
+skg_status sums_read(skg_context *context, const skg_plan *plan, int64_t *sums);
+
+#endif
