@@ -15,6 +15,8 @@ typedef struct {
     skg_solid solids[SOLIDS];
     int32_t sign[SOLIDS];
     double coefficients[SOLIDS][SKG_SCATTER_RANK]; /* less those of the solid around */
+    const int32_t *priority;                       /* NULL: amounts add */
+    int32_t clip;
 } subject;
 
 static void add(subject *s, solid of, const double coefficients[SKG_SCATTER_RANK]) {
@@ -27,8 +29,13 @@ static void add(subject *s, solid of, const double coefficients[SKG_SCATTER_RANK
 
 static skg_cells make(const subject *s, double voxel_mm) {
     skg_cells cells;
-    ck_skg(skg_cells_make(s->count, s->solids, s->sign, (const double(*)[SKG_SCATTER_RANK])s->coefficients,
-                          voxel_mm, &cells));
+    const skg_cell_parts parts = {.count = s->count,
+                                  .solids = s->solids,
+                                  .sign = s->sign,
+                                  .coefficients = (const double(*)[SKG_SCATTER_RANK])s->coefficients,
+                                  .priority = s->priority,
+                                  .clip = s->clip};
+    ck_skg(skg_cells_make(&parts, voxel_mm, &cells));
     return cells;
 }
 
@@ -174,9 +181,41 @@ START_TEST(mirrored_parts_are_solid_too) {
 }
 END_TEST
 
+/* Two boxes that overlap from x = 0 to 10: with equal priorities both count there, else the higher one alone. A child inside
+ * the lower one falls with it. */
+START_TEST(priorities_decide_where_parts_overlap) {
+    static const double a[] = {1, 0, 0, 0}, b[] = {0, 1, 0, 0};
+    static const int32_t equal[] = {3, 3}, first[] = {4, 3}, second[] = {3, 4};
+    subject s = {0};
+    add(&s, solid_box(20, 20, 20), a); /* x from -10 to 10 */
+    add(&s, solid_box(20, 20, 20), b);
+    solid_shift(&s.of[1], 10, 0, 0); /* x from 0 to 20 */
+    for (int n = 0; n < 3; n++) {
+        s.priority = n == 0 ? equal : n == 1 ? first : second;
+        skg_cells cells = make(&s, 0.5);
+        const float *both = cell_at(&cells, 5, 1, 1), *left = cell_at(&cells, -5, 1, 1);
+        ck_assert_double_eq((double)both[0], n != 2);
+        ck_assert_double_eq((double)both[1], n != 1);
+        ck_assert_double_eq((double)left[0], 1);
+        ck_assert_double_eq((double)cell_at(&cells, 15, 1, 1)[1], 1);
+        skg_cells_free(&cells);
+    }
+    s.solids[1].inside = 0; /* a child that leaves its parent */
+    s.priority = equal;
+    for (s.clip = 0; s.clip < 2; s.clip++) {
+        skg_cells cells = make(&s, 0.5);
+        ck_assert_double_eq((double)cell_at(&cells, 5, 1, 1)[1], 1);
+        ck_assert_double_eq((double)cell_at(&cells, 15, 1, 1)[1], !s.clip);
+        skg_cells_free(&cells);
+    }
+    drop(&s);
+}
+END_TEST
+
 START_TEST(without_parts_there_are_no_cells) {
     skg_cells cells = {.count = {1, 1, 1}};
-    ck_skg(skg_cells_make(0, NULL, NULL, NULL, 0, &cells));
+    const skg_cell_parts none = {0};
+    ck_skg(skg_cells_make(&none, 0, &cells));
     ck_assert_ptr_null(cells.mixtures);
     ck_assert_int_eq(cells.count[0], 0);
     skg_cells_free(&cells);
@@ -229,6 +268,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_sphere_has_its_volume_and_void_around);
     tcase_add_test(tests, void_is_nothing);
     tcase_add_test(tests, mirrored_parts_are_solid_too);
+    tcase_add_test(tests, priorities_decide_where_parts_overlap);
     tcase_add_test(tests, without_parts_there_are_no_cells);
     tcase_add_test(tests, columns_are_path_lengths_of_images);
 }
