@@ -168,8 +168,8 @@ int compare_cube(skg_context *context, const char *prefix, const char *scene, do
     int missed = 0;
     printf(
         "A cube of 3 cm of soft tissue with a cylinder of bone, 80 keV, to %g %%. 225 blocks of 20 x 20 pixels.\n\n"
-        "| attenuation | mean off by, %% | worst block, sigma of both | blocks above 3 | bar: .8 %%, 4.5, 3 blocks |\n"
-        "|---|---|---|---|---|\n",
+        "| attenuation | mean off by, %% | worst block, sigma of both | blocks above 3 | with equal means | bar: .8 %%, 4.5, "
+        "3 blocks |\n|---|---|---|---|---|---|\n",
         100 * tolerance);
     for (int exact = 1; exact >= 0; exact--) {
         subject s = subject_cube(context, scene, exact);

@@ -37,7 +37,7 @@ def add(page: Page, build: str, data: str) -> None:
         return
     rows = _measure(build, prefix)
     page.table(["object", "interactions, attenuation", "difference", "standard error", "worst block, standard errors", "blocks above 3"],
-               [[row["scene"], row["what"], signed(float(row["value"])), signed(float(row["error_percent"])).lstrip("+"),
+               [[row["scene"], row["what"].replace(" theirs", "; theirs").replace(" ours", "; ours"), signed(float(row["value"])), signed(float(row["error_percent"])).lstrip("+"),
                  f"{float(row['worst']):.1f}", row["count"]] for row in rows])
     judged = [row for row in rows if float(row["bar"]) > 0]
     for scenes, what, bar in ((("w0", "w1"), "scatter of 20 cm of water by order and kind", 1.0), (("w0", "w1"), "scatter of 20 cm of water, all", 0.8),
