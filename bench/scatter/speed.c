@@ -12,7 +12,7 @@ enum { REPEATS = 5 };
 void speed_head(void) {
     printf(
         "From the cells to the smooth image, warm; the median (and the range) of %d seeds. The error found is the root mean square difference to "
-        "a long run, over the mean.\n\n"
+        "a long run, which has an error of its own, over the mean.\n\n"
         "| scene | pixels | tolerance, %% | histories | s | CPU s | target, s | error stated, %% | error found, %% | cosines |\n"
         "|---|---|---|---|---|---|---|---|---|---|\n",
         REPEATS);
