@@ -7,8 +7,8 @@
 #include <string.h>
 #include <time.h>
 
-/* Places along the longer side of the detector, and first histories of a batch. */
-enum { PLACES = 32, FIRST = 64 };
+/* Places along the longer side of the detector, and first histories of a batch: fewer say too little of their own error. */
+enum { PLACES = 32, FIRST = 512 };
 
 /* A round may have so many times the histories of the last one. */
 static const double GROWTH_MAX = 16;
