@@ -52,8 +52,9 @@ START_TEST(water_has_the_scatter_of_a_monte_carlo_program) {
     const double theirs = middle(scatter) / middle(primary), ours = middle(own[1]) / middle(own[0]);
     printf("scatter over primary in the middle: %.4f, Monte Carlo %.4f\n", ours, theirs);
     fflush(stdout); /* before an assertion ends the process */
-    /* Their attenuation is .17 % below ours, so their primary is .7 % higher; their noise is below .1 %. The tolerance is 1 %. */
-    ck_assert_double_eq_tol(ours / theirs, 1.007, 0.015);
+    /* Their attenuation is .17 % below ours: our primary is .7 % lower, and our scatter .5 % (bench/results/scatter.md). Their
+     * noise is below .1 %. The tolerance is 1 %. */
+    ck_assert_double_eq_tol(ours / theirs, 1.002, 0.015);
     pictures_free(&p);
     subject_close(&s);
 }
