@@ -83,7 +83,9 @@ static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tra
         SKG_TRY(skg_trace_until(context, t, end));
         SKG_TRY(skg_trace_read(context, t, a->sums));
         SKG_TRY(fit(a, &a->mean, 0, SKG_SCATTER_KINDS));
-        const double error = a->mean.mean > 0 ? a->mean.sigma / a->mean.mean : 0;
+        /* What is left out is known as well as its doubt says. */
+        const double sigma = sqrt(a->mean.sigma * a->mean.sigma + a->mean.doubt);
+        const double error = a->mean.mean > 0 ? sigma / a->mean.mean : 0;
         if (asked->histories || error <= asked->tolerance || end >= SKG_SCATTER_HISTORIES) break;
         /* Powers of two, of which the lattice is best; the error falls with the root of the histories, or faster. */
         const double more = fmin(error / asked->tolerance * (error / asked->tolerance), GROWTH_MAX);

@@ -4,6 +4,10 @@
 
 static const double PI = 3.14159265358979323846;
 
+/* Cosines along each side of the first octave that may be empty; standard errors above which an octave is not. */
+enum { LEAST = 4 };
+static const double SURE = 2;
+
 /* Orthonormal cosines at the middles of `count` places: [k][i]. */
 static skg_status make_cosines(int64_t count, double **table) {
     SKG_TRY(skg_alloc(count * count, sizeof **table, "smoothing", table));
@@ -48,14 +52,24 @@ static void average(const skg_arrivals *a, const double *all, skg_cosines *c) {
     }
 }
 
-/* Expected squares, summed over the cosines (m, n) that are kept: m < across, n < down. */
-static double risk(const skg_cosines *c, int64_t across, int64_t down) {
-    double sum = 0;
-    for (int64_t n = 0; n < c->rows; n++)
-        for (int64_t m = 0; m < c->columns; m++) {
+/* Of the cosines (m, n) with max(m, n) from `first` to before `end`: what they hold beyond noise, and its standard error. */
+static double signal_between(const skg_cosines *c, int64_t first, int64_t end, double *error) {
+    double sum = 0, fourth = 0;
+    for (int64_t n = 0; n < c->rows && n < end; n++)
+        for (int64_t m = 0; m < c->columns && m < end; m++) {
             const int64_t k = n * c->columns + m;
-            sum += m < across && n < down ? c->variance[k] : c->value[k] * c->value[k] - c->variance[k];
+            if (m < first && n < first) continue;
+            sum += c->value[k] * c->value[k] - c->variance[k];
+            fourth += 2 * c->variance[k] * c->variance[k];
         }
+    *error = sqrt(fourth);
+    return sum;
+}
+
+static double variance_before(const skg_cosines *c, int64_t end) {
+    double sum = 0;
+    for (int64_t n = 0; n < c->rows && n < end; n++)
+        for (int64_t m = 0; m < c->columns && m < end; m++) sum += c->variance[n * c->columns + m];
     return sum;
 }
 
@@ -63,34 +77,48 @@ static int64_t smaller(int64_t a, int64_t b) {
     return a < b ? a : b;
 }
 
+static int64_t longer_side(const skg_cosines *c) {
+    return c->columns > c->rows ? c->columns : c->rows;
+}
+
+/* Beyond the first octave that holds nothing but noise, nothing is looked for: the noise of all of them together would decide. */
+static int64_t last_octave(const skg_cosines *c) {
+    const int64_t most = longer_side(c);
+    double error = 0;
+    for (int64_t end = LEAST; end < most; end *= 2)
+        if (signal_between(c, end, smaller(2 * end, most), &error) <= SURE * error)
+            return smaller(2 * end, most);
+    return most;
+}
+
 /* As many along both sides of the detector, up to the grid's own. */
 static void choose(skg_cosines *c) {
-    const int64_t most = c->columns > c->rows ? c->columns : c->rows;
+    const int64_t end = last_octave(c);
     double best = HUGE_VAL;
-    for (int64_t kept = 1; kept <= most; kept++) {
-        const double found = risk(c, smaller(kept, c->columns), smaller(kept, c->rows));
+    for (int64_t kept = 1; kept <= end; kept++) {
+        double error = 0;
+        const double left = signal_between(c, kept, end, &error), found = variance_before(c, kept) + left;
         if (!(found < best)) continue;
         best = found;
         c->kept[0] = smaller(kept, c->columns);
         c->kept[1] = smaller(kept, c->rows);
+        c->bias = (left > 0 ? left : 0) / (double)(c->rows * c->columns);
+        c->doubt = error / (double)(c->rows * c->columns);
     }
 }
 
-/* Keeps the chosen ones, and judges the error. */
+/* Keeps the chosen ones. */
 static void finish(skg_cosines *c) {
     const double places = (double)(c->rows * c->columns);
-    double variance = 0, left = 0;
+    double variance = 0;
     for (int64_t n = 0; n < c->rows; n++)
         for (int64_t m = 0; m < c->columns; m++) {
             const int64_t k = n * c->columns + m;
-            if (m < c->kept[0] && n < c->kept[1]) {
+            if (m < c->kept[0] && n < c->kept[1])
                 variance += c->variance[k];
-                continue;
-            }
-            left += c->value[k] * c->value[k] - c->variance[k];
-            c->value[k] = c->variance[k] = 0;
+            else
+                c->value[k] = c->variance[k] = 0;
         }
-    c->bias = left > 0 ? left / places : 0;
     c->mean = c->value[0] / sqrt(places);
     c->sigma = sqrt(variance / places + c->bias);
 }

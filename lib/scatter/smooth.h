@@ -17,6 +17,7 @@ typedef struct {
     double *value;         /* [rows][columns] coefficients of the smooth function, per place of the grid */
     double *variance;      /* [rows][columns] of them */
     double bias;           /* mean square of what was left out, per place of the grid */
+    double doubt;          /* standard error of it */
     double mean, sigma;    /* over the detector: of a place; root mean square of its error, bias included */
 } skg_cosines;
 

@@ -62,21 +62,6 @@ START_TEST(leaky_meshes) {
 }
 END_TEST
 
-START_TEST(priorities) {
-    subject s = filled();
-    skg_part part;
-    skg_part_init(&part);
-    part.priority = 1;
-    part.label = "first";
-    ck_skg(skg_mesh_create_cube(10, &part.mesh));
-    ck_skg(skg_material_create_named("Al", &part.material));
-    ck_skg(skg_scene_part_add(s.scene, &part, NULL));
-    skg_mesh_release(&part.mesh);
-    skg_material_release(&part.material);
-    refuse(&s, SKG_ERR_UNSUPPORTED, "priorities decide between parts; put one part inside the other");
-}
-END_TEST
-
 START_TEST(energies) {
     subject s = filled();
     s.kev = 1100;
@@ -121,9 +106,6 @@ START_TEST(options) {
     s.options.bands = 2, s.options.band_kev = edges;
     refuse(&s, SKG_ERR_UNSUPPORTED, "several bands");
     s = filled();
-    s.options.clip = 1;
-    refuse(&s, SKG_ERR_UNSUPPORTED, "clipped children");
-    s = filled();
     s.options.precision = SKG_PRECISION_HALF;
     refuse(&s, SKG_ERR_UNSUPPORTED, "precision half");
 }
@@ -159,7 +141,6 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, numbers);
     tcase_add_test(tests, materials);
     tcase_add_test(tests, leaky_meshes);
-    tcase_add_test(tests, priorities);
     tcase_add_test(tests, energies);
     tcase_add_test(tests, oblique_detectors);
     tcase_add_test(tests, options);
