@@ -47,15 +47,15 @@ static skg_status run(skg_job *job, const skg_frame_work *work, const skg_scatte
 skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image) {
     SKG_TRY(compute(job, work));
     const skg_scatterer *s = job->scatterer;
-    const skg_scattered_image what = {s->images.mean.memory, job->recipe->options.noise ? s->images.variance.memory : NULL,
-                                      1};
+    const skg_scattered_image what = {s->images.mean.memory,
+                                      job->recipe->options.noise ? s->images.variance.memory : NULL, 1};
     return s->report.mean > 0 ? run(job, work, &what, image) : SKG_OK;
 }
 
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
     SKG_TRY(compute(job, work));
     const skg_scatterer *s = job->scatterer;
-    const skg_scattered_image what = {work->shows == SKG_OUTPUT_SCATTER ? s->images.shown.memory : s->images.sigma.memory,
-                                      NULL, 0};
+    const skg_scattered_image what = {
+        work->shows == SKG_OUTPUT_SCATTER ? s->images.shown.memory : s->images.sigma.memory, NULL, 0};
     return run(job, work, &what, &work->place);
 }

@@ -55,8 +55,8 @@ def test_seeds_and_accuracy(slab):
     one, same, other = (slab.image(scatter={**FEW, "seed": seed}) for seed in (1, 1, 2))
     np.testing.assert_array_equal(one, same)
     assert (one != other).any()
-    coarse, fine = slab.scatter(0.2), slab.scatter(0.05)
-    assert fine["histories"] > coarse["histories"]
+    coarse, fine = slab.scatter(0.2), slab.scatter(0.01)
+    assert fine["histories"] > coarse["histories"] and fine["sigma"] < coarse["sigma"]
 
 
 def test_a_share_of_the_flat_field(slab):

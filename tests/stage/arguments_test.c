@@ -56,7 +56,9 @@ static const struct {
     {{"exponential.clh", "planes.clh", "attenuate.cl"}, NAMES, 0},
     {{"blur.cl"}, NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1 " NAMES, 0},
-    {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "sight.clh", "strips.clh", "scatter.cl"}, NAMES, 0},
+    {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "sight.clh", "strips.clh", "scatter.cl"},
+     NAMES,
+     0},
     {{"exponential.clh", "random.clh", "noise.clh", "scattered.cl"}, "-D SKG_NOISE=1 " NAMES, 0},
     {{"show_shared.h", "show.cl"}, NAMES, 0},
 };
