@@ -63,7 +63,7 @@ static skg_status check_half(const skg_recipe *recipe) {
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
             "precision half is for comparison: a point source or samples of one, closed meshes without "
-            "priorities, vacuum around them, no noise, blur, heel effect, oblique scintillator, bow-tie or grid; "
+            "priorities, vacuum around them, no noise, blur, heel effect, oblique scintillator, bow-tie, grid or scatter; "
             "take single");
     return SKG_OK;
 }
