@@ -182,6 +182,12 @@ static const effects runs[] = {
      .settings = {"Samples.sheet.Path=bone.obj", "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]"},
      .strategy = SKG_STRATEGY_COPIES,
      .spot = {.shape = SKG_SPOT_RECTANGLE, .extent = {1, 1, 0}, .samples = 4}},
+    /* scattered photons, with their noise */
+    {.file = "scene.json",
+     .settings = {"Samples.sheet.Path=bone.obj", "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]",
+                  "World=Vacuum", "Tolerance=0",
+                  "Scatter={\"Histories\":32,\"Detector\":[4,4],\"Voxel\":[5,\"mm\"]}", "Noise=true"},
+     .strategy = SKG_STRATEGY_COPIES},
     {.file = "body.json", .breathes = 1},
     {.file = "scene.json",
      .settings = {"Tolerance=0", "World=Vacuum"},
