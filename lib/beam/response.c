@@ -348,6 +348,11 @@ static skg_status record(const skg_response *response, double energy_kev, double
     return SKG_OK;
 }
 
+double skg_response_lowest(const skg_response *response) {
+    const double base = response->base ? skg_response_lowest(response->base) : 0;
+    return response->count > 0 && response->energy_kev[0] > base ? response->energy_kev[0] : base;
+}
+
 skg_status skg_response_get(const skg_response *response, double energy_kev, double oblique,
                             double *recorded_kev, double *efficiency) {
     SKG_PLAIN;

@@ -34,6 +34,9 @@ int skg_response_is_layer(const skg_response *response);
 skg_status skg_response_depth_share(const skg_response *response, double energy_kev, double from, double to,
                                     double *share);
 
+/* The lowest energy that a response is given for, keV; 0: any. */
+double skg_response_lowest(const skg_response *response);
+
 /* Whether K fluorescence leaves the layer. */
 int skg_response_escapes(const skg_response *response);
 

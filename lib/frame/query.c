@@ -21,7 +21,7 @@ void skg_plan_report_init_sized(void *report, int32_t size) {
 skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
     SKG_NEEDS(plan);
     skg_plan_report ours = plan->outcome.report;
-    ours.device_bytes = skg_machine_bytes(&plan->machine);
+    ours.device_bytes = skg_machine_bytes(&plan->machine) + skg_scatterer_bytes(&plan->scatterer);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 

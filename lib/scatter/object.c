@@ -1,5 +1,6 @@
 #include "scatter/object.h"
 
+#include "beam/spectrum.h"
 #include "core/vector.h"
 #include "geometry/solids.h"
 
@@ -38,8 +39,9 @@ static skg_status make_physics(const skg_scatter_work *work, const palette *p, s
         if (spectrum->photons[i] > 0)
             low = fmin(low, spectrum->energy_kev[i]), high = spectrum->energy_kev[i];
     low = fmax(low * LOWEST, 1);
-    return skg_scatter_physics_make(p->count, p->materials, low, fmin(high * 1.01, fmax(high, 1022)),
-                                    physics);
+    /* What the response does not know adds nothing, and photons only lose energy. */
+    if (work->recipe->options.response) low = fmax(low, skg_response_lowest(work->recipe->options.response));
+    return skg_scatter_physics_make(p->count, p->materials, low, fmax(high, low * 1.001), physics);
 }
 
 /* What a mm of each part adds: its own material less its parent's, as in frame/overrides.c. */

@@ -39,7 +39,8 @@ static units units_of(const skg_scatter_work *work) {
     return u;
 }
 
-/* Sends an image of the cosines. factor: of values, or of their square roots if `root`; */
+/* An image of cosines. squares: 1: of their variance; root: 1: of its root; flat: 1: over the open beam's falloff; factor: of all
+ * values. */
 typedef struct {
     const skg_cosines *cosines;
     int squares, root, flat;

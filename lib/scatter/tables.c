@@ -6,6 +6,7 @@
 #include "skg_shared.h"
 #include "spectral/signal.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Columns of the table by energy, as kernels/scatter.clh has them. */
@@ -21,7 +22,7 @@ static skg_status fill_signals(const skg_recipe *recipe, const skg_scatter_physi
     SKG_TRY(skg_alloc(2 * p->energies, sizeof *signals, "scatter", &signals));
     double *variances = signals + p->energies;
     for (int64_t i = 0; i < p->energies; i++) {
-        const double kev = skg_scatter_energy(p, i);
+        const double kev = fmin(fmax(skg_scatter_energy(p, i), p->low_kev), p->high_kev); /* rounding */
         SKG_TRY_CLEANUP(skg_signal_get(&recipe->options, kev, &signals[i]));
         SKG_TRY_CLEANUP(skg_signal_variance_get(&recipe->options, kev, signals[i], &variances[i]));
         if (signals[i] > t->signal) t->signal = signals[i];

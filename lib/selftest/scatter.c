@@ -101,8 +101,8 @@ static double wanted_at(const skg_scatter_physics *p, int64_t number) {
     const double photons = per_sr / (source * source) * edge * edge * edge * through;
     double sum = 0;
     for (int k = 0; k < PIECES * PIECES; k++) {
-        const double y = pixel * ((double)(number % N) - N / 2 + (k % PIECES + 0.5) / PIECES);
-        const double z = pixel * ((double)(number / N) - N / 2 + (k / PIECES + 0.5) / PIECES);
+        const double y = pixel * ((double)(number % N) - N / 2 + 0.5 + (k % PIECES + 0.5) / PIECES);
+        const double z = pixel * ((double)(number / N) - N / 2 + 0.5 + (k / PIECES + 0.5) / PIECES);
         const double r = sqrt(detector * detector + y * y + z * z), cosine = detector / r;
         sum += sent(p, cosine) * cosine / (r * r) * pixel * pixel / (PIECES * PIECES);
     }
@@ -130,7 +130,9 @@ static void compare_blocks(const skg_scatter_physics *p, const float *image, skg
 
 static skg_status compare_cube(skg_context *context, skg_verdict *verdict) {
     const double edges[3] = {edge, edge, edge};
-    const skg_view view = view_of(source, detector, pixel);
+    const double aside =
+        0.5 * pixel * source / (source + detector); /* of the detector's middle, at the jaws */
+    skg_view view = view_of(source, detector, pixel);
     scatter_run run = {0};
     skg_scatter_physics physics = {0};
     skg_collimation jaws;
@@ -138,8 +140,9 @@ static skg_status compare_cube(skg_context *context, skg_verdict *verdict) {
     skg_collimation_init(&jaws);
     jaws.kind = SKG_COLLIMATION_RECTANGLE;
     jaws.distance_mm = source;
-    jaws.low[0] = jaws.low[1] = -opening / 2;
-    jaws.high[0] = jaws.high[1] = opening / 2;
+    jaws.low[0] = jaws.low[1] = -opening / 2 - aside;
+    jaws.high[0] = jaws.high[1] = opening / 2 - aside;
+    view.centre[1] = view.centre[2] = 0.5 * pixel; /* a pixel sees the source through the jaws */
     SKG_TRY_CLEANUP(render(context, edges, &view, &jaws, 131072, &run));
     SKG_TRY_CLEANUP(skg_scatter_physics_make(1, &run.water, kev / 4, kev, &physics));
     compare_blocks(&physics, run.image[1], verdict);

@@ -76,6 +76,32 @@ START_TEST(energies) {
 }
 END_TEST
 
+/* A response that begins far above the energies that photons are followed to, and ends at the beam's. */
+START_TEST(responses_need_not_reach_down) {
+    static const double kev[] = {20, 60};
+    subject s = filled();
+    skg_response_table table;
+    skg_response_table_init(&table);
+    table.count = 2, table.energies_kev = table.recorded_kev = kev;
+    subject_plan(&s);
+    pictures ideal = subject_pictures(&s, NULL);
+    const double all = subject_sum(&s, ideal.scatter);
+    pictures_free(&ideal);
+    subject_close(&s);
+    s = filled();
+    ck_skg(skg_response_create_table(&table, &s.options.response));
+    skg_response *response = s.options.response;
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    ck_assert_double_gt(subject_sum(&s, p.scatter), 0);
+    /* Both follow the same histories, but to 15 and to 20 keV, and their tables of angles have other energies: 1 % of noise. */
+    ck_assert_double_eq_tol(subject_sum(&s, p.scatter), all, 0.03 * all);
+    pictures_free(&p);
+    skg_response_release(&response);
+    subject_close(&s);
+}
+END_TEST
+
 /* Only a frame has the detector. */
 START_TEST(oblique_detectors) {
     subject s = filled();
@@ -142,6 +168,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, materials);
     tcase_add_test(tests, leaky_meshes);
     tcase_add_test(tests, energies);
+    tcase_add_test(tests, responses_need_not_reach_down);
     tcase_add_test(tests, oblique_detectors);
     tcase_add_test(tests, options);
     tcase_add_test(tests, outputs_need_scatter);
