@@ -1,4 +1,5 @@
 /* Public calls that run a single self-test. */
+#include "core/clock.h"
 #include "core/plain.h"
 #include "device/cache.h"
 #include "device/choice.h"
@@ -8,7 +9,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 void skg_device_test_init_sized(void *result, int32_t size) {
     const skg_device_test defaults = {0};
@@ -64,7 +64,6 @@ static skg_status run_test(const skg_device_info *info, skg_self_test number, sk
 skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *result) {
     SKG_PLAIN;
     SKG_NEEDS(result);
-    struct timespec start, end;
     skg_device_info info;
     skg_device_test ours;
     SKG_TRY(check_test(test));
@@ -72,10 +71,9 @@ skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *re
     skg_device_test_init(&ours);
     SKG_TRY(skg_device_get(device, &info));
     snprintf(ours.name, sizeof ours.name, "%s", skg_self_test_name((skg_self_test)test));
-    clock_gettime(CLOCK_MONOTONIC, &start);
+    const double start = skg_seconds();
     SKG_TRY(run_test(&info, (skg_self_test)test, &ours));
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    ours.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    ours.seconds = skg_seconds() - start;
     return skg_struct_write(&ours, sizeof ours, "skg_device_test", result);
 }
 

@@ -326,8 +326,7 @@ static skg_status detect(skg_job *job, const skg_frame_work *work, const skg_ima
 skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
     const skg_recipe *recipe = job->recipe;
     if (work->lengths_of >= 0) return enqueue_passes(job, work, -1, 0);
-    if (work->shows == SKG_OUTPUT_SCATTER || work->shows == SKG_OUTPUT_SCATTER_SIGMA)
-        return skg_frame_show_scatter(job, work);
+    if (skg_output_is_scatter(work->shows)) return skg_frame_show_scatter(job, work);
     const int64_t first = first_of(recipe);
     const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
     skg_frame_work layered = *work;

@@ -44,16 +44,24 @@ static skg_status check_strides(const skg_view *view, int64_t frames, skg_frame_
     return SKG_OK;
 }
 
-static skg_status check_kind(const char *call, const skg_recipe *recipe, const skg_output *to) {
-    const int64_t parts = recipe->scene->count;
-    if (to->kind == SKG_OUTPUT_IMAGE) return SKG_OK;
-    if (to->kind == SKG_OUTPUT_SCATTER || to->kind == SKG_OUTPUT_SCATTER_SIGMA) {
-        if (recipe->options.scatter) return SKG_OK;
+static skg_status check_scatter(const char *call, const skg_recipe *recipe, const skg_output *to) {
+    if (!recipe->options.scatter)
         return skg_fail(
             SKG_ERR_ARGUMENT,
             "%s: the scatter is asked for, but the plan has none; set skg_plan_options.scatter (Scatter)",
             call);
-    }
+    if (to->kind == SKG_OUTPUT_SCATTER_COMPONENT &&
+        (to->component < 0 || to->component > SKG_SCATTER_COMPONENT_COMPTON_HIGHER))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: component %" PRId32 " of the scatter is no SKG_SCATTER_COMPONENT_ value", call,
+                        to->component);
+    return SKG_OK;
+}
+
+static skg_status check_kind(const char *call, const skg_recipe *recipe, const skg_output *to) {
+    const int64_t parts = recipe->scene->count;
+    if (to->kind == SKG_OUTPUT_IMAGE) return SKG_OK;
+    if (skg_output_is_scatter(to->kind)) return check_scatter(call, recipe, to);
     if (to->kind != SKG_OUTPUT_LENGTHS)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: an output of kind %" PRId32 " is no SKG_OUTPUT_ value", call,
                         to->kind);

@@ -18,6 +18,12 @@ skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, con
                                  int64_t frames, const skg_output *outputs, int64_t index,
                                  skg_frame_output *output);
 
+/* Whether a kind of output shows the scatter alone. */
+static inline int skg_output_is_scatter(int32_t kind) {
+    return kind == SKG_OUTPUT_SCATTER || kind == SKG_OUTPUT_SCATTER_SIGMA ||
+           kind == SKG_OUTPUT_SCATTER_COMPONENT;
+}
+
 /* Where the device puts the output of a frame: the caller's buffer, or device memory from which it is read back. */
 skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view *view, skg_machine *machine,
                                   int64_t frame, skg_image_place *place);

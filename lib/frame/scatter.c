@@ -19,7 +19,8 @@ static skg_status check_places(const skg_job *job) {
     return SKG_OK;
 }
 
-static skg_status compute(skg_job *job, const skg_frame_work *work) {
+/* Computes the scatter, and the component that is asked for; -1: none. */
+static skg_status compute(skg_job *job, const skg_frame_work *work, int component) {
     const skg_recipe *recipe = job->recipe;
     skg_scatter_work scatter = {.recipe = recipe, .view = work->view, .poses = work->poses};
     double *matter = NULL;
@@ -31,7 +32,9 @@ static skg_status compute(skg_job *job, const skg_frame_work *work) {
         scatter.fill = matter + recipe->scene->count;
         SKG_TRY_CLEANUP(skg_overrides_matter(recipe, work->frame, matter, matter + recipe->scene->count));
     }
-    status = skg_scatterer_run(job->machine->context, job->scatterer, &scatter);
+    SKG_TRY_CLEANUP(skg_scatterer_run(job->machine->context, job->scatterer, &scatter));
+    if (component >= 0)
+        status = skg_scatterer_component(job->machine->context, job->scatterer, &scatter, component);
 cleanup:
     skg_free(&matter);
     return status;
@@ -45,7 +48,7 @@ static skg_status run(skg_job *job, const skg_frame_work *work, const skg_scatte
 }
 
 skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image) {
-    SKG_TRY(compute(job, work));
+    SKG_TRY(compute(job, work, -1));
     const skg_scatterer *s = job->scatterer;
     const skg_scattered_image what = {s->images.mean.memory,
                                       job->recipe->options.noise ? s->images.variance.memory : NULL, 1};
@@ -53,9 +56,12 @@ skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const
 }
 
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
-    SKG_TRY(compute(job, work));
-    const skg_scatterer *s = job->scatterer;
-    const skg_scattered_image what = {
-        work->shows == SKG_OUTPUT_SCATTER ? s->images.shown.memory : s->images.sigma.memory, NULL, 0};
+    const int is_component = work->shows == SKG_OUTPUT_SCATTER_COMPONENT;
+    SKG_TRY(compute(job, work, is_component ? work->kind : -1));
+    const skg_scatter_images *images = &job->scatterer->images;
+    const skg_scattered_image what = {is_component                        ? images->component.memory
+                                      : work->shows == SKG_OUTPUT_SCATTER ? images->shown.memory
+                                                                          : images->sigma.memory,
+                                      NULL, 0};
     return run(job, work, &what, &work->place);
 }

@@ -10,7 +10,7 @@ int skg_frame_scatters(const skg_job *job);
 /* Computes the scatter of the frame, waits for it, and enqueues what adds it to the intensities. image: where these are. */
 skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image);
 
-/* The same of an output that shows the scatter, or its standard error, alone. */
+/* The same of an output that shows the scatter, its standard error or a component, alone. */
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work);
 
 #endif

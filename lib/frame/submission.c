@@ -14,7 +14,7 @@ static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, i
     const int is_length = output->to.kind == SKG_OUTPUT_LENGTHS;
     const skg_view *view = &job->recipe->view;
     work->lengths_of = is_length ? output->to.part : -1;
-    work->kind = output->to.lengths;
+    work->kind = is_length ? output->to.lengths : output->to.component;
     work->shows = output->to.kind;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_enqueue(job, work));

@@ -10,9 +10,10 @@ typedef struct {
     const skg_mesh *meshes;     /* [meshes] of the recipe, as the device has them; NULL: the scene's */
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
-    int32_t kind;               /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE */
-    int32_t shows;              /* enum skg_output_kind */
-    skg_noise_args noise;       /* its key */
+    int32_t
+        kind; /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE; of a component of the scatter: which */
+    int32_t shows;        /* enum skg_output_kind */
+    skg_noise_args noise; /* its key */
     skg_image_place place;
 } skg_frame_work;
 

@@ -1,23 +1,20 @@
 #include "scatter/scatterer.h"
 
+#include "core/clock.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 /* Places along the longer side of the detector, and first histories of a batch: fewer say too little of their own error. */
 enum { PLACES = 32, FIRST = 512 };
 
+/* Of the attenuation or of angles in a material, above which a scene is warned of. */
+static const double MIXTURE_ERROR = 0.05;
+
 /* A round may have so many times the histories of the last one. */
 static const double GROWTH_MAX = 16;
-
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* What the scatter of a frame depends on. */
 static skg_digest key_of(const skg_scatter_work *work) {
@@ -110,6 +107,25 @@ static void share_out(const arrived *a, skg_scatter_report *report) {
     }
 }
 
+static void free_components(skg_scatterer *s) {
+    for (int k = 0; k < SKG_SCATTER_KINDS; k++) skg_cosines_free(&s->components[k]);
+}
+
+/* Each order and kind by the cosines of their sum. */
+static skg_status take_components(arrived *a, skg_scatterer *s) {
+    const int64_t places = a->columns * a->rows;
+    for (int k = 0; k < SKG_SCATTER_KINDS; k++) {
+        add_planes(a, k, k + 1);
+        for (int64_t p = 0; p < places; p++) {
+            double sum = 0;
+            for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++) sum += a->values[b * places + p];
+            a->values[p] = sum / SKG_SCATTER_BATCHES;
+        }
+        SKG_TRY(skg_cosines_like(&a->mean, a->values, &s->components[k]));
+    }
+    return SKG_OK;
+}
+
 static skg_status trace(skg_context *context, const skg_scatter_work *work, const skg_scatter_object *object,
                         skg_scatterer *s, arrived *a) {
     skg_scatter_tables tables;
@@ -119,13 +135,16 @@ static skg_status trace(skg_context *context, const skg_scatter_work *work, cons
     SKG_TRY_CLEANUP(follow(context, work->recipe->options.scatter, &s->tracing, a));
     if (work->recipe->options.noise)
         SKG_TRY_CLEANUP(fit(a, &a->variance, SKG_SCATTER_KINDS, SKG_SCATTER_PLANES));
+    SKG_TRY_CLEANUP(take_components(a, s));
+    s->photons = tables.photons * skg_sight_photons(work, &s->tracing.args) /
+                 ((double)s->tracing.args.scale * (double)s->tracing.args.end);
+    s->signal = tables.signal;
     const skg_shown_scatter shown = {
         .work = work,
         .mean = &a->mean,
         .variance = work->recipe->options.noise ? &a->variance : NULL,
-        .photons = tables.photons * skg_sight_photons(work, &s->tracing.args) /
-                   ((double)s->tracing.args.scale * (double)s->tracing.args.end),
-        .signal = tables.signal,
+        .photons = s->photons,
+        .signal = s->signal,
         .power = tables.variance,
     };
     s->report.histories = (int64_t)s->tracing.args.end * SKG_SCATTER_BATCHES;
@@ -161,25 +180,48 @@ cleanup:
     return status;
 }
 
+static void warn_of_mixtures(const skg_context *context, const skg_scatter_physics *physics,
+                             skg_scatterer *s) {
+    if (s->warned || !(physics->error > MIXTURE_ERROR)) return;
+    s->warned = 1;
+    skg_log(
+        context, SKG_LOG_WARNING,
+        "scatter: four coefficients a cell stand for %" PRId64
+        " materials, with errors of up to %.2g %% in attenuation and %.2g %% in angles; fewer compositions are mixed "
+        "better, and up to four exactly",
+        physics->materials, 100 * physics->attenuation_error, 100 * physics->error);
+}
+
 skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_scatter_work *work) {
     const skg_digest key = key_of(work);
-    const double begun = seconds_now();
+    const double begun = skg_seconds();
     skg_scatter_object object;
     if (s->known && skg_digest_same(&s->key, &key)) return SKG_OK;
     s->known = 0;
+    free_components(s);
     s->report = (skg_scatter_report){.size = sizeof s->report};
     skg_status status = skg_scatter_object_make(work, &object);
     if (status == SKG_OK) status = compute(context, work, &object, s);
+    if (status == SKG_OK) warn_of_mixtures(context, &object.physics, s);
     s->report.mixture_error = object.physics.error;
     memcpy(s->report.cells, object.cells.count, sizeof s->report.cells);
-    s->report.seconds = seconds_now() - begun;
+    s->report.seconds = skg_seconds() - begun;
     skg_scatter_object_free(&object);
     s->key = key;
     s->known = status == SKG_OK;
     return status;
 }
 
+skg_status skg_scatterer_component(skg_context *context, skg_scatterer *s, const skg_scatter_work *work,
+                                   int component) {
+    const skg_cosines *cosines = &s->components[component];
+    const skg_shown_scatter shown = {
+        .work = work, .mean = cosines->value ? cosines : NULL, .photons = s->photons, .signal = s->signal};
+    return skg_shown_component_send(context, &shown, &s->images);
+}
+
 void skg_scatterer_release(skg_scatterer *s) {
+    free_components(s);
     skg_trace_release(&s->tracing);
     skg_scattered_release(&s->stage);
     skg_scatter_images_release(&s->images);

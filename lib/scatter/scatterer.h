@@ -12,14 +12,21 @@ typedef struct {
     skg_tracing tracing;
     skg_scattered stage;
     skg_scatter_images images;
-    skg_digest key; /* of the frame they hold for */
-    int32_t known;  /* 1: they hold for it */
-    int32_t reserved;
+    skg_cosines
+        components[SKG_SCATTER_KINDS]; /* enum skg_scatter_component; without values: nothing scatters */
+    double photons, signal;            /* as of skg_shown_scatter */
+    skg_digest key;                    /* of the frame they hold for */
+    int32_t known;                     /* 1: they hold for it */
+    int32_t warned;                    /* 1: of materials that four coefficients mix badly */
     skg_scatter_report report;
 } skg_scatterer;
 
 /* Computes the scatter of a frame, unless it is that of the last one, and waits for it. After a failure nothing is known. */
 skg_status skg_scatterer_run(skg_context *context, skg_scatterer *scatterer, const skg_scatter_work *work);
+
+/* Fills images.component. work: that of the last run */
+skg_status skg_scatterer_component(skg_context *context, skg_scatterer *scatterer,
+                                   const skg_scatter_work *work, int component);
 
 void skg_scatterer_release(skg_scatterer *scatterer);
 int64_t skg_scatterer_bytes(const skg_scatterer *scatterer);

@@ -40,11 +40,11 @@ static units units_of(const skg_scatter_work *work) {
 }
 
 /* An image of cosines. squares: 1: of their variance; root: 1: of its root; flat: 1: over the open beam's falloff; factor: of all
- * values. */
+ * values; least: of the image, which cosines may swing below. */
 typedef struct {
     const skg_cosines *cosines;
     int squares, root, flat;
-    double factor;
+    double factor, least;
 } picture;
 
 static skg_status send(skg_context *context, const skg_view *view, const picture *p, skg_buffer *buffer,
@@ -59,8 +59,8 @@ static skg_status send(skg_context *context, const skg_view *view, const picture
         SKG_TRY_CLEANUP(skg_cosines_show(p->cosines, p->squares, view->rows, view->columns, values));
     *mean = *square = 0;
     for (int64_t i = 0; i < size; i++) {
-        const double positive = values[i] > 0 ? values[i] : 0; /* cosines may swing below 0 */
-        double value = (p->root ? sqrt(positive) : positive) * p->factor;
+        const double kept = fmax(values[i], p->least);
+        double value = (p->root ? sqrt(kept) : kept) * p->factor;
         if (p->flat) value /= falloff_at(view, i / view->columns, i % view->columns);
         floats[i] = (float)value;
         *mean += value / (double)size;
@@ -81,10 +81,11 @@ skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter 
     const int staged_flat = absolute ? !work->recipe->options.falloff : u.flat;
     const double unit = shown->photons * shown->signal;
     double mean = 0, square = 0;
-    const picture staged = {shown->mean, 0, 0, staged_flat, unit * u.staged};
-    const picture variance = {shown->variance, 0, 0, staged_flat, shown->photons * shown->power * u.staged};
-    const picture image = {shown->mean, 0, 0, u.flat, unit * u.shown};
-    const picture sigma = {shown->mean, 1, 1, u.flat, unit * u.shown};
+    const picture staged = {shown->mean, 0, 0, staged_flat, unit * u.staged, 0};
+    const picture variance = {
+        shown->variance, 0, 0, staged_flat, shown->photons * shown->power * u.staged, 0};
+    const picture image = {shown->mean, 0, 0, u.flat, unit * u.shown, 0};
+    const picture sigma = {shown->mean, 1, 1, u.flat, unit * u.shown, 0};
     SKG_TRY(send(context, work->view, &staged, &images->mean, &mean, &square));
     if (shown->variance) SKG_TRY(send(context, work->view, &variance, &images->variance, &mean, &square));
     SKG_TRY(send(context, work->view, &image, &images->shown, &images->average, &square));
@@ -93,7 +94,16 @@ skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter 
     return SKG_OK;
 }
 
+skg_status skg_shown_component_send(skg_context *context, const skg_shown_scatter *shown,
+                                    skg_scatter_images *images) {
+    const units u = units_of(shown->work);
+    const picture image = {shown->mean, 0, 0, u.flat, shown->photons * shown->signal * u.shown, -HUGE_VAL};
+    double mean = 0, square = 0;
+    return send(context, shown->work->view, &image, &images->component, &mean, &square);
+}
+
 void skg_scatter_images_release(skg_scatter_images *images) {
+    skg_buffer_release(&images->component);
     skg_buffer_release(&images->mean);
     skg_buffer_release(&images->variance);
     skg_buffer_release(&images->shown);
@@ -101,5 +111,6 @@ void skg_scatter_images_release(skg_scatter_images *images) {
 }
 
 int64_t skg_scatter_images_bytes(const skg_scatter_images *images) {
-    return images->mean.bytes + images->variance.bytes + images->shown.bytes + images->sigma.bytes;
+    return images->component.bytes + images->mean.bytes + images->variance.bytes + images->shown.bytes +
+           images->sigma.bytes;
 }

@@ -17,13 +17,17 @@ typedef struct {
 typedef struct {
     skg_buffer mean, variance; /* what images get, before detector and quantity; variance: with noise alone */
     skg_buffer shown, sigma;   /* in the plan's quantity */
+    skg_buffer component;      /* likewise; the one that was asked for last */
     double average;            /* of `shown` */
     double error;              /* root mean square of sigma */
 } skg_scatter_images;
 
-/* Fills the images. */
+/* Fills the images, but for the component. */
 skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown,
                                   skg_scatter_images *images);
+/* Fills images->component. shown->mean: its cosines */
+skg_status skg_shown_component_send(skg_context *context, const skg_shown_scatter *shown,
+                                    skg_scatter_images *images);
 void skg_scatter_images_release(skg_scatter_images *images);
 int64_t skg_scatter_images_bytes(const skg_scatter_images *images);
 

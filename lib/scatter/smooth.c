@@ -147,6 +147,23 @@ cleanup:
     return status;
 }
 
+skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_cosines *c) {
+    const int64_t size = like->rows * like->columns;
+    double *across = NULL, *down = NULL, *half = NULL;
+    skg_status status = SKG_OK;
+    *c = (skg_cosines){.columns = like->columns, .rows = like->rows, .kept = {like->kept[0], like->kept[1]}};
+    SKG_TRY_CLEANUP(make_cosines(c->columns, &across));
+    SKG_TRY_CLEANUP(make_cosines(c->rows, &down));
+    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *half, "smoothing", &half));
+    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
+    transform(c, across, down, values, half, c->value);
+cleanup:
+    skg_free(&across);
+    skg_free(&down);
+    skg_free(&half);
+    return status;
+}
+
 void skg_cosines_free(skg_cosines *c) {
     skg_free(&c->value);
     skg_free(&c->variance);

@@ -25,6 +25,9 @@ typedef struct {
  * A cosine that is kept costs its variance, one that is left out the square of its mean less its variance (C. L. Mallows, Some
  * comments on C_p, Technometrics 15 (1973) 661-675). */
 skg_status skg_cosines_fit(const skg_arrivals *arrivals, skg_cosines *cosines);
+
+/* The cosines that `like` keeps, of other values on its grid: [rows][columns]. Their variance is not known. */
+skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_cosines *cosines);
 void skg_cosines_free(skg_cosines *cosines);
 
 /* The smooth function at the middles of rows x columns pixels that fill the same detector, per pixel; squares: 1: the variance

@@ -1,10 +1,10 @@
 #include "scatter/trace.h"
 
+#include "core/clock.h"
 #include "scatter/angles.h"
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 /* Sums are whole multiples of this share of the largest signal. */
 static const double UNIT = 0x1p-36;
@@ -140,23 +140,17 @@ static skg_status launch(skg_context *context, cl_program program, skg_tracing *
     return SKG_LAUNCH_ONCE(context, program, "skg_scatter", "scatter", &work, arguments, NULL);
 }
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 skg_status skg_trace_until(skg_context *context, skg_tracing *t, int64_t end) {
     cl_program program = NULL;
     int64_t chunk = 64;
     SKG_TRY(get_program(context, t, &program));
     for (int64_t first = t->args.end; first < end; first = t->args.end) {
-        const double begun = seconds_now();
+        const double begun = skg_seconds();
         t->args.first = (SKG_INT)first;
         t->args.end = (SKG_INT)(first + chunk < end ? first + chunk : end);
         SKG_TRY(launch(context, program, t));
         SKG_CL_TRY(clFinish(context->device->queue));
-        const double took = seconds_now() - begun;
+        const double took = skg_seconds() - begun;
         if (2 * took < LAUNCH_S) chunk *= 2;
         if (took > 2 * LAUNCH_S && chunk > 64) chunk /= 2;
     }

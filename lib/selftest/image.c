@@ -1,3 +1,4 @@
+#include "core/clock.h"
 #include "frame/plan.h"
 #include "geometry/samples.h"
 #include "selftest/selftest.h"
@@ -9,7 +10,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <time.h>
 
 enum { N = SKG_SELF_TEST_PIXELS, PIXELS = N * N, SCORED_PIXELS = 512, SCORED_FRAMES = 3, REPAIRED = 8 };
 
@@ -139,12 +139,6 @@ static void compare_count(const test_run *run, skg_verdict *verdict) {
                  run->pixels, REPAIRED);
 }
 
-static double now(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* Images per second, by the fastest of some; by the same kernels as the plan that was compared. */
 static skg_status score(skg_context *context, int32_t strategy, double *result) {
     test_run *run = NULL;
@@ -161,9 +155,9 @@ static skg_status score(skg_context *context, int32_t strategy, double *result) 
     skg_output_init(&output);
     output.data = image;
     for (int k = 0; k < SCORED_FRAMES; k++) {
-        const double start = now();
+        const double start = skg_seconds();
         SKG_TRY_CLEANUP(skg_plan_image(run->plan, &output));
-        fastest = fmin(fastest, now() - start);
+        fastest = fmin(fastest, skg_seconds() - start);
     }
     *result = fastest > 0 ? 1 / fastest : 0;
 cleanup:

@@ -9,7 +9,7 @@ import numpy as np
 from ._frames import Batch
 from ._images import compute, number_frames
 from ._interface import ENUMS, ArgumentError
-from ._library import ffi, lib, struct
+from ._library import ffi, filled, lib, struct
 from ._state import State
 from .report import scatter_report
 
@@ -27,25 +27,46 @@ def accuracy(tolerance: float | None, histories: float | None) -> Any:
     return True if tolerance is None else tolerance
 
 
-def planes(state: State, quantity: str | None, options: dict[str, Any]) -> dict[str, Any]:
+#: Kinds of scatter, each in the orders one, two, and three or more.
+_SCATTERED_BY = ("rayleigh", "compton")
+
+
+def _outputs(components: bool) -> list[tuple[str, int]]:
+    """The kinds of outputs and their components."""
+    found = [(kind, 0) for kind in _KINDS.values()]
+    if components:
+        found += [("scatter_component", number) for number in sorted(ENUMS["scatter_component"].values())]
+    return found
+
+
+def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
+    """What skg_plan_scatter_predict finds."""
+    with state.calls():
+        found = filled("skg_scatter_prediction", "skg_plan_scatter_predict", state.plan(options))
+    return {"ratio": found["ratio"], "called_for": bool(found["called_for"]), "rms": found["rms"], "max": found["max"],
+            "seconds": found["seconds"]}
+
+
+def planes(state: State, quantity: str | None, components: bool, options: dict[str, Any]) -> dict[str, Any]:
     """The scattered part of an image, its standard error, the image, and what is reported of the scatter."""
     if options.get("bands") is not None:
         raise ArgumentError("scatter has one channel; leave bands= out")
     batch = Batch(1, index=number_frames(state, 1, None, options))
     dtype = np.float64 if options.get("precision") == "double" else np.float32
-    found = np.empty((len(_KINDS), *state.require_view().shape), dtype)
+    wanted = _outputs(components)
+    found = np.empty((len(wanted), *state.require_view().shape), dtype)
     used: list[Any] = []
 
     def submit(plan: Any) -> Any:
         used.append(plan)
 
         def start(count: int, frames: Any, output: Any, job: Any) -> int:
-            outputs = struct("skg_output", len(_KINDS))
-            for i, kind in enumerate(_KINDS.values()):
+            outputs = struct("skg_output", len(wanted))
+            for i, (kind, component) in enumerate(wanted):
                 outputs[i] = output[0]
-                outputs[i].kind = ENUMS["output_kind"][kind]
+                outputs[i].kind, outputs[i].component = ENUMS["output_kind"][kind], component
                 outputs[i].data = ffi.cast("void *", found[i].__array_interface__["data"][0])
-            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(_KINDS), outputs, job))
+            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(wanted), outputs, job))
 
         return start
 
@@ -53,7 +74,9 @@ def planes(state: State, quantity: str | None, options: dict[str, Any]) -> dict[
         compute(state, submit, batch, found[0], False, True, False, {"quantity": quantity, **options})
         report = scatter_report(used[-1])
     assert report is not None  # a frame was rendered
-    return {**dict(zip(_KINDS, found)), **_summary(report, found[0], quantity)}
+    parts = found[len(_KINDS):]
+    shown = {"components": dict(zip(_SCATTERED_BY, parts.reshape(2, 3, *parts.shape[1:])))} if components else {}
+    return {**dict(zip(_KINDS, found)), **shown, **_summary(report, found[0], quantity)}
 
 
 def _summary(report: Mapping[str, Any], total: Any, quantity: str | None) -> dict[str, Any]:

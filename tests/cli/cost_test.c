@@ -357,7 +357,13 @@ START_TEST(sources_of_error_are_told_apart) {
     ck_assert_ptr_nonnull(
         strstr(json_string_value(member(triangles, "command")), "Samples.bone.Sphere.0=64"));
     ck_assert(json_is_number(member(triangles, "halving_ms")) == json_is_true(member(study, "priced")));
-    ck_assert(json_is_null(member(scatter, "error")) && json_is_string(member(scatter, "reason")));
+    json_t *scattered = member(study, "scatter"), *prices = member(scattered, "prices");
+    ck_assert(number(scatter, "error") > 0 && number(scatter, "error") <= number(scatter, "max"));
+    ck_assert(number(scattered, "ratio_predicted") > 0 && json_is_true(member(scattered, "called_for")));
+    ck_assert_int_eq((int)json_array_size(prices), 3);
+    ck_assert(number(json_array_get(prices, 0), "tolerance") == 0.05);
+    ck_assert(json_is_true(member(json_array_get(prices, 0), "measured")));
+    ck_assert(number(json_array_get(prices, 2), "seconds") > 0);
     static const char *const none[] = {"bins of the spectrum", "tolerance", "source samples", "repair",
                                        "true surface"};
     for (int i = 0; i < 5; i++) ck_assert(number(source_of(study, none[i]), "error") == 0);

@@ -43,6 +43,27 @@ def test_an_image_has_the_scatter_of_its_planes(slab):
     assert slab.scatter(histories=2000, precision="double")["image"].dtype == np.float64
 
 
+def test_components_add_up(slab):
+    found = slab.scatter(histories=2000, components=True)
+    rayleigh, compton = found["components"]["rayleigh"], found["components"]["compton"]
+    assert rayleigh.shape == compton.shape == (3, 16, 16)
+    # six floats of which each is rounded once
+    np.testing.assert_allclose((rayleigh + compton).sum(axis=0), found["image"], rtol=16 * np.finfo(np.float32).eps,
+                               atol=16 * np.finfo(np.float32).eps * float(found["image"].max()))
+    shares = (rayleigh + compton).mean(axis=(1, 2), dtype=float) / found["mean"]
+    # the reported shares count the photons on the grid of the smoothing
+    np.testing.assert_allclose(shares, found["orders"], atol=1e-3)
+    assert rayleigh.mean(dtype=float) * 3 / found["mean"] == pytest.approx(found["kinds"]["rayleigh"], abs=1e-3)
+    assert "components" not in slab.scatter(histories=2000)
+
+
+def test_what_is_predicted(slab):
+    found = slab.scatter_predicted()
+    assert found["ratio"] == pytest.approx(1.1452, rel=0.15)  # EGSnrc in the middle; what is promised
+    assert found["called_for"] is True and 0 < found["rms"] <= found["max"] and found["seconds"] > 0
+    assert slab.scatter_predicted(quantity="attenuation", noise=True)["ratio"] == pytest.approx(found["ratio"], rel=0.15)
+
+
 def test_nothing_in_the_beam_scatters_nothing(slab):
     slab["slab"].pose = sk.translate(3000, 0, 0)
     with pytest.warns(sk.SkiagraphWarning, match="nothing falls on the detector"):

@@ -152,12 +152,29 @@ START_TEST(outputs_need_scatter) {
     ck_skg(skg_plan_create(run_context, s.scene, &s.view, beam, &s.options, &s.plan));
     skg_output_init(&output);
     output.data = &report;
-    for (int32_t kind = SKG_OUTPUT_SCATTER; kind <= SKG_OUTPUT_SCATTER_SIGMA; kind++) {
+    for (int32_t kind = SKG_OUTPUT_SCATTER; kind <= SKG_OUTPUT_SCATTER_COMPONENT; kind++) {
         output.kind = kind;
         ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "scatter");
     }
     ck_skg_fails(skg_plan_scatter_report_get(s.plan, &report), SKG_ERR_ARGUMENT, "scatter");
     skg_spectrum_release(&beam);
+    subject_close(&s);
+}
+END_TEST
+
+START_TEST(components) {
+    subject s = filled();
+    float image[40 * 30];
+    skg_output output;
+    skg_job *job = NULL;
+    subject_plan(&s);
+    skg_output_init(&output);
+    output.data = image;
+    output.kind = SKG_OUTPUT_SCATTER_COMPONENT;
+    output.component = SKG_SCATTER_COMPONENT_COMPTON_HIGHER + 1;
+    ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "component 6");
+    output.component = -1;
+    ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "component -1");
     subject_close(&s);
 }
 END_TEST
@@ -172,6 +189,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, oblique_detectors);
     tcase_add_test(tests, options);
     tcase_add_test(tests, outputs_need_scatter);
+    tcase_add_test(tests, components);
 }
 
 SKG_SUITE_MAIN("scatter/bad", add_tests)

@@ -175,6 +175,7 @@ json_t *cost_json(const cost_study *study) {
     for (int i = 0; i < study->note_count; i++) json_array_append_new(notes, cli_json_text(study->notes[i]));
     json_object_set_new(object, "summary", cli_json_text(study->summary));
     json_object_set_new(object, "sources", sources);
+    json_object_set_new(object, "scatter", cost_scatter_json(study));
     add_run(study, object);
     json_object_set_new(object, "here", json_integer(study->here));
     json_object_set_new(object, "buy", index_json(study->buy));

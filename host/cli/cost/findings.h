@@ -12,6 +12,9 @@ int cost_find_sources(cost_study *study);
 /* The scene's value of the source's dial, "43250 triangles"; empty: the source has no dial. */
 void cost_describe_source(const cost_study *study, int number, char *text, size_t size);
 
+/* What was found of scatter, as a source of error. */
+void cost_take_scatter(const cost_study *study, cost_source *source);
+
 /* The dial of a source that has one. */
 int cost_source_dial(int source);
 

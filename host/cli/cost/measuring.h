@@ -64,6 +64,14 @@ int cost_compare_shot(const cost_study *study, const double *image, cost_shot *s
 /* Errors in mm of the path lengths of all parts, against a setting in the best precision that there is. */
 void cost_compare_lengths(cost_study *study, const cost_setting *reference, cost_point *point);
 
+/* Scatter, which the images of all settings lack. */
+
+/* Predicts it. plan: of the scene */
+void cost_predict_scatter(cost_study *study, skg_plan *plan);
+
+/* Measures what it costs, as far as a share of the given time allows, and what images lack without it. */
+int cost_measure_scatter(cost_study *study);
+
 /* Points: settings, each compared with a reference. */
 
 /* Computes the image of a reference, whose setting is in the study. */

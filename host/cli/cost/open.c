@@ -1,4 +1,5 @@
 #include "cost/dials.h"
+#include "cost/measuring.h"
 
 #include "common/say.h"
 
@@ -32,6 +33,7 @@ static int look_at_scene(cost_study *study) {
                                 .hysteresis = -1};
     if (study->has_spot)
         study->own.samples = report.samples / ((int64_t)options->supersampling * options->supersampling);
+    if (status == SKG_OK) cost_predict_scatter(study, plan);
     skg_plan_release(&plan);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -60,7 +62,7 @@ static int look_at_breath(cost_study *study) {
 
 int cost_open(cost_study *study) {
     int exit_status = cli_open_session(study->arguments, 0, &study->session);
-    study->has_scatter = study->session.options.scatter != NULL;
+    study->own_scatter = study->session.options.scatter;
     study->session.options.scatter = NULL; /* its noise would hide the errors of the primary */
     if (exit_status == CLI_DONE) exit_status = look_at_scene(study);
     if (exit_status == CLI_DONE) exit_status = look_at_beam(study);

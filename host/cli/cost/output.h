@@ -12,6 +12,9 @@ char *cost_command(const cost_study *study, const cost_setting *setting);
 
 json_t *cost_json(const cost_study *study);
 
+/* The object under the key "scatter". */
+json_t *cost_scatter_json(const cost_study *study);
+
 /* The table of all points as .csv. The caller frees the text; NULL if memory is exhausted. */
 char *cost_csv(const cost_study *study);
 

@@ -200,16 +200,10 @@ static int measure_source(cost_study *study, int number) {
 }
 
 /* What no setting of the scene changes, and which therefore no run can measure. */
-static void name_unknown(const cost_study *study, int number, cost_source *source) {
+static void name_unknown(const cost_study *study, cost_source *source) {
     const char *label = "";
     const int64_t parts = cost_count_unknown(study, &label);
-    if (number == COST_SOURCE_SCATTER)
-        snprintf(
-            source->reason, sizeof source->reason, "%s",
-            study->has_scatter
-                ? "the scene has Scatter; errors and times are those of its images without it"
-                : "the image has directly transmitted photons only; the key Scatter adds scattered ones");
-    else if (study->is_thorax < 0)
+    if (study->is_thorax < 0)
         snprintf(source->reason, sizeof source->reason,
                  "not known while the time does not suffice to measure the triangles");
     else
@@ -234,13 +228,16 @@ int cost_find_sources(cost_study *study) {
         if (none) {
             source->error = source->max = 0;
             snprintf(source->reason, sizeof source->reason, "%s", none);
-        } else if (number >= COST_SOURCE_SURFACE) {
+        } else if (number == COST_SOURCE_SCATTER) {
+            cost_take_scatter(study, source);
+        } else if (number == COST_SOURCE_SURFACE) {
             source->state = COST_NOT_KNOWN;
-            name_unknown(study, number, source);
+            name_unknown(study, source);
         } else {
             exit_status = measure_source(study, number);
         }
-        if (source->error > (study->largest < 0 ? 0 : study->sources[study->largest].error))
+        if (number < COST_SOURCE_SURFACE &&
+            source->error > (study->largest < 0 ? 0 : study->sources[study->largest].error))
             study->largest = number;
     }
     return exit_status;

@@ -3,6 +3,7 @@
 #ifndef SKG_CLI_COST_STUDY_H
 #define SKG_CLI_COST_STUDY_H
 
+#include "session/prediction.h"
 #include "session/session.h"
 
 enum {
@@ -175,6 +176,21 @@ typedef struct {
     char reason[512]; /* why the tolerance is not reached; empty: it is */
 } cost_advice;
 
+enum { COST_SCATTER_PRICES = 3 };
+
+/* seconds: NaN: not known; is_measured: 0: estimated from a coarser one. */
+typedef struct {
+    double tolerance, seconds;
+    int is_measured;
+} cost_scatter_price;
+
+/* What images without scatter lack, and what scatter costs. */
+typedef struct {
+    cli_prediction prediction;
+    cost_scatter_price prices[COST_SCATTER_PRICES];
+    char refusal[192]; /* why the scene's images cannot have scatter; empty: they can */
+} cost_scattering;
+
 typedef struct {
     const cli_arguments *arguments;
     cli_session session;
@@ -193,7 +209,8 @@ typedef struct {
     cost_setting own;  /* the scene's own setting */
     int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
     int has_tube, has_energies, has_spot, has_leaky, has_breath;
-    int has_scatter;       /* 1: the scene has it, and images are computed without */
+    const skg_scatter *own_scatter; /* of the scene, whose images are computed without; NULL: it has none */
+    cost_scattering scattering;
     int64_t triangles;     /* of the scene */
     skg_body_options body; /* if has_breath */
     struct {

@@ -151,9 +151,18 @@ static int list_missing(const cost_study *study, char *text, size_t size) {
     return count;
 }
 
+/* What all settings lack. */
+static void name_scatter(cost_study *study) {
+    const cost_source *scatter = &study->sources[COST_SOURCE_SCATTER];
+    char percent[48];
+    if (!(scatter->error > 0)) return;
+    cost_append(study->summary, sizeof study->summary, " Scatter, which no setting here has, is about %s.",
+                cost_percent(scatter->error, percent, sizeof percent));
+}
+
 static int count_measured(const cost_study *study) {
     int count = 0;
-    for (int i = 0; i < COST_SOURCES; i++) count += study->sources[i].state >= COST_COARSE;
+    for (int i = 0; i < COST_SOURCE_SURFACE; i++) count += study->sources[i].state >= COST_COARSE;
     return count;
 }
 
@@ -224,6 +233,7 @@ void cost_summarise(cost_study *study) {
         study->saving = -1; /* it saves time as well */
     state_here(study);
     name_largest(study);
+    name_scatter(study);
     if (study->noise > 10 * here->total_rms) {
         cost_append(study->summary, sizeof study->summary,
                     " The scene's noise is %s, so nothing needs to be bought.",

@@ -3,9 +3,10 @@
 static const char *const text[] = {
     "Plans a scene, computes one frame without writing it, and prints what was decided: strategy, tiles, planes, "
     "precision; every effect, on or off, with the reason and an estimate of its cost; the time of each stage; "
-    "parts that overlap; and what is not simulated.",
+    "parts that overlap; what is not simulated; and what scatter would add, from some 8,000 histories, and whether the scene calls "
+    "for it.",
     cli_text_meshes,
-    "--json prints {effects, nodes, planes, strategy, tiles, bound, bound_precision, stages_ns, ...}: bound is "
+    "--json prints {effects, nodes, planes, strategy, tiles, bound, bound_precision, stages_ns, scatter, ...}: bound is "
     "the error that fewer energies and planes make, bound_precision that of rounding in the precision; "
     "both add up. Each node is [keV, photons per "
     "pixel]; the nodes can be given as the Beam of a scene with a Tolerance of 0.",

@@ -280,19 +280,20 @@ static void print_strategy(const skg_plan_report *report) {
                report->triangles_per_tile);
 }
 
-static void print_left_out(const cli_session *session) {
+static void print_scatter(const cli_session *session, const cli_prediction *prediction) {
     if (session->options.scatter)
         printf(
             "\nTransmitted photons, and those that the parts scatter (Compton, Rayleigh). Left out are fluorescence, the "
             "order of\nmolecules, and what air, filters, jaws and the detector scatter.\n");
     else
-        printf(
-            "\nDirectly transmitted photons only. Scatter is off: it is 7.7 %% of the primary behind 2 cm of bone in a 3 cm "
-            "cube of\nsoft tissue, and 6 to 11 times the primary below the diaphragm of a thorax without a grid. \"Scatter\": "
-            "0.01 adds it.\n");
+        printf("\nDirectly transmitted photons only.%s\n",
+               prediction->is_known && prediction->found.called_for
+                   ? " \"Scatter\": 0.01 adds scattered ones."
+                   : "");
+    cli_print("scatter, %s\n", prediction->reason);
 }
 
-void cli_explain_print(const skg_plan *plan, const cli_session *session) {
+void cli_explain_print(const skg_plan *plan, const cli_session *session, const cli_prediction *prediction) {
     skg_plan_report report;
     skg_plan_report_init(&report);
     skg_plan_report_get(plan, &report);
@@ -318,5 +319,5 @@ void cli_explain_print(const skg_plan *plan, const cli_session *session) {
     print_nodes(plan, &report);
     print_stages(plan);
     print_overlaps(plan, session->scene);
-    print_left_out(session);
+    print_scatter(session, prediction);
 }

@@ -2,6 +2,7 @@
 #ifndef SKG_CLI_EXPLAIN_H
 #define SKG_CLI_EXPLAIN_H
 
+#include "session/prediction.h"
 #include "session/session.h"
 
 #include <jansson.h>
@@ -12,6 +13,6 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms);
 
 /* The object that `plan --json` prints, and other verbs under the key "plan". */
 json_t *cli_explain_json(const skg_plan *plan, const cli_session *session);
-void cli_explain_print(const skg_plan *plan, const cli_session *session);
+void cli_explain_print(const skg_plan *plan, const cli_session *session, const cli_prediction *prediction);
 
 #endif

@@ -23,15 +23,20 @@ static int measure(skg_plan *plan, const skg_view *view) {
 int cli_plan(const cli_arguments *arguments) {
     cli_session session;
     skg_plan *plan = NULL;
+    cli_prediction prediction;
     double plan_ms;
     int exit_status = cli_open_session(arguments, 0, &session);
     session.options.profile = 1;
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&session, &plan, &plan_ms);
     if (exit_status == CLI_DONE) exit_status = measure(plan, &session.view);
-    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json))
-        exit_status = cli_json_print(cli_explain_json(plan, &session));
-    else if (exit_status == CLI_DONE && !cli_is_quiet())
-        cli_explain_print(plan, &session);
+    if (exit_status == CLI_DONE) cli_predict(plan, session.options.tolerance, &prediction);
+    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json)) {
+        json_t *object = cli_explain_json(plan, &session);
+        json_object_set_new(object, "scatter", cli_prediction_json(&prediction));
+        exit_status = cli_json_print(object);
+    } else if (exit_status == CLI_DONE && !cli_is_quiet()) {
+        cli_explain_print(plan, &session, &prediction);
+    }
     skg_plan_release(&plan);
     cli_close_session(&session);
     return exit_status;

@@ -74,7 +74,26 @@ enum skg_output_kind {
      * fraction of the flat field. Needs skg_plan_options.scatter. */
     SKG_OUTPUT_SCATTER = 2,
     /** Its standard error, smoothing included. */
-    SKG_OUTPUT_SCATTER_SIGMA = 3
+    SKG_OUTPUT_SCATTER_SIGMA = 3,
+    /** One of its components, in the same unit (skg_output.component). Smoothed by the same cosines, so that the components
+     * add up to SKG_OUTPUT_SCATTER; a small one may be slightly negative. */
+    SKG_OUTPUT_SCATTER_COMPONENT = 4
+};
+
+/** Scattered photons by what they met in the parts. */
+enum skg_scatter_component {
+    /** Rayleigh scattering once. */
+    SKG_SCATTER_COMPONENT_RAYLEIGH_FIRST = 0,
+    /** Rayleigh scattering twice. */
+    SKG_SCATTER_COMPONENT_RAYLEIGH_SECOND = 1,
+    /** Rayleigh scattering three times or more. */
+    SKG_SCATTER_COMPONENT_RAYLEIGH_HIGHER = 2,
+    /** Compton scattering once. */
+    SKG_SCATTER_COMPONENT_COMPTON_FIRST = 3,
+    /** Two scatterings, at least one of them Compton. */
+    SKG_SCATTER_COMPONENT_COMPTON_SECOND = 4,
+    /** Three scatterings or more, at least one of them Compton. */
+    SKG_SCATTER_COMPONENT_COMPTON_HIGHER = 5
 };
 
 /** Which lengths an output of SKG_OUTPUT_LENGTHS receives. */
@@ -111,6 +130,10 @@ typedef struct {
     void *buffer;
     /** Byte of the buffer at which the output begins, a multiple of an element's size. */
     int64_t offset;
+    /** enum skg_scatter_component, of SKG_OUTPUT_SCATTER_COMPONENT. */
+    int32_t component;
+    /** 0 */
+    int32_t reserved;
 } skg_output;
 
 /** Prepares an output of `size` bytes (export.h). */

@@ -150,6 +150,41 @@ static inline void skg_scatter_report_init(skg_scatter_report *report) {
  *     errors   SKG_ERR_ARGUMENT if the plan has no scatter, or no frame was submitted yet */
 SKG_API skg_status skg_plan_scatter_report_get(const skg_plan *plan, skg_scatter_report *report);
 
+/** What the scatter of a plan's images is, from few histories. The library fills it; prepare with
+ * skg_scatter_prediction_init. */
+typedef struct {
+    /** Set by skg_scatter_prediction_init. */
+    int32_t size;
+    /** 1: without scatter images err by more than skg_plan_options.tolerance; 0: they do not. */
+    int32_t called_for;
+    /** Scatter over primary in the shadow of the parts: sum over sum of the pixels where the primary is less than 0.99 of the
+     * open beam; 0 if there are none. Right to about 15 %. */
+    double ratio;
+    /** Root mean square of the scatter over the detector, as a fraction of the open beam: the error of images without it. */
+    double rms;
+    /** Its maximum, likewise. */
+    double max;
+    /** Wall time. */
+    double seconds;
+} skg_scatter_prediction;
+
+/** Prepares a skg_scatter_prediction of `size` bytes (export.h). */
+SKG_API void skg_scatter_prediction_init_sized(void *prediction, int32_t size);
+
+/** Prepares a skg_scatter_prediction. */
+static inline void skg_scatter_prediction_init(skg_scatter_prediction *prediction) {
+    skg_scatter_prediction_init_sized(prediction, (int32_t)sizeof *prediction);
+}
+
+/** Predicts the scatter of a plan's scene, view and beam, whether the plan has scatter or not: about 8,000 histories on a
+ * detector of at most 64 pixels along each side, with energies as they are measured. Left out are noise, blur, the extent of the source,
+ * heel effect, bow-tie filter, oblique response, bands and World. No skg_plan_ call makes it by itself.
+ *
+ *     errors   those of a plan with scatter that nothing can change: leaky meshes, materials without a composition,
+ *              energies above 1,022 keV
+ *     stale    SKG_STALE as skg_plan_submit */
+SKG_API skg_status skg_plan_scatter_predict(skg_plan *plan, skg_scatter_prediction *prediction);
+
 /** Computes a bound of the error that the precision makes: the rounding of path lengths, exponents and
  * exponentials. It adds to skg_plan_report.bound, the error of fewer energies and planes.
  *

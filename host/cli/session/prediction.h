@@ -1,0 +1,21 @@
+/* What scatter would add to a plan's images, from few histories, and whether the scene calls for it. */
+#ifndef SKG_CLI_PREDICTION_H
+#define SKG_CLI_PREDICTION_H
+
+#include <jansson.h>
+
+#include <skiagraph/report.h>
+
+typedef struct {
+    skg_scatter_prediction found;
+    int is_known; /* 0: scatter is not simulated for the scene */
+    char reason[320];
+} cli_prediction;
+
+/* Predicts. What fails is the reason. */
+void cli_predict(skg_plan *plan, double tolerance, cli_prediction *prediction);
+
+/* {ratio_predicted, called_for, reason} */
+json_t *cli_prediction_json(const cli_prediction *prediction);
+
+#endif
