@@ -30,7 +30,13 @@ static skg_status make_cosines(int64_t count, double **table) {
     return SKG_OK;
 }
 
-/* The coefficients of one batch. half: [rows][columns] workspace */
+/* A place of the grid holds the mean of a cosine over it, which is this share of the value at its middle. */
+static double of_place(int64_t k, int64_t count) {
+    const double x = PI * (double)k / (2 * (double)count);
+    return k ? sin(x) / x : 1;
+}
+
+/* The coefficients of places. half: [rows][columns] workspace */
 static void transform(const skg_cosines *c, const double *across, const double *down, const double *values,
                       double *half, double *out) {
     for (int64_t r = 0; r < c->rows; r++)
@@ -148,6 +154,17 @@ static int64_t choose(const profile *p, skg_cosines *c) {
     return chosen;
 }
 
+/* From coefficients of means over places to those of the function itself. all: of the batches, too */
+static void sharpen(int64_t batches, double *all, skg_cosines *c) {
+    const int64_t size = c->rows * c->columns;
+    for (int64_t k = 0; k < size; k++) {
+        const double share = of_place(k % c->columns, c->columns) * of_place(k / c->columns, c->rows);
+        c->value[k] /= share;
+        c->variance[k] /= share * share;
+        for (int64_t b = 0; b < batches; b++) all[b * size + k] /= share;
+    }
+}
+
 /* Keeps the cosines up to an order. */
 static void keep(skg_cosines *c, int64_t order) {
     const double places = (double)(c->rows * c->columns);
@@ -209,7 +226,9 @@ static skg_status fit(const skg_arrivals *a, const double *across, const double 
         transform(c, across, down, a->values + b * size, work, all + b * size);
     average(a, all, c);
     SKG_TRY_CLEANUP(find_profile(c, &p));
-    keep(c, choose(&p, c));
+    const int64_t order = choose(&p, c);
+    sharpen(a->batches, all, c);
+    keep(c, order);
     find_spread(a, across, down, all, work, c);
 cleanup:
     drop(&p);
@@ -243,18 +262,12 @@ void skg_cosines_free(skg_cosines *c) {
     skg_free(&c->spread);
 }
 
-/* A place of the grid holds the mean of a cosine over it, which is this share of the value at its middle. */
-static double of_place(int64_t k, int64_t count) {
-    const double x = PI * (double)k / (2 * (double)count);
-    return k ? sin(x) / x : 1;
-}
-
 /* Cosines of the grid at the middles of `pixels` pixels: [k][i]. */
 static skg_status make_shown(int64_t count, int64_t kept, int64_t pixels, double **table) {
     SKG_TRY(skg_alloc(kept * pixels, sizeof **table, "smoothing", table));
     for (int64_t k = 0; k < kept; k++)
         for (int64_t i = 0; i < pixels; i++)
-            (*table)[k * pixels + i] = sqrt((k ? 2.0 : 1.0) / (double)count) / of_place(k, count) *
+            (*table)[k * pixels + i] = sqrt((k ? 2.0 : 1.0) / (double)count) *
                                        cos(PI * (double)k * ((double)i + 0.5) / (double)pixels);
     return SKG_OK;
 }

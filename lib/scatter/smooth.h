@@ -19,11 +19,11 @@ typedef struct {
     int64_t kept[2];       /* 0 <= m < kept[0], 0 <= n < kept[1] holds all that are kept */
     int64_t count;         /* so many are kept */
     double *
-        value; /* [rows][columns] coefficients of the smooth function, per place of the grid; 0 if not kept */
+        value; /* [rows][columns] coefficients of the smooth function at the middle of a place; 0 if not kept */
     double *variance; /* [rows][columns] of them */
     double
         *spread;  /* [rows][columns] coefficients of the variance that the batches show from place to place */
-    double bias;  /* mean square of what was left out, per place of the grid */
+    double bias;  /* mean square of what was left out, of means over places */
     double doubt; /* standard error of it */
     double mean, sigma; /* over the detector: of a place; root mean square of its error, bias included */
 } skg_cosines;

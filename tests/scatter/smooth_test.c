@@ -58,22 +58,28 @@ static void fit(const subject *s, skg_cosines *c) {
     ck_skg(skg_cosines_fit(&arrivals, c));
 }
 
-/* The mean square error of the smooth function at the middles of the places; of the mean over a place each cosine is a
- * known share. */
+/* A place holds this share of a cosine's value at its middle. */
+static double share(int64_t k, int64_t count) {
+    const double x = PI * (double)k / (2 * (double)count);
+    return k ? sin(x) / x : 1;
+}
+
+/* The mean square error of the smooth function at the middles of the places; the truth is in means over them. */
 static double square_error(const subject *s, const skg_cosines *c) {
     const int64_t places = s->rows * s->columns;
     double sum = 0;
     for (int64_t p = 0; p < places; p++) {
-        double value = 0;
-        for (int64_t n = 0; n < c->kept[1]; n++)
-            for (int64_t m = 0; m < c->kept[0]; m++) {
-                const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
-                const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
-                value += c->value[n * s->columns + m] *
-                         sqrt((m ? 2.0 : 1.0) * (n ? 2.0 : 1.0) / (double)places) * cos(PI * (double)m * x) *
-                         cos(PI * (double)n * y);
-            }
-        sum += (value - s->truth[p]) * (value - s->truth[p]);
+        const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
+        const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
+        double off = 0;
+        for (int64_t k = 0; k < places; k++) {
+            const int64_t m = k % s->columns, n = k / s->columns;
+            const double wave = cos(PI * (double)m * x) * cos(PI * (double)n * y);
+            off += c->value[k] * sqrt((m ? 2.0 : 1.0) * (n ? 2.0 : 1.0) / (double)places) * wave;
+            if (m < s->cosines && n < s->cosines)
+                off -= wave / (double)(1 + m + n) / (share(m, s->columns) * share(n, s->rows));
+        }
+        sum += off * off;
     }
     return sum / (double)places;
 }
