@@ -16,6 +16,19 @@ static const double MIXTURE_ERROR = 0.05;
 /* A round may have so many times the histories of the last one. */
 static const double GROWTH_MAX = 16;
 
+<<<<<<< HEAD
+=======
+/* The error falls with this root of the histories or faster: more slowly than noise alone, because more cosines are kept then. A
+ * round that ends near what was asked for would end by luck, with too small an error stated. */
+static const double ROOT = 2.5;
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+>>>>>>> scproof
 /* What the scatter of a frame depends on. */
 static skg_digest key_of(const skg_scatter_work *work) {
     const skg_recipe *recipe = work->recipe;
@@ -80,12 +93,10 @@ static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tra
         SKG_TRY(skg_trace_until(context, t, end));
         SKG_TRY(skg_trace_read(context, t, a->sums));
         SKG_TRY(fit(a, &a->mean, 0, SKG_SCATTER_KINDS));
-        /* What is left out is known as well as its doubt says. */
-        const double sigma = sqrt(a->mean.sigma * a->mean.sigma + a->mean.doubt);
-        const double error = a->mean.mean > 0 ? sigma / a->mean.mean : 0;
+        const double error = a->mean.mean > 0 ? a->mean.sigma / a->mean.mean : 0;
         if (asked->histories || error <= asked->tolerance || end >= SKG_SCATTER_HISTORIES) break;
-        /* Powers of two, of which the lattice is best; the error falls with the root of the histories, or faster. */
-        const double more = fmin(error / asked->tolerance * (error / asked->tolerance), GROWTH_MAX);
+        /* Powers of two, of which the lattice is best. */
+        const double more = fmin(pow(error / asked->tolerance, ROOT), GROWTH_MAX);
         end *= 2;
         for (double factor = 2; factor < more && end < SKG_SCATTER_HISTORIES; factor *= 2) end *= 2;
     }
@@ -171,7 +182,7 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
     s->report.mean = s->images.average;
     s->report.sigma = s->images.error;
     share_out(&a, &s->report);
-    s->report.cosines = (int32_t)(a.mean.kept[0] > a.mean.kept[1] ? a.mean.kept[0] : a.mean.kept[1]);
+    s->report.cosines = (int32_t)a.mean.count;
 cleanup:
     skg_cosines_free(&a.mean);
     skg_cosines_free(&a.variance);

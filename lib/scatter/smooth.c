@@ -1,12 +1,24 @@
 #include "scatter/smooth.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
-/* Cosines along each side of the first octave that may be empty; standard errors above which an octave is not. */
+/* Half the order of the first octave that may be empty; standard errors above which an octave is not. */
 enum { LEAST = 4 };
 static const double SURE = 2;
+
+/* Among the cosines that are left out, those with more than so many times the median variance count less. */
+static const double NOISY = 2;
+
+/* The choice prefers what seems small by chance: the smaller of two normal numbers is 1 / sqrt(pi) below their mean on average. */
+static const double CHOSEN = 0.5641895835477563;
+
+/* Order of the cosines that show how the variance changes over the detector, and the least share of its mean. */
+enum { BROAD = 12 };
+static const double LEAST_SHARE = 0.25;
 
 /* Orthonormal cosines at the middles of `count` places: [k][i]. */
 static skg_status make_cosines(int64_t count, double **table) {
@@ -18,7 +30,13 @@ static skg_status make_cosines(int64_t count, double **table) {
     return SKG_OK;
 }
 
-/* The coefficients of one batch. half: [rows][columns] workspace */
+/* A place of the grid holds the mean of a cosine over it, which is this share of the value at its middle. */
+static double of_place(int64_t k, int64_t count) {
+    const double x = PI * (double)k / (2 * (double)count);
+    return k ? sin(x) / x : 1;
+}
+
+/* The coefficients of places. half: [rows][columns] workspace */
 static void transform(const skg_cosines *c, const double *across, const double *down, const double *values,
                       double *half, double *out) {
     for (int64_t r = 0; r < c->rows; r++)
@@ -52,97 +70,193 @@ static void average(const skg_arrivals *a, const double *all, skg_cosines *c) {
     }
 }
 
-/* Of the cosines (m, n) with max(m, n) from `first` to before `end`: what they hold beyond noise, and its standard error. */
-static double signal_between(const skg_cosines *c, int64_t first, int64_t end, double *error) {
-    double sum = 0, fourth = 0;
-    for (int64_t n = 0; n < c->rows && n < end; n++)
-        for (int64_t m = 0; m < c->columns && m < end; m++) {
-            const int64_t k = n * c->columns + m;
-            if (m < first && n < first) continue;
-            sum += c->value[k] * c->value[k] - c->variance[k];
-            fourth += 2 * c->variance[k] * c->variance[k];
-        }
-    *error = sqrt(fourth);
-    return sum;
+/* Along both sides of the detector the same. */
+static int64_t order_of(const skg_cosines *c, int64_t k) {
+    return (k % c->columns + 1) * (k / c->columns + 1);
 }
 
-static double variance_before(const skg_cosines *c, int64_t end) {
-    double sum = 0;
-    for (int64_t n = 0; n < c->rows && n < end; n++)
-        for (int64_t m = 0; m < c->columns && m < end; m++) sum += c->variance[n * c->columns + m];
-    return sum;
+/* By order, from 1 to `most`: variance; what the cosines hold beyond noise; the square of its standard error. */
+typedef struct {
+    int64_t most;
+    double *variance, *signal, *fourth;
+} profile;
+
+static int by_size(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static skg_status find_median(int64_t count, const double *values, double *median) {
+    double *sorted = NULL;
+    SKG_TRY(skg_alloc(count, sizeof *sorted, "smoothing", &sorted));
+    memcpy(sorted, values, (size_t)count * sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, by_size);
+    *median = sorted[count / 2];
+    skg_free(&sorted);
+    return SKG_OK;
+}
+
+static skg_status find_profile(const skg_cosines *c, profile *p) {
+    const int64_t size = c->rows * c->columns;
+    double median = 0;
+    p->most = size;
+    SKG_TRY(skg_alloc(size + 1, sizeof *p->variance, "smoothing", &p->variance));
+    SKG_TRY(skg_alloc(size + 1, sizeof *p->signal, "smoothing", &p->signal));
+    SKG_TRY(skg_alloc(size + 1, sizeof *p->fourth, "smoothing", &p->fourth));
+    SKG_TRY(find_median(size, c->variance, &median));
+    for (int64_t k = 0; k < size; k++) {
+        const double own = c->variance[k], share = own > NOISY * median ? NOISY * median / own : 1;
+        const int64_t order = order_of(c, k);
+        p->variance[order] += own;
+        p->signal[order] += share * (c->value[k] * c->value[k] - own);
+        p->fourth[order] += 2 * share * share * own * own;
+    }
+    return SKG_OK;
+}
+
+static void drop(profile *p) {
+    skg_free(&p->variance);
+    skg_free(&p->signal);
+    skg_free(&p->fourth);
 }
 
 static int64_t smaller(int64_t a, int64_t b) {
     return a < b ? a : b;
 }
 
-static int64_t longer_side(const skg_cosines *c) {
-    return c->columns > c->rows ? c->columns : c->rows;
-}
-
 /* Beyond the first octave that holds nothing but noise, nothing is looked for: the noise of all of them together would decide. */
-static int64_t last_octave(const skg_cosines *c) {
-    const int64_t most = longer_side(c);
-    double error = 0;
-    for (int64_t end = LEAST; end < most; end *= 2)
-        if (signal_between(c, end, smaller(2 * end, most), &error) <= SURE * error)
-            return smaller(2 * end, most);
-    return most;
+static int64_t last_order(const profile *p) {
+    for (int64_t end = LEAST; end < p->most; end *= 2) {
+        double signal = 0, fourth = 0;
+        for (int64_t k = end + 1; k <= smaller(2 * end, p->most); k++)
+            signal += p->signal[k], fourth += p->fourth[k];
+        if (signal <= SURE * sqrt(fourth)) return smaller(2 * end, p->most);
+    }
+    return p->most;
 }
 
-/* As many along both sides of the detector, up to the grid's own. */
-static void choose(skg_cosines *c) {
-    const int64_t end = last_octave(c);
-    double best = HUGE_VAL;
-    for (int64_t kept = 1; kept <= end; kept++) {
-        double error = 0;
-        const double left = signal_between(c, kept, end, &error), found = variance_before(c, kept) + left;
-        if (!(found < best)) continue;
-        best = found;
-        c->kept[0] = smaller(kept, c->columns);
-        c->kept[1] = smaller(kept, c->rows);
-        c->bias = (left > 0 ? left : 0) / (double)(c->rows * c->columns);
-        c->doubt = error / (double)(c->rows * c->columns);
+/* The order up to which cosines are kept. */
+static int64_t choose(const profile *p, skg_cosines *c) {
+    const int64_t last = last_order(p);
+    const double places = (double)(c->rows * c->columns);
+    double left = 0, fourth = 0, variance = 0, best = HUGE_VAL;
+    int64_t chosen = last;
+    for (int64_t k = 1; k <= last; k++) variance += p->variance[k];
+    for (int64_t k = last; k >= 1; k--) { /* from all of them to one */
+        if (variance + left <= best) {
+            best = variance + left, chosen = k;
+            c->doubt = sqrt(fourth) / places;
+            c->bias = (left > 0 ? left : 0) / places + CHOSEN * c->doubt;
+        }
+        variance -= p->variance[k];
+        left += p->signal[k], fourth += p->fourth[k];
+    }
+    return chosen;
+}
+
+/* A coefficient of means over places over that of the function itself. */
+static double of_places(const skg_cosines *c, int64_t k) {
+    return of_place(k % c->columns, c->columns) * of_place(k / c->columns, c->rows);
+}
+
+/* From coefficients of means over places to those of the function itself. all: of the batches, too */
+static void sharpen(int64_t batches, double *all, skg_cosines *c) {
+    const int64_t size = c->rows * c->columns;
+    for (int64_t k = 0; k < size; k++) {
+        const double share = of_places(c, k);
+        c->value[k] /= share;
+        c->variance[k] /= share * share;
+        for (int64_t b = 0; b < batches; b++) all[b * size + k] /= share;
     }
 }
 
-/* Keeps the chosen ones. */
-static void finish(skg_cosines *c) {
+/* Keeps the cosines up to an order. */
+static void keep(skg_cosines *c, int64_t order) {
     const double places = (double)(c->rows * c->columns);
     double variance = 0;
-    for (int64_t n = 0; n < c->rows; n++)
-        for (int64_t m = 0; m < c->columns; m++) {
-            const int64_t k = n * c->columns + m;
-            if (m < c->kept[0] && n < c->kept[1])
-                variance += c->variance[k];
-            else
-                c->value[k] = c->variance[k] = 0;
-        }
+    c->kept[0] = smaller(order, c->columns);
+    c->kept[1] = smaller(order, c->rows);
+    for (int64_t k = 0; k < c->rows * c->columns; k++)
+        if (order_of(c, k) <= order)
+            variance += c->variance[k], c->count++;
+        else
+            c->value[k] = c->variance[k] = 0;
     c->mean = c->value[0] / sqrt(places);
     c->sigma = sqrt(variance / places + c->bias);
 }
 
+/* The smooth function of one batch in the places, from its coefficients. half: [rows][columns] workspace */
+static void transform_back(const skg_cosines *c, const double *across, const double *down, const double *from,
+                           double *half, double *out) {
+    memset(half, 0, (size_t)(c->rows * c->columns) * sizeof *half);
+    memset(out, 0, (size_t)(c->rows * c->columns) * sizeof *out);
+    for (int64_t n = 0; n < c->kept[1]; n++)
+        for (int64_t m = 0; m < c->kept[0]; m++) {
+            if (!(c->variance[n * c->columns + m] > 0)) continue;
+            for (int64_t i = 0; i < c->columns; i++)
+                half[n * c->columns + i] += from[n * c->columns + m] * across[m * c->columns + i];
+        }
+    for (int64_t r = 0; r < c->rows; r++)
+        for (int64_t n = 0; n < c->kept[1]; n++)
+            for (int64_t i = 0; i < c->columns; i++)
+                out[r * c->columns + i] += half[n * c->columns + i] * down[n * c->rows + r];
+}
+
+/* How the variance changes over the detector: of the batches' smooth functions in the places, as broad cosines. Single places are
+ * known to a quarter from so few batches. all: coefficients of the batches; work: [3][rows][columns] */
+static void find_spread(const skg_arrivals *a, const double *across, const double *down, const double *all,
+                        double *work, skg_cosines *c) {
+    const int64_t size = c->rows * c->columns;
+    const double batches = (double)a->batches;
+    double *half = work, *own = work + size, *squares = work + 2 * size;
+    memset(squares, 0, (size_t)size * sizeof *squares);
+    for (int64_t b = 0; b < a->batches; b++) {
+        transform_back(c, across, down, all + b * size, half, own);
+        for (int64_t p = 0; p < size; p++) squares[p] += own[p] * own[p];
+    }
+    transform_back(c, across, down, c->value, half, own);
+    for (int64_t p = 0; p < size; p++)
+        squares[p] = fmax(squares[p] - batches * own[p] * own[p], 0) / (batches * (batches - 1));
+    transform(c, across, down, squares, half, c->spread);
+    for (int64_t k = 0; k < size; k++)
+        if (order_of(c, k) > BROAD) c->spread[k] = 0;
+}
+
+static skg_status fit(const skg_arrivals *a, const double *across, const double *down, double *work,
+                      double *all, skg_cosines *c) {
+    const int64_t size = a->rows * a->columns;
+    profile p = {0};
+    skg_status status = SKG_OK;
+    for (int64_t b = 0; b < a->batches; b++)
+        transform(c, across, down, a->values + b * size, work, all + b * size);
+    average(a, all, c);
+    SKG_TRY_CLEANUP(find_profile(c, &p));
+    const int64_t order = choose(&p, c);
+    sharpen(a->batches, all, c);
+    keep(c, order);
+    find_spread(a, across, down, all, work, c);
+cleanup:
+    drop(&p);
+    return status;
+}
+
 skg_status skg_cosines_fit(const skg_arrivals *a, skg_cosines *c) {
     const int64_t size = a->rows * a->columns;
-    double *across = NULL, *down = NULL, *half = NULL, *all = NULL;
+    double *across = NULL, *down = NULL, *work = NULL, *all = NULL;
     skg_status status = SKG_OK;
     *c = (skg_cosines){.columns = a->columns, .rows = a->rows};
     SKG_TRY_CLEANUP(make_cosines(a->columns, &across));
     SKG_TRY_CLEANUP(make_cosines(a->rows, &down));
-    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *half, "smoothing", &half));
+    SKG_TRY_CLEANUP(skg_alloc(3 * size, sizeof *work, "smoothing", &work));
     SKG_TRY_CLEANUP(skg_alloc(a->batches * size, sizeof *all, "smoothing", &all));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->variance, "smoothing", &c->variance));
-    for (int64_t b = 0; b < a->batches; b++)
-        transform(c, across, down, a->values + b * size, half, all + b * size);
-    average(a, all, c);
-    choose(c);
-    finish(c);
+    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->spread, "smoothing", &c->spread));
+    status = fit(a, across, down, work, all, c);
 cleanup:
     skg_free(&across);
     skg_free(&down);
-    skg_free(&half);
+    skg_free(&work);
     skg_free(&all);
     return status;
 }
@@ -157,6 +271,8 @@ skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_c
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *half, "smoothing", &half));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
     transform(c, across, down, values, half, c->value);
+    for (int64_t k = 0; k < size; k++)
+        c->value[k] = like->value[k] != 0 ? c->value[k] / of_places(c, k) : 0;
 cleanup:
     skg_free(&across);
     skg_free(&down);
@@ -167,43 +283,39 @@ cleanup:
 void skg_cosines_free(skg_cosines *c) {
     skg_free(&c->value);
     skg_free(&c->variance);
+    skg_free(&c->spread);
 }
 
-/* A place of the grid holds the mean of a cosine over it, which is this share of the value at its middle. */
-static double of_place(int64_t k, int64_t count) {
-    const double x = PI * (double)k / (2 * (double)count);
-    return k ? sin(x) / x : 1;
-}
-
-/* Cosines of the grid at the middles of `pixels` pixels: [k][i], their squares if asked for. */
-static skg_status make_shown(int64_t count, int64_t kept, int64_t pixels, int squares, double **table) {
+/* Cosines of the grid at the middles of `pixels` pixels: [k][i]. */
+static skg_status make_shown(int64_t count, int64_t kept, int64_t pixels, double **table) {
     SKG_TRY(skg_alloc(kept * pixels, sizeof **table, "smoothing", table));
     for (int64_t k = 0; k < kept; k++)
-        for (int64_t i = 0; i < pixels; i++) {
-            const double wave = cos(PI * (double)k * ((double)i + 0.5) / (double)pixels) / of_place(k, count);
-            const double norm = (k ? 2.0 : 1.0) / (double)count;
-            (*table)[k * pixels + i] = squares ? norm * wave * wave : sqrt(norm) * wave;
-        }
+        for (int64_t i = 0; i < pixels; i++)
+            (*table)[k * pixels + i] = sqrt((k ? 2.0 : 1.0) / (double)count) *
+                                       cos(PI * (double)k * ((double)i + 0.5) / (double)pixels);
     return SKG_OK;
 }
 
 skg_status skg_cosines_show(const skg_cosines *c, int squares, int64_t rows, int64_t columns, double *image) {
     const double share = (double)(c->rows * c->columns) / (double)(rows * columns);
-    const double *from = squares ? c->variance : c->value;
+    const double *from = squares ? c->spread : c->value;
+    const double least = LEAST_SHARE * c->spread[0] / sqrt((double)(c->rows * c->columns));
+    const int64_t across_kept = squares ? smaller(BROAD, c->columns) : c->kept[0],
+                  down_kept = squares ? smaller(BROAD, c->rows) : c->kept[1];
     double *across = NULL, *down = NULL, *half = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(make_shown(c->columns, c->kept[0], columns, squares, &across));
-    SKG_TRY_CLEANUP(make_shown(c->rows, c->kept[1], rows, squares, &down));
-    SKG_TRY_CLEANUP(skg_alloc(c->kept[1] * columns, sizeof *half, "smoothing", &half));
-    for (int64_t n = 0; n < c->kept[1]; n++)
-        for (int64_t m = 0; m < c->kept[0]; m++)
+    SKG_TRY_CLEANUP(make_shown(c->columns, across_kept, columns, &across));
+    SKG_TRY_CLEANUP(make_shown(c->rows, down_kept, rows, &down));
+    SKG_TRY_CLEANUP(skg_alloc(down_kept * columns, sizeof *half, "smoothing", &half));
+    for (int64_t n = 0; n < down_kept; n++)
+        for (int64_t m = 0; m < across_kept; m++)
             for (int64_t i = 0; i < columns; i++)
                 half[n * columns + i] += from[n * c->columns + m] * across[m * columns + i];
     for (int64_t r = 0; r < rows; r++)
         for (int64_t i = 0; i < columns; i++) {
-            double sum = squares ? c->bias : 0;
-            for (int64_t n = 0; n < c->kept[1]; n++) sum += half[n * columns + i] * down[n * rows + r];
-            image[r * columns + i] = sum * (squares ? share * share : share);
+            double sum = 0;
+            for (int64_t n = 0; n < down_kept; n++) sum += half[n * columns + i] * down[n * rows + r];
+            image[r * columns + i] = squares ? (fmax(sum, least) + c->bias) * share * share : sum * share;
         }
 cleanup:
     skg_free(&across);

@@ -21,6 +21,7 @@ typedef struct {
     int64_t columns, rows;
     int cosines;   /* along each side of the truth; 0: nothing at all */
     double spread; /* of a batch's value in a place */
+    double wave;   /* spread of a single cosine, (16, 3), as a lattice of points has them */
     double *truth, *values;
 } subject;
 
@@ -36,9 +37,15 @@ static void make(subject *s, uint64_t seed) {
             for (int m = 0; m < s->cosines; m++)
                 s->truth[p] += cos(PI * m * x) * cos(PI * n * y) / (1 + m + n);
     }
-    for (int64_t b = 0; b < BATCHES; b++)
-        for (int64_t p = 0; p < places; p++)
-            s->values[b * places + p] = s->truth[p] + (s->spread > 0 ? s->spread * normal(&seed) : 0);
+    for (int64_t b = 0; b < BATCHES; b++) {
+        const double wave = s->wave > 0 ? s->wave * normal(&seed) : 0;
+        for (int64_t p = 0; p < places; p++) {
+            const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
+            const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
+            s->values[b * places + p] = s->truth[p] + (s->spread > 0 ? s->spread * normal(&seed) : 0) +
+                                        wave * cos(16 * PI * x) * cos(3 * PI * y);
+        }
+    }
 }
 
 static void drop(subject *s) {
@@ -51,22 +58,28 @@ static void fit(const subject *s, skg_cosines *c) {
     ck_skg(skg_cosines_fit(&arrivals, c));
 }
 
-/* The mean square error of the smooth function at the middles of the places; of the mean over a place each cosine is a
- * known share. */
+/* A place holds this share of a cosine's value at its middle. */
+static double share(int64_t k, int64_t count) {
+    const double x = PI * (double)k / (2 * (double)count);
+    return k ? sin(x) / x : 1;
+}
+
+/* The mean square error of the smooth function at the middles of the places; the truth is in means over them. */
 static double square_error(const subject *s, const skg_cosines *c) {
     const int64_t places = s->rows * s->columns;
     double sum = 0;
     for (int64_t p = 0; p < places; p++) {
-        double value = 0;
-        for (int64_t n = 0; n < c->kept[1]; n++)
-            for (int64_t m = 0; m < c->kept[0]; m++) {
-                const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
-                const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
-                value += c->value[n * s->columns + m] *
-                         sqrt((m ? 2.0 : 1.0) * (n ? 2.0 : 1.0) / (double)places) * cos(PI * (double)m * x) *
-                         cos(PI * (double)n * y);
-            }
-        sum += (value - s->truth[p]) * (value - s->truth[p]);
+        const double x = ((double)(p % s->columns) + 0.5) / (double)s->columns;
+        const double y = ((double)(p / s->columns) + 0.5) / (double)s->rows;
+        double off = 0;
+        for (int64_t k = 0; k < places; k++) {
+            const int64_t m = k % s->columns, n = k / s->columns;
+            const double wave = cos(PI * (double)m * x) * cos(PI * (double)n * y);
+            off += c->value[k] * sqrt((m ? 2.0 : 1.0) * (n ? 2.0 : 1.0) / (double)places) * wave;
+            if (m < s->cosines && n < s->cosines)
+                off -= wave / (double)(1 + m + n) / (share(m, s->columns) * share(n, s->rows));
+        }
+        sum += off * off;
     }
     return sum / (double)places;
 }
@@ -109,6 +122,48 @@ START_TEST(the_number_of_cosines_follows_the_signal) {
     }
     ck_assert_int_le(most, 16);
     ck_assert_int_le(sum, 4 * SEEDS);
+}
+END_TEST
+
+/* One cosine that is much noisier than the others is no reason to keep it and all of lower order: its noise would be taken for
+ * signal once in twenty times. */
+START_TEST(a_noisy_cosine_is_not_kept) {
+    for (uint64_t seed = 1; seed <= 5 * SEEDS; seed++) {
+        subject s = {.columns = 24, .rows = 20, .cosines = 8, .spread = 0.5, .wave = 0.5};
+        skg_cosines c;
+        make(&s, seed);
+        fit(&s, &c);
+        ck_assert_double_eq(c.value[3 * s.columns + 16], 0);
+        skg_cosines_free(&c);
+        drop(&s);
+    }
+}
+END_TEST
+
+/* Where a detector is noisier, more is stated. */
+START_TEST(errors_follow_the_noise_over_the_detector) {
+    enum { COLUMNS = 24, ROWS = 20 };
+    double left = 0, right = 0, image[ROWS * COLUMNS];
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        subject s = {.columns = COLUMNS, .rows = ROWS, .cosines = 3, .spread = 0.5};
+        skg_cosines c;
+        make(&s, seed);
+        for (int64_t i = 0; i < BATCHES * ROWS * COLUMNS; i++) { /* twice the noise on the right */
+            const int64_t p = i % (ROWS * COLUMNS);
+            if (p % COLUMNS >= COLUMNS / 2) s.values[i] += s.values[i] - s.truth[p];
+        }
+        fit(&s, &c);
+        ck_skg(skg_cosines_show(&c, 1, ROWS, COLUMNS, image));
+        for (int p = 0; p < ROWS * COLUMNS; p++)
+            *(p % COLUMNS < COLUMNS / 4        ? &left
+              : p % COLUMNS >= 3 * COLUMNS / 4 ? &right
+                                               : &(double){0}) += image[p] - c.bias;
+        skg_cosines_free(&c);
+        drop(&s);
+    }
+    /* Four times the variance; a few cosines see a quarter of the detector each way. */
+    ck_assert_double_ge(right / left, 2.5);
+    ck_assert_double_le(right / left, 4.5);
 }
 END_TEST
 
@@ -174,6 +229,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, errors_are_those_that_are_stated);
     tcase_add_test(tests, the_number_of_cosines_follows_the_signal);
+    tcase_add_test(tests, a_noisy_cosine_is_not_kept);
+    tcase_add_test(tests, errors_follow_the_noise_over_the_detector);
     tcase_add_test(tests, without_noise_the_function_comes_back);
     tcase_add_test(tests, places_are_means_over_their_pixels);
     tcase_add_test(tests, nothing_stays_nothing);

@@ -117,7 +117,7 @@ SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *re
 typedef struct {
     /** Set by skg_scatter_report_init. */
     int32_t size;
-    /** Cosines along the detector's rows and columns that the smoothing has kept. */
+    /** Cosines over the detector that the smoothing has kept. */
     int32_t cosines;
     /** Mean over the detector, in the unit of SKG_OUTPUT_SCATTER. */
     double mean;
