@@ -16,19 +16,10 @@ static const double MIXTURE_ERROR = 0.05;
 /* A round may have so many times the histories of the last one. */
 static const double GROWTH_MAX = 16;
 
-<<<<<<< HEAD
-=======
 /* The error falls with this root of the histories or faster: more slowly than noise alone, because more cosines are kept then. A
  * round that ends near what was asked for would end by luck, with too small an error stated. */
 static const double ROOT = 2.5;
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
->>>>>>> scproof
 /* What the scatter of a frame depends on. */
 static skg_digest key_of(const skg_scatter_work *work) {
     const skg_recipe *recipe = work->recipe;

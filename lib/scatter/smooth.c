@@ -1,20 +1,11 @@
 #include "scatter/smooth.h"
 
+#include "scatter/order.h"
+
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
-
-/* Half the order of the first octave that may be empty; standard errors above which an octave is not. */
-enum { LEAST = 4 };
-static const double SURE = 2;
-
-/* Among the cosines that are left out, those with more than so many times the median variance count less. */
-static const double NOISY = 2;
-
-/* The choice prefers what seems small by chance: the smaller of two normal numbers is 1 / sqrt(pi) below their mean on average. */
-static const double CHOSEN = 0.5641895835477563;
 
 /* Order of the cosines that show how the variance changes over the detector, and the least share of its mean. */
 enum { BROAD = 12 };
@@ -75,85 +66,6 @@ static int64_t order_of(const skg_cosines *c, int64_t k) {
     return (k % c->columns + 1) * (k / c->columns + 1);
 }
 
-/* By order, from 1 to `most`: variance; what the cosines hold beyond noise; the square of its standard error. */
-typedef struct {
-    int64_t most;
-    double *variance, *signal, *fourth;
-} profile;
-
-static int by_size(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static skg_status find_median(int64_t count, const double *values, double *median) {
-    double *sorted = NULL;
-    SKG_TRY(skg_alloc(count, sizeof *sorted, "smoothing", &sorted));
-    memcpy(sorted, values, (size_t)count * sizeof *sorted);
-    qsort(sorted, (size_t)count, sizeof *sorted, by_size);
-    *median = sorted[count / 2];
-    skg_free(&sorted);
-    return SKG_OK;
-}
-
-static skg_status find_profile(const skg_cosines *c, profile *p) {
-    const int64_t size = c->rows * c->columns;
-    double median = 0;
-    p->most = size;
-    SKG_TRY(skg_alloc(size + 1, sizeof *p->variance, "smoothing", &p->variance));
-    SKG_TRY(skg_alloc(size + 1, sizeof *p->signal, "smoothing", &p->signal));
-    SKG_TRY(skg_alloc(size + 1, sizeof *p->fourth, "smoothing", &p->fourth));
-    SKG_TRY(find_median(size, c->variance, &median));
-    for (int64_t k = 0; k < size; k++) {
-        const double own = c->variance[k], share = own > NOISY * median ? NOISY * median / own : 1;
-        const int64_t order = order_of(c, k);
-        p->variance[order] += own;
-        p->signal[order] += share * (c->value[k] * c->value[k] - own);
-        p->fourth[order] += 2 * share * share * own * own;
-    }
-    return SKG_OK;
-}
-
-static void drop(profile *p) {
-    skg_free(&p->variance);
-    skg_free(&p->signal);
-    skg_free(&p->fourth);
-}
-
-static int64_t smaller(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
-/* Beyond the first octave that holds nothing but noise, nothing is looked for: the noise of all of them together would decide. */
-static int64_t last_order(const profile *p) {
-    for (int64_t end = LEAST; end < p->most; end *= 2) {
-        double signal = 0, fourth = 0;
-        for (int64_t k = end + 1; k <= smaller(2 * end, p->most); k++)
-            signal += p->signal[k], fourth += p->fourth[k];
-        if (signal <= SURE * sqrt(fourth)) return smaller(2 * end, p->most);
-    }
-    return p->most;
-}
-
-/* The order up to which cosines are kept. */
-static int64_t choose(const profile *p, skg_cosines *c) {
-    const int64_t last = last_order(p);
-    const double places = (double)(c->rows * c->columns);
-    double left = 0, fourth = 0, variance = 0, best = HUGE_VAL;
-    int64_t chosen = last;
-    for (int64_t k = 1; k <= last; k++) variance += p->variance[k];
-    for (int64_t k = last; k >= 1; k--) { /* from all of them to one */
-        if (variance + left <= best) {
-            best = variance + left, chosen = k;
-            c->doubt = sqrt(fourth) / places;
-            c->bias = (left > 0 ? left : 0) / places + CHOSEN * c->doubt;
-        }
-        variance -= p->variance[k];
-        left += p->signal[k], fourth += p->fourth[k];
-    }
-    return chosen;
-}
-
 /* A coefficient of means over places over that of the function itself. */
 static double of_places(const skg_cosines *c, int64_t k) {
     return of_place(k % c->columns, c->columns) * of_place(k / c->columns, c->rows);
@@ -174,8 +86,8 @@ static void sharpen(int64_t batches, double *all, skg_cosines *c) {
 static void keep(skg_cosines *c, int64_t order) {
     const double places = (double)(c->rows * c->columns);
     double variance = 0;
-    c->kept[0] = smaller(order, c->columns);
-    c->kept[1] = smaller(order, c->rows);
+    c->kept[0] = order < c->columns ? order : c->columns;
+    c->kept[1] = order < c->rows ? order : c->rows;
     for (int64_t k = 0; k < c->rows * c->columns; k++)
         if (order_of(c, k) <= order)
             variance += c->variance[k], c->count++;
@@ -225,19 +137,23 @@ static void find_spread(const skg_arrivals *a, const double *across, const doubl
 static skg_status fit(const skg_arrivals *a, const double *across, const double *down, double *work,
                       double *all, skg_cosines *c) {
     const int64_t size = a->rows * a->columns;
-    profile p = {0};
-    skg_status status = SKG_OK;
+    const double places = (double)size;
+    skg_choice choice;
+    int64_t *orders = NULL;
     for (int64_t b = 0; b < a->batches; b++)
         transform(c, across, down, a->values + b * size, work, all + b * size);
     average(a, all, c);
-    SKG_TRY_CLEANUP(find_profile(c, &p));
-    const int64_t order = choose(&p, c);
+    SKG_TRY(skg_alloc(size, sizeof *orders, "smoothing", &orders));
+    for (int64_t k = 0; k < size; k++) orders[k] = order_of(c, k);
+    const skg_status status = skg_choose_order(size, orders, c->value, c->variance, &choice);
+    skg_free(&orders);
+    if (status != SKG_OK) return status;
+    c->bias = choice.bias / places;
+    c->doubt = choice.doubt / places;
     sharpen(a->batches, all, c);
-    keep(c, order);
+    keep(c, choice.order);
     find_spread(a, across, down, all, work, c);
-cleanup:
-    drop(&p);
-    return status;
+    return SKG_OK;
 }
 
 skg_status skg_cosines_fit(const skg_arrivals *a, skg_cosines *c) {
@@ -271,8 +187,7 @@ skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_c
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *half, "smoothing", &half));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
     transform(c, across, down, values, half, c->value);
-    for (int64_t k = 0; k < size; k++)
-        c->value[k] = like->value[k] != 0 ? c->value[k] / of_places(c, k) : 0;
+    for (int64_t k = 0; k < size; k++) c->value[k] = like->value[k] != 0 ? c->value[k] / of_places(c, k) : 0;
 cleanup:
     skg_free(&across);
     skg_free(&down);
@@ -300,8 +215,8 @@ skg_status skg_cosines_show(const skg_cosines *c, int squares, int64_t rows, int
     const double share = (double)(c->rows * c->columns) / (double)(rows * columns);
     const double *from = squares ? c->spread : c->value;
     const double least = LEAST_SHARE * c->spread[0] / sqrt((double)(c->rows * c->columns));
-    const int64_t across_kept = squares ? smaller(BROAD, c->columns) : c->kept[0],
-                  down_kept = squares ? smaller(BROAD, c->rows) : c->kept[1];
+    const int64_t across_kept = squares ? (c->columns < BROAD ? c->columns : BROAD) : c->kept[0],
+                  down_kept = squares ? (c->rows < BROAD ? c->rows : BROAD) : c->kept[1];
     double *across = NULL, *down = NULL, *half = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(make_shown(c->columns, across_kept, columns, &across));

@@ -28,10 +28,7 @@ typedef struct {
     double mean, sigma; /* over the detector: of a place; root mean square of its error, bias included */
 } skg_cosines;
 
-/* Chooses how many cosines to keep: as many as make the expected square of the error smallest, judged by the spread of the batches.
- * A cosine that is kept costs its variance, one that is left out the square of its mean less its variance (C. L. Mallows, Some
- * comments on C_p, Technometrics 15 (1973) 661-675). Some cosines may be far noisier than others, because lattices of points have
- * waves that they miss: they hardly count among those that are left out. */
+/* Keeps as many cosines as make the error smallest (order.h). */
 skg_status skg_cosines_fit(const skg_arrivals *arrivals, skg_cosines *cosines);
 
 /* The cosines that `like` keeps, of other values on its grid: [rows][columns]. Their variance is not known. */
