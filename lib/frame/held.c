@@ -27,6 +27,17 @@ static skg_status read_poses(const skg_recipe *recipe, int64_t index, const skg_
     return SKG_OK;
 }
 
+skg_status skg_held_frame_place(const skg_recipe *recipe, int64_t index, const skg_frame *frame,
+                                skg_view *view, const double **poses) {
+    if (frame->view) {
+        SKG_TRY(skg_view_check(frame->view));
+        skg_view_init(view);
+        SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
+        SKG_TRY(skg_recipe_check_view(recipe, view));
+    }
+    return read_poses(recipe, index, frame, poses);
+}
+
 skg_status skg_held_frame_read(const skg_job *job, const skg_frame *frames, int64_t index, skg_frame *frame,
                                skg_view *view, const double **poses, skg_noise_args *noise) {
     const skg_recipe *recipe = job->recipe;
@@ -42,13 +53,7 @@ skg_status skg_held_frame_read(const skg_job *job, const skg_frame *frames, int6
     if (frame->subframes < 0)
         return skg_fail(SKG_ERR_ARGUMENT, "frame %" PRId64 ": it is one of %" PRId32 " sub-frames", index,
                         frame->subframes);
-    if (frame->view) {
-        SKG_TRY(skg_view_check(frame->view));
-        skg_view_init(view);
-        SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
-        SKG_TRY(skg_recipe_check_view(recipe, view));
-    }
-    return read_poses(recipe, index, frame, poses);
+    return skg_held_frame_place(recipe, index, frame, view, poses);
 }
 
 /* A copy that the job frees; NULL of NULL. copy: the address of a pointer to const. */

@@ -49,9 +49,13 @@ static skg_plan_options coarse_options(const skg_recipe *recipe, const skg_scatt
     return options;
 }
 
-/* Renders the image, and the scatter in it if `scatter` is not NULL. flat_field: of the open beam */
-static skg_status render(const skg_plan *plan, const skg_plan_options *options, float *image, float *scatter,
-                         double *flat_field) {
+/* Primary and scatter, and the open beam. */
+typedef struct {
+    float *image, *scatter; /* [count] all photons, and the scattered ones */
+    double open;
+} rendering;
+
+static skg_status render(const skg_plan *plan, const skg_plan_options *options, rendering *r) {
     const skg_recipe *recipe = plan->recipe;
     const skg_view view = coarse_view(&recipe->view);
     skg_plan *made = NULL;
@@ -62,13 +66,13 @@ static skg_status render(const skg_plan *plan, const skg_plan_options *options, 
     skg_channel_init(&channel);
     for (int k = 0; k < 2; k++) {
         skg_output_init(&outputs[k]);
-        outputs[k].data = k ? scatter : image;
+        outputs[k].data = k ? r->scatter : r->image;
     }
     outputs[1].kind = SKG_OUTPUT_SCATTER;
     SKG_TRY_CLEANUP(skg_plan_create(plan->context, recipe->scene, &view, recipe->spectrum, options, &made));
     SKG_TRY_CLEANUP(skg_plan_channel_get(made, 0, &channel));
-    *flat_field = channel.flat_field;
-    SKG_TRY_CLEANUP(skg_plan_outputs_submit(made, 1, NULL, scatter ? 2 : 1, outputs, &job));
+    r->open = channel.flat_field;
+    SKG_TRY_CLEANUP(skg_plan_outputs_submit(made, 1, NULL, 2, outputs, &job));
     status = skg_job_wait(&job);
 cleanup:
     skg_plan_release(&made);
@@ -76,44 +80,61 @@ cleanup:
     return status == SKG_RANGE ? SKG_OK : status;
 }
 
-/* From an image and the scatter in it. open: the beam where nothing stands; through: [count] primary over open beam, NULL: from the
- * image */
-static void sum_up(int64_t count, const float *image, const float *scatter, const float *through, double open,
+static double primary_at(const rendering *r, int64_t i) {
+    return (double)r->image[i] - (double)r->scatter[i];
+}
+
+static double ratio_of(double a, double b) {
+    return b > 0 ? a / b : a > 0 ? HUGE_VAL : 0;
+}
+
+/* bare: without the grid, which takes some of the open beam, too */
+static void sum_up(int64_t count, const rendering *r, const rendering *bare,
                    skg_scatter_prediction *prediction) {
     double scattered = 0, primary = 0, square = 0;
     for (int64_t i = 0; i < count; i++) {
-        const double s = (double)scatter[i], p = (double)image[i] - s;
-        const double passed = through ? (double)through[i] : p / open;
+        const double s = (double)r->scatter[i];
         square += s * s / (double)count;
-        prediction->max = fmax(prediction->max, s / open);
-        if (!(passed < SHADOW)) continue;
+        prediction->max = fmax(prediction->max, s / r->open);
+        if (!(primary_at(bare, i) / bare->open < SHADOW)) continue;
         scattered += s;
-        primary += p;
+        primary += primary_at(r, i);
     }
-    prediction->rms = sqrt(square) / open;
-    prediction->ratio = primary > 0 ? scattered / primary : scattered > 0 ? HUGE_VAL : 0;
+    prediction->rms = sqrt(square) / r->open;
+    prediction->ratio = ratio_of(scattered, primary);
+}
+
+/* What the grid passes. */
+static void compare(int64_t count, const rendering *r, const rendering *bare,
+                    skg_scatter_prediction *prediction) {
+    double primary[2] = {0}, scatter[2] = {0};
+    for (int64_t i = 0; i < count; i++) {
+        primary[0] += primary_at(r, i), scatter[0] += (double)r->scatter[i];
+        primary[1] += primary_at(bare, i), scatter[1] += (double)bare->scatter[i];
+    }
+    prediction->grid_primary = ratio_of(primary[0], primary[1]);
+    prediction->grid_scatter = ratio_of(scatter[0], scatter[1]);
+    prediction->grid_total = ratio_of(primary[0] + scatter[0], primary[1] + scatter[1]);
 }
 
 static skg_status predict(skg_plan *plan, skg_scatter_prediction *prediction) {
     const skg_recipe *recipe = plan->recipe;
     const skg_view view = coarse_view(&recipe->view);
     const int64_t count = view.rows * view.columns;
-    float *images = NULL, *through = NULL;
-    double open = 0, alone = 0;
+    float *images = NULL;
     skg_scatter scatter;
     skg_status status = SKG_OK;
     skg_scatter_init(&scatter);
     scatter.histories = HISTORIES;
     skg_plan_options options = coarse_options(recipe, &scatter);
-    SKG_TRY_CLEANUP(skg_alloc(3 * count, sizeof *images, "prediction of scatter", &images));
-    SKG_TRY_CLEANUP(render(plan, &options, images, images + count, &open));
-    if (options.grid) { /* which takes some of the open beam, too */
-        options.grid = NULL, options.scatter = NULL;
-        options.quantity = SKG_QUANTITY_TRANSMISSION;
-        through = images + 2 * count;
-        SKG_TRY_CLEANUP(render(plan, &options, through, NULL, &alone));
-    }
-    sum_up(count, images, images + count, through, open, prediction);
+    const int has_grid = options.grid != NULL;
+    SKG_TRY_CLEANUP(skg_alloc(4 * count, sizeof *images, "prediction of scatter", &images));
+    rendering own = {images, images + count, 0}, bare = {images + 2 * count, images + 3 * count, 0};
+    SKG_TRY_CLEANUP(render(plan, &options, &own));
+    options.grid = NULL;
+    if (has_grid) SKG_TRY_CLEANUP(render(plan, &options, &bare));
+    sum_up(count, &own, has_grid ? &bare : &own, prediction);
+    if (has_grid) compare(count, &own, &bare, prediction);
     prediction->called_for = prediction->ratio > recipe->options.tolerance;
 cleanup:
     skg_free(&images);
@@ -129,7 +150,8 @@ static skg_status predict_silently(skg_plan *plan, skg_scatter_prediction *predi
     SKG_TRY(skg_plan_renew(plan));
     const skg_logger logger = plan->context->log;
     const double begun = skg_seconds();
-    skg_scatter_prediction ours = {.size = sizeof ours};
+    skg_scatter_prediction ours = {
+        .size = sizeof ours, .grid_primary = 1, .grid_scatter = 1, .grid_total = 1};
     plan->context->log = (skg_logger){0};
     const skg_status status = predict(plan, &ours);
     plan->context->log = logger;

@@ -2,15 +2,26 @@
 
 #include "frame/overrides.h"
 
+#include <inttypes.h>
+
 int skg_frame_scatters(const skg_job *job) {
     return job->recipe->options.scatter && job->scatterer && !job->recipe->linear;
 }
 
-/* Positions that are on the device alone are not known here. */
-static skg_status check_places(const skg_job *job) {
-    const skg_plan_meshes *meshes = &job->recipe->meshes;
+skg_status skg_frame_matter(const skg_recipe *recipe, const skg_frame *frame, double **matter) {
+    const int64_t parts = recipe->scene->count;
+    *matter = NULL;
+    if (!frame || !frame->override_count) return SKG_OK;
+    SKG_TRY(skg_alloc(2 * parts, sizeof **matter, "overrides of a frame", matter));
+    const skg_status status = skg_overrides_matter(recipe, frame, *matter, *matter + parts);
+    if (status != SKG_OK) skg_free(matter);
+    return status;
+}
+
+skg_status skg_frame_check_places(const skg_recipe *recipe, const skg_machine *machine) {
+    const skg_plan_meshes *meshes = &recipe->meshes;
     for (int64_t m = 0; m < meshes->count; m++)
-        if (skg_placement_of(&job->machine->placement, meshes->meshes[m], m))
+        if (skg_placement_of(&machine->placement, meshes->meshes[m], m))
             return skg_fail(
                 SKG_ERR_UNSUPPORTED,
                 "scatter: positions of %s were set on the device, where the cells of scattering are not made; set "
@@ -19,23 +30,42 @@ static skg_status check_places(const skg_job *job) {
     return SKG_OK;
 }
 
+/* The scatter of a frame, by itself. component: -1: none */
+static skg_status compute_own(skg_job *job, const skg_scatter_work *scatter, int component) {
+    SKG_TRY(skg_scatterer_run(job->machine->context, job->scatterer, scatter));
+    if (component < 0) return SKG_OK;
+    return skg_scatterer_component(job->machine->context, job->scatterer, scatter, component);
+}
+
+/* From the series of the frame. */
+static skg_status take(skg_job *job, const skg_scatter_work *scatter, const skg_frame *frame, int component) {
+    const skg_scatter_series *series = frame->scatter_series;
+    if (series->recipe->scene != scatter->recipe->scene ||
+        series->recipe->materials != scatter->recipe->materials ||
+        series->recipe->options.quantity != scatter->recipe->options.quantity ||
+        series->recipe->options.noise != scatter->recipe->options.noise)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "scatter: the series was made by another plan, or for other materials");
+    if (!(frame->series_place >= 0 && frame->series_place <= (double)(series->report.frames - 1)))
+        return skg_fail(SKG_ERR_ARGUMENT, "scatter: place %g in a series of %" PRId64 " frames",
+                        frame->series_place, series->report.frames);
+    if (component >= 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "scatter: a series does not have orders and kinds apart; leave out the series");
+    return skg_scatterer_take(job->machine->context, job->scatterer, scatter, series, frame->series_place);
+}
+
 /* Computes the scatter, and the component that is asked for; -1: none. */
 static skg_status compute(skg_job *job, const skg_frame_work *work, int component) {
     const skg_recipe *recipe = job->recipe;
     skg_scatter_work scatter = {.recipe = recipe, .view = work->view, .poses = work->poses};
     double *matter = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY(check_places(job));
-    if (work->frame && work->frame->override_count) {
-        SKG_TRY(skg_alloc(2 * recipe->scene->count, sizeof *matter, "overrides of a frame", &matter));
-        scatter.density = matter;
-        scatter.fill = matter + recipe->scene->count;
-        SKG_TRY_CLEANUP(skg_overrides_matter(recipe, work->frame, matter, matter + recipe->scene->count));
-    }
-    SKG_TRY_CLEANUP(skg_scatterer_run(job->machine->context, job->scatterer, &scatter));
-    if (component >= 0)
-        status = skg_scatterer_component(job->machine->context, job->scatterer, &scatter, component);
-cleanup:
+    if (work->frame && work->frame->scatter_series) return take(job, &scatter, work->frame, component);
+    SKG_TRY(skg_frame_check_places(recipe, job->machine));
+    SKG_TRY(skg_frame_matter(recipe, work->frame, &matter));
+    if (matter) scatter.density = matter, scatter.fill = matter + recipe->scene->count;
+    status = compute_own(job, &scatter, component);
     skg_free(&matter);
     return status;
 }

@@ -12,6 +12,7 @@ typedef struct {
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
     const double *density;      /* [parts] over that of the material; NULL: 1 */
     const double *fill;         /* [parts] share of the part that is there; NULL: 1 */
+    uint64_t seed;              /* added to that of the options */
 } skg_scatter_work;
 
 /* The pose of a part. */

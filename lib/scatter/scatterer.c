@@ -1,14 +1,13 @@
 #include "scatter/scatterer.h"
 
 #include "core/clock.h"
-#include "core/vector.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-/* Places along the longer side of the detector, and first histories of a batch: fewer say too little of their own error. */
-enum { PLACES = 32, FIRST = 512 };
+/* First histories of a batch: fewer say too little of their own error. */
+enum { FIRST = 512 };
 
 /* Of the attenuation or of angles in a material, above which a scene is warned of. */
 static const double MIXTURE_ERROR = 0.05;
@@ -35,18 +34,6 @@ static skg_digest key_of(const skg_scatter_work *work) {
         skg_digest_add(&digester, matter, sizeof matter);
     }
     return skg_digest_end(&digester);
-}
-
-/* The grid on which photons are counted. */
-static void find_places(const skg_scatter_work *work, int64_t *columns, int64_t *rows) {
-    const skg_view *view = work->view;
-    const skg_scatter *asked = work->recipe->options.scatter;
-    const double across = skg_length(view->column_step) * (double)view->columns;
-    const double down = skg_length(view->row_step) * (double)view->rows, longer = fmax(across, down);
-    *columns = asked->columns ? asked->columns : (int64_t)ceil(PLACES * across / longer - 1e-9);
-    *rows = asked->rows ? asked->rows : (int64_t)ceil(PLACES * down / longer - 1e-9);
-    if (*columns > view->columns) *columns = view->columns;
-    if (*rows > view->rows) *rows = view->rows;
 }
 
 /* What came so far. */
@@ -160,7 +147,7 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
                           const skg_scatter_object *object, skg_scatterer *s) {
     arrived a = {0};
     skg_status status = SKG_OK;
-    find_places(work, &a.columns, &a.rows);
+    skg_trace_places(work, &a.columns, &a.rows);
     const int64_t places = a.columns * a.rows;
     SKG_TRY_CLEANUP(
         skg_alloc(SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * places, sizeof *a.sums, "scatter", &a.sums));
@@ -211,6 +198,48 @@ skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_s
     skg_scatter_object_free(&object);
     s->key = key;
     s->known = status == SKG_OK;
+    return status;
+}
+
+/* What the scatter of a frame from a series depends on. */
+static skg_digest key_in_series(const skg_scatter_work *work, const skg_scatter_series *series,
+                                double place) {
+    skg_digester digester;
+    skg_digest_start(&digester);
+    skg_digest_add(&digester, &series->number, sizeof series->number);
+    skg_digest_add(&digester, &place, sizeof place);
+    skg_digest_add(&digester, work->view, sizeof *work->view);
+    return skg_digest_end(&digester);
+}
+
+skg_status skg_scatterer_take(skg_context *context, skg_scatterer *s, const skg_scatter_work *work,
+                              const skg_scatter_series *series, double place) {
+    const skg_digest key = key_in_series(work, series, place);
+    const double begun = skg_seconds(), t = place / (double)(series->report.frames - 1);
+    skg_cosines mean = {0}, variance = {0};
+    skg_status status = SKG_OK;
+    if (s->known && skg_digest_same(&s->key, &key)) return SKG_OK;
+    s->known = 0;
+    free_components(s);
+    s->report = (skg_scatter_report){.size = sizeof s->report, .histories = series->report.histories};
+    SKG_TRY_CLEANUP(skg_joint_at(&series->mean, t, &mean));
+    if (series->variance.value) SKG_TRY_CLEANUP(skg_joint_at(&series->variance, t, &variance));
+    const skg_shown_scatter shown = {.work = work,
+                                     .mean = &mean,
+                                     .variance = series->variance.value ? &variance : NULL,
+                                     .photons = 1,
+                                     .signal = series->signal,
+                                     .power = series->power};
+    SKG_TRY_CLEANUP(skg_shown_scatter_send(context, &shown, &s->images));
+    s->report.mean = s->images.average;
+    s->report.sigma = s->images.error;
+    s->report.cosines = (int32_t)mean.count;
+    s->report.seconds = skg_seconds() - begun;
+    s->key = key;
+    s->known = 1;
+cleanup:
+    skg_cosines_free(&mean);
+    skg_cosines_free(&variance);
     return status;
 }
 

@@ -3,6 +3,7 @@
 #define SKG_SCATTERER_H
 
 #include "core/digest.h"
+#include "scatter/series.h"
 #include "scatter/shown.h"
 #include "scatter/trace.h"
 #include "stage/scattered.h"
@@ -23,6 +24,10 @@ typedef struct {
 
 /* Computes the scatter of a frame, unless it is that of the last one, and waits for it. After a failure nothing is known. */
 skg_status skg_scatterer_run(skg_context *context, skg_scatterer *scatterer, const skg_scatter_work *work);
+
+/* Takes the scatter of a frame from a series that has it. place: in frames */
+skg_status skg_scatterer_take(skg_context *context, skg_scatterer *scatterer, const skg_scatter_work *work,
+                              const skg_scatter_series *series, double place);
 
 /* Fills images.component. work: that of the last run */
 skg_status skg_scatterer_component(skg_context *context, skg_scatterer *scatterer,

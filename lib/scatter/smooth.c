@@ -45,6 +45,24 @@ static void transform(const skg_cosines *c, const double *across, const double *
         }
 }
 
+skg_status skg_cosines_of(int64_t columns, int64_t rows, int64_t count, const double *values,
+                          double *coefficients) {
+    const skg_cosines c = {.columns = columns, .rows = rows};
+    const int64_t size = rows * columns;
+    double *across = NULL, *down = NULL, *half = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(make_cosines(columns, &across));
+    SKG_TRY_CLEANUP(make_cosines(rows, &down));
+    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *half, "smoothing", &half));
+    for (int64_t b = 0; b < count; b++)
+        transform(&c, across, down, values + b * size, half, coefficients + b * size);
+cleanup:
+    skg_free(&across);
+    skg_free(&down);
+    skg_free(&half);
+    return status;
+}
+
 /* Mean and variance of the mean of each coefficient. */
 static void average(const skg_arrivals *a, const double *all, skg_cosines *c) {
     const int64_t size = c->rows * c->columns;
@@ -95,6 +113,15 @@ static void keep(skg_cosines *c, int64_t order) {
             c->value[k] = c->variance[k] = 0;
     c->mean = c->value[0] / sqrt(places);
     c->sigma = sqrt(variance / places + c->bias);
+}
+
+void skg_cosines_complete(skg_cosines *c, int64_t order) {
+    const double places = (double)(c->rows * c->columns);
+    double variance = 0;
+    sharpen(0, NULL, c);
+    keep(c, order);
+    for (int64_t k = 0; k < c->rows * c->columns; k++) variance += c->variance[k];
+    c->spread[0] = variance / sqrt(places);
 }
 
 /* The smooth function of one batch in the places, from its coefficients. half: [rows][columns] workspace */
@@ -179,20 +206,11 @@ cleanup:
 
 skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_cosines *c) {
     const int64_t size = like->rows * like->columns;
-    double *across = NULL, *down = NULL, *half = NULL;
-    skg_status status = SKG_OK;
     *c = (skg_cosines){.columns = like->columns, .rows = like->rows, .kept = {like->kept[0], like->kept[1]}};
-    SKG_TRY_CLEANUP(make_cosines(c->columns, &across));
-    SKG_TRY_CLEANUP(make_cosines(c->rows, &down));
-    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *half, "smoothing", &half));
-    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
-    transform(c, across, down, values, half, c->value);
+    SKG_TRY(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
+    SKG_TRY(skg_cosines_of(c->columns, c->rows, 1, values, c->value));
     for (int64_t k = 0; k < size; k++) c->value[k] = like->value[k] != 0 ? c->value[k] / of_places(c, k) : 0;
-cleanup:
-    skg_free(&across);
-    skg_free(&down);
-    skg_free(&half);
-    return status;
+    return SKG_OK;
 }
 
 void skg_cosines_free(skg_cosines *c) {

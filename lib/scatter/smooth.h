@@ -31,6 +31,14 @@ typedef struct {
 /* Keeps as many cosines as make the error smallest (order.h). */
 skg_status skg_cosines_fit(const skg_arrivals *arrivals, skg_cosines *cosines);
 
+/* The coefficients of `count` grids. values, coefficients: [count][rows][columns] */
+skg_status skg_cosines_of(int64_t columns, int64_t rows, int64_t count, const double *values,
+                          double *coefficients);
+
+/* Completes cosines of which grid, bias, and value and variance of means over places are given: keeps those up to an order, with the
+ * same variance all over the detector. */
+void skg_cosines_complete(skg_cosines *cosines, int64_t order);
+
 /* The cosines that `like` keeps, of other values on its grid: [rows][columns]. Their variance is not known. */
 skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_cosines *cosines);
 void skg_cosines_free(skg_cosines *cosines);

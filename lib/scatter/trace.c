@@ -1,6 +1,7 @@
 #include "scatter/trace.h"
 
 #include "core/clock.h"
+#include "core/vector.h"
 #include "scatter/angles.h"
 
 #include <math.h>
@@ -11,6 +12,9 @@ static const double UNIT = 0x1p-36;
 
 /* A launch takes about this long, s: drivers of screens give up after some seconds. */
 static const double LAUNCH_S = 0.3;
+
+/* Places along the longer side of the detector. */
+enum { PLACES = 32 };
 
 /* The first coordinates of exod2_base2_m20_CKN, a lattice whose first 2^m points are good for every m (R. Cools, F. Y. Kuo and
  * D. Nuyens, Constructing embedded lattice rules for multivariate integration, SIAM Journal on Scientific Computing 28 (2006)
@@ -26,6 +30,17 @@ static uint32_t next_shift(uint64_t *state) {
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
     z = (z ^ z >> 27) * 0x94d049bb133111ebu;
     return (uint32_t)((z ^ z >> 31) >> 32);
+}
+
+void skg_trace_places(const skg_scatter_work *work, int64_t *columns, int64_t *rows) {
+    const skg_view *view = work->view;
+    const skg_scatter *asked = work->recipe->options.scatter;
+    const double across = skg_length(view->column_step) * (double)view->columns;
+    const double down = skg_length(view->row_step) * (double)view->rows, longer = fmax(across, down);
+    *columns = asked->columns ? asked->columns : (int64_t)ceil(PLACES * across / longer - 1e-9);
+    *rows = asked->rows ? asked->rows : (int64_t)ceil(PLACES * down / longer - 1e-9);
+    if (*columns > view->columns) *columns = view->columns;
+    if (*rows > view->rows) *rows = view->rows;
 }
 
 static skg_status send_lattice(skg_context *context, int64_t seed, skg_buffer *buffer) {
@@ -92,7 +107,7 @@ static skg_status clear(skg_context *context, skg_tracing *t) {
 skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
                            const skg_scatter_object *object, const skg_scatter_tables *tables,
                            int64_t columns, int64_t rows, skg_tracing *t) {
-    const int64_t seed = work->recipe->options.scatter->seed;
+    const int64_t seed = (int64_t)((uint64_t)work->recipe->options.scatter->seed + work->seed);
     t->args = (skg_scatter_args){.columns = (SKG_INT)columns, .rows = (SKG_INT)rows};
     t->args.seed[0] = (SKG_INT)(uint32_t)(uint64_t)seed;
     t->args.seed[1] = (SKG_INT)(uint32_t)((uint64_t)seed >> 32);

@@ -21,6 +21,9 @@ typedef struct {
     int64_t sums_count;
 } skg_tracing;
 
+/* The grid on which photons are counted. */
+void skg_trace_places(const skg_scatter_work *work, int64_t *columns, int64_t *rows);
+
 /* Uploads what a frame needs and clears the sums. columns, rows: places of the detector. */
 skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
                            const skg_scatter_object *object, const skg_scatter_tables *tables,

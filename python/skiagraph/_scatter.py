@@ -44,6 +44,7 @@ def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
     with state.calls():
         found = filled("skg_scatter_prediction", "skg_plan_scatter_predict", state.plan(options))
     return {"ratio": found["ratio"], "called_for": bool(found["called_for"]), "rms": found["rms"], "max": found["max"],
+            "grid": {name: found[f"grid_{name}"] for name in ("primary", "scatter", "total")},
             "seconds": found["seconds"]}
 
 

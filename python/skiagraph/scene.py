@@ -214,7 +214,8 @@ class Scene:
         """What scatter would add to images, from some 8,000 histories, in about 0.2 s; options as of image().
 
         "ratio": scatter over primary in the shadow of the parts, right to about 15 %; "called_for": whether it is above the
-        tolerance; "rms" and "max" of the scatter, as fractions of the open beam.
+        tolerance; "rms" and "max" of the scatter, as fractions of the open beam; "grid": what a grid passes of "primary",
+        "scatter" and "total".
         """
         return _scatter.prediction(self._state, options)
 

@@ -4,6 +4,8 @@
 
 #include "support/run.h"
 
+#include <skiagraph/scatter_series.h>
+
 typedef struct {
     skg_scene *scene;
     skg_view view;

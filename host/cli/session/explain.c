@@ -291,6 +291,7 @@ static void print_scatter(const cli_session *session, const cli_prediction *pred
                    ? " \"Scatter\": 0.01 adds scattered ones."
                    : "");
     cli_print("scatter, %s\n", prediction->reason);
+    cli_prediction_print_grid(prediction);
 }
 
 void cli_explain_print(const skg_plan *plan, const cli_session *session, const cli_prediction *prediction) {

@@ -38,11 +38,33 @@ void cli_predict(skg_plan *plan, double tolerance, cli_prediction *p) {
         snprintf(p->reason, sizeof p->reason, "not predicted: %.300s", skg_last_error());
 }
 
+static int has_grid(const cli_prediction *p) {
+    return p->is_known && p->found.grid_primary < 1;
+}
+
+void cli_prediction_print_grid(const cli_prediction *p) {
+    if (has_grid(p))
+        printf(
+            "the grid passes %.2g %% of the primary, %.2g %% of the scatter, %.2g %% of all: selectivity %.2g (IEC 60627's "
+            "terms, for this scene)\n",
+            100 * p->found.grid_primary, 100 * p->found.grid_scatter, 100 * p->found.grid_total,
+            p->found.grid_primary / p->found.grid_scatter);
+}
+
 json_t *cli_prediction_json(const cli_prediction *p) {
     json_t *object = json_object();
     json_object_set_new(object, "ratio_predicted",
                         p->is_known ? cli_json_number(p->found.ratio) : json_null());
     json_object_set_new(object, "called_for", p->is_known ? json_boolean(p->found.called_for) : json_null());
     json_object_set_new(object, "reason", cli_json_text(p->reason));
+    if (has_grid(p)) {
+        json_t *grid = json_object();
+        json_object_set_new(grid, "primary", cli_json_number(p->found.grid_primary));
+        json_object_set_new(grid, "scatter", cli_json_number(p->found.grid_scatter));
+        json_object_set_new(grid, "total", cli_json_number(p->found.grid_total));
+        json_object_set_new(grid, "selectivity",
+                            cli_json_number(p->found.grid_primary / p->found.grid_scatter));
+        json_object_set_new(object, "grid", grid);
+    }
     return object;
 }

@@ -15,7 +15,10 @@ typedef struct {
 /* Predicts. What fails is the reason. */
 void cli_predict(skg_plan *plan, double tolerance, cli_prediction *prediction);
 
-/* {ratio_predicted, called_for, reason} */
+/* What the grid of the scene passes, by the definitions of IEC 60627; nothing is printed without a grid. */
+void cli_prediction_print_grid(const cli_prediction *prediction);
+
+/* {ratio_predicted, called_for, reason}, and of a grid {primary, scatter, total, selectivity} */
 json_t *cli_prediction_json(const cli_prediction *prediction);
 
 #endif

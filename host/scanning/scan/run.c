@@ -103,6 +103,7 @@ static skg_status submit(skg_scan_run *run, skg_scan_slot *slot) {
 static skg_status prepare(skg_scan_run *run, const skg_scan_run_options *o) {
     SKG_TRY(skg_scan_work_init(&run->work));
     SKG_TRY(list_projections(run, o));
+    if (run->count > 0) SKG_TRY(skg_scan_work_series(&run->work));
     const int64_t bytes = run->work.image_elements * skg_element_bytes(run->work.options.type) * o->subframes;
     run->batch = BATCH_BYTES / bytes < BATCH_MAX ? BATCH_BYTES / bytes : BATCH_MAX;
     if (run->batch < 1) run->batch = 1;
@@ -144,6 +145,7 @@ skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_ru
 void skg_scan_run_release(skg_scan_run **run) {
     if (!run || !*run) return;
     for (int s = 0; s < SLOTS; s++) skg_scan_slot_free(&(*run)->slots[s]);
+    skg_scatter_series_release(&(*run)->work.series);
     skg_plan_release(&(*run)->work.plan);
     skg_scan_release(&(*run)->work.scan);
     skg_progress_release(&(*run)->work.options.progress);

@@ -1,6 +1,7 @@
 #include "scan/slot.h"
 
 #include "core/core.h"
+#include "core/progress.h"
 #include "scan/block.h"
 #include "scan/format.h"
 
@@ -65,12 +66,11 @@ void skg_scan_slot_free(skg_scan_slot *slot) {
     skg_free(&slot->block);
 }
 
-/* The moment of a sub-frame: its position in the scan, in projections, and its time. */
-static skg_status find_moment(const skg_scan_work *work, int64_t index, int64_t subframe, double *position,
+/* The moment that is a share of the exposure behind its middle: its position in the scan, in projections, and its time. */
+static skg_status find_moment(const skg_scan_work *work, int64_t index, double from_middle, double *position,
                               double *time_s) {
     double middle = 0, exposure = 0, next = 0;
     SKG_TRY(skg_scan_time_get(work->scan, index, &middle, &exposure));
-    const double from_middle = ((double)subframe + 0.5) / (double)work->options.subframes - 0.5;
     *time_s = middle + from_middle * exposure;
     *position = (double)index;
     if (work->projections < 2 || from_middle == 0) return SKG_OK;
@@ -97,33 +97,59 @@ static int64_t seed_of(const skg_scan_work *work, int64_t subframe) {
     return (int64_t)((uint64_t)work->options.noise_seed + (uint64_t)subframe * apart);
 }
 
-/* Describes frame f of a batch; with motion it poses the scene for it. */
+/* Describes a moment of a projection; with motion it poses the scene for it. */
+static skg_status describe(const skg_scan_work *work, int64_t index, double from_middle, skg_view *view,
+                           skg_frame *frame) {
+    const skg_scan_run_options *o = &work->options;
+    double position = 0, time = 0;
+    SKG_TRY(find_moment(work, index, from_middle, &position, &time));
+    skg_view_init(view);
+    SKG_TRY(skg_scan_view_at(work->scan, position, view));
+    skg_frame_init(frame);
+    frame->view = view;
+    frame->subframes = (int32_t)o->subframes;
+    frame->index = index;
+    frame->pose_count = o->moving_count;
+    frame->pose_parts = o->moving_parts;
+    if (o->moving_count > 0) frame->poses = o->moving_poses + index * o->moving_count * 16;
+    frame->scatter_series = work->series;
+    frame->series_place = fmin(fmax(position, 0), (double)(work->projections - 1));
+    if (!o->motion) return SKG_OK;
+    SKG_TRY(skg_motion_pose_at_time(o->motion, time));
+    return skg_motion_fill(o->motion, frame);
+}
+
+/* What the series of a scan's scatter asks for. */
+typedef struct {
+    const skg_scan_work *work;
+    skg_view view;
+} asking;
+
+/* A skg_scatter_series_function: the middle of an exposure. */
+static skg_status describe_middle(int64_t index, skg_frame *frame, void *user) {
+    asking *a = user;
+    SKG_TRY(skg_progress_step(a->work->options.progress, 0, a->work->projections));
+    return describe(a->work, index, 0, &a->view, frame);
+}
+
+skg_status skg_scan_work_series(skg_scan_work *work) {
+    asking a = {.work = work};
+    return skg_scatter_series_create(work->plan, work->projections, describe_middle, &a, &work->series);
+}
+
 static skg_status prepare_frame(const skg_scan_work *work, skg_scan_slot *slot, int64_t f) {
     const int64_t subframes = work->options.subframes, p = f / subframes;
-    double position = 0, time = 0;
-    SKG_TRY(find_moment(work, slot->indices[p], f % subframes, &position, &time));
-    skg_view_init(&slot->views[f]);
-    SKG_TRY(skg_scan_view_at(work->scan, position, &slot->views[f]));
-    skg_frame_init(&slot->frames[f]);
-    slot->frames[f].view = &slot->views[f];
-    slot->frames[f].subframes = (int32_t)subframes;
+    const double from_middle = ((double)(f % subframes) + 0.5) / (double)subframes - 0.5;
+    SKG_TRY(describe(work, slot->indices[p], from_middle, &slot->views[f], &slot->frames[f]));
     slot->frames[f].noise_seed = seed_of(work, f % subframes);
-    slot->frames[f].index = slot->indices[p];
-    slot->frames[f].pose_count = work->options.moving_count;
-    slot->frames[f].pose_parts = work->options.moving_parts;
-    if (work->options.moving_count > 0)
-        slot->frames[f].poses =
-            work->options.moving_poses + slot->indices[p] * work->options.moving_count * 16;
-    if (!work->options.motion) return SKG_OK;
-    SKG_TRY(skg_motion_pose_at_time(work->options.motion, time));
-    if (f % subframes == subframes / 2) {
+    if (work->options.motion && f % subframes == subframes / 2) {
         skg_motion_state state;
         skg_motion_state_init(&state);
         SKG_TRY(skg_motion_state_get(work->options.motion, &state));
         slot->phases[p] = state.phase;
         slot->amplitudes[p] = state.amplitude;
     }
-    return skg_motion_fill(work->options.motion, &slot->frames[f]);
+    return SKG_OK;
 }
 
 skg_status skg_scan_slot_submit(const skg_scan_work *work, skg_scan_slot *slot, const int64_t *indices,

@@ -5,6 +5,7 @@
 #include "core/element.h"
 
 #include <skiagraph/scan_run.h>
+#include <skiagraph/scatter_series.h>
 
 /* What is computed and how; constant during a run. */
 typedef struct {
@@ -12,8 +13,9 @@ typedef struct {
     skg_scan *scan;
     skg_scan_run_options options;
     int64_t projections;
-    int64_t image_elements; /* of all channels */
-    int32_t is_logarithm;   /* 1: the quantity is attenuation */
+    int64_t image_elements;     /* of all channels */
+    int32_t is_logarithm;       /* 1: the quantity is attenuation */
+    skg_scatter_series *series; /* that all frames take their scatter from; NULL: none */
 } skg_scan_work;
 
 typedef struct {
@@ -29,6 +31,9 @@ typedef struct {
 } skg_scan_slot;
 
 skg_status skg_scan_work_init(skg_scan_work *work);
+
+/* Makes the series, if the plan has scatter and frames that change smoothly. */
+skg_status skg_scan_work_series(skg_scan_work *work);
 
 /* Memory for batches of this size. Free also after a failure. */
 skg_status skg_scan_slot_init(const skg_scan_work *work, skg_scan_slot *slot, int64_t batch);

@@ -54,6 +54,11 @@ typedef struct {
     /** [override_count] fill fraction: the share of the part that is there, 0 to 1; the rest is what the part
      * lies inside. NULL: 1. A part below 1 must not contain another part. */
     const double *fill_fractions;
+    /** Of a plan with scatter: a series that has the scatter of this frame (scatter_series.h); NULL: it is computed for the frame.
+     * The same plan made the series. */
+    const skg_scatter_series *scatter_series;
+    /** The frame's number in that series, 0 to its number of frames less 1; between two numbers it is between them. */
+    double series_place;
 } skg_frame;
 
 /** Prepares a frame of `size` bytes (export.h). */

@@ -8,6 +8,7 @@
 #include <skiagraph/frame.h>
 #include <skiagraph/options.h>
 #include <skiagraph/report.h>
+#include <skiagraph/scatter_series.h>
 #include <skiagraph/scene.h>
 
 #ifdef __cplusplus

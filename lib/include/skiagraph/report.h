@@ -164,6 +164,13 @@ typedef struct {
     double rms;
     /** Its maximum, likewise. */
     double max;
+    /** What the anti-scatter grid passes of the primary, of the scatter and of both, over the detector, of this scene instead of the
+     * phantom of IEC 60627; its selectivity is grid_primary / grid_scatter. 1 without a grid. */
+    double grid_primary;
+    /** Of the scatter. */
+    double grid_scatter;
+    /** Of both. */
+    double grid_total;
     /** Wall time. */
     double seconds;
 } skg_scatter_prediction;

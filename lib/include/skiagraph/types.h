@@ -16,6 +16,9 @@ typedef struct skg_plan skg_plan;
 /** Work that was submitted and may not be finished (frame.h). */
 typedef struct skg_job skg_job;
 
+/** Scatter of a series of frames (scatter_series.h). */
+typedef struct skg_scatter_series skg_scatter_series;
+
 /** Element type of an image in memory. */
 enum skg_type {
     /** float, 32 bits */

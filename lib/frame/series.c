@@ -1,0 +1,123 @@
+/* Scatter of a series of frames: the public calls. */
+#include "core/plain.h"
+#include "device/device.h"
+#include "frame/held.h"
+#include "frame/plan.h"
+#include "frame/scatter.h"
+
+#include <inttypes.h>
+#include <stdatomic.h>
+
+void skg_scatter_series_report_init_sized(void *report, int32_t size) {
+    const skg_scatter_series_report defaults = {0};
+    skg_struct_init(report, size, &defaults, sizeof defaults);
+}
+
+/* How the caller describes frames. */
+typedef struct {
+    skg_plan *plan;
+    skg_scatter_series_function function;
+    void *user;
+    skg_view view;
+    const double **poses; /* [parts] */
+    double *matter;
+} describing;
+
+/* A skg_series_frame. */
+static skg_status describe(int64_t index, skg_scatter_work *work, void *user) {
+    describing *d = user;
+    const skg_recipe *recipe = d->plan->recipe;
+    skg_frame frame;
+    skg_frame_init(&frame);
+    skg_free(&d->matter);
+    SKG_TRY(d->function(index, &frame, d->user));
+    d->view = recipe->view;
+    for (int64_t p = 0; p < recipe->scene->count; p++) d->poses[p] = NULL;
+    SKG_TRY(skg_held_frame_place(recipe, index, &frame, &d->view, d->poses));
+    SKG_TRY(skg_frame_matter(recipe, &frame, &d->matter));
+    work->view = &d->view;
+    work->poses = d->poses;
+    work->density = d->matter;
+    work->fill = d->matter ? d->matter + recipe->scene->count : NULL;
+    return SKG_OK;
+}
+
+static skg_status make(describing *d, int64_t count, skg_scatter_series **series) {
+    static atomic_llong numbers;
+    skg_scatter_series *made = NULL;
+    int32_t is_smooth = 0;
+    SKG_TRY(skg_alloc(d->plan->recipe->scene->count, sizeof *d->poses, "poses", &d->poses));
+    SKG_TRY(skg_alloc(1, sizeof *made, "series", &made));
+    skg_refs_init(&made->refs);
+    made->number = ++numbers;
+    made->recipe = skg_recipe_retain(d->plan->recipe);
+    const skg_status status = skg_series_make(d->plan->context, count, describe, d, made, &is_smooth);
+    if (status != SKG_OK || !is_smooth) skg_scatter_series_release(&made);
+    *series = made;
+    return status;
+}
+
+static void tell(const skg_context *context, int64_t count, const skg_scatter_series *series) {
+    if (!series) {
+        skg_log(context, SKG_LOG_NOTE,
+                "scatter: the %" PRId64
+                " frames are few or differ too much from one to the next; each has scatter of its "
+                "own",
+                count);
+        return;
+    }
+    const skg_scatter_series_report *report = &series->report;
+    skg_log(context, SKG_LOG_NOTE,
+            "scatter of %" PRId64 " frames from %" PRId64 " of them: +- %.2g %% of itself; %" PRId64
+            " histories in %.2g s",
+            count, report->followed, 100 * report->error, report->histories, report->seconds);
+}
+
+static skg_status create(skg_plan *plan, int64_t count, skg_scatter_series_function function, void *user,
+                         skg_scatter_series **series) {
+    SKG_PLAIN;
+    SKG_NEEDS_OF("skg_scatter_series_create", series);
+    *series = NULL;
+    SKG_NEEDS_OF("skg_scatter_series_create", plan);
+    SKG_NEEDS_OF("skg_scatter_series_create", function);
+    SKG_TRY(skg_context_enter(plan->context));
+    SKG_TRY(skg_plan_renew(plan));
+    if (!plan->recipe->options.scatter) return SKG_OK;
+    SKG_TRY(skg_frame_check_places(plan->recipe, &plan->machine));
+    describing d = {.plan = plan, .function = function, .user = user};
+    const skg_status status = make(&d, count, series);
+    if (status == SKG_OK) tell(plan->context, count, *series);
+    skg_free(&d.poses);
+    skg_free(&d.matter);
+    return status;
+}
+
+skg_status skg_scatter_series_create(skg_plan *plan, int64_t count, skg_scatter_series_function function,
+                                     void *user, skg_scatter_series **series) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, create(plan, count, function, user, series));
+}
+
+skg_status skg_scatter_series_retain(skg_scatter_series *series) {
+    SKG_NEEDS(series);
+    skg_ref(&series->refs);
+    return SKG_OK;
+}
+
+void skg_scatter_series_release(skg_scatter_series **series) {
+    if (!series || !*series) return;
+    skg_scatter_series *last = *series;
+    *series = NULL;
+    if (!skg_unref(&last->refs)) return;
+    skg_series_drop(last);
+    skg_recipe_release(&last->recipe);
+    skg_free(&last);
+}
+
+skg_status skg_scatter_series_report_get(const skg_scatter_series *series,
+                                         skg_scatter_series_report *report) {
+    SKG_NEEDS(series);
+    skg_scatter_series_report ours = series->report;
+    ours.size = sizeof ours;
+    return skg_struct_write(&ours, sizeof ours, "skg_scatter_series_report", report);
+}
