@@ -57,6 +57,18 @@ typedef struct {
     skg_buffer bad;
 } skg_geometry;
 
+static inline int skg_geometry_is_double(const skg_geometry *geometry) {
+    return geometry->precision == SKG_PRECISION_DOUBLE;
+}
+
+/* Bytes of a part's entry in a table. */
+static inline size_t skg_geometry_entry_size(const skg_geometry *geometry) {
+    return skg_geometry_is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
+}
+
+/* Frees the host copies of the tables, once the device has read them. */
+void skg_geometry_release_tables(skg_geometry *geometry);
+
 /* The arguments that kernels which take triangles have in common. */
 #define SKG_TRIANGLE_ARGUMENTS(kernel, raster_layout, geometry)                                              \
     SKG_ARGUMENT(kernel, layout, raster_layout), SKG_TRIANGLE_BUFFERS(kernel, geometry)
