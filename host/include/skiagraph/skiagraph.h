@@ -17,6 +17,7 @@
 #include <skiagraph/bodies.h>
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
+#include <skiagraph/collimation.h>
 #include <skiagraph/context.h>
 #include <skiagraph/distance.h>
 #include <skiagraph/error.h>
