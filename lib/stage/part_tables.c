@@ -1,5 +1,4 @@
-/* The tables of a frame's parts, and of what they contribute, on their way to the device. */
-#include "stage/project.h"
+#include "stage/part_tables.h"
 
 #include <float.h>
 #include <math.h>
