@@ -10,7 +10,10 @@
 enum { NAMED_MAX = 20 };
 
 /* Columns of the small pictures that show which part is seen where. */
-enum { SMALL = 320 };
+enum { SMALL = 480 };
+
+/* Maximum number of parts without a whole pixel that are looked for one by one. */
+enum { THIN_MAX = 10 };
 
 /* Pixels of a small picture that a dot keeps from the edge of what is seen of its part, if there is room. */
 enum { CLEAR = 4 };
@@ -25,11 +28,12 @@ enum { UNSEEN = 1 };
 typedef struct {
     const cli_session *session;
     skg_look look;
-    const uint8_t *own;    /* [parts][4] colours of the large picture */
-    uint8_t *colours;      /* [parts][4] */
-    uint8_t *rgba, *white; /* pictures that are compared */
-    int32_t *seen;         /* [pixels] the opaque part that is seen there; -1: none */
-    int32_t *distance;     /* [pixels] */
+    const uint8_t *own;            /* [parts][4] colours of the large picture */
+    uint8_t *colours;              /* [parts][4] */
+    uint8_t *rgba, *white, *black; /* pictures that are compared */
+    int32_t thin;                  /* parts that were looked for one by one */
+    int32_t *seen;                 /* [pixels] the opaque part that is seen there; -1: none */
+    int32_t *distance;             /* [pixels] */
     int64_t pixels;
     double scale; /* pixels of the large picture in one of the small one */
 } small;
@@ -64,9 +68,9 @@ static int draw_bit(const small *s, int64_t parts, int bit, uint8_t *rgba) {
  * follow from a picture each. */
 static int find_seen(small *s, int64_t parts) {
     int exit_status = draw_bit(s, parts, -2, s->white);
-    if (exit_status == CLI_DONE) exit_status = draw_bit(s, parts, -1, s->rgba);
+    if (exit_status == CLI_DONE) exit_status = draw_bit(s, parts, -1, s->black);
     for (int64_t i = 0; i < s->pixels; i++) {
-        const int is_part = brightest(s->rgba + 4 * i) < DARK && brightest(s->white + 4 * i) > LIT;
+        const int is_part = brightest(s->black + 4 * i) < DARK && brightest(s->white + 4 * i) > LIT;
         s->seen[i] = is_part ? 0 : -1;
     }
     for (int bit = 0; parts >> bit && exit_status == CLI_DONE; bit++) {
@@ -131,6 +135,26 @@ static int place_dot(const small *s, const int32_t *values, int32_t value, view_
         if (score > best) best = score, memcpy(part->dot, at, sizeof at);
     }
     return best > -HUGE_VAL;
+}
+
+/* The dot of an opaque part that covers no pixel wholly, such as a wire: where it makes the black picture brighter. */
+static int place_thin(small *s, view_places *places, int64_t id, int *is_placed) {
+    int32_t *values = malloc((size_t)s->pixels * sizeof *values);
+    if (!values) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int64_t i = 0; i < places->count; i++) {
+        memset(s->colours + 4 * i, i == id ? 255 : 0, 3);
+        s->colours[4 * i + 3] = is_opaque(s, i) ? 255 : UNSEEN;
+    }
+    const int exit_status = draw(s, s->rgba);
+    for (int64_t i = 0; exit_status == CLI_DONE && i < s->pixels; i++)
+        values[i] = brightest(s->rgba + 4 * i) > brightest(s->black + 4 * i) + 16;
+    if (exit_status == CLI_DONE) {
+        find_distances(s, values);
+        *is_placed = place_dot(s, values, 1, places->parts + id);
+    }
+    free(values);
+    s->thin++;
+    return exit_status;
 }
 
 static int is_within(const small *s, int64_t id, int64_t outer) {
@@ -198,17 +222,17 @@ static int choose(small *s, view_places *places, view_part **sorted) {
     if (exit_status == CLI_DONE) exit_status = draw_empty(s, places->count);
     for (int64_t i = 0; i < places->count; i++) sorted[i] = places->parts + i;
     qsort(sorted, (size_t)places->count, sizeof *sorted, by_area);
-    find_distances(s, s->seen);
     for (int64_t i = 0; i < places->count && places->named_count < NAMED_MAX && exit_status == CLI_DONE;
          i++) {
         const int64_t id = sorted[i] - places->parts;
         int is_placed = 0;
         if (s->own[4 * id + 3] == 0 || !is_new_kind(places, sorted[i])) continue;
         if (is_opaque(s, id)) {
+            find_distances(s, s->seen);
             is_placed = place_dot(s, s->seen, (int32_t)id, sorted[i]);
+            if (!is_placed && s->thin < THIN_MAX) exit_status = place_thin(s, places, id, &is_placed);
         } else {
             exit_status = place_translucent(s, places, id, &is_placed);
-            find_distances(s, s->seen);
         }
         if (is_placed) places->named[places->named_count++] = sorted[i];
     }
@@ -227,12 +251,14 @@ int view_choose_named(const cli_session *session, const skg_look *look, view_pla
     s.look.colours = s.colours, s.look.image = NULL;
     s.pixels = s.look.columns * s.look.rows;
     s.rgba = malloc(4 * (size_t)s.pixels), s.white = malloc(4 * (size_t)s.pixels);
+    s.black = malloc(4 * (size_t)s.pixels);
     s.seen = malloc((size_t)s.pixels * sizeof *s.seen);
     s.distance = malloc((size_t)s.pixels * sizeof *s.distance);
     free(places->named);
     places->named = calloc(NAMED_MAX, sizeof *places->named), places->named_count = 0;
     int exit_status = CLI_DONE;
-    if (!own || !sorted || !s.colours || !s.rgba || !s.white || !s.seen || !s.distance || !places->named)
+    if (!own || !sorted || !s.colours || !s.rgba || !s.white || !s.black || !s.seen || !s.distance ||
+        !places->named)
         exit_status = cli_error(CLI_DEVICE, "out of host memory for the names of parts");
     const skg_status status = exit_status == CLI_DONE ? skg_look_colours_get(session->scene, own) : SKG_OK;
     if (status != SKG_OK) exit_status = cli_fail(status);
@@ -242,6 +268,7 @@ int view_choose_named(const cli_session *session, const skg_look *look, view_pla
     free(s.colours);
     free(s.rgba);
     free(s.white);
+    free(s.black);
     free(s.seen);
     free(s.distance);
     return exit_status;
