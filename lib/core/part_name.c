@@ -31,10 +31,11 @@ void skg_part_ending(char ending[SKG_PART_ENDING]) {
 
 int skg_part_open(const char *path, char *temporary) {
     enum { TRIES = 100 };
+    const size_t size = strlen(path) + SKG_PART_ENDING;
     char ending[SKG_PART_ENDING], number[16] = "";
     skg_part_ending(ending);
     for (int n = 1; n <= TRIES; n++) {
-        sprintf(temporary, "%s%s%s", path, ending, number);
+        snprintf(temporary, size, "%s%s%s", path, ending, number);
         const int descriptor = open(temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0 || errno != EEXIST) return descriptor;
         snprintf(number, sizeof number, "-%d", n);

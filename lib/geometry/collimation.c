@@ -1,5 +1,6 @@
 #include "geometry/collimation.h"
 
+#include "core/plain.h"
 #include "core/vector.h"
 
 #include <inttypes.h>
@@ -85,6 +86,38 @@ skg_status skg_field_make(const skg_collimation *collimation, const skg_view *vi
         field->high[a] = collimation->high[a];
     }
     return view->projection == SKG_PROJECTION_POINT ? move_to_jaws(collimation, view, field) : SKG_OK;
+}
+
+/* Carries a point from the middle of the source to the plane of the detector. */
+static void carry(const skg_view *view, double at[3]) {
+    double normal[3], ray[3], axis[3];
+    skg_cross(view->column_step, view->row_step, normal);
+    skg_add_scaled(at, -1, view->source, ray);
+    skg_add_scaled(view->centre, -1, view->source, axis);
+    skg_add_scaled(view->source, skg_dot(axis, normal) / skg_dot(ray, normal), ray, at);
+}
+
+skg_status skg_collimation_corners_get(const skg_collimation *collimation, const skg_view *view,
+                                       int32_t on_jaws, double *corners) {
+    skg_collimation ours;
+    skg_field field;
+    skg_collimation_init(&ours);
+    SKG_PLAIN;
+    SKG_NEEDS(view);
+    SKG_NEEDS(corners);
+    SKG_TRY(skg_view_check(view));
+    if (collimation) SKG_TRY(skg_struct_read(collimation, "skg_collimation", &ours, sizeof ours));
+    SKG_TRY(skg_collimation_check(&ours));
+    SKG_TRY(skg_field_make(&ours, view, &field));
+    for (int corner = 0; corner < 4; corner++) {
+        const double column = corner == 1 || corner == 2 ? field.high[0] : field.low[0];
+        const double row = corner >= 2 ? field.high[1] : field.low[1];
+        double *at = corners + 3 * corner;
+        skg_add_scaled(field.centre, column, field.column, at);
+        skg_add_scaled(at, row, field.row, at);
+        if (!on_jaws && view->projection == SKG_PROJECTION_POINT) carry(view, at);
+    }
+    return SKG_OK;
 }
 
 /* The first pixel 0 <= i <= count that is not below an edge. */

@@ -4,7 +4,7 @@
 
 #include "geometry/camera.h"
 
-#include <skiagraph/options.h>
+#include <skiagraph/collimation.h>
 
 /* The field of a view's beam: a rectangle in a plane parallel to the detector. */
 typedef struct {

@@ -34,16 +34,25 @@ double skg_picture_shown(const skg_picture *picture, double value) {
     return transmission <= 0 ? HUGE_VAL : 0 - log(transmission);
 }
 
+/* Whether a value as shown belongs to a range: it is finite, and some photon can have made it. Behind jaws an attenuation is the
+ * logarithm of the smallest normal float (skiagraph/collimation.h), which would leave no contrast to the others. */
+static int has_photons(const skg_picture *picture, double shown) {
+    const double none = 126 * log(2) * (1 - 1e-6); /* the attenuation is rounded to single precision */
+    const int is_logarithm =
+        picture->quantity == SKG_QUANTITY_ATTENUATION && picture->display == SKG_DISPLAY_RADIOGRAPH;
+    return isfinite(shown) && !(is_logarithm && shown >= none);
+}
+
 void skg_picture_shown_range(const skg_picture *picture, double *low, double *high) {
     double least = HUGE_VAL, most = -HUGE_VAL;
     int64_t pixels = picture->columns * picture->rows;
     for (int64_t i = 0; i < pixels; i++) {
         double shown = skg_picture_shown(picture, skg_picture_value(picture, i));
-        if (!isfinite(shown)) continue;
+        if (!has_photons(picture, shown)) continue;
         if (shown < least) least = shown;
         if (shown > most) most = shown;
     }
-    if (least > most) least = 0, most = 1; /* there is no finite value */
+    if (least > most) least = 0, most = 1; /* there is no such value */
     /* A picture of one value is shown between 0 and 1, or between 0 and that value. */
     if (least == most) {
         if (least > 0) least = 0;
@@ -86,7 +95,7 @@ skg_status skg_picture_shown_window(const skg_picture *picture, double below, do
     SKG_TRY(skg_alloc(pixels, sizeof *values, "range of a picture", &values));
     for (int64_t i = 0; i < pixels; i++) {
         const double shown = skg_picture_shown(picture, skg_picture_value(picture, i));
-        if (isfinite(shown)) values[count++] = shown;
+        if (has_photons(picture, shown)) values[count++] = shown;
     }
     *low = *high = 0;
     if (count > 0) {

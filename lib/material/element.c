@@ -73,13 +73,25 @@ int32_t skg_find_element(const char *text) {
     return 0;
 }
 
+static skg_status check_number(int32_t z) {
+    if (z >= 1 && z <= SKG_LAST_ELEMENT) return SKG_OK;
+    return skg_fail(SKG_ERR_MATERIAL, "atomic number %d: elements 1 (H) to %d (U) are known", (int)z,
+                    SKG_LAST_ELEMENT);
+}
+
 skg_status skg_element_symbol_get(int32_t z, const char **symbol) {
     SKG_NEEDS(symbol);
     *symbol = NULL;
-    if (z < 1 || z > SKG_LAST_ELEMENT)
-        return skg_fail(SKG_ERR_MATERIAL, "atomic number %d: elements 1 (H) to %d (U) are known", (int)z,
-                        SKG_LAST_ELEMENT);
+    SKG_TRY(check_number(z));
     *symbol = skg_elements[z].symbol;
+    return SKG_OK;
+}
+
+skg_status skg_element_names_get(int32_t z, const char **names) {
+    SKG_NEEDS(names);
+    *names = NULL;
+    SKG_TRY(check_number(z));
+    *names = skg_elements[z].names;
     return SKG_OK;
 }
 

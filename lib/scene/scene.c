@@ -16,8 +16,8 @@ void skg_part_init_sized(void *part, int32_t size) {
     skg_struct_init(part, size, &defaults, sizeof defaults);
 }
 
-skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
-    SKG_NEEDS(scene);
+static skg_status create(skg_context *context, skg_scene **scene) {
+    SKG_NEEDS_OF("skg_scene_create", scene);
     *scene = NULL;
     skg_scene *made = NULL;
     SKG_TRY(skg_alloc(1, sizeof *made, "scene", &made));
@@ -33,6 +33,11 @@ skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
     }
     *scene = made;
     return SKG_OK;
+}
+
+skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, scene));
 }
 
 skg_status skg_scene_retain(skg_scene *scene) {

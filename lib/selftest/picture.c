@@ -115,8 +115,8 @@ skg_status skg_self_test_picture(skg_context *context, skg_verdict *verdict) {
     skg_status status = SKG_OK;
     SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
     SKG_TRY_CLEANUP(make_scene(context, run));
-    SKG_TRY_CLEANUP(skg_view_places_get(run->scene, &run->view, &run->look, BOXES * CORNERS, run->corners[0],
-                                        run->places[0]));
+    SKG_TRY_CLEANUP(skg_scene_places_get(run->scene, &run->view, &run->look, BOXES * CORNERS, run->corners[0],
+                                         run->places[0]));
     SKG_TRY_CLEANUP(skg_scene_picture(context, run->scene, &run->view, &run->look, run->opaque));
     run->look.colours = half_green;
     SKG_TRY_CLEANUP(skg_scene_picture(context, run->scene, &run->view, &run->look, run->translucent));

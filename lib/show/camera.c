@@ -57,6 +57,10 @@ void skg_show_beam_start(const skg_view *view, const double low[3], const double
     skg_add_scaled(at, 1.1 * farthest, along, start);
 }
 
+skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]) {
+    return skg_collimation_corners_get(look->collimation, view, 0, corners[0]);
+}
+
 /* A direction of length 1 across another one of length 1: `wanted` if that is across enough, otherwise any. */
 static void across(const double wanted[3], const double direction[3], double result[3]) {
     double candidate[3];
@@ -100,15 +104,17 @@ static skg_status find_axes(const skg_view *view, const skg_look *look, double a
 
 static void frame_everything(frame *f, const skg_view *view, const skg_look *look, const double low[3],
                              const double high[3]) {
-    double point[3], start[3];
+    double point[3], start[3], beam[4][3];
+    if (skg_show_beam_corners(view, look, beam) != SKG_OK) return; /* checked before */
     for (int corner = 0; corner < 8; corner++) {
         for (int k = 0; k < 3; k++) point[k] = corner >> k & 1 ? high[k] : low[k];
         frame_point(f, point);
     }
     for (int corner = 0; corner < 4; corner++) {
         skg_show_detector_corner(view, corner & 1, corner >> 1, point);
-        skg_show_beam_start(view, low, high, point, start);
+        skg_show_beam_start(view, low, high, beam[corner], start);
         frame_point(f, point);
+        frame_point(f, beam[corner]);
         frame_point(f, start);
     }
     for (int64_t i = 0; i < look->path_count; i++) frame_point(f, look->path + 3 * i);

@@ -4,8 +4,8 @@
 
 #include "core/core.h"
 
-#include <skiagraph/types.h>
 #include <skiagraph/scene_picture.h>
+#include <skiagraph/types.h>
 
 typedef struct {
     double centre[3];  /* mm: where the axis of the eye passes the scene; positions are relative to it */
@@ -21,6 +21,9 @@ void skg_show_beam_start(const skg_view *view, const double low[3], const double
 
 /* A corner of the detector's area: of the edge of pixels, not of their centres. column, row: 0 or 1. */
 void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]);
+
+/* Where the edges of the beam meet the plane of the detector, in turn around it. Errors: of skg_collimation_corners_get. */
+skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]);
 
 /* Places the eye so that everything is in the picture: the box of the parts (mm), source, detector, path. Errors:
  * SKG_ERR_ARGUMENT for directions that are not finite. */

@@ -90,19 +90,30 @@ static skg_status add_ball(skg_show_model *model, const double centre[3], double
     return SKG_OK;
 }
 
-static skg_status add_beam(skg_show_model *model, const skg_view *view, double pixel, const double low[3],
-                           const double high[3]) {
-    double at[3], start[3];
-    for (int corner = 0; corner < 4; corner++) {
-        skg_show_detector_corner(view, corner & 1, corner >> 1, at);
-        skg_show_beam_start(view, low, high, at, start);
-        SKG_TRY(add_tube(model, start, at, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
+/* The opening of the jaws. */
+static skg_status add_jaws(skg_show_model *model, const skg_view *view, const skg_look *look, double pixel) {
+    double opening[4][3];
+    if (!look->collimation || look->collimation->kind != SKG_COLLIMATION_RECTANGLE) return SKG_OK;
+    SKG_TRY(skg_collimation_corners_get(look->collimation, view, 1, opening[0]));
+    for (int i = 0; i < 4; i++)
+        SKG_TRY(add_tube(model, opening[i], opening[(i + 1) % 4], FRAME_RADIUS * pixel, FRAME_RADIUS * pixel,
+                         FRAME_COLOUR));
+    return SKG_OK;
+}
+
+static skg_status add_beam(skg_show_model *model, const skg_view *view, const skg_look *look, double pixel,
+                           const double low[3], const double high[3]) {
+    double corners[4][3], start[3], next_start[3];
+    SKG_TRY(skg_show_beam_corners(view, look, corners));
+    for (int i = 0; i < 4; i++) {
+        skg_show_beam_start(view, low, high, corners[i], start);
+        SKG_TRY(add_tube(model, start, corners[i], BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
         if (view->projection == SKG_PROJECTION_POINT) continue;
-        double next[3], next_start[3]; /* the plane where parallel rays start */
-        skg_show_detector_corner(view, corner == 0 || corner == 1, corner == 1 || corner == 3, next);
-        skg_show_beam_start(view, low, high, next, next_start);
+        skg_show_beam_start(view, low, high, corners[(i + 1) % 4],
+                            next_start); /* on the plane where rays start */
         SKG_TRY(add_tube(model, start, next_start, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
     }
+    SKG_TRY(add_jaws(model, view, look, pixel));
     skg_show_beam_start(view, low, high, view->centre, start);
     return add_ball(model, start, SOURCE_RADIUS * pixel, BEAM_COLOUR);
 }
@@ -151,7 +162,7 @@ static skg_status add_detector(skg_show_model *model, const skg_view *view, doub
 
 skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, const skg_look *look,
                                 const skg_show_camera *camera, const double low[3], const double high[3]) {
-    SKG_TRY(add_beam(model, view, camera->pixel, low, high));
+    SKG_TRY(add_beam(model, view, look, camera->pixel, low, high));
     SKG_TRY(add_axes(model, camera->pixel, low, high));
     SKG_TRY(add_path(model, look, camera->pixel));
     return add_detector(model, view, camera->pixel);

@@ -57,7 +57,8 @@ static skg_status find_box(const skg_scene *scene, const uint8_t *colours, doubl
 /* Checks everything and finds colours, box and eye. colours is to be freed, also after a failure. */
 static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look *look, uint8_t **colours,
                           double low[3], double high[3], skg_show_camera *camera) {
-    SKG_TRY(skg_view_check(view));
+    double corners[4][3];
+    SKG_TRY(skg_show_beam_corners(view, look, corners));
     if (!look->colours) {
         SKG_TRY(skg_alloc(scene->count, 4, "colours of parts", colours));
         SKG_TRY(skg_look_colours_get(scene, *colours));
@@ -68,14 +69,14 @@ static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look
     return skg_show_camera_make(view, look, low, high, camera);
 }
 
-skg_status skg_scene_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
-                             const skg_look *look, uint8_t *rgba) {
+static skg_status draw(skg_context *context, const skg_scene *scene, const skg_view *view,
+                       const skg_look *look, uint8_t *rgba) {
     SKG_PLAIN;
     SKG_TRY(skg_context_enter(context));
     SKG_TRY(skg_self_test_need(context, SKG_SELF_TEST_PICTURE));
-    SKG_NEEDS(scene);
-    SKG_NEEDS(view);
-    SKG_NEEDS(rgba);
+    SKG_NEEDS_OF("skg_scene_picture", scene);
+    SKG_NEEDS_OF("skg_scene_picture", view);
+    SKG_NEEDS_OF("skg_scene_picture", rgba);
     skg_look ours;
     uint8_t *colours = NULL;
     double low[3], high[3];
@@ -95,8 +96,14 @@ cleanup:
     return status;
 }
 
-skg_status skg_view_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
-                               int64_t count, const double *points, double *places) {
+skg_status skg_scene_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
+                             const skg_look *look, uint8_t *rgba) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, draw(context, scene, view, look, rgba));
+}
+
+skg_status skg_scene_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
+                                int64_t count, const double *points, double *places) {
     SKG_PLAIN;
     SKG_NEEDS(scene);
     SKG_NEEDS(view);

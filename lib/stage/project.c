@@ -2,26 +2,12 @@
 
 #include <skiagraph/plan.h>
 
-#include <float.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static int is_double(const skg_geometry *geometry) {
-    return geometry->precision == SKG_PRECISION_DOUBLE;
-}
-
 static size_t real_size(const skg_geometry *geometry) {
-    return is_double(geometry) ? sizeof(double) : sizeof(float);
-}
-
-static size_t entry_size(const skg_geometry *geometry) {
-    return is_double(geometry) ? sizeof(skg_part_double) : sizeof(skg_part_float);
-}
-
-static size_t contribution_size(const skg_geometry *geometry) {
-    return is_double(geometry) ? sizeof(skg_contribution_double) : sizeof(skg_contribution_float);
+    return skg_geometry_is_double(geometry) ? sizeof(double) : sizeof(float);
 }
 
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) {
@@ -105,7 +91,7 @@ static skg_status number(skg_geometry *geometry, int64_t *first_triangle) {
 static void place_parts(const skg_geometry *geometry, const int64_t *first_triangle, void *entries) {
     for (int64_t p = 0; p < geometry->parts; p++) {
         const int64_t m = geometry->mesh_of_part[p];
-        if (is_double(geometry))
+        if (skg_geometry_is_double(geometry))
             SKG_PLACE(((skg_part_double *)entries)[p], p, m);
         else
             SKG_PLACE(((skg_part_float *)entries)[p], p, m);
@@ -119,7 +105,7 @@ static skg_status take_over(skg_geometry *geometry, skg_mesh_layout *layouts, co
     SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *geometry->layouts, "mesh table", &geometry->layouts));
     memcpy(geometry->layouts, layouts, (size_t)meshes * sizeof *layouts);
     memset(layouts, 0, (size_t)meshes * sizeof *layouts);
-    for (int64_t m = 0; m < meshes; m++) geometry->layouts[m].fine &= !is_double(geometry);
+    for (int64_t m = 0; m < meshes; m++) geometry->layouts[m].fine &= !skg_geometry_is_double(geometry);
     SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_triangle));
     SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_vertex));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof(int64_t), "part table", &geometry->first_vertex));
@@ -134,7 +120,7 @@ cleanup:
 /* The copies together have 4 MiB, but there are at least four of them. */
 static int32_t count_slots(const skg_geometry *geometry) {
     enum { BYTES = 1 << 22, LEAST = 4 };
-    const int64_t count = BYTES / (geometry->parts * (int64_t)entry_size(geometry) + 1);
+    const int64_t count = BYTES / (geometry->parts * (int64_t)skg_geometry_entry_size(geometry) + 1);
     return (int32_t)(count < LEAST ? LEAST : count < SKG_TABLE_SLOTS ? count : SKG_TABLE_SLOTS);
 }
 
@@ -150,11 +136,12 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
     geometry->slot_count = count_slots(geometry);
     for (int i = 0; i < geometry->slot_count; i++) {
         skg_table_slot *slot = &geometry->slots[i];
-        SKG_TRY_CLEANUP(skg_alloc(parts, entry_size(geometry), "part table", &slot->entries));
+        SKG_TRY_CLEANUP(skg_alloc(parts, skg_geometry_entry_size(geometry), "part table", &slot->entries));
         place_parts(geometry, first_triangle, slot->entries);
     }
-    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->part_table, parts * (int64_t)entry_size(geometry),
-                                       CL_MEM_READ_ONLY, "part table"));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->part_table,
+                                       parts * (int64_t)skg_geometry_entry_size(geometry), CL_MEM_READ_ONLY,
+                                       "part table"));
     SKG_TRY_CLEANUP(upload_corners(context, geometry));
     SKG_TRY_CLEANUP(
         upload_blocks(context, parts, geometry->first_vertex, "vertex blocks", &geometry->vertex_blocks));
@@ -175,15 +162,6 @@ cleanup:
     return status;
 }
 
-/* Waits until the device has read what this slot was last filled with: only then may it be filled again. */
-static skg_status wait_for(skg_table_slot *slot) {
-    if (!slot->read) return SKG_OK;
-    SKG_CL_TRY(clWaitForEvents(1, &slot->read));
-    clReleaseEvent(slot->read);
-    slot->read = NULL;
-    return SKG_OK;
-}
-
 void skg_geometry_release(skg_geometry *geometry) {
     skg_buffer *const buffers[] = {&geometry->offsets,       &geometry->corners,
                                    &geometry->part_table,    &geometry->contribution_table,
@@ -198,181 +176,7 @@ void skg_geometry_release(skg_geometry *geometry) {
     skg_free(&geometry->mesh_vertex);
     skg_free(&geometry->versions);
     skg_free(&geometry->first_vertex);
-    for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
-        skg_table_slot *slot = &geometry->slots[i];
-        if (wait_for(slot) != SKG_OK) clReleaseEvent(slot->read);
-        skg_free(&slot->entries);
-        skg_free(&slot->contributions);
-    }
-}
-
-/* Single precision takes what changes from frame to frame from the double values, rounded once. */
-static void round_entry(const skg_part_double *from, skg_part_float *to) {
-    for (int k = 0; k < 3; k++) {
-        to->row0[k] = (float)from->row0[k];
-        to->row1[k] = (float)from->row1[k];
-        to->row2[k] = (float)from->row2[k];
-        to->start[k] = (float)from->start[k];
-    }
-    to->offset_x = (float)from->offset_x;
-    to->offset_y = (float)from->offset_y;
-    to->offset_r = (float)from->offset_r;
-    to->anchor_x = (float)from->anchor_x;
-    to->anchor_y = (float)from->anchor_y;
-    to->reference = (float)from->reference;
-    to->highest = (float)from->highest;
-    to->steepest = (float)fmin(from->steepest, (double)FLT_MAX);
-    to->shift = (float)from->shift;
-    to->pixel_i = from->pixel_i;
-    to->pixel_j = from->pixel_j;
-    to->vertices = from->vertices;
-    to->turned = from->turned;
-    to->fine = from->fine;
-    to->first_contribution = from->first_contribution;
-    to->contributions = from->contributions;
-}
-
-static void set_contribution(const skg_geometry *geometry, void *contributions, int64_t index,
-                             const skg_contribution *from, double factor) {
-    if (is_double(geometry))
-        ((skg_contribution_double *)contributions)[index] = (skg_contribution_double){
-            .weight = from->weight * factor, .bias = from->bias, .plane = (SKG_INT)from->plane};
-    else
-        ((skg_contribution_float *)contributions)[index] =
-            (skg_contribution_float){.weight = (float)(from->weight * factor),
-                                     .bias = (float)from->bias,
-                                     .plane = (SKG_INT)from->plane};
-}
-
-/* A face is steep if the last bit of a coordinate moves its depth by more than this share of the part's depth. The share is
- * that of the bars in docs/numerics.md: a length is held to be well defined if such a shift changes it by less. */
-static const double STEEP_SHARE = 1e-6;
-
-/* A face of a thin part is steep from a smaller share on: only steep faces have the digits that its vertices have. */
-static const double FINE_SHARE = 0.25e-6;
-
-static double steepest(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part,
-                       int32_t fine) {
-    const double last_bit = is_double(geometry) ? DBL_EPSILON : (double)FLT_EPSILON;
-    const double z =
-        camera->parallel ? part->depth : part->depth / part->reference; /* z = r / t, t about reference */
-    return (fine ? FINE_SHARE : STEEP_SHARE) * fabs(z) / last_bit;
-}
-
-/* The pixels by which kernels for parts that touch move the edges of a part for coverage (triangle.clh): more than what rounding leaves of its coordinates.
- * Of these the greatest is rounded most; those of a part that reaches the plane of the source have no bound, but most edges that cross
- * the detector end near it. Doubles that are small have what the world's coordinates, of which they are made, have lost. */
-static double shift_of(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part,
-                       const skg_part_double *entry) {
-    const double columns = fmax(entry->pixel_i - part->columns[0], part->columns[1] - entry->pixel_i);
-    const double rows = fmax(entry->pixel_j - part->rows[0], part->rows[1] - entry->pixel_j);
-    const double size = (double)(camera->columns > camera->rows ? camera->columns : camera->rows);
-    const double farthest = isfinite(columns + rows) ? fmax(columns, rows) : 16 * size;
-    if (!(farthest > 0)) return 0;
-    return is_double(geometry) ? 0x1p-44 * fmax(farthest, 256) : 2 * (double)FLT_EPSILON * farthest;
-}
-
-/* pass: of several that are drawn together; their contributions stand one behind the other. */
-static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const skg_camera *camera,
-                              const skg_geometry_part *part, double scale, skg_table_slot *slot) {
-    int64_t total = 0;
-    for (int64_t p = 0; p < geometry->parts; p++) total += part[p].contributions;
-    if (total > slot->capacity) {
-        SKG_TRY(skg_realloc(total, contribution_size(geometry), "contribution table", &slot->contributions));
-        slot->capacity = total;
-    }
-    slot->contribution_count = 0;
-    for (int64_t p = 0; p < geometry->parts; p++) {
-        skg_part_double local, *entry = is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
-        skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
-        const skg_mesh_layout *layout = &geometry->layouts[geometry->mesh_of_part[p]];
-        entry->vertices = (SKG_INT)layout->vertices;
-        entry->fine = layout->fine;
-        entry->steepest = steepest(geometry, camera, &part[p], layout->fine);
-        entry->shift = layout->flat ? shift_of(geometry, camera, &part[p], entry) : 0;
-        entry->first_contribution = (SKG_INT)(pass * total + slot->contribution_count);
-        entry->contributions = (SKG_INT)part[p].contributions;
-        if (!is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);
-        /* Kernels weigh q = r / reference; a parallel beam's q is r itself. A part that lies on no path weighs nothing: its
-         * hits would cancel, but the scale does not consider them, so that they need not be integers of the device. */
-        const double depth_unit = camera->parallel ? scale : scale * entry->reference;
-        const double factor = part[p].depth > 0 ? depth_unit : 0;
-        for (int32_t w = 0; w < part[p].contributions; w++)
-            set_contribution(geometry, slot->contributions, slot->contribution_count++,
-                             &part[p].contribution[w], factor);
-    }
-    return SKG_OK;
-}
-
-static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, const skg_table_slot *b) {
-    return a->contribution_count == b->contribution_count &&
-           memcmp(a->entries, b->entries, (size_t)geometry->parts * entry_size(geometry)) == 0 &&
-           (a->contribution_count == 0 ||
-            memcmp(a->contributions, b->contributions,
-                   (size_t)a->contribution_count * contribution_size(geometry)) == 0);
-}
-
-/* Enqueues the upload of tables: [parts] entries and contributions of each pass. read: the event of the write; NULL: none. */
-static skg_status upload_tables(skg_context *context, skg_geometry *geometry, const skg_pass_tables *tables,
-                                cl_event *read) {
-    cl_command_queue queue = context->device->queue;
-    const int64_t bytes = tables->passes * tables->contribution_count * (int64_t)contribution_size(geometry);
-    const int64_t table = tables->passes * geometry->parts * (int64_t)entry_size(geometry);
-    geometry->uploaded = 0; /* if one of the two writes fails, the device has neither table */
-    SKG_TRY(skg_buffer_reserve(context, &geometry->contribution_table, bytes, CL_MEM_READ_ONLY,
-                               "contribution table"));
-    SKG_TRY(skg_buffer_reserve(context, &geometry->part_table, table, CL_MEM_READ_ONLY, "part table"));
-    if (bytes > 0)
-        SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->contribution_table.memory, CL_FALSE, 0,
-                                        (size_t)bytes, tables->contributions, 0, NULL, NULL));
-    SKG_CL_TRY(clEnqueueWriteBuffer(queue, geometry->part_table.memory, CL_FALSE, 0, (size_t)table,
-                                    tables->entries, 0, NULL, read));
-    return SKG_OK;
-}
-
-/* Brings the frame's tables to the device where they differ from those it has. */
-skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, const skg_camera *camera,
-                              const skg_geometry_part *part, double scale) {
-    const int32_t next = (geometry->slot + 1) % geometry->slot_count;
-    skg_table_slot *slot = &geometry->slots[next];
-    SKG_TRY(wait_for(slot));
-    SKG_TRY(fill_tables(geometry, 0, camera, part, scale, slot));
-    if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
-    const skg_pass_tables tables = {.passes = 1,
-                                    .contribution_count = slot->contribution_count,
-                                    .entries = slot->entries,
-                                    .contributions = slot->contributions};
-    SKG_TRY(upload_tables(context, geometry, &tables, &slot->read));
-    geometry->slot = next;
-    geometry->uploaded = 1;
-    return SKG_OK;
-}
-
-skg_status skg_geometry_weigh_pass(skg_geometry *geometry, const skg_camera *camera,
-                                   const skg_geometry_part *part, double scale, int32_t room,
-                                   skg_pass_tables *tables, skg_staging *staging) {
-    skg_table_slot *slot = &geometry->slots[(geometry->slot + 1) % geometry->slot_count];
-    const size_t table = (size_t)geometry->parts * entry_size(geometry);
-    SKG_TRY(wait_for(slot));
-    SKG_TRY(fill_tables(geometry, tables->passes, camera, part, scale, slot));
-    const size_t bytes = (size_t)slot->contribution_count * contribution_size(geometry);
-    if (tables->passes == 0) {
-        tables->contribution_count = slot->contribution_count;
-        SKG_TRY(skg_staging_take(staging, room, table, "part table", &tables->entries));
-        SKG_TRY(skg_staging_take(staging, room, bytes + 1, "contribution table", &tables->contributions));
-    }
-    if (slot->contribution_count != tables->contribution_count)
-        return skg_fail(SKG_ERR_INTERNAL, "passes with different numbers of contributions");
-    memcpy((char *)tables->entries + (size_t)tables->passes * table, slot->entries, table);
-    if (bytes > 0)
-        memcpy((char *)tables->contributions + (size_t)tables->passes * bytes, slot->contributions, bytes);
-    tables->passes++;
-    return SKG_OK;
-}
-
-skg_status skg_geometry_send_passes(skg_context *context, skg_geometry *geometry,
-                                    const skg_pass_tables *tables) {
-    return upload_tables(context, geometry, tables, NULL);
+    skg_geometry_release_tables(geometry);
 }
 
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from . import _arrays
 from ._frames import Batch, Stale, Submit, run
 from ._interface import ENUMS, ArgumentError, SceneError
-from ._library import choice, ffi, integer, lib
+from ._library import choice, ffi, integer, lib, struct
 from ._progress import Progress
 from ._state import State
 from .view import View, as_views
@@ -78,24 +78,41 @@ def render(state: State, batch: Batch, out: Any, progress: Progress, one: bool, 
     return image
 
 
-def lengths(state: State, label: str, kind: str, poses: Mapping[str, Any] | None, views: Sequence[View] | None, out: Any,
-            progress: Progress, options: dict[str, Any]) -> NDArray[Any]:
-    """Path lengths through a part, of the scene as it stands without poses and views."""
+def lengths(state: State, labels: Sequence[str], kind: str, poses: Mapping[str, Any] | None, views: Sequence[View] | None,
+            out: Any, progress: Progress, options: dict[str, Any]) -> list[NDArray[Any]]:
+    """Path lengths through each of the parts, of the scene as it stands without poses and views. out: of one part.
+
+    A frame has all of them as outputs. Each is a raster by itself, whose scale is that of its part, so that a part has the same
+    bits alone and among others.
+    """
     one = poses is None and views is None
     batch = Batch(1) if one else batch_of(state, poses, views)
-    part, what = state.number(label), choice("lengths", kind, "kind")
+    parts, what = [state.number(label) for label in labels], choice("lengths", kind, "kind")
+    if not parts:
+        return []
+    with state.calls():
+        view = batch.views[0] if batch.views else state.require_view()
+    shape = view.shape if one else (batch.count, *view.shape)
+    dtype = np.float64 if options.get("precision") == "double" else np.float32
+    targets = [np.empty(shape, dtype) if out is None else _arrays.output(out, shape) for _ in parts]
+    places = [int(target.__array_interface__["data"][0]) for target in targets]
 
     def submit(plan: Any) -> Any:
         def start(count: int, frames: Any, output: Any, job: Any) -> int:
-            output.kind, output.part, output.lengths = ENUMS["output_kind"]["lengths"], part, what
-            return int(lib.skg_plan_submit(plan, count, frames, output, job))
+            outputs, offset = struct("skg_output", len(parts)), int(ffi.cast("intptr_t", output.data)) - places[0]
+            for i, part in enumerate(parts):
+                outputs[i] = output[0]
+                outputs[i].kind, outputs[i].part, outputs[i].lengths = ENUMS["output_kind"]["lengths"], part, what
+                outputs[i].data = ffi.cast("void *", places[i] + offset)
+            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(parts), outputs, job))
 
         return start
 
     with state.calls():
         if state.plans.options(state.setup, {}, []).scatter != ffi.NULL:
             options = {"scatter": False, **options}  # lengths have none, and it is not for every scene
-        return compute(state, submit, batch, out, progress, one, False, options)
+        compute(state, submit, batch, targets[0], progress, one, False, options)
+    return targets
 
 
 def compute(state: State, submit: Callable[[Any], Submit], batch: Batch, out: Any, progress: Progress, one: bool, banded: bool,

@@ -211,6 +211,15 @@ def element_symbol(element: str | int) -> str:
     return string("skg_element_symbol_get", element_number(element))
 
 
+def element_name(element: str | int) -> str:
+    """The name of an element by symbol, name or number.
+
+    >>> element_name("Al")
+    'Aluminium'
+    """
+    return string("skg_element_names_get", element_number(element)).split(";")[0]
+
+
 def as_material(value: Any) -> Material:
     """A material, or the one of this name."""
     if isinstance(value, Material):

@@ -47,7 +47,7 @@ class Report(Mapping[str, Any]):
                 ("precision", f["precision"]), ("strategy", f["strategy"]),
                 ("planes", f"{f['planes']} of {f['plane_bits']} bits"),
                 ("energies", f"{f['nodes']} of {f['bins']}, error at most {f['bound']:.2g}"),
-                ("rays per pixel", str(f["samples"]))]
+                ("rays per pixel", str(f["samples"])), *_scatter_lines(f["scatter"])]
 
     def __str__(self) -> str:
         lines = [f"{name:<15} {value}" for name, value in self._summary()]
@@ -73,6 +73,17 @@ class Report(Mapping[str, Any]):
                           for e in self._found["effects"])
         return (f"<table>{summary}</table><table><tr><th></th><th>effect</th><th>cost</th><th>reason</th></tr>"
                 f"{effects}</table>")
+
+
+def _scatter_lines(scatter: Mapping[str, Any] | None) -> list[tuple[str, str]]:
+    """What the last image's scatter is, if it has any."""
+    if scatter is None:
+        return []
+    once, twice, more = (100 * share for share in scatter["orders"])
+    error = 100 * scatter["sigma"] / scatter["mean"] if scatter["mean"] > 0 else 0.0
+    return [("scatter", f"mean {scatter['mean']:.4g}, standard error {error:.2g} %, {scatter['histories']} histories in "
+                        f"{scatter['seconds']:.2g} s"),
+            ("", f"{once:.0f} % scattered once, {twice:.0f} % twice, {more:.0f} % more often; Rayleigh {100 * scatter['rayleigh']:.0f} %")]
 
 
 def scatter_report(plan: Any) -> dict[str, Any] | None:

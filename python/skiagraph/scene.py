@@ -193,12 +193,9 @@ class Scene:
         if not isinstance(label, str):
             if out is not None:
                 raise ArgumentError("out= takes the lengths of one part; give one label")
-            wanted = [part.label for part in self] if label is None else list(label)
-            given = {"poses": poses, "views": views, "progress": progress, "precision": precision, **options}
-            for name in wanted:  # all of them, before the first is computed
-                self._state.number(name)
-            return {name: self.lengths(name, kind, **given) for name in wanted}
-        return _images.lengths(self._state, label, kind, poses, views, out, progress, {"precision": precision, **options})
+        wanted = [part.label for part in self] if label is None else [label] if isinstance(label, str) else list(label)
+        found = _images.lengths(self._state, wanted, kind, poses, views, out, progress, {"precision": precision, **options})
+        return found[0] if isinstance(label, str) else dict(zip(wanted, found))
 
     def scatter(self, tolerance: float | None = None, *, histories: float | None = None, components: bool = False,
                 quantity: str | None = None, **options: Any) -> dict[str, Any]:

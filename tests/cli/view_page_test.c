@@ -59,7 +59,7 @@ static const char still_script[] =
     "check('shown again', sum() === first);\n"
     "check('box of the cube', scene.parts[0].low.every(x => Math.abs(x + 40) < 1e-6)\n"
     "  && meshes[0].high.every(x => Math.abs(x - 40) < 1e-6));\n" /* 65535 steps of a double */
-    "const centre = seen([0, 0, 0]), edge = seen([-38, -38, 38]);\n"
+    "const v0 = scene.view, centre = seen([0, 0, 0]), edge = seen([-38, -38, 38]);\n"
     "check('bone', partAt(...centre) === 1); check('tissue', partAt(...edge) === 0); check('none', partAt(2, 2) === -1);\n"
     "pointAt(...centre); check('hint', !byId('hint').hidden && byId('hint').textContent === 'bone');\n"
     "check('under', rows[1].className === 'under'); pointAt(2, 2); check('no hint', byId('hint').hidden);\n"
@@ -73,6 +73,8 @@ static const char still_script[] =
     "byId('none').click(); check('only the found', meshes[0].visible && !meshes[1].visible); byId('all').click();\n"
     "byId('filter').value = ''; byId('filter').oninput(); byId('none').click();\n"
     "check('distances', byId('measures').textContent.includes('500 mm') && byId('measures').textContent.includes('1.25'));\n"
+    "check('field', v0.field.every((p, i) => p.every((x, k) => Math.abs(x - v0.corners[i][k]) < 1e-9)) && v0.jaws.length === 0);\n"
+    "check('loaded', byId('loading').hidden);\n"
     "check('labels', [...document.querySelectorAll('.label')].some(l => l.textContent === 'detector at 500 mm'));\n"
     /* from the source, without parts and beam: the pixels of the detector are those of the image, and left is left */
     "const kept = [lines, points]; lines = points = []; lookAs('source');\n"

@@ -57,11 +57,45 @@ START_TEST(sides_sizes_and_files) {
 }
 END_TEST
 
+/* The large cube is seen beside the small one before it: there is its dot, which its centre is not. The one behind it is not seen,
+ * and has no name. */
+START_TEST(dots_lie_where_a_part_is_seen) {
+    write_text(
+        "hidden.json",
+        "{\"Source\": {\"Position\": [0, -400, 0, \"mm\"], \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1}]},"
+        "\"Detector\": {\"Position\": [0, 200, 0, \"mm\"], \"UpVector\": [0, 0, 1], \"NumberOfPixels\": [32, 24],"
+        "\"Size\": [320, 240, \"mm\"]}, \"Samples\": ["
+        "{\"Label\": \"large\", \"Cube\": [60, \"mm\"], \"Material\": [\"mu\", 0.2]},"
+        "{\"Label\": \"small\", \"Cube\": [40, \"mm\"], \"Material\": [\"mu\", 0.2],"
+        "\"Transform\": [[\"Translation\", 0, -80, 0, \"mm\"]]},"
+        "{\"Label\": \"back\", \"Cube\": [30, \"mm\"], \"Material\": [\"mu\", 0.2],"
+        "\"Transform\": [[\"Translation\", 0, 80, 0, \"mm\"]]}]}");
+    ck_run(0, "view hidden.json -o v.png --from front --orthographic --json");
+    json_t *object = said_json();
+    const json_t *parts = member(object, "parts"), *large = json_array_get(parts, 0);
+    const json_t *small = json_array_get(parts, 1), *dot = json_object_get(large, "dot");
+    const double column = json_number_value(json_object_get(large, "column"));
+    const double row = json_number_value(json_object_get(large, "row"));
+    const double away = fmax(fabs(json_number_value(json_array_get(dot, 0)) - column),
+                             fabs(json_number_value(json_array_get(dot, 1)) - row));
+    ck_assert(json_is_array(dot));
+    /* 92 % of the 800 rows show the detector's 240 mm; the small cube ends 20 mm from the centre, the large one 30. */
+    ck_assert_double_gt(away, 20 * 0.92 * 800 / 240);
+    ck_assert_double_lt(away, 30 * 0.92 * 800 / 240);
+    ck_assert(json_is_array(json_object_get(small, "dot")));
+    ck_assert(json_is_null(json_object_get(json_array_get(parts, 2), "dot")));
+    json_decref(object);
+}
+END_TEST
+
 /* A scene without beam and material is seen as well, and one with a Scan with the path of its source. */
 START_TEST(other_scenes) {
     ck_run(0, "view s.json -o a.png --set Source.Beam=null --set Samples.bone.Material=null");
     ck_run(0, "view s.json -o b.png --set 'Scan={\"NumberOfProjections\": 8, \"FinalAngle\": 360}'");
     ck_run(0, "view s.json -o c.png --set Source.Shape=ParallelBeam");
+    ck_run(0, "view s.json -o d.png -o d.html --set "
+              "'Collimation={\"Rectangle\": [[-5, 9], [-4, 6], \"mm\"], \"Distance\": [200, \"mm\"]}'");
+    ck_run(0, "view s.json -o e.png --set 'Collimation={\"Field\": \"detector\", \"Margin\": [30, \"mm\"]}'");
 }
 END_TEST
 
@@ -86,6 +120,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, a_picture_of_the_scene);
     tcase_add_test(tests, sides_sizes_and_files);
+    tcase_add_test(tests, dots_lie_where_a_part_is_seen);
     tcase_add_test(tests, other_scenes);
     tcase_add_test(tests, wrong_words);
 }

@@ -69,6 +69,33 @@ START_TEST(jaws_stand_on_the_central_ray) {
 }
 END_TEST
 
+/* The rays through the opening, carried from 200 to 500 mm; a parallel beam carries it unchanged. */
+START_TEST(corners_lie_on_the_rays_of_the_opening) {
+    const double low[3] = {110 - 2.5 * 3, -480, 30 + 2.5 * 7}, high[3] = {110 + 2.5 * 5, -480, 30 - 2.5 * 11};
+    double corners[4][3];
+    ck_skg(skg_collimation_corners_get(NULL, &view, 0, corners[0]));
+    check_point(corners[0], 110 - 40, -480, 30 + 45);
+    check_point(corners[2], 110 + 40, -480, 30 - 45);
+    jaws.kind = SKG_COLLIMATION_RECTANGLE;
+    jaws.distance_mm = 200;
+    jaws.low[0] = -3, jaws.high[0] = 5, jaws.low[1] = -7, jaws.high[1] = 11;
+    ck_skg(skg_collimation_corners_get(&jaws, &view, 0, corners[0]));
+    check_point(corners[0], low[0], low[1], low[2]);
+    check_point(corners[1], high[0], low[1], low[2]);
+    check_point(corners[2], high[0], high[1], high[2]);
+    check_point(corners[3], low[0], high[1], high[2]);
+    ck_skg(skg_collimation_corners_get(&jaws, &view, 1, corners[0]));
+    check_point(corners[0], 50 - 3, -180, 30 + 7);
+    view.projection = SKG_PROJECTION_PARALLEL;
+    ck_skg(skg_collimation_corners_get(&jaws, &view, 0, corners[0]));
+    check_point(corners[2], 110 + 5, -480, 30 - 11);
+    view.projection = SKG_PROJECTION_POINT;
+    jaws.distance_mm = 600;
+    ck_skg_fails(skg_collimation_corners_get(&jaws, &view, 0, corners[0]), SKG_ERR_SCENE,
+                 "behind the detector");
+}
+END_TEST
+
 /* Each pixel of random views by its own ray, whose passage of the plane is computed here. */
 START_TEST(windows_hold_the_rays_that_pass) {
     uint64_t state = 77 + (uint64_t)_i;
@@ -126,6 +153,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, NULL);
     tcase_add_test(tests, the_detector_is_the_field_of_an_open_beam);
     tcase_add_test(tests, jaws_stand_on_the_central_ray);
+    tcase_add_test(tests, corners_lie_on_the_rays_of_the_opening);
     tcase_add_loop_test(tests, windows_hold_the_rays_that_pass, 0, 20);
 }
 

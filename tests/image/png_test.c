@@ -118,6 +118,31 @@ START_TEST(ranges_leave_out_what_is_not_finite) {
 }
 END_TEST
 
+/* Behind jaws an attenuation is 126 ln 2; the others keep their contrast, and the data their values. */
+START_TEST(ranges_leave_out_where_no_photon_arrives) {
+    double low, high;
+    uint16_t levels[PIXELS];
+    char texts[2048];
+    skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
+    picture.quantity = SKG_QUANTITY_ATTENUATION, picture.flat_field = 0;
+    for (int i = 0; i < PIXELS; i++) floats[i] = i < 10 ? (float)(126 * log(2)) : (float)i;
+    ck_skg(skg_picture_range_get(&picture, &low, &high));
+    ck_assert(low == 10 && high == 34);
+    ck_skg(skg_picture_window_get(&picture, 0, 0, &low, &high));
+    ck_assert(low == 10 && high == 34);
+    ck_skg(skg_picture_save(&picture, at("a.png")));
+    read_png(path, levels, texts, sizeof texts);
+    ck_assert(levels[0] == 65535 && levels[10] == 0 && levels[34] == 65535);
+    picture.low = 0, picture.high = 100; /* what is asked for rules */
+    ck_skg(skg_picture_save(&picture, path));
+    read_png(path, levels, texts, sizeof texts);
+    ck_assert_int_eq(levels[0], lround(126 * log(2) * 655.35));
+    picture.low = picture.high = 0, picture.quantity = SKG_QUANTITY_ENERGY; /* 87.3 keV are some */
+    ck_skg(skg_picture_range_get(&picture, &low, &high));
+    ck_assert(high > 87);
+}
+END_TEST
+
 /* The lengths 0 to 34, out of order. */
 START_TEST(windows_leave_out_outliers) {
     double low, high;
@@ -149,6 +174,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, png_knows_what_the_data_are);
     tcase_add_test(tests, windows_leave_out_outliers);
     tcase_add_test(tests, ranges_leave_out_what_is_not_finite);
+    tcase_add_test(tests, ranges_leave_out_where_no_photon_arrives);
 }
 
 SKG_SUITE_MAIN("png", add_tests)

@@ -183,6 +183,10 @@ START_TEST(names_that_are_not_found) {
     ck_skg_fails(skg_element_number_get("93", &z), SKG_ERR_MATERIAL, "no element");
     ck_skg(skg_element_number_get("74", &z));
     ck_assert_int_eq(z, 74);
+    const char *names = NULL;
+    ck_skg(skg_element_names_get(13, &names));
+    ck_assert_str_eq(names, "Aluminium;Aluminum");
+    ck_skg_fails(skg_element_names_get(93, &names), SKG_ERR_MATERIAL, "1 (H) to 92 (U)");
 }
 END_TEST
 

@@ -256,3 +256,39 @@ def test_the_load_of_a_file(tmp_path):
     gvxr.setSourcePosition(0, -300, 0, "mm")
     nearer = sk.Scene(described(-300)).image(unit="MeV")
     np.testing.assert_allclose(gvxr.computeXRayImage(), nearer, rtol=1e-6)  # the factor is rounded to float
+
+
+def test_arguments_that_gvxr_takes(tmp_path):
+    """What gVXR 2.1.0 gave for these calls."""
+    set_up()
+    cube()
+    array = np.zeros((24, 32))
+    image = gvxr.computeXRayImage(array, False)
+    assert (array == image).all() and array.max() == 1000
+    gvxr.scaleScene(2, 2, 2, "mm")
+    gvxr.scaleScene(0.5, 0.5, 0.5, "cm")
+    assert np.diag(gvxr.getSceneTransformationMatrix()).tolist() == [10, 10, 10, 1]
+    gvxr.usePoissonNoise(True)
+    assert gvxr.usePoissonNoise()
+    gvxr.usePoissonNoise(False)
+    assert not gvxr.usePoissonNoise()
+    corners = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]
+    faces = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]
+    soup = np.reshape(corners, (-1, 3))[faces].ravel()
+    for arguments, edge in (((corners, faces), 10), ((corners, faces, "mm"), 1), ((soup,), 10), ((soup, "mm"), 1)):
+        gvxr.makeTriangularMesh("t", *arguments)
+        assert gvxr.getNumberOfPrimitives("t") == 4
+        assert gvxr.getNodeOnlyBoundingBox("t", "mm") == pytest.approx((0, 0, 0, edge, edge, edge))
+    path = tmp_path / "t.stl"
+    gvxr.saveSTLfile("t", str(path), False)
+    assert path.read_text().startswith("solid") and path.read_text().count("vertex") == 12
+    assert sk.Mesh.load(path).health["volume"] == pytest.approx(1 / 6)
+    values = np.zeros((8, 6, 4))
+    values[3, 2, 1] = 100
+    gvxr.makeIsoSurface("i", 50, values.ravel().tolist(), 4, 6, 8, 1, 2, 3)  # cm; the voxel is at (2, 3, 4) spacings
+    assert np.array(gvxr.getNodeOnlyBoundingBoxCentre("i", "mm")) == pytest.approx((20, 60, 120))
+    assert [gvxr.getElementName(z) for z in (26, "Fe", 13, 16)] == ["Iron", "Iron", "Aluminium", "Sulfur"]
+    gvxr.setElement("cube", 26)
+    assert gvxr.getMaterialLabel("cube") == "Element: Iron"
+    gvxr.setMixture("cube", ["Ti", "Al", "V"], [0.9, 0.06, 0.04])
+    assert gvxr.getMaterialLabel("cube") == "Mixture: Al6Ti90V4"

@@ -256,7 +256,7 @@ def test_shapes_of_gvxr():
     volume[1:4, 1:5, 1:6] = 1
     for values in (volume, volume.ravel().tolist()):
         gvxr.makeIsoSurface("surface", 0.5, values, 7, 6, 5, 1, 1, 2, "mm")
-        assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((-2.5, -2, -3, 2.5, 2, 3))
+        assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((1.5, 1.5, 3, 6.5, 5.5, 9))
     with pytest.raises(sk.ArgumentError, match="has 210 values instead of 7 x 6 x 4"):
         gvxr.makeIsoSurface("surface", 0.5, volume, 7, 6, 4, 1, 1, 2, "mm")
     gvxr.makeStepWedge("wedge", 3, 9, 4, 1, 2, "mm")

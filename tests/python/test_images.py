@@ -85,6 +85,13 @@ def test_lengths_of_many_frames(scene, poses):
     lengths = scene.lengths("ball", poses={"ball": poses})
     assert lengths.shape == (7, SIDE, SIDE + 16)
     assert (lengths[3] == scene.lengths("ball")).all()
+    for precision in ("single", "double"):  # a part has the same bits alone and among others
+        options = {"poses": {"ball": poses}, "precision": precision}
+        together = scene.lengths(["ball", "block"], **options)
+        assert list(together) == ["ball", "block"]
+        for label, found in together.items():
+            assert (found == scene.lengths(label, **options)).all()
+    assert scene.lengths([]) == {}
 
 
 def test_out_is_written_in_place(scene):

@@ -1,5 +1,6 @@
 """Scans: the same projections as batches of views, files of them, breath, interrupts."""
 import json
+import pathlib
 import pickle
 import shutil
 import signal
@@ -277,3 +278,47 @@ def test_cost_sees_every_change(path):
     moved = sk.Scene(path)
     moved.view.source[1] -= 10
     assert state_of(moved).is_changed()
+
+
+@pytest.mark.skipif(not shutil.which("skiagraph"), reason="the command is not on the PATH")
+def test_a_dome_in_four_dimensions(tmp_path):
+    """A scan while the thorax breathes, reconstructed at two phases: the dome is where the meshes have it."""
+    size, voxel, angles = 80, 4.0, 60
+    described = json.loads(pathlib.Path(sk.thorax(tmp_path, 10000)).read_text())
+    described["Breathing"] = {"Pattern": "quiet", "Period": 4.0, "Reference": 0}
+    described["Source"] = {"Position": [0, -1000, 0, "mm"], "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1}]}
+    described["Detector"] = {"Position": [0, 500, 0, "mm"], "UpVector": [0, 0, -1], "NumberOfPixels": [160, 112],
+                             "Spacing": [4, 4, "mm"]}
+    described["Scan"] = {"NumberOfProjections": 2 * angles, "FinalAngle": 360, "Interval": 2.0}
+    described["Samples"] = [part for part in described["Samples"] if part["Label"] != "needle"]  # of steel
+    (tmp_path / "scan.json").write_text(json.dumps(described))
+    for command in (["scan", "scan.json", "-o", "scan.h5", "--quantity", "attenuation", "--breathing", "--phases", "2"],
+                    *(["reconstruct", f"scan.phase-{k}-of-2.h5", "-o", f"{k}.mha", "--size", str(size), "--voxel", str(voxel)]
+                      for k in (1, 2))):
+        subprocess.run(["skiagraph", *command, "--quiet"], cwd=tmp_path, check=True)
+    scene, place, heights = sk.Scene(tmp_path / "scan.json"), None, []
+    for phase in (0, 1):
+        scene.breathe(phase=phase / 2)
+        lung = scene["lung right"].mesh
+        corners = np.asarray(lung.vertices, float)[np.asarray(lung.faces)]
+        if place is None:  # over the top of the liver
+            liver = np.asarray(scene["liver"].mesh.vertices, float)
+            place = np.round(liver[liver[:, 2].argmax(), :2] / voxel + (size - 1) / 2).astype(int)
+        x, y = (place - (size - 1) / 2) * voxel
+        side, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = side[:, 0] * other[:, 1] - side[:, 1] * other[:, 0]
+        u = ((x - corners[:, 0, 0]) * other[:, 1] - (y - corners[:, 0, 1]) * other[:, 0]) / area
+        v = (side[:, 0] * (y - corners[:, 0, 1]) - side[:, 1] * (x - corners[:, 0, 0])) / area
+        hit = (u >= 0) & (v >= 0) & (u + v <= 1)
+        mesh = (corners[:, 0, 2] + u * side[:, 2] + v * other[:, 2])[hit].min()
+        volume = np.frombuffer((tmp_path / f"{phase + 1}.mha").read_bytes()[-4 * size ** 3:], "<f4").reshape((size,) * 3)
+        profile = volume[:, place[1], place[0]]
+        near = round(mesh / voxel + (size - 1) / 2)
+        level = (profile[near - 6:near - 2].mean() + profile[near + 3:near + 7].mean()) / 2
+        k = next(k for k in range(near - 3, near + 4) if profile[k] >= level > profile[k + 1])
+        seen = (k + (profile[k] - level) / (profile[k] - profile[k + 1]) - (size - 1) / 2) * voxel
+        heights.append((mesh, seen))
+    meshes, volumes = np.array(heights).T
+    assert meshes[1] - meshes[0] > 10
+    assert volumes[1] - volumes[0] == pytest.approx(meshes[1] - meshes[0], abs=0.5)  # an eighth of a voxel
+    np.testing.assert_allclose(volumes, meshes, atol=voxel / 2)  # the dome is curved within a voxel

@@ -115,6 +115,15 @@ def test_the_key_of_a_file():
     assert scene.lengths("slab", world=sk.Material("air")).max() > 190  # lengths need none
 
 
+def test_the_report_says_what_scattered(slab):
+    slab.image(scatter=FEW)
+    report = slab.plan(scatter=FEW)
+    for text in (str(report), report._repr_html_()):
+        assert f"mean {report['scatter']['mean']:.4g}" in text and "scattered once" in text and "histories" in text
+    slab.image()
+    assert "scattered once" not in str(slab.plan())
+
+
 def test_projections_of_a_scan_have_scatter(slab):
     slab.trajectory = sk.Scan(slab.view, 3, axis="y")
     plain, scattered = slab.scan(), slab.scan(scatter=FEW)

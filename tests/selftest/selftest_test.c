@@ -168,7 +168,7 @@ static const struct {
     {"raster_passes.cl", "blocks, 0, layout->triangles);", "blocks, 0, layout->triangles - 1);",
      SKG_SELF_TEST_PASSES},
     {"raster_passes.cl", "(p.y, q.y, r.y, s.y)", "(p.y, q.y, r.y, r.y)", SKG_SELF_TEST_SIDE},
-    {"draw.clh", "pass * target->image_size", "0", SKG_SELF_TEST_SIDE},
+    {"collect.clh", "pass * target->image_size", "0", SKG_SELF_TEST_SIDE},
     {"sums.clh", "(size_t)(layout->first_plane + plane)", "(size_t)plane", SKG_SELF_TEST_PASSES},
     {"draw.clh", "skg_hit_v(&line, i) & (i < right) & (j < bottom)",
      "skg_hit_v(&line, i) & (i < right - 1) & (j < bottom)", SKG_SELF_TEST_COPIES},

@@ -53,7 +53,7 @@ static void add_box(const char *label, double length, double x, double y, double
 static const uint8_t *pixel_at(const uint8_t *rgba, double x, double y, double z) {
     const double point[3] = {x, y, z};
     double place[2];
-    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, place));
+    ck_skg(skg_scene_places_get(scene, &view, &look, 1, point, place));
     ck_assert(place[0] > -0.5 && place[0] < (double)look.columns - 0.5);
     ck_assert(place[1] > -0.5 && place[1] < (double)look.rows - 0.5);
     return rgba + 4 * (lround(place[1]) * look.columns + lround(place[0]));
@@ -75,7 +75,7 @@ START_TEST(places_of_an_orthographic_view) {
                  middle = SIDE / 2 - 0.5;
     double places[2][2];
     add_box("box", 20, 0, 0, 0, -1);
-    ck_skg(skg_view_places_get(scene, &view, &look, 2, points[0], places[0]));
+    ck_skg(skg_scene_places_get(scene, &view, &look, 2, points[0], places[0]));
     /* positions are float: 1000 mm * 2^-24 * pixels for a mm */
     const double rounding = 1e-3;
     ck_assert_double_eq_tol(places[0][0], middle, rounding);
@@ -95,7 +95,7 @@ START_TEST(everything_is_in_the_picture) {
         double places[6][2];
         memcpy(look.from, sides[i / 2], sizeof look.from);
         look.orthographic = (int32_t)(i % 2);
-        ck_skg(skg_view_places_get(scene, &view, &look, 6, points[0], places[0]));
+        ck_skg(skg_scene_places_get(scene, &view, &look, 6, points[0], places[0]));
         for (int p = 0; p < 6; p++)
             for (int k = 0; k < 2; k++)
                 ck_assert_msg(places[p][k] > 0 && places[p][k] < SIDE - 1, "side %zu, point %d: %g", i, p,
@@ -251,21 +251,74 @@ START_TEST(the_path_of_a_source_is_drawn) {
 }
 END_TEST
 
+static int is_orange(const uint8_t *at) {
+    return at[0] > at[2] + 60 && at[0] > at[1] + 20;
+}
+
+/* The edges of the beam go through the corners of the opening, and no longer to those of the detector. */
+START_TEST(jaws_leave_a_smaller_beam) {
+    skg_collimation jaws;
+    double detector[4][3], field[4][3], opening[4][3];
+    add_box("box", 10, -60, 0, 0, -1);
+    skg_collimation_init(&jaws);
+    jaws.kind = SKG_COLLIMATION_RECTANGLE, jaws.distance_mm = 300;
+    jaws.low[0] = 2, jaws.high[0] = 12, jaws.low[1] = -2, jaws.high[1] = -1;
+    look.from[0] = 1, look.from[1] = 0; /* from the side: 6 mm a pixel */
+    ck_skg(skg_collimation_corners_get(NULL, &view, 0, detector[0]));
+    ck_skg(skg_collimation_corners_get(&jaws, &view, 0, field[0]));
+    const double middle = 0.5 * (view.source[1] + view.centre[1]), height = 0.5 * detector[0][2];
+    draw(other);
+    ck_assert(is_orange(pixel_at(other, 0.5 * detector[1][0], middle, height)));
+    look.collimation = &jaws;
+    draw(picture);
+    ck_assert(!is_orange(pixel_at(picture, 0.5 * detector[1][0], middle, height)));
+    ck_assert(is_orange(pixel_at(picture, 0.5 * field[1][0], middle, 0.5 * field[1][2])));
+    look.from[0] = 0, look.from[1] = -1; /* from the source: less than a mm a pixel */
+    jaws.low[1] = -8;
+    ck_skg(skg_collimation_corners_get(&jaws, &view, 1, opening[0]));
+    draw(picture);
+    const uint8_t *edge =
+        pixel_at(picture, 0.5 * (opening[0][0] + opening[1][0]), opening[0][1], opening[0][2]);
+    ck_assert(edge[0] < 150 && edge[1] < 150 && edge[2] < 150); /* the frame of the opening */
+    jaws.distance_mm = 2000;
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE,
+                 "behind the detector");
+}
+END_TEST
+
+static int heard;
+
+static void hear(skg_status status, const char *sentence, void *user) {
+    (void)status, (void)sentence, (void)user;
+    heard++;
+}
+
+/* Both calls take the context, so both report. */
+START_TEST(failures_are_reported) {
+    ck_skg(skg_context_error_set(context, hear, NULL));
+    heard = 0;
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_SCENE, "no parts");
+    ck_assert_int_eq(heard, 1);
+    ck_skg_fails(skg_scene_create(context, NULL), SKG_ERR_ARGUMENT, "skg_scene_create");
+    ck_assert_int_eq(heard, 2);
+}
+END_TEST
+
 /* A part that moves does not move the eye while the bounds stay. */
 START_TEST(bounds_hold_the_eye) {
     const double bounds[6] = {-30, -30, -30, 30, 30, 30}, point[3] = {100, 500, 50};
     double before[2], after[2], pose[16] = {1, 0, 0, 250, 0, 1, 0, -40, 0, 0, 1, 9, 0, 0, 0, 1};
     add_box("box", 30, 0, 0, 0, -1);
     look.from[0] = 0.5, look.orthographic = 0;
-    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, before));
+    ck_skg(skg_scene_places_get(scene, &view, &look, 1, point, before));
     ck_skg(skg_scene_part_pose_set(scene, 0, pose));
-    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, after));
+    ck_skg(skg_scene_places_get(scene, &view, &look, 1, point, after));
     ck_assert_double_ne(before[0], after[0]);
     look.bounds = bounds;
-    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, after));
+    ck_skg(skg_scene_places_get(scene, &view, &look, 1, point, after));
     ck_skg(skg_scene_part_pose_set(scene, 0,
                                    (const double[16]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
-    ck_skg(skg_view_places_get(scene, &view, &look, 1, point, before));
+    ck_skg(skg_scene_places_get(scene, &view, &look, 1, point, before));
     ck_assert_mem_eq(before, after, sizeof before);
     draw(picture);
     const double turned[6] = {-30, 30, -30, 30, -30, 30};
@@ -340,6 +393,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_detector_shows_its_image);
     tcase_add_test(tests, creases_and_smooth_surfaces);
     tcase_add_test(tests, the_path_of_a_source_is_drawn);
+    tcase_add_test(tests, jaws_leave_a_smaller_beam);
+    tcase_add_test(tests, failures_are_reported);
     tcase_add_test(tests, bounds_hold_the_eye);
     tcase_add_test(tests, default_colours);
     tcase_add_test(tests, errors_name_the_thing);

@@ -2,6 +2,7 @@
 
 #include "common/environment.h"
 #include "common/probe.h"
+#include "common/progress.h"
 #include "common/say.h"
 
 #include <stdlib.h>
@@ -16,14 +17,15 @@ static void keep_to_the_end(skg_context *context) {
 int cli_open_context(const cli_arguments *arguments, skg_context **context, skg_device_info *device) {
     const char *config = cli_value(arguments, &cli_flag_device);
     int32_t untested = 0;
+    int exit_status = CLI_DONE;
     char refused[CLI_REFUSED];
     cli_prepare_environment();
+    cli_progress_begin("starting and testing the device", 0);
     skg_status status = skg_device_untested(config, &untested);
-    if (status == SKG_OK && untested) {
-        const int exit_status = cli_probe_device(config, config, refused);
-        if (exit_status != CLI_DONE) return cli_error(exit_status, "%s", refused);
-    }
-    if (status == SKG_OK) status = skg_context_create(config, context);
+    if (status == SKG_OK && untested) exit_status = cli_probe_device(config, config, refused);
+    if (status == SKG_OK && exit_status == CLI_DONE) status = skg_context_create(config, context);
+    cli_progress_end();
+    if (exit_status != CLI_DONE) return cli_error(exit_status, "%s", refused);
     if (status != SKG_OK) return cli_fail(status);
     skg_device_info_init(device);
     skg_context_device_get(*context, device);

@@ -10,7 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-static const double SILENT_MS = 2000;
+/* How long the command is silent at first; a later step shows its line at once. */
+static const double SILENT_MS = 1000;
 enum { RENEWED_NS = 250000000, SECOND_NS = 1000000000 };
 
 /* The computation; all of it is guarded by `lock`. */
@@ -26,6 +27,8 @@ static struct {
 } task;
 
 static skg_progress *shared; /* stays until the process ends */
+
+static double begun_ms; /* the first computation; 0: none yet */
 
 static pthread_t shower;
 static int has_shower; /* 1: the thread was started */
@@ -49,7 +52,7 @@ static void show(void) {
         cli_show_line(line);
         return;
     }
-    if (ms < SILENT_MS) return;
+    if (now - begun_ms < SILENT_MS) return;
     if (task.is_followed) (void)skg_progress_get(shared, &task.done, &task.total);
     if (task.total > 0 && task.done > 0) {
         const double rate = (double)task.done / seconds;
@@ -81,6 +84,7 @@ void cli_progress_begin(const char *what, int64_t total) {
     if (cli_is_quiet() || !isatty(STDERR_FILENO)) return;
     task.what = what, task.total = total, task.done = 0, task.end_ms = 0, task.is_followed = 0;
     task.start_ms = cli_now_ms(), task.is_running = 1;
+    if (begun_ms == 0) begun_ms = task.start_ms;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     has_shower = pthread_create(&shower, NULL, run, NULL) == 0; /* without it there is no line */

@@ -8,8 +8,8 @@
 /* Milliseconds of a clock that never goes back. */
 double cli_now_ms(void);
 
-/* Begins a computation. If it takes longer than two seconds and standard error is a terminal, a line there shows it,
- * renewed by a thread of its own: "frames: 12 of 200, 3.4 per second, 55 s left"; without a total, "planning, 5 s".
+/* Begins a computation. If standard error is a terminal, a line there shows it from a second after the first computation of
+ * the command on, renewed by a thread of its own: "frames: 12 of 200, 3.4 per second, 55 s left"; without a total, "planning, 5 s".
  * There is one at a time: one that begins ends the one before.
  *
  * what    what is done or counted; a text that lives as long as the computation

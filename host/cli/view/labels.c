@@ -12,9 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many parts are named at most. */
-enum { NAMED_MAX = 20 };
-
 /* What is drawn on. */
 typedef struct {
     cairo_t *cairo;
@@ -40,62 +37,9 @@ static double text_width(const sheet *s, const char *text) {
     return size.x_advance;
 }
 
-static int by_area(const void *a, const void *b) {
-    const view_part *const *left = a, *const *right = b;
-    return (*left)->area < (*right)->area ? 1 : -((*left)->area > (*right)->area);
-}
-
 static int by_row(const void *a, const void *b) {
     const view_part *const *above = a, *const *below = b;
-    return (*above)->at[1] > (*below)->at[1] ? 1 : -((*above)->at[1] < (*below)->at[1]);
-}
-
-/* A label without digits and the words left, right, l and r: "rib 5 right" and "rib_l06" are of one kind. */
-static void kind_of(const char *label, char *kind, size_t size) {
-    size_t used = 0;
-    while (*label && used + 1 < size) {
-        const size_t word = strcspn(label, " -_.0123456789");
-        const int is_side = (word == 1 && strchr("lrLR", *label)) ||
-                            (word == 4 && strncmp(label, "left", 4) == 0) ||
-                            (word == 5 && strncmp(label, "right", 5) == 0);
-        for (size_t i = 0; i < word && !is_side && used + 1 < size; i++) kind[used++] = label[i];
-        label += word + (label[word] != '\0');
-    }
-    kind[used] = '\0';
-}
-
-/* Whether a part lies inside an opaque one, which hides it. */
-static int is_hidden(const cli_session *session, const uint8_t *colours, int64_t id) {
-    skg_part part;
-    skg_part_init(&part);
-    while (skg_scene_part_get(session->scene, id, &part) == SKG_OK && part.inside >= 0) {
-        id = part.inside;
-        if (colours[4 * id + 3] == 255) return 1;
-    }
-    return 0;
-}
-
-/* The largest part of each kind that can be seen, at most NAMED_MAX. Returns how many. */
-static int choose_parts(const cli_session *session, const view_places *places, const view_part **parts) {
-    int64_t seen = 0;
-    int chosen = 0;
-    uint8_t *colours = malloc((size_t)places->count * 4 + 1);
-    if (colours && skg_look_colours_get(session->scene, colours) == SKG_OK)
-        for (int64_t i = 0; i < places->count; i++)
-            if (!is_hidden(session, colours, i)) parts[seen++] = places->parts + i;
-    free(colours);
-    qsort(parts, (size_t)seen, sizeof *parts, by_area);
-    for (int64_t i = 0; i < seen && chosen < NAMED_MAX; i++) {
-        char kind[64], other[64];
-        int is_new = 1;
-        kind_of(parts[i]->label, kind, sizeof kind);
-        for (int k = 0; k < chosen && is_new; k++) {
-            kind_of(parts[k]->label, other, sizeof other);
-            is_new = !kind[0] || strcmp(kind, other) != 0;
-        }
-        if (is_new) parts[chosen++] = parts[i];
-    }
-    return chosen;
+    return (*above)->dot[1] > (*below)->dot[1] ? 1 : -((*above)->dot[1] < (*below)->dot[1]);
 }
 
 /* Names in a column beside the parts, each with a line to its part. x: where the names end on the left side, and where they
@@ -105,7 +49,7 @@ static void name_side(const sheet *s, const view_part *const *parts, int count, 
     double least = low;
     for (int i = 0; i < count; i++) {
         /* near its part, but the names after it need room as well */
-        const double y = fmin(fmax(parts[i]->at[1], least), high - (count - 1 - i) * line);
+        const double y = fmin(fmax(parts[i]->dot[1], least), high - (count - 1 - i) * line);
         const double width = text_width(s, parts[i]->label);
         const double begin =
             is_right ? fmin(x, s->columns - width - 0.5 * s->text) : fmax(x - width, 0.5 * s->text);
@@ -113,43 +57,79 @@ static void name_side(const sheet *s, const view_part *const *parts, int count, 
         cairo_set_source_rgba(s->cairo, 0.25, 0.27, 0.3, 0.6);
         cairo_set_line_width(s->cairo, fmax(1, s->text / 16));
         cairo_move_to(s->cairo, end, y);
-        cairo_line_to(s->cairo, parts[i]->at[0] + 0.5, parts[i]->at[1] + 0.5);
+        cairo_line_to(s->cairo, parts[i]->dot[0] + 0.5, parts[i]->dot[1] + 0.5);
         cairo_stroke(s->cairo);
-        cairo_arc(s->cairo, parts[i]->at[0] + 0.5, parts[i]->at[1] + 0.5, s->text / 6, 0, 7);
+        cairo_arc(s->cairo, parts[i]->dot[0] + 0.5, parts[i]->dot[1] + 0.5, s->text / 6, 0, 7);
         cairo_fill(s->cairo);
         write_text(s, begin, y + 0.35 * s->text, parts[i]->label);
         least = y + line;
     }
 }
 
+/* The least and the greatest column of the detector in the picture. */
+static void find_detector(const cli_session *session, const skg_look *look, double low_high[2]) {
+    double corners[4][3], seen[4][2];
+    low_high[0] = HUGE_VAL, low_high[1] = -HUGE_VAL;
+    if (skg_collimation_corners_get(NULL, &session->view, 0, corners[0]) != SKG_OK ||
+        skg_scene_places_get(session->scene, &session->view, look, 4, corners[0], seen[0]) != SKG_OK)
+        return;
+    for (int i = 0; i < 4; i++)
+        low_high[0] = fmin(low_high[0], seen[i][0]), low_high[1] = fmax(low_high[1], seen[i][0]);
+}
+
+/* Where a column of names of this width stands: beside the parts, or beyond the detector if it would cover that. NaN: there is
+ * no room beyond it. */
+static double find_column(const sheet *s, int is_right, double beside, double width,
+                          const double detector[2]) {
+    const double low = is_right ? beside : beside - width, high = is_right ? beside + width : beside;
+    const double gap = 2 * s->text;
+    if (high < detector[0] || low > detector[1]) return beside;
+    if (is_right) return detector[1] + gap + width < s->columns ? detector[1] + gap : (double)NAN;
+    return detector[0] - gap - width > 0 ? detector[0] - gap : (double)NAN;
+}
+
+static double widest_name(const sheet *s, const view_places *places) {
+    double width = 0;
+    for (int64_t i = 0; i < places->named_count; i++)
+        width = fmax(width, text_width(s, places->named[i]->label));
+    return width;
+}
+
 /* Returns how many parts are named. */
-static int64_t name_parts(const sheet *s, const cli_session *session, const view_places *places) {
-    const int room = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
-    const view_part **parts = calloc((size_t)places->count + 1, sizeof *parts), *of_side[2][NAMED_MAX];
+static int64_t name_parts(const sheet *s, const cli_session *session, const skg_look *look,
+                          const view_places *places) {
+    const int capacity = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
+    const size_t named = (size_t)places->named_count;
+    const view_part **sides = calloc(2 * named + 1, sizeof *sides);
+    double middle = 0, left = HUGE_VAL, right = -HUGE_VAL, detector[2], beside[2], x[2];
     int count[2] = {0, 0};
-    double middle = 0, left = HUGE_VAL, right = -HUGE_VAL;
-    if (!parts) return 0;
-    const int chosen = choose_parts(session, places, parts);
-    for (int i = 0; i < chosen; i++) {
-        middle += parts[i]->at[0] / chosen;
-        left = fmin(left, parts[i]->low_column), right = fmax(right, parts[i]->high_column);
+    if (!sides) return 0;
+    for (size_t i = 0; i < named; i++) {
+        middle += places->named[i]->dot[0] / (double)named;
+        left = fmin(left, places->named[i]->low_column), right = fmax(right, places->named[i]->high_column);
     }
-    for (int i = 0; i < chosen; i++) {
-        const int side = parts[i]->at[0] > middle;
-        if (count[side] < room) of_side[side][count[side]++] = parts[i];
+    find_detector(session, look, detector);
+    for (int side = 0; side < 2; side++) {
+        beside[side] = side ? right + 2 * s->text : left - 2 * s->text;
+        x[side] = find_column(s, side, beside[side], widest_name(s, places), detector);
+    }
+    if (isnan(x[0]) && isnan(x[1])) memcpy(x, beside, sizeof x);
+    for (size_t i = 0; i < named; i++) {
+        const int wanted = places->named[i]->dot[0] > middle, side = isnan(x[wanted]) ? !wanted : wanted;
+        if (count[side] < capacity) sides[side * (int)named + count[side]++] = places->named[i];
     }
     for (int side = 0; side < 2; side++) {
-        qsort(of_side[side], (size_t)count[side], sizeof *of_side[side], by_row);
-        name_side(s, of_side[side], count[side], side, side ? right + 2 * s->text : left - 2 * s->text);
+        qsort(sides + side * (int)named, (size_t)count[side], sizeof *sides, by_row);
+        name_side(s, sides + side * (int)named, count[side], side, x[side]);
     }
-    free(parts);
+    free(sides);
     return count[0] + count[1];
 }
 
 static void name_point(const sheet *s, const cli_session *session, const skg_look *look,
                        const double point[3], const char *name) {
     double at[2];
-    if (skg_view_places_get(session->scene, &session->view, look, 1, point, at) != SKG_OK) return;
+    if (skg_scene_places_get(session->scene, &session->view, look, 1, point, at) != SKG_OK) return;
     const double width = text_width(s, name);
     write_text(s, fmin(fmax(at[0] + 0.8 * s->text, 0), s->columns - width - 2),
                fmax(at[1] - 0.5 * s->text, s->text), name);
@@ -241,7 +221,7 @@ int view_label(const cli_session *session, const skg_look *look, const view_plac
         s.text = fmax(9, fmin(s.columns / 80, s.rows / 50));
         cairo_select_font_face(s.cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
         cairo_set_font_size(s.cairo, s.text);
-        const int64_t named = name_parts(&s, session, places);
+        const int64_t named = name_parts(&s, session, look, places);
         name_markers(&s, session, look, places);
         write_caption(&s, session, places, named);
         status = cairo_status(s.cairo);

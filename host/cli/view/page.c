@@ -130,24 +130,29 @@ static int parts_json(const view_page *page, blob *to, json_t **made) {
     return exit_status;
 }
 
-/* The corners of the detector, one after the other, and where the beam to each of them starts. */
-static json_t *view_json(const view_page *page) {
+/* The corners of the detector, one after the other, those of the beam on its plane and in the jaws, and where the beam to each
+ * of these starts. */
+static int view_json(const view_page *page, json_t *object) {
     static const char *const names[] = {"point", "parallel", "parallel"};
-    static const double turn[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
     const skg_view *view = &page->session->view;
-    double source[3], up[3];
-    json_t *object = json_object(), *corners = json_array(), *starts = json_array();
+    const skg_collimation *limits = page->look->collimation;
+    double source[3], up[3], edges[4][3], field[4][3], opening[4][3];
+    json_t *corners = json_array(), *ends = json_array(), *starts = json_array(), *jaws = json_array();
+    skg_status status = skg_collimation_corners_get(NULL, view, 0, edges[0]);
+    if (status == SKG_OK) status = skg_collimation_corners_get(limits, view, 0, field[0]);
+    if (status == SKG_OK) status = skg_collimation_corners_get(limits, view, 1, opening[0]);
     view_source(view, page->places, source);
     skg_scale_vector(-1, view->row_step, up);
-    for (int i = 0; i < 4; i++) {
-        double corner[3], start[3];
-        skg_add_scaled(view->centre, turn[i][0] * (double)view->columns, view->column_step, corner);
-        skg_add_scaled(corner, turn[i][1] * (double)view->rows, view->row_step, corner);
+    for (int i = 0; status == SKG_OK && i < 4; i++) {
+        double start[3];
         for (int k = 0; k < 3; k++)
             start[k] = view->projection == SKG_PROJECTION_POINT ? source[k]
-                                                                : corner[k] + source[k] - view->centre[k];
-        json_array_append_new(corners, cli_json_numbers(corner, 3));
+                                                                : field[i][k] + source[k] - view->centre[k];
+        json_array_append_new(corners, cli_json_numbers(edges[i], 3));
+        json_array_append_new(ends, cli_json_numbers(field[i], 3));
         json_array_append_new(starts, cli_json_numbers(start, 3));
+        if (limits && limits->kind == SKG_COLLIMATION_RECTANGLE)
+            json_array_append_new(jaws, cli_json_numbers(opening[i], 3));
     }
     json_object_set_new(object, "projection", json_string(names[view->projection]));
     json_object_set_new(object, "source", cli_json_numbers(source, 3));
@@ -157,7 +162,9 @@ static json_t *view_json(const view_page *page) {
     json_object_set_new(object, "rows", json_integer(view->rows));
     json_object_set_new(object, "corners", corners);
     json_object_set_new(object, "starts", starts);
-    return object;
+    json_object_set_new(object, "field", ends);
+    json_object_set_new(object, "jaws", jaws);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
 static json_t *distances_json(const view_page *page) {
@@ -201,14 +208,16 @@ static json_t *motion_json(const view_page *page) {
 static int scene_json(const view_page *page, blob *to, json_t *object) {
     const skg_look *look = page->look;
     const char *name = strrchr(page->session->path, '/');
-    json_t *box = json_array(), *triangles = json_object(), *parts = NULL, *image = NULL;
+    json_t *box = json_array(), *triangles = json_object(), *view = json_object(), *parts = NULL,
+           *image = NULL;
     const int has_from = look->from[0] != 0 || look->from[1] != 0 || look->from[2] != 0;
     int exit_status = parts_json(page, to, &parts);
     json_object_set_new(object, "parts", parts);
     if (exit_status == CLI_DONE) exit_status = image_json(page, to, &image);
+    if (exit_status == CLI_DONE) exit_status = view_json(page, view);
     json_object_set_new(object, "image", image ? image : json_null());
     json_object_set_new(object, "name", cli_json_text(name ? name + 1 : page->session->path));
-    json_object_set_new(object, "view", view_json(page));
+    json_object_set_new(object, "view", view);
     json_object_set_new(object, "distances", distances_json(page));
     json_object_set_new(object, "motion", motion_json(page));
     json_array_append_new(box, cli_json_numbers(page->places->low, 3));

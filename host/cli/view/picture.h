@@ -17,18 +17,24 @@ typedef struct {
     double at[2];                   /* column and row of its centre */
     double low_column, high_column; /* of the corners of its box in the picture */
     double area;                    /* pixels of the rectangle around these corners */
+    double dot[2];                  /* of a named part: column and row where it can be seen */
 } view_part;
 
 typedef struct {
     view_part *parts;
     int64_t count;
+    view_part **named; /* those of `parts` that the picture names; NULL: not chosen yet */
+    int64_t named_count;
     double low[3], high[3];                /* box of all parts, mm */
     double source_detector, source_object; /* mm; NaN with a source at infinity */
     double magnification;
 } view_places;
 
-/* The caller frees places->parts, also after a failure. */
+/* The caller frees places->parts and places->named, also after a failure. */
 int view_find_places(const cli_session *session, const skg_look *look, view_places *places);
+
+/* Chooses the parts that are named, the largest of each kind that can be seen, and where their dots are. */
+int view_choose_named(const cli_session *session, const skg_look *look, view_places *places);
 
 /* Where the beam starts on its axis; of a source at infinity a point in front of the parts. */
 void view_source(const skg_view *view, const view_places *places, double source[3]);

@@ -32,7 +32,7 @@ static skg_status find_in_picture(const cli_session *session, const skg_look *lo
     for (int corner = 0; corner < 8; corner++)
         for (int k = 0; k < 3; k++) points[corner][k] = corner >> k & 1 ? part->high[k] : part->low[k];
     const skg_status status =
-        skg_view_places_get(session->scene, &session->view, look, 9, points[0], seen[0]);
+        skg_scene_places_get(session->scene, &session->view, look, 9, points[0], seen[0]);
     if (status != SKG_OK) return status;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int corner = 0; corner < 8; corner++)

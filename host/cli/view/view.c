@@ -182,6 +182,13 @@ static int write_others(view_work *w) {
     return exit_status;
 }
 
+/* Where the dot of a named part is; null if the part has no name in the picture. */
+static json_t *dot_json(const view_work *w, const view_part *part) {
+    for (int64_t i = 0; i < w->places.named_count; i++)
+        if (w->places.named[i] == part) return cli_json_numbers(part->dot, 2);
+    return json_null();
+}
+
 static json_t *parts_json(const view_work *w) {
     json_t *parts = json_array();
     uint8_t *colours = malloc((size_t)w->places.count * 4 + 1);
@@ -196,6 +203,7 @@ static json_t *parts_json(const view_work *w) {
         json_object_set_new(object, "column", cli_json_number(part->at[0]));
         json_object_set_new(object, "row", cli_json_number(part->at[1]));
         for (int k = 0; k < 4; k++) json_array_append_new(colour, json_integer(colours[4 * i + k]));
+        json_object_set_new(object, "dot", dot_json(w, part));
         json_object_set_new(object, "colour", colour);
         json_array_append_new(parts, object);
     }
@@ -223,6 +231,7 @@ int cli_view(const cli_arguments *arguments) {
     view_work w = {.arguments = arguments};
     int exit_status = read_flags(&w);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 1, &w.session);
+    w.look.collimation = w.session.options.collimation;
     if (exit_status == CLI_DONE) exit_status = pose(&w);
     if (exit_status == CLI_DONE) exit_status = view_make_image(&w);
     if (exit_status == CLI_DONE) exit_status = find_path(&w);
@@ -231,6 +240,7 @@ int cli_view(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = write_others(&w);
     if (exit_status == CLI_DONE) exit_status = print(&w);
     free(w.places.parts);
+    free(w.places.named);
     free(w.values);
     free(w.image);
     free(w.rgba);

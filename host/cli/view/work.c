@@ -68,6 +68,10 @@ int view_pose_at(view_work *w, double time) {
 int view_draw(view_work *w) {
     if (!w->rgba) w->rgba = malloc((size_t)(4 * w->look.columns * w->look.rows));
     if (!w->rgba) return cli_error(CLI_DEVICE, "out of host memory for the picture");
+    if (!w->places.named) {
+        const int exit_status = view_choose_named(&w->session, &w->look, &w->places);
+        if (exit_status != CLI_DONE) return exit_status;
+    }
     const skg_status status =
         skg_scene_picture(w->session.context, w->session.scene, &w->session.view, &w->look, w->rgba);
     return status == SKG_OK ? view_label(&w->session, &w->look, &w->places, w->rgba) : cli_fail(status);

@@ -17,6 +17,7 @@
 #include <skiagraph/bodies.h>
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
+#include <skiagraph/collimation.h>
 #include <skiagraph/context.h>
 #include <skiagraph/distance.h>
 #include <skiagraph/error.h>
@@ -35,10 +36,10 @@
 #include <skiagraph/scan_reader.h>
 #include <skiagraph/scan_run.h>
 #include <skiagraph/scene.h>
+#include <skiagraph/scene_picture.h>
 #include <skiagraph/setup.h>
 #include <skiagraph/thorax.h>
 #include <skiagraph/types.h>
 #include <skiagraph/version.h>
-#include <skiagraph/scene_picture.h>
 
 #endif

@@ -129,9 +129,9 @@ SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function lo
  *     user       as given to skg_context_error_set */
 typedef void (*skg_error_function)(skg_status status, const char *sentence, void *user);
 
-/** Sets the function that receives the failures of calls that take this context, or a plan or a job of it. Calls that retain a
- * handle or read a plan's report do not report. Calls that compute a scan do not report themselves; the calls that they make do.
- * NULL, the default: none. */
+/** Sets the function that receives the failures of calls that take this context, or a plan or a job of it. Exceptions: calls
+ * that only take or read a handle (_retain, _get, _count), the setters of a context, skg_job_cancel, and calls that compute a
+ * scan, which make calls that report. NULL, the default: none. */
 SKG_API skg_status skg_context_error_set(skg_context *context, skg_error_function error, void *user);
 
 /** A device of OpenCL. The library fills it; prepare with skg_device_info_init. */

@@ -76,7 +76,8 @@ SKG_API skg_status skg_picture_save(const skg_picture *picture, const char *path
 SKG_API skg_status skg_picture_path_check(const char *path);
 
 /** Gets the values that a .png would show as black and as white if low and high were 0, so that all frames of
- * a sequence can use the same. */
+ * a sequence can use the same: the least and the greatest shown value that is finite. Of attenuations those that no photon
+ * has made (126 ln 2, behind jaws) are left out. */
 SKG_API skg_status skg_picture_range_get(const skg_picture *picture, double *low, double *high);
 
 /** Gets a range for a .png from which outliers are left out: of the shown values of the first channel that are

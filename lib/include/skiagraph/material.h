@@ -197,6 +197,9 @@ SKG_API skg_status skg_material_tabled_get(int64_t index, const char **name, dou
 /** Gets the symbol of an element: "Fe" for 26. The text is static. */
 SKG_API skg_status skg_element_symbol_get(int32_t z, const char **symbol);
 
+/** Gets the names of an element, separated by ";": "Aluminium;Aluminum" for 13. The text is static. */
+SKG_API skg_status skg_element_names_get(int32_t z, const char **names);
+
 /** Gets the atomic number of an element: 26 for "Fe", "iron" or "26". */
 SKG_API skg_status skg_element_number_get(const char *text, int32_t *z);
 

@@ -4,6 +4,7 @@
 #define SKIAGRAPH_OPTIONS_H
 
 #include <skiagraph/beam.h>
+#include <skiagraph/collimation.h>
 #include <skiagraph/types.h>
 
 #ifdef __cplusplus
@@ -321,57 +322,6 @@ static inline void skg_grid_init(skg_grid *grid) {
  *     errors         SKG_ERR_SCENE for unusable dimensions; SKG_ERR_MATERIAL if a density is unknown */
 SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy_kev, double oblique,
                                              double tilt, double *transmission);
-
-/** What limits the beam. */
-enum skg_collimation_kind {
-    /** Nothing. */
-    SKG_COLLIMATION_OPEN = 0,
-    /** Jaws that leave a rectangle open. */
-    SKG_COLLIMATION_RECTANGLE = 1,
-    /** The rectangle of the detector, with a margin. */
-    SKG_COLLIMATION_DETECTOR = 2
-};
-
-/** A collimator: jaws between source and detector that stop every ray outside a rectangle, the field. Prepare with
- * skg_collimation_init: no limits.
- *
- * The rectangle lies in a plane parallel to the detector, and its sides along the detector's column and row steps.
- * SKG_COLLIMATION_RECTANGLE: its coordinates are measured from the point where the ray from the middle of the source to the
- * detector's centre crosses the plane. SKG_COLLIMATION_DETECTOR: the outer edges of the detector's pixels, moved outward by
- * `margin_mm`, on the plane of the detector. The collimator moves with source and detector when frames have other views.
- *
- * method   each ray passes or is stopped: that from a sample of the source to the centre of a pixel or, with
- *          supersampling, to the middle of a piece of it. So an extended source of width f casts a penumbra f (D - d) / d
- *          wide, with the distances D of the detector and d of the jaws. A ray within 1e-9 pixels of an edge lies on it;
- *          those on the edges `low` pass, those on `high` do not. Jaws are opaque and without thickness: there is neither
- *          leakage nor scatter from their edges, and no radiation from outside the focal spot.
- *
- * In a parallel beam the rectangle is carried along the beam, and distance_mm has no effect. Path lengths are not
- * limited. Ratios are to the flat field without jaws: behind them the transmission is 0, and the attenuation is the logarithm of
- * the smallest normal float, 87.34. */
-typedef struct {
-    /** Set by skg_collimation_init. */
-    int32_t size;
-    /** enum skg_collimation_kind */
-    int32_t kind;
-    /** Of the rectangle: from the middle of the source to its plane, along the detector's normal, mm. Above 0, beyond the
-     * focal spot, and at most the distance of the detector. */
-    double distance_mm;
-    /** Of the rectangle: its lowest coordinates along the column step and along the row step, mm. */
-    double low[2];
-    /** Its highest, above the lowest. */
-    double high[2];
-    /** Of the detector's rectangle: mm on the detector; below 0: the field is smaller. */
-    double margin_mm;
-} skg_collimation;
-
-/** Prepares a collimation of `size` bytes (export.h). */
-SKG_API void skg_collimation_init_sized(void *collimation, int32_t size);
-
-/** Prepares a collimation. */
-static inline void skg_collimation_init(skg_collimation *collimation) {
-    skg_collimation_init_sized(collimation, (int32_t)sizeof *collimation);
-}
 
 /** Scattered photons: what the object sends to the detector after one or more interactions. Prepare with
  * skg_scatter_init: to 1 % of the mean.

@@ -7,6 +7,7 @@
 #ifndef SKIAGRAPH_SCENE_PICTURE_H
 #define SKIAGRAPH_SCENE_PICTURE_H
 
+#include <skiagraph/collimation.h>
 #include <skiagraph/context.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/types.h>
@@ -45,6 +46,9 @@ typedef struct {
     /** [2][3] least and greatest corner of a box, mm, that the picture shows and where the axes stand, instead of the
      * box of the parts: with the same box, frames of parts that move have the same eye. NULL: the box of the parts. */
     const double *bounds;
+    /** Jaws: the beam is drawn as they leave it, and around their opening. NULL: the beam meets the corners of the
+     * detector. */
+    const skg_collimation *collimation;
 } skg_look;
 
 /** Prepares a look of `size` bytes (export.h). */
@@ -68,7 +72,8 @@ SKG_API skg_status skg_look_colours_get(const skg_scene *scene, uint8_t *colours
  *     look      NULL: as skg_look_init prepares it
  *     rgba      result: [rows][columns][4] red, green, blue and 255, 0 to 255 (sRGB), row 0 on top
  *     errors    SKG_ERR_SCENE (no parts, every part left out, a vertex that is not finite, a view that
- *               skg_view_check refuses), SKG_ERR_ARGUMENT (sizes, a direction that is not finite),
+ *               skg_view_check refuses, jaws that the view cannot have), SKG_ERR_ARGUMENT (sizes, a direction that is
+ *               not finite),
  *               SKG_ERR_DEVICE_MEMORY, SKG_ERR_MEMORY
  *     method    Triangles are sorted into tiles of the picture; in each tile the device keeps the nearest opaque
  *               surface, then adds the translucent ones in front of it, nearest first (depth peeling, Everitt
@@ -82,8 +87,8 @@ SKG_API skg_status skg_scene_picture(skg_context *context, const skg_scene *scen
  *     points    [count][3] mm
  *     places    result: [count][2] column and row; pixel centres are whole numbers
  *     errors    as skg_scene_picture */
-SKG_API skg_status skg_view_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
-                                       int64_t count, const double *points, double *places);
+SKG_API skg_status skg_scene_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,
+                                        int64_t count, const double *points, double *places);
 
 #ifdef __cplusplus
 }

@@ -29,7 +29,7 @@ getTotalEnergyWithoutDetectorResponse getTubeAngle getUnitOfElectriPotential get
 getVertexNumber getWhiteImagesInFlatFieldCT getWindowSize getZoom hasNormalVectorsInverted isInnerSurface
 isOuterSurface isUsingConeBeam isUsingFocalSpot isUsingParallelBeam isUsingParallelSource isUsingPointSource
 lineariseTest loadDetectorEnergyResponse loadMeshFile loadReference loadSpectrumFromTSV loadSpectrumFromTSVPerCm2At1m
-loadSpectrumFromTSVPerPixelAtSDD loadTest makeCube makeCuboid makeCylinder makeStepWedge makeTriangularMesh
+loadSpectrumFromTSVPerPixelAtSDD loadTest makeCube makeCuboid makeCylinder  
 mergePhotonCountingBands radian2degree removeMeshAndChildren removePolygonMeshesFromSceneGraph
 removePolygonMeshesFromXRayRenderer resetBeamSpectrum resetSceneTransformation rotateDetector rotateNode rotateScene
 saveSTLfile scaleNode scaleScene setAmbiantColour setColor setColour setDensity setDetectorEnergyResponse
@@ -52,8 +52,13 @@ _DIFFERS = {
         voxeliseImplicitSurface voxelizeImplicitSurface""",
     "exact spheres that do not overlap; voxels and the name of the volume have no effect":
         """makeFoamInCuboid""",
-    "what is at or above the value is inside; the surface is closed where it meets the border of the volume":
+    "what is at or above the value is inside; the surface is closed where it meets the border of the volume; the arguments"
+    " that gVXR documents, not those of its other overloads":
         """makeIsoSurface""",
+    "10 steps unless their number is given, as gVXR documents; gVXR 2.1 makes 2":
+        """makeStepWedge""",
+    "without indices each three vertices are a triangle, and the mesh must be closed by them":
+        """makeTriangularMesh""",
     "spheres lie in the cylinder, do not overlap, and fill the percentage; half as many rings as sectors":
         """makeSpheresInCylinder""",
     "the mesh stands at this distance along the beam; gVXR 2.1 moves it as if it stood at the origin":
@@ -106,7 +111,7 @@ _DIFFERS = {
     "2, 1, 0: the gVXR whose calls these are":
         """getMajorVersionOfCoreGVXR getMajorVersionOfSimpleGVXR getMinorVersionOfCoreGVXR getMinorVersionOfSimpleGVXR
         getPatchVersionOfCoreGVXR getPatchVersionOfSimpleGVXR""",
-    "the words of a mixture given as a list are its elements":
+    "coefficients and the fractions of a mixture given as a list are not rounded":
         """getMaterialLabel""",
     "cross sections of NIST XCOM 8.1, and the composition of Schneider 2000":
         """getMuFromHU""",

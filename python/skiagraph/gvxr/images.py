@@ -35,9 +35,12 @@ def _image(of: World, integrate: bool) -> NDArray[np.float32]:
     return image
 
 
-def computeXRayImage(anIntegrateEnergyFlag: bool = True) -> NDArray[np.float32]:
-    """[row, column]: MeV per pixel, or photons per pixel."""
-    image = _image(world, anIntegrateEnergyFlag)
+def computeXRayImage(anIntegrateEnergyFlag: Any = True, anotherFlag: bool = True) -> NDArray[np.float32]:
+    """[row, column]: MeV per pixel, or photons per pixel. An array before the flag is filled with the image besides."""
+    into = anIntegrateEnergyFlag if isinstance(anIntegrateEnergyFlag, np.ndarray) else None
+    image = _image(world, bool(anIntegrateEnergyFlag) if into is None else anotherFlag)
+    if into is not None:
+        into[...] = image
     world.images["image"] = image
     return image
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .._device import warn
 from .._interface import ArgumentError, SceneError
-from ..material import Material, element_number, element_symbol
+from ..material import Material, element_name, element_number, element_symbol
 from .state import DENSITIES, ENERGIES, unit, world
 
 __all__ = [
@@ -43,8 +43,7 @@ setHounsfieldUnit = setHounsfieldValue = setHU
 
 
 def setElement(aLabel: str, aName: str | int) -> None:
-    symbol = element_symbol(aName)
-    _fill(aLabel, Material(symbol), f"Element: {symbol}")
+    _fill(aLabel, Material(element_symbol(aName)), f"Element: {aName if isinstance(aName, str) else element_name(aName)}")
 
 
 def setMixture(aLabel: str, aSymbolSet: Any, aWeightSet: Any = None) -> None:
@@ -68,7 +67,7 @@ def setMixture(aLabel: str, aSymbolSet: Any, aWeightSet: Any = None) -> None:
     for element, weight in zip(aSymbolSet, (weights / total).tolist()):
         symbol = element_symbol(element)
         fractions[symbol] = fractions.get(symbol, 0.0) + weight
-    label = "".join(f"{symbol}{100 * fraction:.10g}" for symbol, fraction in fractions.items())
+    label = "".join(f"{symbol}{100 * fractions[symbol]:.10g}" for symbol in sorted(fractions, key=element_number))
     _fill(aLabel, Material.mixture(fractions, 0, aLabel), f"Mixture: {label}")
 
 
@@ -132,13 +131,13 @@ def getDensityFromElement(anElement: str | int) -> float:
     return Material(element_symbol(anElement)).density
 
 
-def getElementSymbol(anElement: str | int) -> str:
-    return element_symbol(anElement)
+def getElementSymbol(Z: str | int) -> str:
+    return element_symbol(Z)
 
 
 def getElementName(anElement: str | int) -> str:
     """Such as "Iron"."""
-    return Material(element_symbol(anElement)).name
+    return element_name(anElement)
 
 
 def getElementMolarMass(anElement: str | int) -> float:

@@ -64,12 +64,14 @@ def makeSphere(aLabel: str, aNumberOfRings: int = 10, aNumberOfSectors: int = 10
     _loaded(aLabel, Mesh.sphere(aRadius * millimetres(aUnitOfLength), aNumberOfSectors), aParent)
 
 
-def makeTriangularMesh(aLabel: str, aVertexSet: Any, aTriangleIndexSet: Any, aUnitOfLength: str,
+def makeTriangularMesh(aLabel: str, aVertexSet: Any, aTriangleIndexSet: Any = None, aUnitOfLength: str = "cm",
                        aParent: str = "root") -> None:
-    """Flat lists, or rows of three."""
+    """Flat lists, or rows of three. Without indices (label, vertices, unit, parent) each three vertices are a triangle."""
     vertices = np.asarray(aVertexSet, dtype=float).reshape(-1, 3)
-    faces = np.asarray(aTriangleIndexSet).reshape(-1, 3)
-    _loaded(aLabel, Mesh(vertices, faces, unit_mm=millimetres(aUnitOfLength), name=aLabel), aParent)
+    if isinstance(aTriangleIndexSet, str):
+        aTriangleIndexSet, aUnitOfLength, aParent = None, aTriangleIndexSet, "root" if aUnitOfLength == "cm" else aUnitOfLength
+    faces = np.arange(len(vertices)) if aTriangleIndexSet is None else np.asarray(aTriangleIndexSet)
+    _loaded(aLabel, Mesh(vertices, faces.reshape(-1, 3), unit_mm=millimetres(aUnitOfLength), name=aLabel), aParent)
 
 
 def loadSceneGraph(aFileName: str, aUnitOfLength: str) -> None:
@@ -233,5 +235,17 @@ def rayIntersect(aLabel: str, aRayOriginX: float, aRayOriginY: float, aRayOrigin
     return tuple(np.unique(distance[hit]).tolist())
 
 
-def saveSTLfile(aLabel: str, aFileName: str) -> None:
-    world.mesh(aLabel).save(aFileName)
+def saveSTLfile(aLabel: str, aFileName: str = "", aBinaryFlag: bool = True) -> None:
+    """The label is the name of the file if none is given. As text if the flag is false."""
+    mesh, path = world.mesh(aLabel), aFileName or f"{aLabel}.stl"
+    if aBinaryFlag:
+        mesh.save(path)
+        return
+    normals = _unit(_normals(aLabel)).reshape(-1, 3)
+    with open(path, "w", encoding="ascii") as file:
+        file.write("solid skiagraph\n")
+        for normal, corners in zip(normals, mesh.vertices[mesh.faces]):
+            file.write("facet normal {:.9g} {:.9g} {:.9g}\nouter loop\n".format(*normal))
+            file.writelines("vertex {:.9g} {:.9g} {:.9g}\n".format(*corner) for corner in corners)
+            file.write("endloop\nendfacet\n")
+        file.write("endsolid skiagraph\n")

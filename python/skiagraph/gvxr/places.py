@@ -118,8 +118,10 @@ def translateScene(x: float, y: float, z: float, aUnitOfLength: str) -> None:
     world.scene_matrix = world.scene_matrix @ translate(*three(x, y, z, millimetres(aUnitOfLength)))
 
 
-def scaleScene(x: float, y: float, z: float) -> None:
-    world.scene_matrix = world.scene_matrix @ np.diag([x, y, z, 1.0])
+def scaleScene(x: float, y: float, z: float, aUnitOfLength: str = "mm") -> None:
+    """Times the mm of the unit, as if the factors were lengths."""
+    mm = millimetres(aUnitOfLength)
+    world.scene_matrix = world.scene_matrix @ np.diag([x * mm, y * mm, z * mm, 1.0])
 
 
 def resetSceneTransformation() -> None:

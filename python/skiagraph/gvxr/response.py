@@ -156,7 +156,10 @@ def disablePoissonNoise() -> None:
     world.noise = False
 
 
-def usePoissonNoise() -> bool:
+def usePoissonNoise(aFlag: bool | None = None) -> bool:
+    """Whether there is noise; with a flag, whether there will be."""
+    if aFlag is not None:
+        world.noise = bool(aFlag)
     return world.noise
 
 

@@ -23,14 +23,16 @@ def makeStepWedge(aLabel: str, aNumberOfSteps: int = 10, aTotalLength: float = 1
 
 
 def makeIsoSurface(aLabel: str, anIsoValue: float, aVoxelDataSet: Any, aWidth: int, aHeight: int, aDepth: int,
-                   aSpacingX: float, aSpacingY: float, aSpacingZ: float, aUnitOfLength: str, aParent: str = "root") -> None:
-    """The surface of a volume, [z, y, x] or a flat list of as many, about the origin."""
+                   aSpacingX: float, aSpacingY: float, aSpacingZ: float, aUnitOfLength: str = "cm",
+                   aParent: str = "root") -> None:
+    """The surface of a volume, [z, y, x] or a flat list of as many. The middle of its first voxel is at the spacings."""
     values = np.asarray(aVoxelDataSet, dtype=float)
     if values.size != aWidth * aHeight * aDepth:
         raise ArgumentError(f"{aLabel}: the volume has {values.size} values instead of {aWidth} x {aHeight} x {aDepth}")
-    mm = millimetres(aUnitOfLength)
-    world.add(aLabel, Mesh.isosurface(values.reshape(aDepth, aHeight, aWidth), anIsoValue,
-                                      (aSpacingX * mm, aSpacingY * mm, aSpacingZ * mm)), aParent)
+    steps = np.array([aSpacingX, aSpacingY, aSpacingZ], dtype=float) * millimetres(aUnitOfLength)
+    centred = Mesh.isosurface(values.reshape(aDepth, aHeight, aWidth), anIsoValue, steps)
+    middle = steps * (np.array([aWidth, aHeight, aDepth]) + 1) / 2
+    world.add(aLabel, Mesh(centred.vertices + middle, centred.faces, name=aLabel), aParent)
 
 
 def makeFoamInCuboid(aPorosityName: str, aBoundingVolumeName: str, aCuboidWidth: float, aCuboidHeight: float,
@@ -50,7 +52,7 @@ def makeFoamInCuboid(aPorosityName: str, aBoundingVolumeName: str, aCuboidWidth:
 
 def makeSpheresInCylinder(aCylinderLabel: str, aCylinderNumberOfSectors: int, aCylinderRadius: float, aCylinderHeight: float,
                           aSphereLabel: str, aSphereNumberOfRings: int, aSphereNumberOfSectors: int, aSphereRadius: float,
-                          aPercentVolume: float, aUnitOfLength: str, aParent: str = "root") -> int:
+                          aPercentVolume: float, aUnitOfLength: str = "cm", aParent: str = "root") -> int:
     """A cylinder along z and the spheres in it, which do not overlap. Returns their number, which fills the percentage."""
     mm = millimetres(aUnitOfLength)
     outer, height, radius = aCylinderRadius * mm, aCylinderHeight * mm, aSphereRadius * mm

@@ -121,11 +121,12 @@ function prepareParts() {
 
 function prepareMarks() {
   const v = scene.view, [a, b, c, d] = v.corners, starts = v.starts;
-  const beam = v.corners.map((p, i) => [starts[i], p]);
+  const beam = v.field.map((p, i) => [starts[i], p]), jaws = v.jaws;
   if (v.projection !== 'point') beam.push([starts[0], starts[1]], [starts[1], starts[2]], [starts[2], starts[3]], [starts[3], starts[0]]);
   const [low, high] = scene.box, length = 0.2 * Math.max(...high.map((x, k) => x - low[k]));
   beam.push([v.source, v.centre]);
-  lines = [makeLines(beam, [0.93, 0.62, 0.12, 1], LINE), makeLines([[a, b], [b, c], [c, d], [d, a]], [0.4, 0.43, 0.48, 1], THICK)];
+  const frames = [[a, b], [b, c], [c, d], [d, a], ...jaws.map((p, i) => [p, jaws[(i + 1) % 4]])];
+  lines = [makeLines(beam, [0.93, 0.62, 0.12, 1], LINE), makeLines(frames, [0.4, 0.43, 0.48, 1], THICK)];
   [[0.85, 0.22, 0.18, 1], [0.2, 0.62, 0.26, 1], [0.24, 0.44, 0.9, 1]].forEach((colour, k) => {
     const tip = low.map((x, i) => x + (i === k) * length), neck = low.map((x, i) => x + (i === k) * 0.82 * length);
     const wing = low.map((x, i) => neck[i] + (i === (k + 1) % 3) * 0.06 * length), other = neck.map((x, i) => 2 * x - wing[i]);
@@ -137,7 +138,7 @@ function prepareMarks() {
   if (path > 0) points.push({buffer: buffer(new Float32Array(scene.path)), count: path, colour: [0.55, 0.35, 0.82, 1], width: POINT});
   const corner = [[0, 0], [1, 0], [1, 1], [0, 1]], quad = [0, 1, 2, 0, 2, 3].flatMap(i => [...v.corners[i], ...corner[i]]);
   detector = {buffer: buffer(new Float32Array(quad)), texture: gl.createTexture(), frame: -1};
-  const everything = [...boxPoints(low, high), ...v.corners, ...starts, ...Array.from({length: path}, (_, i) => step(i))];
+  const everything = [...boxPoints(low, high), ...v.corners, ...v.field, ...starts, ...Array.from({length: path}, (_, i) => step(i))];
   const middle = [0, 1, 2].map(k => (Math.min(...everything.map(p => p[k])) + Math.max(...everything.map(p => p[k]))) / 2);
   whole = {points: everything, middle, reach: 1.02 * Math.max(...everything.map(p => size(add(p, -1, middle))))};
 }

@@ -303,10 +303,12 @@ function begin() {
     setTime(0);
     play(!window.matchMedia('(prefers-reduced-motion: reduce)').matches);
   }
+  byId('loading').hidden = true;
   requestAnimationFrame(step);
 }
 
 function fail(reason) {
+  byId('loading').hidden = true;
   byId('failure').hidden = false;
   byId('failure').textContent = 'The scene cannot be drawn: ' + reason;
 }
