@@ -211,7 +211,7 @@ typedef struct {
 #define SKG_SCATTER_COLUMNS 6     /* of the table by energy */
 #define SKG_SCATTER_ORDERS 64     /* interactions after which a photon is given up */
 #define SKG_SCATTER_EVEN 0.5f     /* share of interactions whose place is even in the optical depth */
-#define SKG_SCATTER_LEAST 0.35f   /* weights below this play roulette */
+#define SKG_SCATTER_LEAST 0.2f    /* weights below this play roulette */
 #define SKG_SCATTER_FAR 1e6f      /* mm */
 
 /* Of skg_scatter. Places and vectors are in mm from the lowest corner of the cells. */
