@@ -1,17 +1,19 @@
 /* Scattered photons: beside images of a Monte Carlo program, and how long they take. */
 #include "affinity/affinity.h"
+#include "scatter/calibrate.h"
 #include "scatter/compare.h"
 #include "scatter/speed.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const char usage[] =
-    "[--quick] [--reference FOLDER/] [--cube FILE.json] [--compare] [--device CONFIG] [--affinity] "
+    "[--quick] [--reference FOLDER/] [--cube FILE.json] [--compare | --seeds N] [--device CONFIG] [--affinity] "
     "[--csv FILE]";
 
 typedef struct {
-    int quick, affinity, compare; /* compare: no times */
-    const char *reference, *cube, *device, *csv;
+    int quick, affinity, compare;                        /* compare: no times */
+    const char *reference, *cube, *device, *csv, *seeds; /* seeds: nothing but the calibration of the error */
 } settings;
 
 static void read_settings(int count, char **words, settings *out) {
@@ -27,6 +29,7 @@ static void read_settings(int count, char **words, settings *out) {
         else if (!bench_option(&arguments, "--reference", &out->reference) &&
                  !bench_option(&arguments, "--cube", &out->cube) &&
                  !bench_option(&arguments, "--device", &out->device) &&
+                 !bench_option(&arguments, "--seeds", &out->seeds) &&
                  !bench_option(&arguments, "--csv", &out->csv))
             bench_usage(&arguments, usage);
     }
@@ -62,6 +65,22 @@ static void measure(skg_context *context, const settings *set, FILE *csv) {
     speed_merit(context, set->quick ? 1 << 16 : 1 << 18, csv);
 }
 
+static void calibrate(skg_context *context, const settings *set, FILE *csv) {
+    static const double tolerances[] = {0.05, 0.02};
+    const int seeds = atoi(set->seeds);
+    subject subjects[4];
+    int scenes = 0;
+    if (set->cube) subjects[scenes++] = subject_cube(context, set->cube, 0);
+    subjects[scenes++] = subject_water(context, "w0", 100.00001, 1);
+    subjects[scenes++] = subject_water(context, "w1", 300, 1);
+    subjects[scenes++] = subject_thorax(context, 64);
+    calibrate_head(seeds);
+    for (int s = 0; s < scenes; s++) {
+        calibrate_rows(&subjects[s], seeds, 2, tolerances, csv);
+        subject_close(&subjects[s]);
+    }
+}
+
 int main(int count, char **words) {
     settings set;
     read_settings(count, words, &set);
@@ -70,7 +89,10 @@ int main(int count, char **words) {
     if (csv) fprintf(csv, "scene,what,value,error_percent,worst,count,bar\n");
     skg_context *context = bench_context(set.device);
     const int missed = set.reference ? compare(context, &set, csv) : 0;
-    if (!set.compare) measure(context, &set, csv);
+    if (set.seeds)
+        calibrate(context, &set, csv);
+    else if (!set.compare)
+        measure(context, &set, csv);
     skg_context_release(&context);
     if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);
     return missed > 0;
