@@ -1,0 +1,108 @@
+/** @file
+ * Gradients: the derivative of a number that depends on an image, such as the difference from a measured one, by the
+ * poses of parts, by source and detector, by vertices and by densities.
+ *
+ * The caller says how the number, the loss, changes with each value of the image (skg_adjoint). One pass over the
+ * triangles then gives its derivative by everything else, in about the time of an image. It is the derivative of the
+ * image as it is computed: of the path lengths of the rays to the centres of the pixels, or to all samples of pixel and
+ * source, with the energies and planes that the plan chose. Noise and the steps of the detector count as constant.
+ *
+ *     method    A ray's hit with a face moves by b_k (n . dv_k) / (n . d) when corner k of the face moves by dv_k, with the
+ *               barycentric coordinate b_k of the hit, the face's normal n and the ray's direction d. So the derivative of a path
+ *               length is a signed sum over its hits. Lengths through closed meshes are continuous across silhouettes,
+ *               which need no term of their own (docs/numerics.md)
+ *     limits    A face that contains rays, such as the side of a box in a parallel beam, adds nothing although the mean
+ *               of a pixel changes with its place: the image jumps where the ray passes the face
+ *     bits      Sums over hits are integers: they depend neither on the strategy nor on the number of threads */
+#ifndef SKIAGRAPH_GRADIENT_H
+#define SKIAGRAPH_GRADIENT_H
+
+#include <skiagraph/frame.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The derivative of a loss by every value of an image: [channel][row][column], dense. Prepare with skg_adjoint_init:
+ * double. */
+typedef struct {
+    /** Set by skg_adjoint_init. */
+    int32_t size;
+    /** enum skg_type: SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64 */
+    int32_t type;
+    /** Number of channels; it must be the image's. */
+    int64_t channels;
+    /** Number of rows; it must be the image's. */
+    int64_t rows;
+    /** Number of columns; it must be the image's. */
+    int64_t columns;
+    /** The caller's memory; it is read before the call returns. */
+    const void *data;
+    /** A cl_mem of the plan's context that holds it instead of data (opencl.h); NULL: data. */
+    void *buffer;
+    /** Byte of the buffer at which it begins. */
+    int64_t offset;
+} skg_adjoint;
+
+/** Prepares an adjoint of `size` bytes (export.h). */
+SKG_API void skg_adjoint_init_sized(void *adjoint, int32_t size);
+
+/** Prepares an adjoint. */
+static inline void skg_adjoint_init(skg_adjoint *adjoint) {
+    skg_adjoint_init_sized(adjoint, (int32_t)sizeof *adjoint);
+}
+
+/** What a gradient is wanted of, and where it goes: the caller's memory, which is written as a whole. Prepare with
+ * skg_gradient_init: nothing.
+ *
+ * A twist is (tx, ty, tz in mm, rx, ry, rz in radians), in world axes about the world's origin: what it moves has the pose
+ * exp(twist) pose. */
+typedef struct {
+    /** Set by skg_gradient_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** [parts][6] by the twist of each part alone, per mm and per radian; NULL: not wanted. Parts inside it do not move with
+     * it. */
+    double *poses;
+    /** [3] by the position of the source, per mm; in a parallel beam from infinity, by its direction. The pixels stay. NULL:
+     * not wanted. */
+    double *source;
+    /** [6] by the twist of the detector, per mm and per radian. The source stays. NULL: not wanted. */
+    double *detector;
+    /** [parts] by the positions of the mesh of each part, per mm in the mesh's own axes: [vertices][3], or NULL for parts of which
+     * they are not wanted. NULL: of no part. The derivative of a place is divided evenly among the vertices that stand there.
+     * Parts that share a mesh each have their own; the sum is that of the mesh. */
+    double *const *vertices;
+    /** [parts] by the density of each part over that of its material; NULL: not wanted. It costs the path lengths through every
+     * part: about half an image a part. */
+    double *densities;
+} skg_gradient;
+
+/** Prepares a gradient of `size` bytes (export.h). */
+SKG_API void skg_gradient_init_sized(void *gradient, int32_t size);
+
+/** Prepares a gradient. */
+static inline void skg_gradient_init(skg_gradient *gradient) {
+    skg_gradient_init_sized(gradient, (int32_t)sizeof *gradient);
+}
+
+/** Makes the gradient of a loss for one frame, and waits for it.
+ *
+ *     frame      the frame whose image the adjoint belongs to; NULL: as plan and scene stand
+ *     adjoint    d loss / d image
+ *     gradient   what is wanted, and where it goes
+ *     errors     SKG_ERR_ARGUMENT if the adjoint has another size than the image, or a value that is not finite;
+ *                SKG_ERR_UNSUPPORTED, with the reason, for half precision, scatter, leaky meshes, parts that reach the plane of
+ *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
+ *                they have noise or steps; for source and detector also for the heel effect, a bow-tie filter, a grid, an
+ *                oblique scintillator and jaws
+ *     range      SKG_RANGE if a derivative by a path length is not finite
+ *     stale      SKG_STALE as skg_plan_submit */
+SKG_API skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
+                                     const skg_gradient *gradient);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
