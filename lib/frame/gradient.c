@@ -6,6 +6,7 @@
 #include "frame/wait.h"
 #include "geometry/collimation.h"
 #include "plan/decide.h"
+#include "spectral/quantity.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -31,6 +32,8 @@ static skg_status check_view(const char *call, const skg_recipe *recipe) {
     if (options->oblique) return refuse(call, "an oblique scintillator under source and detector", mend);
     if (skg_collimation_limits(options->collimation))
         return refuse(call, "a collimator under source and detector", mend);
+    if (options->world && skg_quantity_is_ratio(options))
+        return refuse(call, "a ratio to the flat field of a world under source and detector", mend);
     if (options->world && recipe->view.projection == SKG_PROJECTION_PARALLEL)
         return refuse(call, "a world in a parallel beam under source and detector", mend);
     return SKG_OK;

@@ -96,7 +96,7 @@ static inline void skg_gradient_init(skg_gradient *gradient) {
  *                SKG_ERR_UNSUPPORTED, with the reason, for half precision, scatter, leaky meshes, parts that reach the plane of
  *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
  *                they have noise or steps; for source and detector also for the heel effect, a bow-tie filter, a grid, an
- *                oblique scintillator and jaws
+ *                oblique scintillator, jaws, and a world with ratios or in a parallel beam
  *     range      SKG_RANGE if a derivative by a path length is not finite
  *     stale      SKG_STALE as skg_plan_submit */
 SKG_API skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
