@@ -101,10 +101,22 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
         const skg_real past = (skg_real)column - shares->x;
         const skg_real share1 = clamp(fma(shares->i1, past, first1), (skg_real)0, (skg_real)1);
         const skg_real share2 = clamp(fma(shares->i2, past, first2), (skg_real)0, (skg_real)1);
-        moments[0] += convert_long_rte(weight * scale);
-        moments[1] += convert_long_rte(weight * share1 * scale);
-        moments[2] += convert_long_rte(weight * share2 * scale);
+        weight *= scale; /* a unit is far below the last bit of a hit, so that it does not matter how it is rounded */
+        moments[0] += (long)weight;
+        moments[1] += (long)(weight * share1);
+        moments[2] += (long)(weight * share2);
     }
+}
+
+/* The moments of a face from its rows `first`, first + step, ... */
+SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_real4 a, skg_real4 b, skg_real4 c,
+                               const skg_box *box, int first, int step, skg_real scale, long *moments) {
+    skg_face f;
+    skg_shares shares;
+    skg_face_of(range, a, b, c, &f);
+    skg_shares_of(a, b, c, &shares);
+    for (int row = box->j0 + first; row < box->j1; row += step)
+        skg_gather_row(g, range, &f, &shares, box, row, scale, moments);
 }
 
 /* Each work-item takes every get_global_size(1)-th row of one triangle.
@@ -143,13 +155,8 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     g.shift = g.slot < 0 ? 0 : shifts[g.slot];
     g.counts = counts, g.starts = starts, g.hits = hits, g.slopes = slopes;
 #endif
-    skg_face f;
-    skg_shares shares;
     long own[3] = {0, 0, 0};
-    skg_face_of(&range, a, b, c, &f);
-    skg_shares_of(a, b, c, &shares);
-    for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1))
-        skg_gather_row(&g, &range, &f, &shares, &box, row, scale, own);
+    skg_gather_face(&g, &range, a, b, c, &box, (int)get_global_id(1), (int)get_global_size(1), scale, own);
     for (int k = 0; k < 3; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
 }
 
