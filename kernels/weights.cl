@@ -105,6 +105,10 @@ static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjo
     skg_add_slopes(strip, &pixels, slope, total, shown);
 #endif
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);
+#if SKG_WEIGH_PLANES
+    SKG_EACH_SUMMED skg_put_weights(strip, p, total[p], weights);
+    return;
+#endif
     SKG_EACH_RUN {
         const int at = min(strip->column + r * SKG_WIDE, strip->args.layout.columns - 1);
         unit[r] = skg_ray_lengths_v(&strip->args.ray, at, strip->row) * strip->args.ray.unit;
@@ -139,7 +143,8 @@ SKG_APART void skg_weigh_strip(const skg_strip *whole, __global const skg_real *
  *
  * adjoint   [channels][rows][columns] of the image: d loss / d what a pixel shows
  * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators; then the sum over planes
- *           of mm times d loss / d mm; then d loss / d logarithm of the intensity */
+ *           of mm times d loss / d mm; then d loss / d logarithm of the intensity. With SKG_WEIGH_PLANES instead: d loss / d mm
+ *           of each plane that is mixed from accumulators */
 __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copies, __global const int *used,
                           __constant const skg_real *coefficients, __constant const skg_real *weights_of_nodes,
                           __constant const skg_real *lists, __constant const skg_real *polynomials,

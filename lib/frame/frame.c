@@ -224,6 +224,25 @@ static skg_status add_gradient(skg_job *job, const skg_frame_work *work, int64_t
     return skg_gradient_add_pass(job, work, number, pass, &sums, factor_of(job->recipe, work, pass));
 }
 
+/* Adds the density of one part, from its path lengths along the rays of a pass. */
+static skg_status add_density(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part) {
+    skg_frame_work lengths = *work;
+    skg_pass pass;
+    skg_status status = SKG_OK;
+    lengths.lengths_of = part;
+    lengths.kind = SKG_LENGTHS_NET;
+    SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, &lengths, number, &job->machine->pass, &pass));
+    SKG_TRY_CLEANUP(pin_raster(job->recipe, job->machine, number, &pass, 1, job->outcome));
+    SKG_TRY_CLEANUP(enqueue_sums(job, &pass));
+    SKG_TRY_CLEANUP(skg_gradient_place_lengths(job, &pass, &lengths.place));
+    pass.fine = 1; /* every ray is shown */
+    SKG_TRY_CLEANUP(enqueue_image(job, &lengths, 0, &pass, 0));
+    status = skg_gradient_add_density(job, &pass, part);
+cleanup:
+    skg_pass_release(&pass);
+    return status;
+}
+
 /* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
 typedef struct {
     skg_pass *passes;
@@ -288,6 +307,9 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
+    for (int64_t p = 0; job->gradient && job->gradient->wanted.densities && p < job->recipe->scene->count;
+         p++)
+        if (status == SKG_OK) status = add_density(job, work, number, p);
     return status;
 }
 

@@ -90,13 +90,16 @@ cleanup:
     return status;
 }
 
-/* The view of a frame. */
-static skg_status view_of(const skg_plan *plan, const skg_frame *frame, skg_view *view) {
+/* The view of a frame. Densities of parts that are filled in part have no gradient. */
+static skg_status view_of(const char *call, const skg_plan *plan, const skg_frame *frame,
+                          const skg_gradient *wanted, skg_view *view) {
     skg_frame ours;
     skg_frame_init(&ours);
     *view = plan->recipe->view;
     if (!frame) return SKG_OK;
     SKG_TRY(skg_struct_read(frame, "skg_frame", &ours, sizeof ours));
+    if (wanted->densities && ours.fill_fractions)
+        return refuse(call, "a density beside fill fractions", "leave one of the two out");
     if (!ours.view) return SKG_OK;
     skg_view_init(view);
     SKG_TRY(skg_view_check(ours.view));
@@ -104,12 +107,12 @@ static skg_status view_of(const skg_plan *plan, const skg_frame *frame, skg_view
 }
 
 static skg_status find_adjoint(const char *call, skg_plan *plan, const skg_frame *frame,
-                               const skg_adjoint *adjoint, double **values) {
+                               const skg_adjoint *adjoint, const skg_gradient *wanted, double **values) {
     double *image = NULL;
     skg_view view;
     skg_status status = SKG_OK;
     SKG_TRY(skg_adjoint_read(call, plan, adjoint, values));
-    SKG_TRY_CLEANUP(view_of(plan, frame, &view));
+    SKG_TRY_CLEANUP(view_of(call, plan, frame, wanted, &view));
     if (skg_adjoint_needs_image(plan)) SKG_TRY_CLEANUP(make_image(plan, frame, &image));
     status = skg_adjoint_of_intensities(plan, &view, image, values);
 cleanup:
@@ -141,6 +144,8 @@ static void clear_vertices(const skg_scene *scene, const skg_gradient *wanted) {
 static skg_status hand_out(const skg_scene *scene, const struct skg_gradient_work *work) {
     const skg_gradient *wanted = &work->wanted;
     if (wanted->poses) memcpy(wanted->poses, work->poses, 6 * (size_t)scene->count * sizeof *work->poses);
+    if (wanted->densities)
+        memcpy(wanted->densities, work->densities, (size_t)scene->count * sizeof *work->densities);
     if (wanted->source) memcpy(wanted->source, work->view, 3 * sizeof *work->view);
     if (wanted->detector) memcpy(wanted->detector, work->view + 3, 6 * sizeof *work->view);
     for (int64_t p = 0; wanted->vertices && p < scene->count; p++)
@@ -164,13 +169,16 @@ static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const sk
     const skg_scene *scene = plan->recipe->scene;
     SKG_TRY(skg_gradient_check(call, plan->recipe, &plan->machine, &work.wanted));
     SKG_TRY_CLEANUP(skg_alloc(6 * scene->count, sizeof *work.poses, "gradient", &work.poses));
-    SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.adjoint));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.densities, "gradient", &work.densities));
+    SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.wanted, &work.adjoint));
     clear_vertices(scene, &work.wanted);
     SKG_TRY_CLEANUP(run(plan, frame, &work));
     status = hand_out(scene, &work);
 cleanup:
     skg_free(&work.adjoint);
     skg_free(&work.poses);
+    skg_free(&work.densities);
+    skg_free(&work.planes);
     return status;
 }
 

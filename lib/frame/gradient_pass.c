@@ -97,24 +97,25 @@ static void add_parallel(const skg_view *view, const skg_camera *camera, const s
  *
  * values   of each ray: sum over planes of mm times derivative by mm; derivative by the logarithm of the intensity
  * falls    power of 1 / |D| in the intensities */
-static void add_ray_lengths(const skg_camera *camera, const double *values, double falls, ends *e) {
-    const int64_t size = camera->rows * camera->columns;
-    for (int64_t p = 0; p < size; p++) {
-        const double value = values[p] - falls * values[size + p];
-        double ray[3], pixel[3], turn[3];
-        if (value == 0) continue;
-        for (int k = 0; k < 3; k++) {
-            ray[k] = camera->first[k] + (double)(p % camera->columns) * camera->column[k] +
-                     (double)(p / camera->columns) * camera->row[k];
-            pixel[k] = camera->origin[k] + ray[k];
+static void add_ray_lengths(const skg_camera *camera, const skg_weight_layout *layout, const double *values,
+                            double falls, ends *e) {
+    double all[3] = {0}, turn[3];
+    for (int64_t r = 0; r < camera->rows; r++) {
+        const double *of_paths = values + r * layout->stride, *of_intensities = of_paths + layout->plane;
+        for (int64_t c = 0; c < camera->columns; c++) {
+            const double value = of_paths[c] - falls * of_intensities[c];
+            double ray[3];
+            for (int k = 0; k < 3; k++)
+                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)r * camera->row[k];
+            skg_add_scaled(all, value / skg_dot(ray, ray), ray, all);
         }
-        const double share = value / skg_dot(ray, ray);
-        skg_cross(pixel, ray, turn);
-        for (int k = 0; k < 3; k++) {
-            e->source[k] -= share * ray[k];
-            e->detector[k] += share * ray[k];
-            e->detector[3 + k] += share * turn[k];
-        }
+    }
+    /* The pixel is source + ray, so that its lever is that of the source. */
+    skg_cross(camera->origin, all, turn);
+    for (int k = 0; k < 3; k++) {
+        e->source[k] -= all[k];
+        e->detector[k] += all[k];
+        e->detector[3 + k] += turn[k];
     }
 }
 
@@ -177,20 +178,24 @@ static void add_ends(const skg_recipe *recipe, const skg_view *view, int64_t num
 static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_sums *all, ends *e,
                             double *intensity) {
     const skg_camera *camera = &pass->camera;
-    const int64_t size = camera->rows * camera->columns;
+    const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     const int falls = job->machine->images.falloff;
     double *values = NULL;
+    skg_status status = SKG_OK;
     for (int k = 0; k < 3; k++) {
         e->source[k] -= all->force[k] - all->along[k];
         e->detector[k] -= all->along[k];
         e->detector[3 + k] -= all->pixel_torque[k];
     }
-    SKG_TRY(
-        skg_gradient_read_weights(pass, &job->machine->gradient, pass->planes, 2, &job->staging, &values));
-    add_ray_lengths(camera, values, falls ? 3 : 0, e);
-    for (int64_t p = 0; p < size; p++) *intensity += values[size + p];
+    SKG_TRY(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
+    SKG_TRY_CLEANUP(skg_gradient_read(pass, job->machine->gradient.weights.memory,
+                                      layout.planes * layout.plane, 2 * layout.plane, values));
+    add_ray_lengths(camera, &layout, values, falls ? 3 : 0, e);
+    for (int64_t p = 0; p < layout.plane; p++) *intensity += values[layout.plane + p];
     if (falls) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
-    return SKG_OK;
+cleanup:
+    skg_free(&values);
+    return status;
 }
 
 static skg_status add_view(skg_job *job, const skg_frame_work *work, int64_t number, const skg_pass *pass,
@@ -215,28 +220,36 @@ static skg_status add_view(skg_job *job, const skg_frame_work *work, int64_t num
 
 /* --- a pass */
 
-skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
-                                 const skg_pass *pass, const skg_sums *sums, double factor) {
-    struct skg_gradient_work *gradient = job->gradient;
-    skg_machine *machine = job->machine;
-    skg_attenuation attenuation = machine->images;
-    skg_gathered gathered;
-    skg_force_sums all = {0};
+static skg_status check_places(const skg_pass *pass) {
     for (int64_t p = 0; pass->kernels.source_plane && p < pass->scene->count; p++)
         if (pass->extents[p].near_source)
             return skg_fail(SKG_ERR_UNSUPPORTED,
                             "gradient: part %s reaches the plane of the source, where gradients are not "
                             "computed; move the part or the source",
                             pass->scene->parts[p].label);
+    return SKG_OK;
+}
+
+skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
+                                 const skg_pass *pass, const skg_sums *sums, double factor) {
+    struct skg_gradient_work *gradient = job->gradient;
+    skg_machine *machine = job->machine;
+    skg_gradient_memory *memory = &machine->gradient;
+    skg_attenuation attenuation = machine->images;
+    skg_gathered gathered;
+    skg_force_sums all = {0};
+    SKG_TRY(check_places(pass));
     memcpy(attenuation.window, pass->window, sizeof attenuation.window);
     if (number <= 0) SKG_TRY(send_adjoint(job, gradient));
-    SKG_TRY(skg_gradient_reserve(pass, &machine->gradient));
-    SKG_TRY(skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor,
-                                    machine->gradient.adjoint.memory, machine->gradient.weights.memory,
-                                    &job->staging.log));
-    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                &gathered));
+    SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
+    SKG_TRY(skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, 0,
+                                    memory->adjoint.memory, memory->weights.memory, &job->staging.log));
+    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, memory, &job->staging, &gathered));
     SKG_TRY(add_parts(job, pass, &gathered, &all));
-    return gradient->wanted.source || gradient->wanted.detector ? add_view(job, work, number, pass, &all)
-                                                                : SKG_OK;
+    if (gradient->wanted.source || gradient->wanted.detector)
+        SKG_TRY(add_view(job, work, number, pass, &all));
+    if (!gradient->wanted.densities) return SKG_OK;
+    SKG_TRY(skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, 1,
+                                    memory->adjoint.memory, memory->weights.memory, &job->staging.log));
+    return skg_gradient_keep_planes(job, pass);
 }

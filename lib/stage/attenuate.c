@@ -157,9 +157,10 @@ static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
     return is_same(key, &first) && skg_kernels_are_first(attenuator->context, &key->options);
 }
 
-/* weights: 1: with the kernel skg_weights. */
-static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *key, int weights,
+/* weights: NULL, or with the kernel skg_weights, whose option SKG_WEIGH_PLANES it is. */
+static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *key, const int64_t *weights,
                             cl_program *program) {
+    skg_define defines[DEFINE_COUNT + 1];
     const int64_t noise = key->defines[DEFINE_NOISE].value, shades = key->defines[DEFINE_SHADES].value;
     const char *files[8] = {"exponential.clh"};
     int count = 1;
@@ -168,14 +169,18 @@ static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *
     files[count++] = "planes.clh";
     if (noise) files[count++] = "quantum.clh";
     files[count++] = "attenuate.cl";
-    if (weights) files[count++] = "weights.cl";
-    return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
-                           program);
+    if (!weights)
+        return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
+                               program);
+    files[count++] = "weights.cl";
+    memcpy(defines, key->defines, sizeof key->defines);
+    defines[DEFINE_COUNT] = (skg_define){"SKG_WEIGH_PLANES", *weights};
+    return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(defines), program);
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
-    return get_files(attenuator, key, 0, program);
+    return get_files(attenuator, key, NULL, program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
@@ -304,8 +309,8 @@ skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t 
 }
 
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                                   const skg_attenuation *attenuation, double factor, cl_mem adjoint,
-                                   cl_mem weights, skg_stage_log *log) {
+                                   const skg_attenuation *attenuation, double factor, int32_t of_planes,
+                                   cl_mem adjoint, cl_mem weights, skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
     const skg_weight_layout layout = skg_attenuate_weight_layout(raster, sums->fine);
     const skg_image_place place = {.row_stride = layout.stride, .channel_stride = layout.plane};
@@ -316,10 +321,11 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
     skg_attenuate_double args = scalars_of(&key, sums, camera, &mean, &place);
     skg_attenuate_float rounded;
+    const int64_t option = of_planes;
     cl_program program = NULL;
     args.factor = factor;
     SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
-    SKG_TRY(get_files(attenuator, &key, 1, &program));
+    SKG_TRY(get_files(attenuator, &key, &option, &program));
     const skg_argument arguments[] = {
         SKG_ARGUMENT_WITH(WEIGHTS, args, is_double, args, rounded),
         SKG_ARGUMENT(WEIGHTS, copies, raster->sums.memory),

@@ -7,18 +7,19 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 enum { GROUP = 64, SLICES = 32 };
 
 void skg_gradient_memory_release(skg_gradient_memory *memory) {
-    skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,
-                                   &memory->scales,  &memory->moments, &memory->slopes};
+    skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,   &memory->scales,
+                                   &memory->moments, &memory->slopes,  &memory->lengths};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
     return memory->adjoint.bytes + memory->weights.bytes + memory->most.bytes + memory->scales.bytes +
-           memory->moments.bytes + memory->slopes.bytes;
+           memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes;
 }
 
 /* One gather. */
@@ -44,11 +45,12 @@ static skg_weight_layout layout_of(const skg_pass *pass) {
     return skg_attenuate_weight_layout(pass->main.raster, pass->fine);
 }
 
-skg_status skg_gradient_reserve(const skg_pass *pass, skg_gradient_memory *memory) {
+skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory) {
     const skg_weight_layout layout = layout_of(pass);
+    const int64_t most = planes > layout.planes + 2 ? planes : layout.planes + 2;
     return skg_buffer_reserve(pass->main.raster->context, &memory->weights,
-                              (layout.planes + 2) * layout.plane * (int64_t)real_size(pass->main.raster),
-                              CL_MEM_READ_WRITE, "weights of a gradient");
+                              most * layout.plane * (int64_t)real_size(pass->main.raster), CL_MEM_READ_WRITE,
+                              "weights of a gradient");
 }
 
 static skg_status reserve(const gather_run *run, skg_buffer *buffer, int64_t bytes) {
@@ -71,20 +73,18 @@ static skg_status begin(gather_run *run) {
                            &run->program);
 }
 
-/* Reads reals of the device as doubles, and waits. */
+/* Reads reals of the device as doubles, and waits. Floats are read into the end of the doubles' memory. */
 static skg_status read_reals(const skg_raster *raster, cl_mem memory, int64_t first, int64_t count,
-                             skg_staging *staging, double **numbers) {
-    const size_t size = real_size(raster);
-    void *raw = NULL;
-    SKG_TRY(skg_staging_take(staging, count, size, "gradient", &raw));
+                             double *numbers) {
+    const size_t size = real_size(raster), behind = (size_t)count * (sizeof *numbers - size);
+    char *raw = (char *)numbers + behind;
     SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, memory, CL_TRUE, (size_t)first * size,
                                    (size_t)count * size, raw, 0, NULL, NULL));
-    if (size == sizeof(double)) {
-        *numbers = raw;
-        return SKG_OK;
+    for (int64_t i = 0; size == sizeof(float) && i < count; i++) {
+        float value;
+        memcpy(&value, raw + (size_t)i * size, size);
+        numbers[i] = (double)value;
     }
-    SKG_TRY(skg_staging_take(staging, count, sizeof **numbers, "gradient", numbers));
-    for (int64_t i = 0; i < count; i++) (*numbers)[i] = ((float *)raw)[i];
     return SKG_OK;
 }
 
@@ -93,6 +93,7 @@ static skg_status find_most(const gather_run *run, double *most) {
     const int64_t rows = run->raster->layout.rows, planes = run->args.planes;
     const skg_work_size work = {2, {rows, planes}, {16, 1}};
     double *of_rows = NULL;
+    SKG_TRY(skg_staging_take(run->staging, planes * rows, sizeof *of_rows, "gradient", &of_rows));
     SKG_TRY(reserve(run, &run->memory->most, planes * rows * (int64_t)real_size(run->raster)));
     const skg_argument arguments[] = {
         SKG_ARGUMENT(GRADIENT_MOST, args, run->args),
@@ -101,7 +102,7 @@ static skg_status find_most(const gather_run *run, double *most) {
     };
     SKG_TRY(SKG_LAUNCH_ONCE(run->context, run->program, "skg_gradient_most", "gradient", &work, arguments,
                             &run->staging->log));
-    SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * rows, run->staging, &of_rows));
+    SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * rows, of_rows));
     for (int64_t i = 0; i < planes * rows; i++) {
         if (!isfinite(of_rows[i]))
             return skg_fail(
@@ -263,17 +264,9 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     return SKG_OK;
 }
 
-skg_status skg_gradient_read_weights(const skg_pass *pass, const skg_gradient_memory *memory, int64_t first,
-                                     int64_t count, skg_staging *staging, double **weights) {
-    const skg_weight_layout layout = layout_of(pass);
-    const int64_t columns = pass->camera.columns, rows = pass->camera.rows;
-    double *padded = NULL;
-    SKG_TRY(read_reals(pass->main.raster, memory->weights.memory, first * layout.plane, count * layout.plane,
-                       staging, &padded));
-    for (int64_t r = 0; r < count * rows; r++)
-        for (int64_t c = 0; c < columns; c++) padded[r * columns + c] = padded[r * layout.stride + c];
-    *weights = padded;
-    return SKG_OK;
+skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
+                             double *numbers) {
+    return read_reals(pass->main.raster, memory, first, count, numbers);
 }
 
 skg_status skg_gradient_read_corners(const skg_geometry *geometry, int64_t mesh, skg_staging *staging,

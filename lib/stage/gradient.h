@@ -10,7 +10,7 @@
 
 /* Device memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer adjoint, weights, most, scales, moments, slopes;
+    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths;
 } skg_gradient_memory;
 void skg_gradient_memory_release(skg_gradient_memory *memory);
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
@@ -22,17 +22,17 @@ typedef struct {
     skg_weight_layout layout;
 } skg_gathered;
 
-/* Makes sure of memory for the derivatives of a pass by its sums. */
-skg_status skg_gradient_reserve(const skg_pass *pass, skg_gradient_memory *memory);
+/* Makes sure of memory for the derivatives of a pass by its sums, or by the mm of `planes` planes. */
+skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory);
 
 /* Gathers the moments of a pass whose sums are made, and waits for them. memory->weights: of skg_attenuate_transpose */
 skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
                                const skg_hits_memory *hits, skg_gradient_memory *memory, skg_staging *staging,
                                skg_gathered *gathered);
 
-/* Reads `count` planes of weights from plane `first` on as doubles: [count][rows][columns]. */
-skg_status skg_gradient_read_weights(const skg_pass *pass, const skg_gradient_memory *memory, int64_t first,
-                                     int64_t count, skg_staging *staging, double **weights);
+/* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
+skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
+                             double *numbers);
 
 /* Reads the corners of a mesh's triangles, [triangles][3] in the device's order and numbering of vertices. */
 skg_status skg_gradient_read_corners(const skg_geometry *geometry, int64_t mesh, skg_staging *staging,

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 4, WAYS = 6 * PARTS + 9 + PARTS };
+enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 4, WAYS = 6 * PARTS + 9 + 2 * PARTS };
 
 /* What a case sets; 0: not used. */
 typedef struct {
@@ -125,7 +125,7 @@ static skg_plan *make_plan(const setting *set, const skg_view *view, int32_t pre
 
 /* A direction in which everything moves: a twist of each part, the source, a twist of the detector, and vertices. */
 typedef struct {
-    double poses[PARTS][6], source[3], detector[6], vertices[PARTS];
+    double poses[PARTS][6], source[3], detector[6], vertices[PARTS], densities[PARTS];
 } direction;
 
 static void turn_point(const double twist[6], double step, const double *from, int is_vector, double *to) {
@@ -176,7 +176,7 @@ static void render(skg_plan *plan, const skg_view *view, const direction *d, dou
     skg_job *job = NULL;
     skg_view moved = *view;
     int64_t ids[PARTS];
-    double poses[PARTS][16];
+    double poses[PARTS][16], densities[PARTS];
     skg_frame_init(&frame);
     skg_output_init(&output);
     output.type = SKG_TYPE_FLOAT64, output.data = image;
@@ -192,6 +192,7 @@ static void render(skg_plan *plan, const skg_view *view, const direction *d, dou
             for (int k = 0; k < 3; k++) poses[p][4 * k + c] = column[k];
         }
         move_vertices(p, step * d->vertices[p]);
+        densities[p] = 1 + step * d->densities[p];
     }
     for (int k = 0; k < 3; k++) moved.source[k] += step * d->source[k];
     turn_point(d->detector, step, view->centre, 0, moved.centre);
@@ -199,6 +200,7 @@ static void render(skg_plan *plan, const skg_view *view, const direction *d, dou
     turn_point(d->detector, step, view->row_step, 1, moved.row_step);
     frame.view = &moved;
     frame.pose_count = parts, frame.pose_parts = ids, frame.poses = poses[0];
+    frame.override_count = parts, frame.override_parts = ids, frame.density_ratios = densities;
     ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
     ck_skg(skg_job_wait(&job));
     for (int64_t p = 0; p < parts; p++) move_vertices(p, 0);
@@ -231,7 +233,7 @@ static void differentiate(skg_plan *plan, const skg_view *view, const direction 
 /* --- gradients */
 
 typedef struct {
-    double poses[PARTS][6], source[3], detector[6], *vertices[PARTS];
+    double poses[PARTS][6], source[3], detector[6], densities[PARTS], *vertices[PARTS];
 } result;
 
 static void make_gradient(skg_plan *plan, const setting *set, const double *adjoint, result *r) {
@@ -241,7 +243,7 @@ static void make_gradient(skg_plan *plan, const setting *set, const double *adjo
     skg_adjoint_init(&given);
     given.channels = set->bands ? set->bands : 1, given.rows = given.columns = SIDE;
     given.data = adjoint;
-    gradient.poses = r->poses[0], gradient.vertices = r->vertices;
+    gradient.poses = r->poses[0], gradient.vertices = r->vertices, gradient.densities = r->densities;
     if (!set->parts_only) gradient.source = r->source, gradient.detector = r->detector;
     ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
 }
@@ -252,6 +254,7 @@ static double along(const result *r, const direction *d) {
         int64_t vertices, triangles;
         ck_skg(skg_mesh_count(meshes[p], &vertices, &triangles));
         for (int k = 0; k < 6; k++) sum += r->poses[p][k] * d->poses[p][k];
+        sum += r->densities[p] * d->densities[p];
         for (int64_t v = 0; v < vertices; v++) {
             wave(saved[p] + 3 * v, by);
             for (int k = 0; k < 3; k++) sum += d->vertices[p] * r->vertices[p][3 * v + k] * by[k];
@@ -292,9 +295,11 @@ static int make_direction(const setting *set, int way, direction *d) {
         d->source[way - 6 * PARTS] = mm;
     else if (way < 6 * PARTS + 9)
         d->detector[way - 6 * PARTS - 3] = way < 6 * PARTS + 6 ? 1 : radian;
-    else
+    else if (way < 7 * PARTS + 9)
         d->vertices[way - 6 * PARTS - 9] = 1;
-    const int64_t part = way < 6 * PARTS ? way / 6 : way < 6 * PARTS + 9 ? 0 : way - 6 * PARTS - 9;
+    else
+        d->densities[way - 7 * PARTS - 9] = 1;
+    const int64_t part = way < 6 * PARTS ? way / 6 : way < 6 * PARTS + 9 ? 0 : (way - 6 * PARTS - 9) % PARTS;
     const int of_view = way >= 6 * PARTS && way < 6 * PARTS + 9;
     return part < parts && !(of_view && set->parts_only);
 }
