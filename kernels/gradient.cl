@@ -108,6 +108,14 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
     }
 }
 
+/* Whether a face is seen as a line: narrower than 1e-4 pixels. A ray that hits it is an accident, and its slope has no bound. The host
+ * integrates such faces over the pixels (lib/geometry/steep.h). */
+static int skg_is_edge_on(skg_real4 a, skg_real4 b, skg_real4 c) {
+    const skg_real4 ab = fabs(b - a), ac = fabs(c - a), bc = fabs(c - b);
+    const skg_real longest = fmax(fmax(fmax(ab.x, ab.y), fmax(ac.x, ac.y)), fmax(bc.x, bc.y));
+    return fabs(skg_less(b.x - a.x, c.y - a.y, c.x - a.x, b.y - a.y)) * 10000 <= longest;
+}
+
 /* The moments of a face from its rows `first`, first + step, ... */
 SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_real4 a, skg_real4 b, skg_real4 c,
                                const skg_box *box, int first, int step, skg_real scale, long *moments) {
@@ -124,7 +132,7 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
  * weights   [planes][plane] of skg_weights
  * scales    [parts] units of a moment for 1; 0: the part is left out
  * moments   [triangles][3] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
- *           same times lambda_1 and lambda_2
+ *           same times lambda_1 and lambda_2; SKG_EDGE_ON first of a face that is seen as a line
  * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY */
 __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *corners,
                                  __global const skg_real4 *projected, __global const skg_part_entry *parts,
@@ -142,8 +150,12 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || scale == 0 ||
-        !skg_bounds(a, b, c, skg_window(&range, 0, 0, args.layout.columns, args.layout.rows), range.shift, &box))
+    if (range.contributions == 0 || scale == 0) return;
+    if (skg_is_edge_on(a, b, c)) {
+        if (get_global_id(1) == 0) moments[3 * (long)triangle] = SKG_EDGE_ON;
+        return;
+    }
+    if (!skg_bounds(a, b, c, skg_window(&range, 0, 0, args.layout.columns, args.layout.rows), range.shift, &box))
         return;
     skg_gathering g;
     g.contributions = contributions;

@@ -139,6 +139,9 @@ typedef struct {
     SKG_INT stride, plane, planes, reserved;
 } skg_gradient_args;
 
+/* The first moment of a face that is seen as a line (kernels/gradient.cl). */
+#define SKG_EDGE_ON ((SKG_LONG)1 << 62)
+
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_OTHER 0x10000
 

@@ -34,9 +34,39 @@ static skg_status find_corners(skg_job *job, int64_t mesh, const int32_t **corne
     return SKG_OK;
 }
 
+/* The weights of a pass on the host, for faces that are seen as lines, and the part that they are asked for. */
+typedef struct {
+    const skg_pass *pass;
+    skg_weight_layout layout;
+    double *weights;
+    int64_t part;
+} pixel_weights;
+
+/* d loss / d t of a ray: what parts that compete take off is left out. */
+static double weigh_pixel(const void *user, int64_t column, int64_t row) {
+    const pixel_weights *w = user;
+    const skg_geometry_part *part = &w->pass->parts[w->part];
+    double sum = 0;
+    for (int32_t c = 0; c < part->contributions; c++)
+        sum += part->contribution[c].weight *
+               w->weights[part->contribution[c].plane * w->layout.plane + row * w->layout.stride + column];
+    return part->depth > 0 ? sum * w->pass->scale.scale : 0;
+}
+
+/* Reads the weights if any face of the part is seen as a line. */
+static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t triangles, pixel_weights *w) {
+    const skg_gradient_memory *memory = &job->machine->gradient;
+    int64_t count = 0;
+    for (int64_t t = 0; t < triangles; t++) count += moments[3 * t] == SKG_EDGE_ON;
+    if (count == 0 || w->weights) return SKG_OK;
+    SKG_TRY(skg_alloc(w->layout.planes * w->layout.plane, sizeof *w->weights, "gradient", &w->weights));
+    return skg_gradient_read(w->pass, memory->weights.memory, 0, w->layout.planes * w->layout.plane,
+                             w->weights);
+}
+
 /* Adds the faces of a part to its twist and vertices, and to the sums of all parts. */
 static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, const skg_gathered *gathered,
-                           int64_t first, skg_force_sums *all) {
+                           int64_t first, pixel_weights *weights, skg_force_sums *all) {
     struct skg_gradient_work *gradient = job->gradient;
     const skg_geometry *geometry = &job->machine->geometry;
     const int64_t mesh = geometry->mesh_of_part[part];
@@ -47,7 +77,11 @@ static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, con
                               .pose = pass->parts[part].pose,
                               .source = geometry->layouts[mesh].source,
                               .moments = gathered->moments + 3 * first,
-                              .unit = gathered->units[part]};
+                              .unit = gathered->units[part],
+                              .weight = weigh_pixel,
+                              .weight_user = weights};
+    weights->part = part;
+    SKG_TRY(read_weights(job, faces.moments, geometry->layouts[mesh].triangles, weights));
     SKG_TRY(find_corners(job, mesh, &faces.corners));
     SKG_TRY(skg_forces_add(&faces, &sums, wanted->vertices ? wanted->vertices[part] : NULL));
     for (int k = 0; k < 3; k++) {
@@ -63,11 +97,14 @@ static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, con
 static skg_status add_parts(skg_job *job, const skg_pass *pass, const skg_gathered *gathered,
                             skg_force_sums *all) {
     const skg_geometry *geometry = &job->machine->geometry;
-    for (int64_t p = 0, first = 0; p < pass->scene->count; p++) {
-        if (gathered->units[p] != 0) SKG_TRY(add_part(job, pass, p, gathered, first, all));
+    pixel_weights weights = {.pass = pass, .layout = gathered->layout};
+    skg_status status = SKG_OK;
+    for (int64_t p = 0, first = 0; p < pass->scene->count && status == SKG_OK; p++) {
+        if (gathered->units[p] != 0) status = add_part(job, pass, p, gathered, first, &weights, all);
         first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
     }
-    return SKG_OK;
+    skg_free(&weights.weights);
+    return status;
 }
 
 /* --- source and detector */

@@ -3,6 +3,8 @@
 #include "core/parallel.h"
 #include "core/vector.h"
 
+#include <string.h>
+
 /* Faces that are added up together. The sums of chunks are added in their order, so that the number of threads changes no bit. */
 enum { CHUNK = 4096 };
 
@@ -50,6 +52,23 @@ static void add_force(const skg_face_moments *faces, const face_corner *corner, 
             faces->pose[k] * force[0] + faces->pose[4 + k] * force[1] + faces->pose[8 + k] * force[2];
 }
 
+/* A face that contains rays. Its normal is turned outward: the mesh grows where it moves along it. */
+static void add_edge_on(const skg_face_moments *faces, const face_corner corners[3], const double normal[3],
+                        skg_force_sums *sums, double *vertices) {
+    double seen[3][3], moments[3] = {0}, across[3], force[3];
+    for (int k = 0; k < 3; k++) memcpy(seen[k], corners[k].seen, sizeof seen[k]);
+    const double *pose = faces->pose;
+    const double x[3] = {pose[0], pose[4], pose[8]}, y[3] = {pose[1], pose[5], pose[9]},
+                 z[3] = {pose[2], pose[6], pose[10]};
+    skg_cross(y, z, across);
+    const int outward = (skg_dot(x, across) < 0) == (faces->mesh->orientation < 0);
+    skg_steep_add(faces->camera, seen, faces->weight, faces->weight_user, moments);
+    for (int k = 0; k < 3; k++) {
+        skg_scale_vector(outward ? moments[k] : -moments[k], normal, force);
+        if (moments[k] != 0) add_force(faces, &corners[k], force, sums, vertices);
+    }
+}
+
 static void add_face(const skg_face_moments *faces, int64_t face, skg_force_sums *sums, double *vertices) {
     const int64_t *moments = faces->moments + 3 * face;
     const int parallel = faces->camera->parallel;
@@ -59,6 +78,10 @@ static void add_face(const skg_face_moments *faces, int64_t face, skg_force_sums
     for (int k = 0; k < 3; k++) find_corner(faces, faces->corners[3 * face + k], &corners[k]);
     for (int k = 0; k < 2; k++) skg_add_scaled(corners[k + 1].at, -1, corners[0].at, side[k]);
     skg_cross(side[0], side[1], normal);
+    if (moments[0] == SKG_EDGE_ON) {
+        add_edge_on(faces, corners, normal, sums, vertices);
+        return;
+    }
     skg_add_scaled(corners[0].at, -1, faces->camera->origin, from);
     const double height = skg_dot(normal, parallel ? faces->camera->first : from);
     const double share[3] = {(double)(moments[0] - moments[1] - moments[2]), (double)moments[1],

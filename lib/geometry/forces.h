@@ -6,18 +6,20 @@
 #ifndef SKG_FORCES_H
 #define SKG_FORCES_H
 
-#include "geometry/camera.h"
+#include "geometry/steep.h"
 #include "mesh/mesh.h"
 
 /* The faces of a part. */
 typedef struct {
     const skg_camera *camera;
     const skg_mesh *mesh;
-    const double *pose;     /* 4x4 */
-    const int32_t *corners; /* [triangles][3] in the device's numbering of vertices */
-    const int32_t *source;  /* the mesh's number of each; NULL: the same */
-    const int64_t *moments; /* [triangles][3] */
-    double unit;            /* of a moment */
+    const double *pose;      /* 4x4 */
+    const int32_t *corners;  /* [triangles][3] in the device's numbering of vertices */
+    const int32_t *source;   /* the mesh's number of each; NULL: the same */
+    const int64_t *moments;  /* [triangles][3] */
+    double unit;             /* of a moment */
+    skg_steep_weight weight; /* of faces whose first moment is SKG_EDGE_ON; may be NULL if there are none */
+    const void *weight_user;
 } skg_face_moments;
 
 /* Sums over faces, about the world's origin. t: the path parameter of a corner. */

@@ -459,7 +459,7 @@ START_TEST(a_whole_that_moves_changes_nothing) {
 }
 END_TEST
 
-/* --- what is refused */
+/* --- silhouettes and faces that contain rays */
 
 static skg_adjoint adjoint_of(const double *values) {
     skg_adjoint adjoint;
@@ -467,6 +467,84 @@ static skg_adjoint adjoint_of(const double *values) {
     adjoint.channels = 1, adjoint.rows = adjoint.columns = SIDE, adjoint.data = values;
     return adjoint;
 }
+
+/* Path lengths are continuous across silhouettes, so that a pixel's value changes by the integral of its derivative, which is not
+ * bounded there. */
+START_TEST(values_change_by_the_integral_of_the_gradient) {
+    enum { STEPS = 4000 };
+    const setting set = {.colours = 1, .quantity = SKG_QUANTITY_ATTENUATION};
+    static double first[PIXELS], last[PIXELS], adjoint[PIXELS];
+    const double pitch = 4.1 * 1000 / 1200; /* about a pixel, where the body is */
+    double integral = 0, change = 0, size = 0;
+    result r;
+    if (!run_has_double()) return;
+    make_scene(&set);
+    allocate(&r);
+    const skg_view view = make_view(&set);
+    skg_plan *plan = make_plan(&set, &view, SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
+    const direction d = {.poses = {{pitch}}};
+    fill_adjoint(PIXELS, adjoint);
+    render(plan, &view, &d, 0, first);
+    render(plan, &view, &d, 1, last);
+    for (int p = 0; p < PIXELS; p++)
+        change += adjoint[p] * (last[p] - first[p]), size += fabs(adjoint[p] * (last[p] - first[p]));
+    for (int s = 0; s < STEPS; s++) {
+        skg_gradient gradient;
+        skg_frame frame;
+        skg_part part;
+        const int64_t body = 0;
+        const skg_adjoint given = adjoint_of(adjoint);
+        skg_part_init(&part);
+        skg_frame_init(&frame);
+        skg_gradient_init(&gradient);
+        ck_skg(skg_scene_part_get(scene, 0, &part));
+        part.pose[3] += pitch * (s + 0.5) / STEPS;
+        frame.pose_count = 1, frame.pose_parts = &body, frame.poses = part.pose;
+        gradient.poses = r.poses[0];
+        ck_skg(skg_plan_gradient(plan, &frame, &given, &gradient));
+        integral += r.poses[0][0] * pitch / STEPS;
+    }
+    ck_assert_msg(fabs(integral - change) <= 1e-3 * size, "%.10g, integral %.10g of %.3g", change, integral,
+                  size);
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
+/* The sides of a box in a parallel beam contain rays. The mean of the pixels changes by depth times edge, exactly. */
+START_TEST(sides_of_a_box_change_the_mean) {
+    static double adjoint[PIXELS];
+    const double x = 21.3, y = 17.9, z = 33, pitch = 4;
+    double poses[6], vertices[24];
+    double *const of_parts[1] = {vertices};
+    skg_gradient gradient;
+    solid box = solid_box(x, y, z);
+    skg_view view = run_view(SIDE, pitch);
+    view.projection = SKG_PROJECTION_PARALLEL;
+    scene = run_scene(&box, NULL);
+    skg_plan *plan = run_plan(
+        scene, &view,
+        (run_choice){.precision = _i && run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                     .quantity = SKG_QUANTITY_ATTENUATION});
+    skg_gradient_init(&gradient);
+    gradient.poses = poses, gradient.vertices = of_parts;
+    /* mu is 0.1 per mm; the loss is the sum of the pixels right of the middle, that is 0.1 z y / pitch^2 for each mm */
+    for (int p = 0; p < PIXELS; p++) adjoint[p] = p % SIDE >= SIDE / 2;
+    const skg_adjoint given = adjoint_of(adjoint);
+    ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+    const double expected = 0.1 * z * y / (pitch * pitch);
+    ck_assert_double_eq_tol(poses[0], expected, 1e-5 * expected); /* mu of the material in single precision */
+    ck_assert_double_eq_tol(poses[1], 0, 1e-5 * expected);        /* the same */
+    double right = 0;
+    for (int v = 0; v < 8; v++) right += box.positions[3 * v] > 0 ? vertices[3 * v] : 0;
+    ck_assert_double_eq_tol(right, expected, 1e-5 * expected); /* the same */
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+    solid_free(&box);
+}
+END_TEST
+
+/* --- what is refused */
 
 START_TEST(bad_adjoints_are_refused) {
     static double values[PIXELS];
@@ -594,6 +672,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, single_precision_agrees_with_double);
     tcase_add_test(tests, noise_is_constant);
     tcase_add_loop_test(tests, a_whole_that_moves_changes_nothing, 0, 3);
+    tcase_add_test(tests, values_change_by_the_integral_of_the_gradient);
+    tcase_add_loop_test(tests, sides_of_a_box_change_the_mean, 0, 2);
     tcase_add_test(tests, bad_adjoints_are_refused);
     tcase_add_test(tests, what_has_no_gradient_is_refused_by_name);
     tcase_add_test(tests, leaky_meshes_are_refused_by_name);

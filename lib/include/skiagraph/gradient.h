@@ -11,8 +11,9 @@
  *               barycentric coordinate b_k of the hit, the face's normal n and the ray's direction d. So the derivative of a path
  *               length is a signed sum over its hits. Lengths through closed meshes are continuous across silhouettes,
  *               which need no term of their own (docs/numerics.md)
- *     limits    A face that contains rays, such as the side of a box in a parallel beam, adds nothing although the mean
- *               of a pixel changes with its place: the image jumps where the ray passes the face
+ *     edges     A face that contains rays, such as the side of a box in a parallel beam, is hit by none, but the mean of a pixel
+ *               changes with its place. Faces narrower than 1e-4 pixels in the image add the derivative of that mean. Where
+ *               they lose by priority, they add too much
  *     bits      Sums over hits are integers: they depend neither on the strategy nor on the number of threads */
 #ifndef SKIAGRAPH_GRADIENT_H
 #define SKIAGRAPH_GRADIENT_H
