@@ -1,5 +1,6 @@
 #include "frame/frame.h"
-#include "frame/gradient.h"
+#include "frame/gradient_density.h"
+#include "frame/gradient_pass.h"
 #include "frame/parts.h"
 #include "frame/scatter.h"
 #include "plan/choose.h"

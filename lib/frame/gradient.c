@@ -1,7 +1,6 @@
-#include "frame/gradient.h"
-
 #include "core/plain.h"
 #include "frame/adjoint.h"
+#include "frame/gradient_work.h"
 #include "frame/submission.h"
 #include "frame/wait.h"
 #include "geometry/collimation.h"
@@ -39,8 +38,9 @@ static skg_status check_view(const char *call, const skg_recipe *recipe) {
     return SKG_OK;
 }
 
-skg_status skg_gradient_check(const char *call, const skg_recipe *recipe, const skg_machine *machine,
-                              const skg_gradient *wanted) {
+/* Refuses by name what has no gradient. call: the name of the public function. */
+static skg_status check_wanted(const char *call, const skg_recipe *recipe, const skg_machine *machine,
+                               const skg_gradient *wanted) {
     const skg_plan_options *options = &recipe->options;
     const skg_plan_meshes *meshes = &recipe->meshes;
     double factors[SKG_CHANNELS_MAX];
@@ -167,7 +167,7 @@ static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const sk
     SKG_TRY(skg_struct_read(gradient, "skg_gradient", &work.wanted, sizeof work.wanted));
     SKG_TRY(skg_plan_renew(plan));
     const skg_scene *scene = plan->recipe->scene;
-    SKG_TRY(skg_gradient_check(call, plan->recipe, &plan->machine, &work.wanted));
+    SKG_TRY(check_wanted(call, plan->recipe, &plan->machine, &work.wanted));
     SKG_TRY_CLEANUP(skg_alloc(6 * scene->count, sizeof *work.poses, "gradient", &work.poses));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.densities, "gradient", &work.densities));
     SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.wanted, &work.adjoint));

@@ -1,6 +1,6 @@
 /* The derivatives by the densities of parts: the sum over pixels and planes of the length through a part, times what a mm of its
  * material adds to the plane, times the derivative by the plane. */
-#include "frame/gradient.h"
+#include "frame/gradient_density.h"
 
 #include <string.h>
 

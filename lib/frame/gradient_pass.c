@@ -1,6 +1,7 @@
-/* The share of one pass in a gradient. */
+#include "frame/gradient_pass.h"
+
 #include "core/vector.h"
-#include "frame/gradient.h"
+#include "frame/gradient_density.h"
 #include "spectral/quantity.h"
 
 #include <string.h>

@@ -261,6 +261,7 @@ static int makes_gradient(skg_plan *plan) {
     TRY(skg_plan_gradient(plan, NULL, &given, &gradient));
     for (int k = 0; k < 3; k++) {
         const double size = fabs(poses[k]) + fabs(poses[6 + k]) + fabs(source[k]) + fabs(detector[k]);
+        /* Single precision: each of some dozen faces is known to 1e-6 of its place in the picture. */
         if (!(fabs(poses[k] + poses[6 + k] + source[k] + detector[k]) <= 1e-4 * size + 1e-9)) return 0;
     }
     return densities[0] < 0 && densities[1] < 0;
