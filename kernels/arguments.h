@@ -91,7 +91,8 @@
     X(GRADIENT_FACES, args) X(GRADIENT_FACES, corners) X(GRADIENT_FACES, projected) X(GRADIENT_FACES, parts) \
     X(GRADIENT_FACES, blocks) X(GRADIENT_FACES, contributions) X(GRADIENT_FACES, weights) X(GRADIENT_FACES, scales) \
     X(GRADIENT_FACES, moments) X(GRADIENT_FACES, slots) X(GRADIENT_FACES, shifts) X(GRADIENT_FACES, counts) \
-    X(GRADIENT_FACES, starts) X(GRADIENT_FACES, hits) X(GRADIENT_FACES, slopes)
+    X(GRADIENT_FACES, starts) X(GRADIENT_FACES, hits) X(GRADIENT_FACES, slopes) \
+    X(GRADIENT_FACES, face_slopes)
 
 #define SKG_ARGUMENTS_GRADIENT_MOST(X) X(GRADIENT_MOST, args) X(GRADIENT_MOST, weights) X(GRADIENT_MOST, most)
 

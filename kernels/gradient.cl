@@ -33,6 +33,10 @@ typedef struct {
     __global const skg_real *weights;
     const skg_gradient_args *args;
     skg_real reference; /* of the part */
+#if SKG_FORWARD
+    __global ulong *pixels;
+    skg_real slopes_of_face[3]; /* at corner 0, and by how much they differ from it at the others */
+#endif
 #if SKG_PRIORITY
     skg_real shift; /* of its depths in the lists of hits */
     int slot;       /* -1: it does not compete */
@@ -82,7 +86,7 @@ static skg_real skg_weight_of(const skg_gathering *g, const skg_range *range, in
     return weight;
 }
 
-/* Adds the hits of a row of a face to its moments. */
+/* Adds the hits of a row of a face to its moments; with SKG_FORWARD to the sums of their pixels instead. */
 static void skg_gather_row(const skg_gathering *g, const skg_range *range, const skg_face *f, const skg_shares *shares,
                            const skg_box *box, int row, skg_real scale, long *moments) {
     skg_line line;
@@ -102,9 +106,15 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
         const skg_real share1 = clamp(fma(shares->i1, past, first1), (skg_real)0, (skg_real)1);
         const skg_real share2 = clamp(fma(shares->i2, past, first2), (skg_real)0, (skg_real)1);
         weight *= scale; /* a unit is far below the last bit of a hit, so that it does not matter how it is rounded */
+#if SKG_FORWARD
+        const skg_real slope = fma(share1, g->slopes_of_face[1], fma(share2, g->slopes_of_face[2], g->slopes_of_face[0]));
+        const long pixel = (long)(range->pixel_j + row) * g->args->layout.columns + range->pixel_i + column;
+        skg_add_moment(g->pixels + pixel, (long)(weight * slope));
+#else
         moments[0] += (long)weight;
         moments[1] += (long)(weight * share1);
         moments[2] += (long)(weight * share2);
+#endif
     }
 }
 
@@ -133,7 +143,9 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
  * scales    [parts] units of a moment for 1; 0: the part is left out
  * moments   [triangles][3] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
  *           same times lambda_1 and lambda_2; SKG_EDGE_ON first of a face that is seen as a line
- * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY */
+ *           With SKG_FORWARD: [rows][columns] the sums over the hits of a pixel of weight times the slope of the hit
+ * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY
+ * face_slopes   [triangles][3] slopes at the corners; SKG_FORWARD */
 __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *corners,
                                  __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                  __global const int *blocks, __global const skg_contribution *contributions,
@@ -141,7 +153,7 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
                                  __global ulong *moments, __global const int *slots,
                                  __global const skg_real *shifts, __global const int *counts,
                                  __global const uint *starts, __global const skg_listed *hits,
-                                 __global const skg_real *slopes) {
+                                 __global const skg_real *slopes, __global const skg_real *face_slopes) {
     const int triangle = (int)get_global_id(0);
     if (triangle >= args.layout.triangles) return;
     skg_range range;
@@ -152,7 +164,7 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
     if (range.contributions == 0 || scale == 0) return;
     if (skg_is_edge_on(a, b, c)) {
-        if (get_global_id(1) == 0) moments[3 * (long)triangle] = SKG_EDGE_ON;
+        if (!SKG_FORWARD && get_global_id(1) == 0) moments[3 * (long)triangle] = SKG_EDGE_ON;
         return;
     }
     if (!skg_bounds(a, b, c, skg_window(&range, 0, 0, args.layout.columns, args.layout.rows), range.shift, &box))
@@ -168,8 +180,15 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     g.counts = counts, g.starts = starts, g.hits = hits, g.slopes = slopes;
 #endif
     long own[3] = {0, 0, 0};
+#if SKG_FORWARD
+    __global const skg_real *slope = face_slopes + 3 * (long)triangle;
+    g.pixels = moments;
+    g.slopes_of_face[0] = slope[0];
+    g.slopes_of_face[1] = slope[1] - slope[0];
+    g.slopes_of_face[2] = slope[2] - slope[0];
+#endif
     skg_gather_face(&g, &range, a, b, c, &box, (int)get_global_id(1), (int)get_global_size(1), scale, own);
-    for (int k = 0; k < 3; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
+    for (int k = 0; k < 3 && !SKG_FORWARD; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
 }
 
 /* The largest magnitude of each row of each plane of weights: most[plane][row]. */

@@ -126,6 +126,22 @@ static skg_status undo_blurs(const skg_plan *plan, double **values) {
     return status;
 }
 
+skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, const double *image,
+                                   double **values) {
+    const skg_recipe *recipe = plan->recipe;
+    const skg_layers *layers = &plan->machine.layers;
+    const int64_t columns = view->columns, size = view->rows * columns, channels = recipe->model.channels;
+    double *blurred = NULL;
+    for (int64_t c = 0; c < channels && layers->count > 0; c++) {
+        if (!blurred) SKG_TRY(skg_alloc(channels * size, sizeof *blurred, "derivative", &blurred));
+        skg_blur_apply(layers->blurs[0], columns, view->rows, *values + c * size, blurred + c * size);
+    }
+    if (blurred) skg_free(values), *values = blurred;
+    SKG_TRY(undo_detection(plan, view, *values));
+    if (image) undo_logarithm(channels * size, image, *values);
+    return SKG_OK;
+}
+
 skg_status skg_adjoint_of_intensities(const skg_plan *plan, const skg_view *view, const double *image,
                                       double **values) {
     const int64_t count = plan->recipe->model.channels * view->rows * view->columns;

@@ -18,6 +18,10 @@ skg_status skg_adjoint_read(const char *call, const skg_plan *plan, const skg_ad
 skg_status skg_adjoint_of_intensities(const skg_plan *plan, const skg_view *view, const double *image,
                                       double **values);
 
+/* Turns derivatives of the intensities of one layer along a direction into those of the image, [channels][rows][columns]. */
+skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, const double *image,
+                                   double **values);
+
 /* Whether the image itself is needed: where a logarithm is taken of what is finished. */
 int skg_adjoint_needs_image(const skg_plan *plan);
 

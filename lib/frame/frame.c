@@ -1,4 +1,5 @@
 #include "frame/frame.h"
+#include "frame/derivative_pass.h"
 #include "frame/gradient_density.h"
 #include "frame/gradient_pass.h"
 #include "frame/parts.h"
@@ -222,7 +223,9 @@ static skg_status add_gradient(skg_job *job, const skg_frame_work *work, int64_t
                                const skg_pass *pass) {
     SKG_TRY(send_mix(job, pass));
     const skg_sums sums = sums_of(job->machine, job->recipe, pass, 0);
-    return skg_gradient_add_pass(job, work, number, pass, &sums, factor_of(job->recipe, work, pass));
+    const double factor = factor_of(job->recipe, work, pass);
+    if (job->gradient->forward) return skg_derivative_add_pass(job, work, number, pass, &sums, factor);
+    return skg_gradient_add_pass(job, work, number, pass, &sums, factor);
 }
 
 /* Adds the density of one part, from its path lengths along the rays of a pass. */

@@ -153,6 +153,65 @@ static skg_status hand_out(const skg_scene *scene, const struct skg_gradient_wor
     return SKG_OK;
 }
 
+/* --- along a direction */
+
+void skg_direction_init_sized(void *direction, int32_t size) {
+    const skg_direction defaults = {0};
+    skg_struct_init(direction, size, &defaults, sizeof defaults);
+}
+
+static skg_status derive(const char *call, skg_plan *plan, const skg_frame *frame,
+                         struct skg_gradient_work *work) {
+    const skg_recipe *recipe = plan->recipe;
+    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
+    double *image = NULL;
+    skg_view view;
+    skg_status status = SKG_OK;
+    SKG_TRY(check_wanted(call, recipe, &plan->machine, &work->wanted));
+    if (recipe->model.layers > 1)
+        return refuse(call, "a blur that depends on depth, along a direction,", "take skg_plan_gradient");
+    SKG_TRY(view_of(call, plan, frame, &work->wanted, &view));
+    SKG_TRY(skg_alloc(count, sizeof *work->derivative, "derivative", &work->derivative));
+    SKG_TRY(skg_alloc(count, sizeof *work->adjoint, "derivative", &work->adjoint));
+    if (skg_adjoint_needs_image(plan)) SKG_TRY(make_image(plan, frame, &image));
+    status = run(plan, frame, work);
+    if (status == SKG_OK) status = skg_derivative_of_image(plan, &view, image, &work->derivative);
+    skg_free(&image);
+    return status;
+}
+
+static skg_status make_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
+                                  double *derivative, int64_t *saturated) {
+    SKG_PLAIN;
+    static const char call[] = "skg_plan_derivative";
+    struct skg_gradient_work work = {.forward = 1};
+    double any[6];
+    SKG_NEEDS_OF(call, plan);
+    SKG_NEEDS_OF(call, direction);
+    SKG_NEEDS_OF(call, derivative);
+    SKG_TRY(skg_context_enter(plan->context));
+    skg_submission_flush(plan->context);
+    SKG_TRY(skg_struct_read(direction, "skg_direction", &work.direction, sizeof work.direction));
+    SKG_TRY(skg_plan_renew(plan));
+    const skg_recipe *recipe = plan->recipe;
+    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
+    if (work.direction.source || work.direction.detector) work.wanted.source = any; /* for the checks */
+    const skg_status status = derive(call, plan, frame, &work);
+    if (status == SKG_OK) memcpy(derivative, work.derivative, (size_t)count * sizeof *derivative);
+    if (saturated) *saturated = work.saturated;
+    skg_free(&work.adjoint);
+    skg_free(&work.derivative);
+    return status;
+}
+
+skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
+                               double *derivative, int64_t *saturated) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, make_derivative(plan, frame, direction, derivative, saturated));
+}
+
+/* --- by everything */
+
 static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                                 const skg_gradient *gradient) {
     SKG_PLAIN;

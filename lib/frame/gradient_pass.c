@@ -23,7 +23,7 @@ static skg_status send_adjoint(skg_job *job, const struct skg_gradient_work *wor
 
 /* --- parts */
 
-static skg_status find_corners(skg_job *job, int64_t mesh, const int32_t **corners) {
+skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t **corners) {
     struct skg_gradient_work *gradient = job->gradient;
     if (!gradient->corners)
         SKG_TRY(skg_staging_take(&job->staging, job->recipe->meshes.count, sizeof *gradient->corners,
@@ -83,7 +83,7 @@ static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, con
                               .weight_user = weights};
     weights->part = part;
     SKG_TRY(read_weights(job, faces.moments, geometry->layouts[mesh].triangles, weights));
-    SKG_TRY(find_corners(job, mesh, &faces.corners));
+    SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
     SKG_TRY(skg_forces_add(&faces, &sums, wanted->vertices ? wanted->vertices[part] : NULL));
     for (int k = 0; k < 3; k++) {
         gradient->poses[6 * part + k] += sums.force[k];
@@ -268,26 +268,32 @@ static skg_status check_places(const skg_pass *pass) {
     return SKG_OK;
 }
 
+skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
+                              int32_t of_planes) {
+    skg_machine *machine = job->machine;
+    skg_gradient_memory *memory = &machine->gradient;
+    skg_attenuation attenuation = machine->images;
+    SKG_TRY(check_places(pass));
+    memcpy(attenuation.window, pass->window, sizeof attenuation.window);
+    SKG_TRY(send_adjoint(job, job->gradient));
+    SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
+    return skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, of_planes,
+                                   memory->adjoint.memory, memory->weights.memory, &job->staging.log);
+}
+
 skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
                                  const skg_pass *pass, const skg_sums *sums, double factor) {
     struct skg_gradient_work *gradient = job->gradient;
     skg_machine *machine = job->machine;
-    skg_gradient_memory *memory = &machine->gradient;
-    skg_attenuation attenuation = machine->images;
     skg_gathered gathered;
     skg_force_sums all = {0};
-    SKG_TRY(check_places(pass));
-    memcpy(attenuation.window, pass->window, sizeof attenuation.window);
-    if (number <= 0) SKG_TRY(send_adjoint(job, gradient));
-    SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
-    SKG_TRY(skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, 0,
-                                    memory->adjoint.memory, memory->weights.memory, &job->staging.log));
-    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, memory, &job->staging, &gathered));
+    SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
+    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
+                                &gathered));
     SKG_TRY(add_parts(job, pass, &gathered, &all));
     if (gradient->wanted.source || gradient->wanted.detector)
         SKG_TRY(add_view(job, work, number, pass, &all));
     if (!gradient->wanted.densities) return SKG_OK;
-    SKG_TRY(skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, 1,
-                                    memory->adjoint.memory, memory->weights.memory, &job->staging.log));
+    SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
     return skg_gradient_keep_planes(job, pass);
 }

@@ -17,7 +17,12 @@ struct skg_gradient_work {
     double view[9];    /* by the source and by the twist of the detector */
     /* [planes of the model][rows][row_stride] by the mm of a pass, if densities are wanted; freed by the caller */
     double *planes;
-    int32_t **corners; /* [meshes] as the device has them, read once; NULL: not read */
+    int32_t forward; /* 1: the derivative of the image along `direction` instead */
+    int32_t reserved;
+    skg_direction direction;
+    double *derivative; /* [channels][rows][columns] of the intensities */
+    int64_t saturated;  /* faces whose slopes were cut off */
+    int32_t **corners;  /* [meshes] as the device has them, read once; NULL: not read */
 };
 
 #endif

@@ -278,3 +278,20 @@ skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t row
     skg_free(&half);
     return SKG_OK;
 }
+
+void skg_blur_apply(const skg_blur *blur, int64_t columns, int64_t rows, const double *from, double *to) {
+    const int64_t down = blur->rows, across = blur->columns;
+    for (int64_t r = 0; r < rows; r++)
+        for (int64_t c = 0; c < columns; c++)
+            for (int64_t j = 0; j < down; j++) {
+                const int64_t row = r + j - down / 2;
+                const double *line = from + (row < 0 ? 0 : row < rows ? row : rows - 1) * columns;
+                const double *weights = blur->across + (blur->separable ? 0 : j * across);
+                double sum = 0;
+                for (int64_t i = 0; i < across; i++) {
+                    const int64_t column = c + i - across / 2;
+                    sum += weights[i] * line[column < 0 ? 0 : column < columns ? column : columns - 1];
+                }
+                to[r * columns + c] += (blur->separable ? blur->down[j] : 1) * sum;
+            }
+}

@@ -12,14 +12,14 @@
 enum { GROUP = 64, SLICES = 32 };
 
 void skg_gradient_memory_release(skg_gradient_memory *memory) {
-    skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,   &memory->scales,
-                                   &memory->moments, &memory->slopes,  &memory->lengths};
+    skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,    &memory->scales,
+                                   &memory->moments, &memory->slopes,  &memory->lengths, &memory->faces};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
     return memory->adjoint.bytes + memory->weights.bytes + memory->most.bytes + memory->scales.bytes +
-           memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes;
+           memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes + memory->faces.bytes;
 }
 
 /* One gather. */
@@ -34,7 +34,7 @@ typedef struct {
     cl_program program;
     skg_gradient_args args;
     int32_t is_double;
-    int32_t reserved;
+    int32_t forward; /* 1: derivatives of pixels */
 } gather_run;
 
 static size_t real_size(const skg_raster *raster) {
@@ -62,7 +62,8 @@ static skg_status begin(gather_run *run) {
     const skg_priority *priority = &run->pass->priority;
     const skg_weight_layout layout = layout_of(run->pass);
     const skg_define defines[] = {{"SKG_SLOTS", priority->count ? skg_priority_slots(priority) : 32},
-                                  {"SKG_PRIORITY", priority->count > 0}};
+                                  {"SKG_PRIORITY", priority->count > 0},
+                                  {"SKG_FORWARD", run->forward}};
     run->args = (skg_gradient_args){
         .layout = run->raster->layout,
         .window = {priority->window[2], priority->window[0], priority->window[3], priority->window[1]},
@@ -145,40 +146,52 @@ static double pixels_of(const gather_run *run, int64_t part) {
     return columns > 1 && rows > 1 ? columns * rows : 1;
 }
 
-/* Powers of two by which weights become integers: the sum over a face stays below 2^62. */
-static skg_status find_scales(const gather_run *run, const double *most, double *scales, double *units) {
-    const int64_t parts = run->pass->scene->count;
+/* No weight of a hit, times t^2 over the square of the reference, is larger. */
+static double hit_bound(const gather_run *run, int64_t part, const double *most, double competing) {
+    const double reference = reference_of(run, part);
+    const double deep =
+        run->pass->camera.parallel ? 1 : (reference + run->pass->parts[part].depth) / reference;
+    return (bound_of(run, part, most) + competing * reference) * deep * deep;
+}
+
+/* What priorities add to the bound of every part that competes. */
+static double competing_of(const gather_run *run, const double *most) {
     double competing = 0;
     for (int64_t s = 0; s < run->pass->priority.count; s++) {
         const int64_t p = run->pass->priority.parts[s];
         const int32_t layers = run->pass->scene->parts[p].mesh->layers;
         competing += 2 * bound_of(run, p, most) / reference_of(run, p) * (layers > 1 ? layers : 1);
     }
-    for (int64_t p = 0; p < parts; p++) {
-        const skg_geometry_part *part = &run->pass->parts[p];
-        const double reference = reference_of(run, p);
-        const double deep = run->pass->camera.parallel ? 1 : (reference + part->depth) / reference;
-        const double bound =
-            (bound_of(run, p, most) + competing * reference) * deep * deep * pixels_of(run, p);
-        int exponent = 0;
-        if (part->contributions == 0 || !(bound > 0)) continue;
-        frexp(bound, &exponent);
-        scales[p] = ldexp(1, exponent > 62 + 120 ? -120 : exponent < 62 - 120 ? 120 : 62 - exponent);
-        units[p] = reference / scales[p];
-    }
-    return SKG_OK;
+    return competing;
 }
 
-static skg_status upload_scales(const gather_run *run, const double *scales) {
-    const int64_t parts = run->pass->scene->count;
+/* A power of two that brings numbers of this size to 2^62. */
+static double scale_for(double bound) {
+    int exponent = 0;
+    frexp(bound, &exponent);
+    return ldexp(1, exponent > 62 + 120 ? -120 : exponent < 62 - 120 ? 120 : 62 - exponent);
+}
+
+/* Powers of two by which weights become integers: the sum over a face stays below 2^62. */
+static void find_scales(const gather_run *run, const double *most, double *scales, double *units) {
+    const double competing = competing_of(run, most);
+    for (int64_t p = 0; p < run->pass->scene->count; p++) {
+        const double bound = hit_bound(run, p, most, competing) * pixels_of(run, p);
+        if (run->pass->parts[p].contributions == 0 || !(bound > 0)) continue;
+        scales[p] = scale_for(bound);
+        units[p] = reference_of(run, p) / scales[p];
+    }
+}
+
+/* Uploads doubles in the precision of the pass. */
+static skg_status upload_reals(const gather_run *run, int64_t count, const double *numbers,
+                               skg_buffer *buffer) {
     float *rounded = NULL;
     if (run->is_double)
-        return skg_buffer_write(run->context, &run->memory->scales, parts * (int64_t)sizeof *scales, scales,
-                                "gradient");
-    SKG_TRY(skg_staging_take(run->staging, parts, sizeof *rounded, "gradient", &rounded));
-    for (int64_t p = 0; p < parts; p++) rounded[p] = (float)scales[p];
-    return skg_buffer_write(run->context, &run->memory->scales, parts * (int64_t)sizeof *rounded, rounded,
-                            "gradient");
+        return skg_buffer_write(run->context, buffer, count * (int64_t)sizeof *numbers, numbers, "gradient");
+    SKG_TRY(skg_staging_take(run->staging, count, sizeof *rounded, "gradient", &rounded));
+    for (int64_t i = 0; i < count; i++) rounded[i] = (float)numbers[i];
+    return skg_buffer_write(run->context, buffer, count * (int64_t)sizeof *rounded, rounded, "gradient");
 }
 
 /* The hits of competing parts are listed still, by skg_hits_run of this pass. */
@@ -208,7 +221,8 @@ static skg_status run_faces(const gather_run *run) {
     const skg_geometry *geometry = run->geometry;
     const skg_hits_memory *h = run->hits;
     const skg_gradient_memory *m = run->memory;
-    const int64_t bytes = 3 * geometry->triangles * (int64_t)sizeof(int64_t);
+    const int64_t pixels = (int64_t)run->raster->layout.rows * run->raster->layout.columns;
+    const int64_t bytes = (run->forward ? pixels : 3 * geometry->triangles) * (int64_t)sizeof(int64_t);
     const cl_int none = 0;
     SKG_TRY(reserve(run, &run->memory->moments, bytes));
     SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, m->moments.memory, &none, sizeof none, 0,
@@ -228,6 +242,7 @@ static skg_status run_faces(const gather_run *run) {
         SKG_ARGUMENT(GRADIENT_FACES, starts, h->starts.memory),
         SKG_ARGUMENT(GRADIENT_FACES, hits, h->hits.memory),
         SKG_ARGUMENT(GRADIENT_FACES, slopes, m->slopes.memory),
+        SKG_ARGUMENT(GRADIENT_FACES, face_slopes, m->faces.memory),
     };
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_gradient_faces", "gradient", &work, arguments,
                            &run->staging->log);
@@ -253,14 +268,73 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *units, "gradient", &units));
     SKG_TRY(skg_staging_take(staging, 3 * geometry->triangles, sizeof *moments, "gradient", &moments));
     SKG_TRY(find_most(&run, most));
-    SKG_TRY(find_scales(&run, most, scales, units));
-    SKG_TRY(upload_scales(&run, scales));
+    find_scales(&run, most, scales, units);
+    SKG_TRY(upload_reals(&run, pass->scene->count, scales, &memory->scales));
     SKG_TRY(run_slopes(&run));
     SKG_TRY(run_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
                                    3 * (size_t)geometry->triangles * sizeof *moments, moments, 0, NULL,
                                    NULL));
     *gathered = (skg_gathered){.moments = moments, .units = units, .layout = layout_of(pass)};
+    return SKG_OK;
+}
+
+/* Cuts slopes off at 2^24 times their mean, and returns the largest that is left. */
+static double cut_slopes(int64_t count, double *slopes, int64_t *saturated) {
+    double sum = 0, largest = 0;
+    int64_t used = 0;
+    for (int64_t i = 0; i < count; i++) sum += fabs(slopes[i]), used += slopes[i] != 0;
+    const double most = used ? ldexp(sum / (double)used, 24) : 0;
+    for (int64_t i = 0; i < count; i++) {
+        if (fabs(slopes[i]) > most) slopes[i] = copysign(most, slopes[i]), ++*saturated;
+        largest = fmax(largest, fabs(slopes[i]));
+    }
+    return largest;
+}
+
+/* One scale for the hits of all parts. At most 2^10 of the largest hits meet in a pixel. */
+static double find_scale(const gather_run *run, const double *most, double slope, double *scales) {
+    const double competing = competing_of(run, most);
+    double bound = 0;
+    for (int64_t p = 0; p < run->pass->scene->count; p++)
+        if (run->pass->parts[p].contributions > 0) bound = fmax(bound, hit_bound(run, p, most, competing));
+    if (!(bound * slope > 0)) return 0;
+    const double scale = scale_for(ldexp(bound * slope, 10));
+    for (int64_t p = 0; p < run->pass->scene->count; p++) scales[p] = scale;
+    return scale;
+}
+
+skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
+                                const skg_hits_memory *hits, skg_gradient_memory *memory,
+                                skg_staging *staging, double *slopes, double *values, int64_t *saturated) {
+    const skg_raster *raster = pass->main.raster;
+    gather_run run = {.pass = pass,
+                      .geometry = geometry,
+                      .hits = hits,
+                      .memory = memory,
+                      .staging = staging,
+                      .raster = raster,
+                      .context = raster->context,
+                      .is_double = geometry->precision == SKG_PRECISION_DOUBLE,
+                      .forward = 1};
+    const int64_t pixels = pass->camera.rows * pass->camera.columns, count = 3 * geometry->triangles;
+    double *most = NULL, *scales = NULL;
+    int64_t *sums = NULL;
+    SKG_TRY(begin(&run));
+    SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "derivative", &most));
+    SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
+    SKG_TRY(skg_staging_take(staging, pixels, sizeof *sums, "derivative", &sums));
+    SKG_TRY(find_most(&run, most));
+    const double scale = find_scale(&run, most, cut_slopes(count, slopes, saturated), scales);
+    for (int64_t p = 0; p < pixels; p++) values[p] = 0;
+    if (scale == 0) return SKG_OK;
+    SKG_TRY(upload_reals(&run, pass->scene->count, scales, &memory->scales));
+    SKG_TRY(upload_reals(&run, count, slopes, &memory->faces));
+    SKG_TRY(run_slopes(&run));
+    SKG_TRY(run_faces(&run));
+    SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
+                                   (size_t)pixels * sizeof *sums, sums, 0, NULL, NULL));
+    for (int64_t p = 0; p < pixels; p++) values[p] = (double)sums[p] / scale;
     return SKG_OK;
 }
 

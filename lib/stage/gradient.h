@@ -10,7 +10,7 @@
 
 /* Device memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths;
+    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces;
 } skg_gradient_memory;
 void skg_gradient_memory_release(skg_gradient_memory *memory);
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
@@ -29,6 +29,16 @@ skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradie
 skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
                                const skg_hits_memory *hits, skg_gradient_memory *memory, skg_staging *staging,
                                skg_gathered *gathered);
+
+/* Adds up the derivatives of the rays of a pass, and waits for them.
+ *
+ * slopes      [triangles][3] of the path parameter over the square of t, at the corners, times the part's reference; in the
+ *             device's order. Those above 2^24 times their mean are cut off there, because sums are 64-bit integers
+ * values      [rows][columns] result
+ * saturated   the number of faces that were cut off is added to it */
+skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
+                                const skg_hits_memory *hits, skg_gradient_memory *memory,
+                                skg_staging *staging, double *slopes, double *values, int64_t *saturated);
 
 /* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,

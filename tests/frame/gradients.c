@@ -219,3 +219,27 @@ skg_adjoint adjoint_of(const double *values) {
     adjoint.channels = 1, adjoint.rows = adjoint.columns = SIDE, adjoint.data = values;
     return adjoint;
 }
+
+void make_derivative(skg_plan *plan, const direction *d, double *derivative) {
+    double *moves[PARTS] = {NULL};
+    const double *vertices[PARTS] = {NULL};
+    skg_direction given;
+    int64_t saturated = -1;
+    for (int64_t p = 0; p < parts; p++) {
+        int64_t count, triangles;
+        ck_skg(skg_mesh_count(meshes[p], &count, &triangles));
+        vertices[p] = moves[p] = calloc((size_t)(3 * count), sizeof(double));
+        for (int64_t v = 0; v < count; v++) {
+            wave(saved[p] + 3 * v, moves[p] + 3 * v);
+            for (int k = 0; k < 3; k++) moves[p][3 * v + k] *= d->vertices[p];
+        }
+    }
+    double moves_view = 0;
+    for (int k = 0; k < 6; k++) moves_view += fabs(d->detector[k]) + (k < 3 ? fabs(d->source[k]) : 0);
+    skg_direction_init(&given);
+    given.poses = d->poses[0], given.vertices = vertices;
+    if (moves_view > 0) given.source = d->source, given.detector = d->detector;
+    ck_skg(skg_plan_derivative(plan, NULL, &given, derivative, &saturated));
+    ck_assert_int_eq(saturated, 0);
+    for (int64_t p = 0; p < parts; p++) free(moves[p]);
+}

@@ -46,6 +46,9 @@ void render(skg_plan *plan, const skg_view *view, const direction *d, double ste
 void make_gradient(skg_plan *plan, const setting *set, const double *adjoint, result *r);
 double along(const result *r, const direction *d);
 
+/* The derivative of the image along a direction in which no density changes. */
+void make_derivative(skg_plan *plan, const direction *d, double *derivative);
+
 /* d loss / d image: a number between -0.5 and 0.5 for every value. */
 void fill_adjoint(int64_t count, double *adjoint);
 skg_adjoint adjoint_of(const double *values);

@@ -103,6 +103,43 @@ static inline void skg_gradient_init(skg_gradient *gradient) {
 SKG_API skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                                      const skg_gradient *gradient);
 
+/** A direction: how fast parts, vertices, source and detector move. Prepare with skg_direction_init: nothing moves. Twists and axes
+ * are those of skg_gradient. */
+typedef struct {
+    /** Set by skg_direction_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** [parts][6] the twist of each part; NULL: none moves. */
+    const double *poses;
+    /** [3] of the source; NULL: it stays. */
+    const double *source;
+    /** [6] the twist of the detector; NULL: it stays. */
+    const double *detector;
+    /** [parts] of the positions of the mesh of each part: [vertices][3], or NULL for parts whose vertices stay. NULL: of no part. */
+    const double *const *vertices;
+} skg_direction;
+
+/** Prepares a direction of `size` bytes (export.h). */
+SKG_API void skg_direction_init_sized(void *direction, int32_t size);
+
+/** Prepares a direction. */
+static inline void skg_direction_init(skg_direction *direction) {
+    skg_direction_init_sized(direction, (int32_t)sizeof *direction);
+}
+
+/** Makes the derivative of a frame's image along a direction, and waits for it.
+ *
+ *     frame        NULL: as plan and scene stand
+ *     direction    what moves
+ *     derivative   result: [channels][rows][columns], in the plan's quantity for a unit of the direction
+ *     saturated    result: number of slopes of faces at their corners that were cut off at 2^24 times the mean slope, because the
+ *                  sums over hits are 64-bit integers; may be NULL
+ *     limits       faces that contain rays add nothing, unlike in skg_plan_gradient
+ *     errors       as of skg_plan_gradient; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
+                                       double *derivative, int64_t *saturated);
+
 #ifdef __cplusplus
 }
 #endif
