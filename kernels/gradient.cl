@@ -188,7 +188,9 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     g.slopes_of_face[2] = slope[2] - slope[0];
 #endif
     skg_gather_face(&g, &range, a, b, c, &box, (int)get_global_id(1), (int)get_global_size(1), scale, own);
-    for (int k = 0; k < 3 && !SKG_FORWARD; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
+#if !SKG_FORWARD
+    for (int k = 0; k < 3; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
+#endif
 }
 
 /* The largest magnitude of each row of each plane of weights: most[plane][row]. */

@@ -1,7 +1,7 @@
 """Gradients: the derivative of a loss by the scene, from its derivative by an image. Private."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,6 +55,18 @@ class Differentiable:
         with self._state.calls():
             return _gradient(self._state, given, list(wrt), {"quantity": quantity, **options})
 
+    def derivative(self, direction: Mapping[str, Any], quantity: str | None = None, **options: Any) -> NDArray[np.float64]:
+        """The derivative of the image along a direction, [row, column], with bands [band, row, column].
+
+        direction: {"poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label: [n, 3]}}, of which any may be
+        missing: how fast each moves. quantity and options: of the image. The rest is as in gradient().
+        """
+        for name in direction:
+            if name not in NAMES[:4]:
+                raise ArgumentError(f"the direction has {name!r}; it is made of {', '.join(map(repr, NAMES[:4]))}")
+        with self._state.calls():
+            return _derivative(self._state, direction, {"quantity": quantity, **options})
+
 
 def _pointer(array: NDArray[np.float64]) -> Any:
     return ffi.cast("double *", array.__array_interface__["data"][0])
@@ -79,19 +91,48 @@ def _gradient(state: State, weights: NDArray[np.float64], wrt: list[str], option
             setattr(wanted, "densities" if name == "density" else name, _pointer(array))
     if vertices:
         wanted.vertices = keep
-    _run(state, adjoint, wanted, options)
+    _run(state, options, lambda plan, frame: lib.skg_plan_gradient(plan, frame, adjoint, wanted))
     found: dict[str, Any] = {"poses": dict(zip(labels, poses)), "source": source, "detector": detector,
                              "vertices": dict(zip(labels, vertices)),
                              "density": {label: float(x) for label, x in zip(labels, densities)}}
     return {name: found[name] for name in wrt}
 
 
-def _run(state: State, adjoint: Any, wanted: Any, options: dict[str, Any]) -> None:
-    """Makes the gradient of the scene as it stands; a stale plan is made anew once."""
+def _vector(value: Any, shape: tuple[int, ...], what: str) -> NDArray[np.float64]:
+    array = np.ascontiguousarray(value, dtype=np.float64)
+    if array.shape != shape:
+        raise ArgumentError(f"{what} has the shape {array.shape}; it is {shape}")
+    return array
+
+
+def _derivative(state: State, direction: Mapping[str, Any], options: dict[str, Any]) -> NDArray[np.float64]:
+    parts = state.parts()
+    given = struct("skg_direction")
+    poses, keep = np.zeros((len(parts), 6)), [ffi.new("double *[]", len(parts))]
+    for label, twist in direction.get("poses", {}).items():
+        poses[state.number(label)] = _vector(twist, (6,), f"poses[{label!r}]")
+    given.poses = _pointer(poses)
+    for name, size in (("source", 3), ("detector", 6)):
+        if direction.get(name) is not None:
+            keep.append(_vector(direction[name], (size,), name))
+            setattr(given, name, _pointer(keep[-1]))
+    for label, moves in direction.get("vertices", {}).items():
+        number = state.number(label)
+        keep.append(_vector(moves, parts[number].mesh.vertices.shape, f"vertices[{label!r}]"))
+        keep[0][number] = _pointer(keep[-1])
+    given.vertices = ffi.cast("double **", keep[0])
+    bands = options.get("bands")
+    shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
+    found = np.empty(shape)
+    _run(state, options, lambda plan, frame: lib.skg_plan_derivative(plan, frame, given, _pointer(found), ffi.NULL))
+    return found
+
+
+def _run(state: State, options: dict[str, Any], work: Callable[[Any, Any], int]) -> None:
+    """Does the work with the plan of the scene as it stands; a stale plan is made anew once."""
     batch = Batch(1, index=number_frames(state, 1, None, options), complete=state.completer())
     for again in (False, True):
-        plan = state.plan(options, None, again)
         keep: list[Any] = []
-        if check(lib.skg_plan_gradient(plan, batch.frames(0, 1, keep), adjoint, wanted)) == OK:
+        if check(work(state.plan(options, None, again), batch.frames(0, 1, keep))) == OK:
             return
     raise SceneError(text(lib.skg_last_error()))
