@@ -62,13 +62,18 @@ typedef struct {
     skg_output output;
     skg_adjoint adjoint;
     skg_gradient gradient;
-    int wants;
+    int wants; /* 0: the image alone; 1, 2: its gradient; 3: its derivative along a direction */
+    skg_direction direction;
+    double *derivative;
 } contender;
 
 static void frame(void *who) {
     contender *self = who;
     bench_try(skg_plan_image(self->plan, &self->output), "image");
-    if (self->wants)
+    if (self->wants == 3)
+        bench_try(skg_plan_derivative(self->plan, NULL, &self->direction, self->derivative, NULL),
+                  "derivative");
+    else if (self->wants)
         bench_try(skg_plan_gradient(self->plan, NULL, &self->adjoint, &self->gradient), "gradient");
 }
 
@@ -108,16 +113,19 @@ static double **make_vertices(const bench_thorax *thorax) {
 }
 
 static void compare(const settings *set, const bench_thorax *thorax, skg_plan *plan, FILE *csv) {
-    static const char *const names[3] = {"image", "image, poses, source, detector",
-                                         "the same and all vertices"};
+    static const char *const names[4] = {"image", "image, poses, source, detector",
+                                         "the same and all vertices", "image, along a pose"};
     double *adjoint = bench_alloc((size_t)(set->size * set->size), sizeof *adjoint), view[9];
+    double *derivative = bench_alloc((size_t)(set->size * set->size), sizeof *derivative);
+    double *twists = bench_alloc((size_t)(6 * thorax->parts), sizeof *twists);
     double **vertices = make_vertices(thorax);
-    contender all[3] = {0};
-    bench_times times[3] = {0};
-    const bench_frame frames[3] = {frame, frame, frame};
-    void *who[3];
+    contender all[4] = {0};
+    bench_times times[4] = {0};
+    const bench_frame frames[4] = {frame, frame, frame, frame};
+    void *who[4];
     for (long p = 0; p < set->size * set->size; p++) adjoint[p] = 1e-6 * (double)(p % 7 - 3);
-    for (int k = 0; k < 3; k++) {
+    twists[0] = 1;
+    for (int k = 0; k < 4; k++) {
         contender *c = &all[k];
         who[k] = c;
         c->plan = plan, c->wants = k;
@@ -129,11 +137,14 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
         c->gradient.poses = bench_alloc((size_t)(6 * thorax->parts), sizeof(double));
         c->gradient.source = view, c->gradient.detector = view + 3;
         if (k == 2) c->gradient.vertices = vertices;
+        skg_direction_init(&c->direction);
+        c->direction.poses = twists;
+        c->derivative = derivative;
     }
-    bench_interleave(3, frames, who, (int)(set->repeats + 4) / 5, 5, times);
+    bench_interleave(4, frames, who, (int)(set->repeats + 4) / 5, 5, times);
     printf("| what | minimum, ms | median, ms | images |\n|---|---:|---:|---:|\n");
     if (csv) fprintf(csv, "what,min_ms,median_ms,images\n");
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         const double least = bench_least(&times[k]), images = least / bench_least(&times[0]);
         printf("| %s | %.4g | %.4g | %.2f |\n", names[k], least, bench_median(&times[k]), images);
         if (csv) fprintf(csv, "\"%s\",%.5g,%.5g,%.3f\n", names[k], least, bench_median(&times[k]), images);
@@ -142,6 +153,8 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
     }
     for (int64_t p = 0; p < thorax->parts; p++) free(vertices[p]);
     free(vertices);
+    free(twists);
+    free(derivative);
     free(adjoint);
 }
 

@@ -235,7 +235,8 @@ void make_derivative(skg_plan *plan, const direction *d, double *derivative) {
         }
     }
     double moves_view = 0;
-    for (int k = 0; k < 6; k++) moves_view += fabs(d->detector[k]) + (k < 3 ? fabs(d->source[k]) : 0);
+    for (int k = 0; k < 3; k++) moves_view += fabs(d->source[k]);
+    for (int k = 0; k < 6; k++) moves_view += fabs(d->detector[k]);
     skg_direction_init(&given);
     given.poses = d->poses[0], given.vertices = vertices;
     if (moves_view > 0) given.source = d->source, given.detector = d->detector;
