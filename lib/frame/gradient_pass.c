@@ -39,7 +39,7 @@ skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t *
 typedef struct {
     const skg_pass *pass;
     skg_weight_layout layout;
-    double *weights;
+    double **planes; /* [layout.planes] NULL: not read */
     int64_t part;
 } pixel_weights;
 
@@ -50,19 +50,24 @@ static double weigh_pixel(const void *user, int64_t column, int64_t row) {
     double sum = 0;
     for (int32_t c = 0; c < part->contributions; c++)
         sum += part->contribution[c].weight *
-               w->weights[part->contribution[c].plane * w->layout.plane + row * w->layout.stride + column];
+               w->planes[part->contribution[c].plane][row * w->layout.stride + column];
     return part->depth > 0 ? sum * w->pass->scale.scale : 0;
 }
 
-/* Reads the weights if any face of the part is seen as a line. */
+/* Reads the weights of a part if any of its faces is seen as a line. */
 static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t triangles, pixel_weights *w) {
     const skg_gradient_memory *memory = &job->machine->gradient;
+    const skg_geometry_part *part = &w->pass->parts[w->part];
     int64_t count = 0;
     for (int64_t t = 0; t < triangles; t++) count += moments[3 * t] == SKG_EDGE_ON;
-    if (count == 0 || w->weights) return SKG_OK;
-    SKG_TRY(skg_alloc(w->layout.planes * w->layout.plane, sizeof *w->weights, "gradient", &w->weights));
-    return skg_gradient_read(w->pass, memory->weights.memory, 0, w->layout.planes * w->layout.plane,
-                             w->weights);
+    for (int32_t c = 0; c < part->contributions && count > 0; c++) {
+        const int64_t plane = part->contribution[c].plane;
+        if (w->planes[plane]) continue;
+        SKG_TRY(skg_alloc(w->layout.plane, sizeof **w->planes, "gradient", &w->planes[plane]));
+        SKG_TRY(skg_gradient_read(w->pass, memory->weights.memory, plane * w->layout.plane, w->layout.plane,
+                                  w->planes[plane]));
+    }
+    return SKG_OK;
 }
 
 /* Adds the faces of a part to its twist and vertices, and to the sums of all parts. */
@@ -100,11 +105,13 @@ static skg_status add_parts(skg_job *job, const skg_pass *pass, const skg_gather
     const skg_geometry *geometry = &job->machine->geometry;
     pixel_weights weights = {.pass = pass, .layout = gathered->layout};
     skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(weights.layout.planes, sizeof *weights.planes, "gradient", &weights.planes));
     for (int64_t p = 0, first = 0; p < pass->scene->count && status == SKG_OK; p++) {
         if (gathered->units[p] != 0) status = add_part(job, pass, p, gathered, first, &weights, all);
         first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
     }
-    skg_free(&weights.weights);
+    for (int64_t k = 0; k < weights.layout.planes; k++) skg_free(&weights.planes[k]);
+    skg_free(&weights.planes);
     return status;
 }
 

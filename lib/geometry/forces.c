@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Faces that are added up together. The sums of chunks are added in their order, so that the number of threads changes no bit. */
-enum { CHUNK = 4096 };
+enum { CHUNK = 4096, FEW_CHUNKS = 8 }; /* threads take as long to start as a few chunks */
 
 typedef struct {
     const skg_face_moments *faces;
@@ -116,7 +116,7 @@ skg_status skg_forces_add(const skg_face_moments *faces, skg_force_sums *sums, d
     forces_run run = {.faces = faces, .vertices = vertices};
     skg_status status = SKG_OK;
     SKG_TRY(skg_alloc(count, sizeof *run.chunks, "gradient", &run.chunks));
-    if (vertices || count == 1) /* faces of two chunks share vertices */
+    if (vertices || count < FEW_CHUNKS) /* faces of two chunks share vertices */
         for (int64_t c = 0; c < count; c++) (void)add_chunk(&run, c);
     else
         status = skg_parallel(count, add_chunk, &run);
