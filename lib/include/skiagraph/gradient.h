@@ -3,7 +3,7 @@
  * poses of parts, by source and detector, by vertices and by densities.
  *
  * The caller says how the number, the loss, changes with each value of the image (skg_adjoint). One pass over the
- * triangles then gives its derivative by everything else, in about the time of an image. It is the derivative of the
+ * triangles then gives its derivative by everything else, in the time of some images, however much moves. It is the derivative of the
  * image as it is computed: of the path lengths of the rays to the centres of the pixels, or to all samples of pixel and
  * source, with the energies and planes that the plan chose. Noise and the steps of the detector count as constant.
  *
@@ -76,7 +76,7 @@ typedef struct {
      * Parts that share a mesh each have their own; the sum is that of the mesh. */
     double *const *vertices;
     /** [parts] by the density of each part over that of its material; NULL: not wanted. It costs the path lengths through every
-     * part: about half an image a part. */
+     * part, an image of lengths a part. */
     double *densities;
 } skg_gradient;
 
